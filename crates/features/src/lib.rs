@@ -1,0 +1,1 @@
+//! Signals summed up as one row of named numbers.

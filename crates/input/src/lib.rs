@@ -1,0 +1,1 @@
+//! The files that people write: quantities with units, machine.yaml, their errors and schemas.

@@ -1,0 +1,1 @@
+//! Error-controlled integration with dense output and located events; knows no physics.

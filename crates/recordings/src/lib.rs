@@ -1,0 +1,1 @@
+//! Tables of recordings and features, and their files: Parquet and MCAP.

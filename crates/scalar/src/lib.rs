@@ -1,0 +1,157 @@
+//! One number trait for everything the equations of motion are evaluated with.
+//!
+//! - `f64`: an ordinary run;
+//! - [`Dual`]: a value with its exact derivatives in `N` directions (over any other scalar);
+//! - [`Lanes`]: `W` cases side by side, laid out for the processor's vector unit.
+//!
+//! The elementary functions are our own ([`elementary`]): the platform's C library may take
+//! another path on another processor, and a chaotic run turns one different last bit into a
+//! different recording. Every scalar calls the same code, so a case gives the same bytes alone,
+//! in a lane, or as the value of a dual number.
+
+pub mod dual;
+pub mod elementary;
+pub mod lanes;
+pub mod random;
+
+pub use dual::Dual;
+pub use lanes::Lanes;
+
+use num_traits::{One, Zero};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// The result of comparing two scalars: one truth value, or one per lane.
+pub trait Mask: Copy + Debug {
+    /// True in every lane where both are.
+    fn and(self, other: Self) -> Self;
+    /// True in every lane where either is.
+    fn or(self, other: Self) -> Self;
+    /// True in every lane where this is not.
+    fn not(self) -> Self;
+    /// True in at least one lane.
+    fn any(self) -> bool;
+}
+
+/// A real number of the equations of motion.
+///
+/// Branches on values are written with [`Scalar::select`], so that lanes may disagree.
+pub trait Scalar:
+    Copy
+    + Debug
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// What a comparison yields.
+    type Mask: Mask;
+
+    /// The constant `x` (in every lane, with no derivative).
+    fn constant(x: f64) -> Self;
+    /// `self < other`, by value.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask is true, `no` elsewhere.
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Square root; the derivative at 0 is taken as 0.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+    /// Exponential function.
+    fn exp(self) -> Self;
+    /// Natural logarithm of a positive number.
+    fn ln(self) -> Self;
+
+    /// `self` raised to `exponent`; `self` must be positive.
+    #[inline]
+    fn powf(self, exponent: Self) -> Self {
+        (self.ln() * exponent).exp()
+    }
+    /// The larger of two, by value.
+    #[inline]
+    fn max(self, other: Self) -> Self {
+        Self::select(self.lt(other), other, self)
+    }
+    /// The smaller of two, by value.
+    #[inline]
+    fn min(self, other: Self) -> Self {
+        Self::select(other.lt(self), other, self)
+    }
+    /// Absolute value.
+    #[inline]
+    fn abs(self) -> Self {
+        Self::select(self.lt(Self::zero()), -self, self)
+    }
+    /// `self` kept between `low` and `high`.
+    #[inline]
+    fn clamp(self, low: Self, high: Self) -> Self {
+        self.max(low).min(high)
+    }
+}
+
+impl Mask for bool {
+    #[inline]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+    #[inline]
+    fn or(self, other: Self) -> Self {
+        self | other
+    }
+    #[inline]
+    fn not(self) -> Self {
+        !self
+    }
+    #[inline]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+impl Scalar for f64 {
+    type Mask = bool;
+
+    #[inline]
+    fn constant(x: f64) -> Self {
+        x
+    }
+    #[inline]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        elementary::sin_cos(self)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        elementary::exp(self)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        elementary::ln(self)
+    }
+}

@@ -1,0 +1,1 @@
+//! Windows, spectra, order tracking, filters and resampling of sampled signals.

@@ -1,0 +1,1 @@
+//! A machine at an operating point becomes a run: transient, sensors, energy ledger.

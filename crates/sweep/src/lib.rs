@@ -1,0 +1,1 @@
+//! sweep.yaml becomes cases, shards and a committed dataset.
