@@ -56,9 +56,17 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     let cosine = 1.0 + r2 * cosine;
 
     let swapped = quadrant & 1 == 1;
-    let (s, c) = if swapped { (cosine, sine) } else { (sine, cosine) };
+    let (s, c) = if swapped {
+        (cosine, sine)
+    } else {
+        (sine, cosine)
+    };
     let s = if quadrant & 2 == 2 { -s } else { s };
-    let c = if (quadrant.wrapping_add(1)) & 2 == 2 { -c } else { c };
+    let c = if (quadrant.wrapping_add(1)) & 2 == 2 {
+        -c
+    } else {
+        c
+    };
     (s, c)
 }
 
@@ -119,7 +127,9 @@ mod tests {
         ours: fn(f64) -> f64,
         theirs: fn(f64) -> f64,
     ) -> f64 {
-        arguments.map(|x| ulps(ours(x), theirs(x))).fold(0.0, f64::max)
+        arguments
+            .map(|x| ulps(ours(x), theirs(x)))
+            .fold(0.0, f64::max)
     }
 
     /// 200,000 arguments spread over `low..high`, never on round numbers.

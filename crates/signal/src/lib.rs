@@ -1,1 +1,3 @@
 //! Windows, spectra, order tracking, filters and resampling of sampled signals.
+
+pub mod channel;

@@ -1,0 +1,58 @@
+//! Coulomb friction as ADAMS has it: from 0 the coefficient rises to the static one at the
+//! stiction speed vs, and falls to the dynamic one at the transition speed vd, by cubic steps.
+//!
+//! ```text
+//! |v| ≤ vs        μ = STEP(v, −vs, −μs, vs, μs)
+//! vs < |v| < vd   μ = sgn(v) STEP(|v|, vs, μs, vd, μd)
+//! vd ≤ |v|        μ = sgn(v) μd
+//! ```
+//!
+//! Below vs the surfaces creep: there is no true sticking.
+
+use crate::lift::parameters;
+use scalar::Scalar;
+
+parameters! {
+    /// Parameters of the ADAMS law.
+    pub struct Adams<S> {
+        /// Static coefficient μs.
+        pub static_coefficient: S,
+        /// Dynamic coefficient μd.
+        pub dynamic_coefficient: S,
+        /// Stiction speed vs, m/s.
+        pub stiction_speed: S,
+        /// Friction transition speed vd > vs, m/s.
+        pub transition_speed: S,
+    }
+}
+
+impl<S: Scalar> Adams<S> {
+    #[inline]
+    pub(super) fn coefficient(&self, slip: S) -> S {
+        let (low, high) = (self.stiction_speed, self.transition_speed);
+        let speed = slip.abs();
+        let rising = step(
+            slip,
+            -low,
+            -self.static_coefficient,
+            low,
+            self.static_coefficient,
+        );
+        let falling = step(
+            speed,
+            low,
+            self.static_coefficient,
+            high,
+            self.dynamic_coefficient,
+        );
+        let signed = S::select(slip.lt(S::zero()), -falling, falling);
+        S::select(speed.lt(low), rising, signed)
+    }
+}
+
+/// The STEP function of ADAMS: a cubic from (x0, h0) to (x1, h1), level outside.
+#[inline]
+fn step<S: Scalar>(x: S, x0: S, h0: S, x1: S, h1: S) -> S {
+    let u = ((x - x0) / (x1 - x0)).clamp(S::zero(), S::one());
+    h0 + (h1 - h0) * u * u * (S::constant(3.0) - u - u)
+}

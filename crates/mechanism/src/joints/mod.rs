@@ -1,0 +1,7 @@
+//! The four places where clearance can be: main bearing, big end, small end, crosshead guide.
+
+pub mod contact;
+pub mod friction;
+pub mod guide;
+pub mod revolute;
+pub mod stiffness;

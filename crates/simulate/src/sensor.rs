@@ -1,0 +1,171 @@
+//! What is measured, and what the measuring chain does to it.
+
+/// One sensor of the machine file: a measured quantity seen through a measuring chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// What it sees.
+    pub measured: Measured,
+    /// What happens on the way to the recording.
+    pub chain: Chain,
+}
+
+/// A quantity that a sensor can see. `throw` is an index into the machine's throws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measured {
+    /// Acceleration of the crosshead along the cylinder, positive toward the head, m/s².
+    CrossheadAcceleration {
+        /// Which throw.
+        throw: usize,
+    },
+    /// Acceleration of the crosshead across the guide (not 0 only with guide clearance), m/s².
+    CrossheadLateralAcceleration {
+        /// Which throw.
+        throw: usize,
+    },
+    /// Acceleration of the frame along an axis, m/s².
+    FrameAcceleration {
+        /// Which axis.
+        axis: Axis,
+    },
+    /// Gas pressure in a chamber, Pa absolute.
+    CylinderPressure {
+        /// Which throw.
+        throw: usize,
+        /// Which chamber.
+        end: ChamberEnd,
+    },
+    /// Crank angle in [0, 2π), rad.
+    CrankAngle,
+}
+
+/// A direction of the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// Along the cylinder.
+    X,
+    /// Across it.
+    Y,
+}
+
+/// A chamber of a cylinder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChamberEnd {
+    /// Between piston and head.
+    Head,
+    /// Between piston and crank-end cover.
+    Crank,
+}
+
+/// What happens between the quantity and the recorded number, in this order: mounting resonance,
+/// low-pass, gain, noise, range, quantisation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Resonance of the sensor on its mount.
+    pub mounting: Option<Resonance>,
+    /// Low-pass of the amplifier.
+    pub low_pass: Option<LowPass>,
+    /// Factor on the value (1 when calibrated right).
+    pub gain: f64,
+    /// Noise added.
+    pub noise: Option<Noise>,
+    /// Largest magnitude that is recorded, in the channel's unit; beyond it the record is flat.
+    pub range: Option<f64>,
+    /// Resolution of the converter over ± the range, bits.
+    pub bits: Option<u32>,
+}
+
+impl Default for Chain {
+    fn default() -> Self {
+        Self {
+            mounting: None,
+            low_pass: None,
+            gain: 1.0,
+            noise: None,
+            range: None,
+            bits: None,
+        }
+    }
+}
+
+/// A damped second-order resonance with gain 1 at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resonance {
+    /// Natural frequency, Hz.
+    pub frequency: f64,
+    /// Damping ratio ζ.
+    pub damping_ratio: f64,
+}
+
+/// A Butterworth low-pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPass {
+    /// Frequency of −3 dB, Hz.
+    pub cutoff: f64,
+    /// Order, 1 to 8.
+    pub order: u32,
+}
+
+/// Gaussian noise: white, plus 1/f.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// RMS of the whole noise.
+    pub level: NoiseLevel,
+    /// Share of its power that is 1/f, 0 to 1.
+    pub pink_share: f64,
+}
+
+/// How the size of the noise is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoiseLevel {
+    /// RMS in the channel's unit.
+    Absolute(f64),
+    /// RMS as a share of the signal's own RMS about its mean.
+    OfSignal(f64),
+}
+
+impl Measured {
+    /// The column name of this quantity, with its unit, as recording bundles have it. `throw`
+    /// names the throw in a machine of several and is empty otherwise.
+    pub fn column(&self, throws: &[&str]) -> String {
+        let name = match self {
+            Measured::CrossheadAcceleration { .. } => "crosshead_acceleration_m_s2",
+            Measured::CrossheadLateralAcceleration { .. } => "crosshead_lateral_acceleration_m_s2",
+            Measured::FrameAcceleration { axis: Axis::X } => "frame_acceleration_x_m_s2",
+            Measured::FrameAcceleration { axis: Axis::Y } => "frame_acceleration_y_m_s2",
+            Measured::CylinderPressure {
+                end: ChamberEnd::Head,
+                ..
+            } => "cylinder_pressure_pa",
+            Measured::CylinderPressure {
+                end: ChamberEnd::Crank,
+                ..
+            } => "cylinder_pressure_crank_end_pa",
+            Measured::CrankAngle => "crank_angle_rad",
+        };
+        match self.throw().and_then(|t| throws.get(t)) {
+            Some(throw) if !throw.is_empty() => format!("{throw}.{name}"),
+            _ => name.to_owned(),
+        }
+    }
+
+    /// The throw whose quantity this is; none for the frame and the crank.
+    pub fn throw(&self) -> Option<usize> {
+        match *self {
+            Measured::CrossheadAcceleration { throw }
+            | Measured::CrossheadLateralAcceleration { throw }
+            | Measured::CylinderPressure { throw, .. } => Some(throw),
+            Measured::FrameAcceleration { .. } | Measured::CrankAngle => None,
+        }
+    }
+
+    /// Unit of the recorded numbers, as in the column name's ending but written out.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Measured::CrossheadAcceleration { .. }
+            | Measured::CrossheadLateralAcceleration { .. }
+            | Measured::FrameAcceleration { .. } => "m/s^2",
+            Measured::CylinderPressure { .. } => "Pa",
+            Measured::CrankAngle => "rad",
+        }
+    }
+}
