@@ -1,0 +1,156 @@
+//! One step of DOP853, its error estimate and its continuous extension (Hairer, Nørsett and
+//! Wanner 1993, section II.10).
+//!
+//! Written over any scalar: time and step are scalars too, so that lanes may each have their own.
+
+use crate::system::System;
+use crate::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED, NODES, Row, STAGE, STAGES};
+use scalar::Scalar;
+
+/// Coefficients of the continuous extension, per component.
+const PIECES: usize = 7;
+
+/// A step from `start` over `length`, with everything needed to look inside it.
+#[derive(Clone, Debug)]
+pub struct Step<S> {
+    /// Time at the beginning.
+    pub start: S,
+    /// Length of the step.
+    pub length: S,
+    /// State at the beginning.
+    pub from: Vec<S>,
+    /// State at the end.
+    pub to: Vec<S>,
+    /// Derivatives at the stages: stage `i` of component `j` is `stages[i * n + j]`. The first
+    /// belongs to the beginning, number 12 to the end.
+    stages: Vec<S>,
+    pieces: Vec<S>,
+    scratch: Vec<S>,
+}
+
+impl<S: Scalar> Step<S> {
+    /// Room for steps of a system with `dimension` components.
+    pub fn new(dimension: usize) -> Self {
+        let zeros = |n: usize| vec![S::zero(); n];
+        Self {
+            start: S::zero(),
+            length: S::zero(),
+            from: zeros(dimension),
+            to: zeros(dimension),
+            stages: zeros(EXTENDED * dimension),
+            pieces: zeros(PIECES * dimension),
+            scratch: zeros(dimension),
+        }
+    }
+
+    fn dimension(&self) -> usize {
+        self.from.len()
+    }
+
+    /// Derivative at the beginning.
+    pub fn derivative_from(&self) -> &[S] {
+        &self.stages[..self.dimension()]
+    }
+
+    /// Evaluates the derivative at the beginning, `(self.start, self.from)`.
+    pub fn begin(&mut self, system: &mut impl System<S>) {
+        let n = self.dimension();
+        system.derivative(self.start, &self.from, &mut self.stages[..n]);
+    }
+
+    /// Makes the end of this step the beginning of the next. The derivative there is kept.
+    pub fn shift(&mut self) {
+        let n = self.dimension();
+        self.start += self.length;
+        self.from.copy_from_slice(&self.to);
+        self.stages.copy_within(12 * n..13 * n, 0);
+    }
+
+    /// Steps over `length` from the beginning, whose derivative must be there, to `self.to`.
+    pub fn take(&mut self, system: &mut impl System<S>, length: S) {
+        self.length = length;
+        for stage in 1..STAGES {
+            self.stage(system, stage);
+        }
+        self.to.copy_from_slice(&self.scratch);
+    }
+
+    /// Evaluates stage number `stage` from those before it.
+    fn stage(&mut self, system: &mut impl System<S>, stage: usize) {
+        let n = self.dimension();
+        combine(&mut self.scratch, STAGE[stage], &self.stages);
+        for (at, from) in self.scratch.iter_mut().zip(&self.from) {
+            *at = *from + self.length * *at;
+        }
+        let t = self.start + self.length * NODES[stage];
+        let (_, rest) = self.stages.split_at_mut(stage * n);
+        system.derivative(t, &self.scratch, &mut rest[..n]);
+    }
+
+    /// Squares of the estimated errors of order 5 and 3, summed over the components, each over its
+    /// entry of `scale`; components with an infinite scale do not count.
+    pub fn squared_errors(&self, scale: impl Fn(usize) -> S) -> [S; 2] {
+        let n = self.dimension();
+        let mut sums = [S::zero(); 2];
+        for j in 0..n {
+            let scale = scale(j);
+            for (sum, row) in sums.iter_mut().zip([ERROR_5, ERROR_3]) {
+                let error = weighted(row, &self.stages, n, j) / scale;
+                *sum += error * error;
+            }
+        }
+        sums
+    }
+
+    /// Computes the continuous extension: three more derivatives.
+    pub fn extend(&mut self, system: &mut impl System<S>) {
+        let n = self.dimension();
+        for stage in STAGES..EXTENDED {
+            self.stage(system, stage);
+        }
+        let h = self.length;
+        for j in 0..n {
+            let difference = self.to[j] - self.from[j];
+            let first = h * self.stages[j] - difference;
+            self.pieces[j] = difference;
+            self.pieces[n + j] = first;
+            self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
+            for (i, row) in DENSE.iter().enumerate() {
+                self.pieces[(3 + i) * n + j] = h * weighted(row, &self.stages, n, j);
+            }
+        }
+    }
+
+    /// The state at `share` of the step, 0 at its beginning and 1 at its end, after
+    /// [`extend`](Self::extend).
+    pub fn interpolate(&self, share: S, out: &mut [S]) {
+        let n = self.dimension();
+        let rest = S::one() - share;
+        for j in 0..n {
+            let mut sum = S::zero();
+            for i in (0..PIECES).rev() {
+                let factor = if i % 2 == 0 { share } else { rest };
+                sum = (sum + self.pieces[i * n + j]) * factor;
+            }
+            out[j] = self.from[j] + sum;
+        }
+    }
+}
+
+/// `out[j] = sum of weight * stages[stage][j]`.
+fn combine<S: Scalar>(out: &mut [S], row: Row, stages: &[S]) {
+    let n = out.len();
+    out.fill(S::zero());
+    for &(stage, weight) in row {
+        for (sum, k) in out.iter_mut().zip(&stages[stage * n..]) {
+            *sum += *k * weight;
+        }
+    }
+}
+
+/// The weighted sum of one component over the stages.
+fn weighted<S: Scalar>(row: Row, stages: &[S], n: usize, component: usize) -> S {
+    row.iter().fold(S::zero(), |sum, &(stage, weight)| {
+        sum + stages[stage * n + component] * weight
+    })
+}

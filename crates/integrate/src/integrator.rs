@@ -1,0 +1,253 @@
+//! Step control, located switches, observers.
+
+use crate::dop853::Step;
+use crate::events::Finder;
+use crate::system::{Real, System};
+
+/// Why an integration stopped.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// No step is short enough for the tolerance.
+    #[error("the tolerance cannot be met at t = {time} s: the step shrank to {step:.3e} s")]
+    StepTooSmall {
+        /// Time reached, s.
+        time: f64,
+        /// Length of the last step tried, s.
+        step: f64,
+    },
+    /// The switches follow each other without time passing.
+    #[error("guard {guard} switches without end at t = {time} s")]
+    Chatter {
+        /// Time reached, s.
+        time: f64,
+        /// Number of the guard.
+        guard: usize,
+    },
+}
+
+/// Counts of what an integration did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Steps taken.
+    pub accepted: u64,
+    /// Steps tried and given up for their error.
+    pub rejected: u64,
+    /// Switches located.
+    pub switches: u64,
+}
+
+/// A system's state as it is carried forward in time.
+#[derive(Clone, Debug)]
+pub struct Integrator<S> {
+    step: Step<S>,
+    finder: Finder<S>,
+    /// Length to try next, s.
+    length: f64,
+    tolerance: f64,
+    longest: f64,
+    work: Work,
+    /// The guard that switched last, when, and how often in a row at that time.
+    last_switch: (usize, f64, u32),
+}
+
+/// Switches at one instant after which a guard is left alone for one step, and after which the
+/// integration gives up.
+const CALM: u32 = 3;
+const CHATTER: u32 = 50;
+
+impl<S: Real> Integrator<S> {
+    /// Starts at `(t, y)`. Steps keep the local error below `tolerance` times the larger of a
+    /// component and its scale, and are never longer than `longest`, s.
+    pub fn new(system: &mut impl System<S>, t: f64, y: &[S], tolerance: f64, longest: f64) -> Self {
+        let mut step = Step::new(y.len());
+        step.start = S::constant(t);
+        step.from.copy_from_slice(y);
+        step.begin(system);
+        let mut integrator = Self {
+            finder: Finder::new(y.len(), system.guard_count()),
+            length: longest,
+            step,
+            tolerance,
+            longest,
+            work: Work::default(),
+            last_switch: (usize::MAX, t, 0),
+        };
+        integrator.length = integrator.first_length(system);
+        integrator
+    }
+
+    /// The time reached, s.
+    pub fn time(&self) -> f64 {
+        self.step.start.value()
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> &[S] {
+        &self.step.from
+    }
+
+    /// What it took to come here.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Sets the length of the next step to try, s.
+    pub fn set_length(&mut self, length: f64) {
+        self.length = length;
+    }
+
+    /// Replaces the state (a tangent renormalised, a restart); time and mode stay.
+    pub fn set_state(&mut self, system: &mut impl System<S>, y: &[S]) {
+        self.step.from.copy_from_slice(y);
+        self.step.begin(system);
+    }
+
+    /// Goes on to `end`. After each step, still in the mode of that step, `observe` is shown the
+    /// system and the step with its continuous extension.
+    ///
+    /// # Errors
+    /// Where the tolerance cannot be met, or a switch has no end.
+    pub fn advance<T: System<S>>(
+        &mut self,
+        system: &mut T,
+        end: f64,
+        mut observe: impl FnMut(&mut T, &Step<S>),
+    ) -> Result<(), Error> {
+        while self.time() < end {
+            let remaining = end - self.time();
+            let mut length = self.length.min(self.longest);
+            // Never leave a last step too short to be told from none.
+            if remaining <= length * (1.0 + 1e-9) {
+                length = remaining;
+            } else if remaining < 2.0 * length {
+                length = 0.5 * remaining;
+            }
+            let limited = length < self.length;
+            if !self.attempt(system, length, limited)? {
+                continue;
+            }
+            self.step.extend(system);
+            let switching = self.locate(system)?;
+            if self.step.length.value() > 0.0 {
+                observe(system, &self.step);
+                self.work.accepted += 1;
+                self.step.shift();
+                if (end - self.time()).abs() <= 4.0 * f64::EPSILON * end.abs() {
+                    self.step.start = S::constant(end);
+                }
+            }
+            if let Some(guard) = switching {
+                let t = self.step.start;
+                let mut y = std::mem::take(&mut self.step.from);
+                system.switch(guard, t, &mut y);
+                self.step.from = y;
+                self.step.begin(system);
+                self.work.switches += 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Tries a step; false where its error is too large. Sets the length to try next.
+    fn attempt(
+        &mut self,
+        system: &mut impl System<S>,
+        length: f64,
+        limited: bool,
+    ) -> Result<bool, Error> {
+        let time = self.time();
+        if length <= 16.0 * f64::EPSILON * time.abs().max(1e-3) && !limited {
+            return Err(Error::StepTooSmall { time, step: length });
+        }
+        self.step.take(system, S::constant(length));
+        let error = self.error(system.scales());
+        // error^(1/8) by square roots, which round the same on every machine.
+        let root = error.sqrt().sqrt().sqrt();
+        let factor = (0.9 / root).clamp(1.0 / 3.0, 6.0);
+        if error <= 1.0 {
+            // A step that was cut short tells little about how long the next may be.
+            let next = length * factor;
+            self.length = if limited { next.max(self.length) } else { next };
+            Ok(true)
+        } else {
+            self.length = length
+                * if error.is_finite() {
+                    factor.min(1.0)
+                } else {
+                    0.1
+                };
+            self.work.rejected += 1;
+            Ok(false)
+        }
+    }
+
+    /// The weighted error of the step, 1 at the tolerance (Hairer's combination of both estimates).
+    fn error(&self, scales: &[f64]) -> f64 {
+        let counted = scales.iter().filter(|s| s.is_finite()).count();
+        if counted == 0 {
+            return 0.0;
+        }
+        let [fifth, third] = self.step.squared_errors(|j| {
+            let size = self.step.from[j]
+                .value()
+                .abs()
+                .max(self.step.to[j].value().abs())
+                .max(scales[j]);
+            S::constant(self.tolerance * size)
+        });
+        let (fifth, third) = (fifth.value(), third.value());
+        let denominator = fifth + 0.01 * third;
+        if denominator == 0.0 {
+            return 0.0;
+        }
+        self.step.length.value() * fifth / (denominator * counted as f64).sqrt()
+    }
+
+    /// Ends the step at the first switch in it, and tells which guard that is.
+    fn locate(&mut self, system: &mut impl System<S>) -> Result<Option<usize>, Error> {
+        let (last, when, count) = self.last_switch;
+        let now = self.time();
+        let ignored = (when == now && count >= CALM).then_some(last);
+        let Some(crossing) = self.finder.first(system, &self.step, ignored) else {
+            return Ok(None);
+        };
+        let length = self.step.length.value() * crossing.share;
+        let minute = 4.0 * f64::EPSILON * now.abs();
+        if length <= minute {
+            self.step.length = S::zero();
+            let repeats = if when == now { count + 1 } else { 1 };
+            if repeats > CHATTER {
+                return Err(Error::Chatter {
+                    time: now,
+                    guard: crossing.guard,
+                });
+            }
+            self.last_switch = (crossing.guard, now, repeats);
+        } else {
+            self.step.take(system, S::constant(length));
+            self.step.extend(system);
+            let reached = (self.step.start + self.step.length).value();
+            self.last_switch = (crossing.guard, reached, 1);
+        }
+        Ok(Some(crossing.guard))
+    }
+
+    /// A first step length, from the sizes of state and derivative (Hairer, Nørsett and Wanner
+    /// 1993, section II.4).
+    fn first_length(&mut self, system: &mut impl System<S>) -> f64 {
+        let scales = system.scales().to_vec();
+        let size = |values: &[S]| {
+            let counted = values.iter().zip(&scales).filter(|(_, s)| s.is_finite());
+            counted
+                .map(|(v, s)| (v.value() / s).abs())
+                .fold(0.0, f64::max)
+        };
+        let (state, slope) = (size(&self.step.from), size(self.step.derivative_from()));
+        let guess = if state < 1e-5 || slope < 1e-5 {
+            1e-6
+        } else {
+            0.01 * state / slope
+        };
+        guess.min(self.longest)
+    }
+}

@@ -1,0 +1,46 @@
+//! What is integrated.
+
+use scalar::{Dual, Scalar};
+
+/// A scalar with one plain value: what step control and event location look at.
+pub trait Real: Scalar {
+    /// The plain value.
+    fn value(self) -> f64;
+}
+
+impl Real for f64 {
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+impl<const N: usize> Real for Dual<f64, N> {
+    fn value(self) -> f64 {
+        self.value
+    }
+}
+
+/// A differential equation `y' = f(t, y)` with modes.
+pub trait System<S> {
+    /// Length of `y`.
+    fn dimension(&self) -> usize;
+
+    /// Writes `f(t, y)` in the present mode into `dy`.
+    fn derivative(&mut self, t: S, y: &[S], dy: &mut [S]);
+
+    /// Size of each component that counts as 1 for the tolerance; infinite for components whose
+    /// error does not steer the step.
+    fn scales(&self) -> &[f64];
+
+    /// How many guards there are, in every mode.
+    fn guard_count(&self) -> usize {
+        0
+    }
+
+    /// Writes the guards at `(t, y)`: positive while the present mode holds. A guard that the
+    /// present mode does not have is 1.
+    fn guards(&mut self, _t: S, _y: &[S], _guards: &mut [S]) {}
+
+    /// Changes the mode (and, for rigid impacts, the state) as guard number `guard` demands.
+    fn switch(&mut self, _guard: usize, _t: S, _y: &mut [S]) {}
+}
