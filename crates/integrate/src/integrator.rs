@@ -182,8 +182,8 @@ impl<S: Real> Integrator<S> {
     }
 
     /// The weighted error of the step, 1 at the tolerance (Hairer's combination of both estimates).
-    fn error(&self, scales: &[f64]) -> f64 {
-        let counted = scales.iter().filter(|s| s.is_finite()).count();
+    fn error(&self, scales: &[S]) -> f64 {
+        let counted = scales.iter().filter(|s| s.value().is_finite()).count();
         if counted == 0 {
             return 0.0;
         }
@@ -192,7 +192,7 @@ impl<S: Real> Integrator<S> {
                 .value()
                 .abs()
                 .max(self.step.to[j].value().abs())
-                .max(scales[j]);
+                .max(scales[j].value());
             S::constant(self.tolerance * size)
         });
         let (fifth, third) = (fifth.value(), third.value());
@@ -235,7 +235,7 @@ impl<S: Real> Integrator<S> {
     /// A first step length, from the sizes of state and derivative (Hairer, Nørsett and Wanner
     /// 1993, section II.4).
     fn first_length(&mut self, system: &mut impl System<S>) -> f64 {
-        let scales = system.scales().to_vec();
+        let scales: Vec<f64> = system.scales().iter().map(|s| s.value()).collect();
         let size = |values: &[S]| {
             let counted = values.iter().zip(&scales).filter(|(_, s)| s.is_finite());
             counted

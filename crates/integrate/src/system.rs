@@ -30,7 +30,7 @@ pub trait System<S> {
 
     /// Size of each component that counts as 1 for the tolerance; infinite for components whose
     /// error does not steer the step.
-    fn scales(&self) -> &[f64];
+    fn scales(&self) -> &[S];
 
     /// How many guards there are, in every mode.
     fn guard_count(&self) -> usize {

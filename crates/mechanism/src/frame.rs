@@ -9,6 +9,8 @@
 //! The coupling is one-way: the frame's motion is taken as too small to act back.
 
 use crate::lift::parameters;
+use crate::plane::Vec2;
+use scalar::Scalar;
 
 parameters! {
     /// An elastically mounted frame.
@@ -23,5 +25,16 @@ parameters! {
         pub damping_x: S,
         /// Damping along y, N s/m.
         pub damping_y: S,
+    }
+}
+
+impl<S: Scalar> Frame<S> {
+    /// Acceleration under `force` (N) at displacement `place` (m) and `rate` (m/s), m/s².
+    pub(crate) fn acceleration(&self, force: Vec2<S>, place: Vec2<S>, rate: Vec2<S>) -> Vec2<S> {
+        let net = Vec2::new(
+            force.x - self.stiffness_x * place.x - self.damping_x * rate.x,
+            force.y - self.stiffness_y * place.y - self.damping_y * rate.y,
+        );
+        net / self.mass
     }
 }

@@ -1,12 +1,28 @@
 //! The machine: geometry, joints, gas, drive and the equations of motion, written once over the
 //! number trait.
+//!
+//! - [`machine`]: the parameters, as plain data;
+//! - [`joints`]: the four places with clearance, their contact and friction laws;
+//! - [`gas`], [`drive`], [`frame`], [`effects`]: what else acts;
+//! - [`throw`] and [`shaft`]: forces and accelerations of one throw, and what couples them;
+//! - [`state`] and [`mode`]: what is integrated, and what switches;
+//! - [`dynamics`]: all of it together; [`energy`]: the ledger that must balance.
 
 pub mod drive;
+pub mod dynamics;
 pub mod effects;
+pub mod energy;
 pub mod frame;
 pub mod gas;
 pub mod joints;
 pub mod lift;
 pub mod machine;
+pub mod mode;
+pub mod plane;
+pub mod shaft;
+pub mod state;
+mod system;
+pub mod throw;
 
+pub use dynamics::{Dynamics, Evaluation};
 pub use machine::{Crankshaft, Crosshead, Direction, Machine, Rod, Throw};

@@ -79,7 +79,8 @@ parameters! {
 pub enum Direction {
     /// Along +x.
     Forward,
-    /// Along −x: the throw is computed in its own frame, mirrored in x (MODEL.md, section 6).
+    /// Along −x. The throw is computed in its own frame, which is the machine's turned by half a
+    /// revolution: x points to its own head, y the other way.
     Opposed,
 }
 

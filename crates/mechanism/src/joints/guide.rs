@@ -14,7 +14,11 @@
 
 use super::contact::ContactLaw;
 use super::friction::FrictionLaw;
+use super::revolute::{CONTACT_GUARDS, contact_guards};
 use crate::lift::{Lift, parameters};
+use crate::mode::{ContactMode, flagged};
+use crate::plane::{Vec2, moment, origin};
+use scalar::Scalar;
 
 /// The guide of a crosshead.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,5 +68,130 @@ impl<S> Guide<S> {
             Guide::Ideal => None,
             Guide::Clear(clearance) => Some(clearance),
         }
+    }
+}
+
+/// The corners of a crosshead, as signs of (along, across): upper rear, upper front, lower rear,
+/// lower front.
+const CORNERS: [[f64; 2]; 4] = [[-1.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+
+/// A guide at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct GuideState<S> {
+    /// Shift y of the pin, m, and tilt τ, rad.
+    pub position: Vec2<S>,
+    /// Their rates, m/s and rad/s.
+    pub rate: Vec2<S>,
+    /// Force on the crosshead, N; of an ideal guide too.
+    pub force: Vec2<S>,
+    /// Moment on the crosshead about its pin, N m.
+    pub moment: S,
+    /// Power lost to friction, W.
+    pub friction_power: S,
+    /// Power lost to damping, W.
+    pub damping_power: S,
+    /// The four corners.
+    pub corners: [CornerState<S>; 4],
+}
+
+/// One corner of a crosshead at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct CornerState<S> {
+    /// Penetration δ, m.
+    pub penetration: S,
+    /// Its rate, m/s.
+    pub penetration_rate: S,
+    /// Normal force, N.
+    pub normal_force: S,
+    /// Slip speed along the guide, m/s.
+    pub(crate) slip: S,
+    pub(crate) sign: S,
+}
+
+impl<S: Scalar> GuideState<S> {
+    /// An ideal guide, whose force is not known yet.
+    pub(crate) fn ideal() -> Self {
+        let zero = S::zero();
+        let corner = CornerState {
+            penetration: zero,
+            penetration_rate: zero,
+            normal_force: zero,
+            slip: zero,
+            sign: zero,
+        };
+        Self {
+            position: origin(),
+            rate: origin(),
+            force: origin(),
+            moment: zero,
+            friction_power: zero,
+            damping_power: zero,
+            corners: [corner; 4],
+        }
+    }
+}
+
+impl<S: Scalar> GuideClearance<S> {
+    /// The guide with the crosshead at `position` and `rate`, running along it at `speed`, m/s.
+    pub(crate) fn state(
+        &self,
+        position: Vec2<S>,
+        rate: Vec2<S>,
+        speed: S,
+        modes: &[ContactMode<S>; 4],
+    ) -> GuideState<S> {
+        let mut guide = GuideState::ideal();
+        guide.position = position;
+        guide.rate = rate;
+        let (sine, cosine) = position.y.sin_cos();
+        // 1 − cos τ without cancellation.
+        let versine = sine * sine / (cosine + 1.0);
+        for (i, ([along, across], mode)) in CORNERS.into_iter().zip(modes).enumerate() {
+            // Arm from the pin to the corner, and how far the corner has moved across.
+            let arm = Vec2::new(
+                self.half_length * cosine * along - self.half_height * sine * across,
+                self.half_length * sine * along + self.half_height * cosine * across,
+            );
+            let moved =
+                position.x + self.half_length * sine * along - self.half_height * versine * across;
+            let penetration = moved * across - self.clearance;
+            let penetration_rate = (rate.x + rate.y * arm.x) * across;
+            let slip = speed - rate.y * arm.y;
+            let law = self
+                .contact
+                .force(penetration, penetration_rate, mode.approach);
+            let normal_force = flagged(mode.pressed, law.raw, S::zero());
+            let stored = flagged(mode.touching, law.elastic, S::zero());
+            let friction = self.friction.coefficient(slip) * normal_force;
+            let force = Vec2::new(-friction, normal_force * -across);
+            guide.force += force;
+            guide.moment += moment(arm, force);
+            guide.friction_power += friction * slip;
+            guide.damping_power += (normal_force - stored) * penetration_rate;
+            guide.corners[i] = CornerState {
+                penetration,
+                penetration_rate,
+                normal_force,
+                slip,
+                sign: law.sign,
+            };
+        }
+        guide
+    }
+
+    /// The guards of one corner in `mode`.
+    pub(crate) fn guards(
+        &self,
+        corner: &CornerState<S>,
+        mode: &ContactMode<S>,
+    ) -> [S; CONTACT_GUARDS] {
+        contact_guards(
+            &self.contact,
+            &self.friction,
+            corner.penetration,
+            corner.sign,
+            corner.slip,
+            mode,
+        )
     }
 }

@@ -1,8 +1,11 @@
 //! A pin in a bearing: ideal, or with radial clearance.
 
-use super::contact::ContactLaw;
+use super::contact::{ContactLaw, NormalForce};
 use super::friction::FrictionLaw;
 use crate::lift::{Lift, parameters};
+use crate::mode::{ContactMode, flagged};
+use crate::plane::{Vec2, origin, turned};
+use scalar::Scalar;
 
 /// A revolute joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,5 +72,189 @@ impl<S> Revolute<S> {
             Revolute::Ideal => None,
             Revolute::Clear(clearance) => Some(clearance),
         }
+    }
+
+    /// True where the joint's force is not known from the offset, but makes the centres keep
+    /// their distance.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.clear()
+            .is_none_or(|c| c.model != JointModel::ThreeMode)
+    }
+}
+
+/// A joint at an instant: where the journal stands in its bearing, and the contact's forces.
+#[derive(Clone, Copy, Debug)]
+pub struct JointState<S> {
+    /// Offset e of the journal's centre from the bearing's, m.
+    pub offset: Vec2<S>,
+    /// Its rate, m/s.
+    pub rate: Vec2<S>,
+    /// Direction n from the bearing's centre to the journal's.
+    pub normal: Vec2<S>,
+    /// Penetration δ = |e| − c, m.
+    pub penetration: S,
+    /// Its rate, m/s.
+    pub penetration_rate: S,
+    /// Slip speed of the surfaces, m/s.
+    pub slip: S,
+    /// Normal force F_N, N.
+    pub normal_force: S,
+    /// Friction F_T, N.
+    pub friction_force: S,
+    /// Force on the journal, N.
+    pub force: Vec2<S>,
+    /// Positive while the contact law pushes.
+    pub(crate) sign: S,
+    /// Power lost to damping, W.
+    pub damping_power: S,
+    /// Arm R_j n from the journal's centre to the point of contact, m.
+    pub(crate) arm: Vec2<S>,
+    /// Friction coefficient with its sign.
+    pub(crate) coefficient: S,
+}
+
+impl<S: Scalar> JointState<S> {
+    /// An ideal joint.
+    pub(crate) fn ideal() -> Self {
+        let zero = S::zero();
+        Self {
+            offset: origin(),
+            rate: origin(),
+            normal: origin(),
+            penetration: zero,
+            penetration_rate: zero,
+            slip: zero,
+            normal_force: zero,
+            friction_force: zero,
+            force: origin(),
+            sign: zero,
+            damping_power: zero,
+            arm: origin(),
+            coefficient: zero,
+        }
+    }
+}
+
+impl<S: Scalar> Clearance<S> {
+    /// The joint at offset `e` (m), rate `v` (m/s), with journal and bearing turning at `spins`
+    /// (rad/s).
+    #[inline]
+    pub(crate) fn state(
+        &self,
+        offset: Vec2<S>,
+        rate: Vec2<S>,
+        [journal, bearing]: [S; 2],
+        mode: &ContactMode<S>,
+    ) -> JointState<S> {
+        let distance = offset.dot(&offset).sqrt();
+        // A centred journal has no direction; any will do, as nothing acts there.
+        let safe = distance.max(S::constant(1e-300));
+        let normal = offset / safe;
+        let tangent = turned(normal);
+        let penetration = distance - self.clearance;
+        let penetration_rate = normal.dot(&rate);
+        let slip = tangent.dot(&rate) + journal * self.journal_radius
+            - bearing * (self.journal_radius + distance);
+        let coefficient = match self.model {
+            JointModel::MasslessLink => S::zero(),
+            JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
+        };
+        let NormalForce { raw, elastic, sign } = match self.model {
+            JointModel::ThreeMode => {
+                self.contact
+                    .force(penetration, penetration_rate, mode.approach)
+            }
+            JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
+        };
+        let normal_force = flagged(mode.pressed, raw, S::zero());
+        let stored = flagged(mode.touching, elastic, S::zero());
+        let friction_force = coefficient * normal_force;
+        let arm = match self.model {
+            JointModel::MasslessLink => origin(),
+            JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
+        };
+        JointState {
+            offset,
+            rate,
+            normal,
+            penetration,
+            penetration_rate,
+            slip,
+            normal_force,
+            friction_force,
+            force: -(normal * normal_force) - tangent * friction_force,
+            sign,
+            damping_power: (normal_force - stored) * penetration_rate,
+            arm,
+            coefficient,
+        }
+    }
+
+    /// The guards of this contact in `mode`; `pull` is the following force of a rigid model, N.
+    pub(crate) fn guards(
+        &self,
+        joint: &JointState<S>,
+        mode: &ContactMode<S>,
+        push: S,
+    ) -> [S; CONTACT_GUARDS] {
+        match self.model {
+            JointModel::ThreeMode => contact_guards(
+                &self.contact,
+                &self.friction,
+                joint.penetration,
+                joint.sign,
+                joint.slip,
+                mode,
+            ),
+            JointModel::TwoMode => {
+                let mut guards = [S::one(); CONTACT_GUARDS];
+                guards[0] = flagged(mode.touching, push, -joint.penetration);
+                guards
+            }
+            JointModel::MasslessLink => [S::one(); CONTACT_GUARDS],
+        }
+    }
+}
+
+/// Guards of one contact: overlap, pressing, the law's kink, two kinks of the friction.
+pub(crate) const CONTACT_GUARDS: usize = 5;
+
+/// The guards of a compliant contact.
+pub(crate) fn contact_guards<S: Scalar>(
+    contact: &ContactLaw<S>,
+    friction: &FrictionLaw<S>,
+    penetration: S,
+    sign: S,
+    slip: S,
+    mode: &ContactMode<S>,
+) -> [S; CONTACT_GUARDS] {
+    let one = S::one();
+    let mut guards = [one; CONTACT_GUARDS];
+    guards[0] = flagged(mode.touching, penetration, -penetration);
+    guards[1] = flagged(mode.touching, flagged(mode.pressed, sign, -sign), one);
+    if let Some(depth) = contact.kink() {
+        guards[2] = flagged(mode.deep, penetration - depth, depth - penetration);
+    }
+    if let Some(kinks) = friction.kinks() {
+        for ((guard, kink), beyond) in guards[3..].iter_mut().zip(kinks).zip(mode.slipping) {
+            let excess = slip.abs() - kink;
+            *guard = flagged(beyond, excess, -excess);
+        }
+    }
+    guards
+}
+
+/// Changes the mode of a compliant contact whose guard number `guard` crossed.
+pub(crate) fn switch_contact<S: Scalar>(mode: &mut ContactMode<S>, guard: usize, rate: S) {
+    let flip = |flag: &mut S| *flag = S::one() - *flag;
+    match guard {
+        0 => {
+            flip(&mut mode.touching);
+            mode.pressed = mode.touching;
+            mode.approach = flagged(mode.touching, rate.max(S::zero()), mode.approach);
+        }
+        1 => flip(&mut mode.pressed),
+        2 => flip(&mut mode.deep),
+        _ => flip(&mut mode.slipping[guard - 3]),
     }
 }

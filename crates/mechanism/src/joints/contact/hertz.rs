@@ -21,6 +21,7 @@ impl<S: Scalar> Hertz<S> {
         NormalForce {
             raw: elastic,
             elastic,
+            sign: S::one(),
         }
     }
 }

@@ -32,9 +32,6 @@ impl<S: Scalar> Impact<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         let u = (penetration / self.depth).clamp(S::zero(), S::one());
         let damping = self.damping * u * u * (S::constant(3.0) - u - u);
-        NormalForce {
-            raw: elastic + damping * rate,
-            elastic,
-        }
+        NormalForce::damped(elastic, damping * rate)
     }
 }

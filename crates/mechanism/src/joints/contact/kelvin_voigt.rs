@@ -20,9 +20,6 @@ impl<S: Scalar> KelvinVoigt<S> {
     #[inline]
     pub(super) fn force(&self, penetration: S, rate: S) -> NormalForce<S> {
         let elastic = self.stiffness * penetration.max(S::zero());
-        NormalForce {
-            raw: elastic + self.damping * rate,
-            elastic,
-        }
+        NormalForce::damped(elastic, self.damping * rate)
     }
 }

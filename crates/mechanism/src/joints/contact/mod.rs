@@ -47,6 +47,30 @@ pub struct NormalForce<S> {
     pub raw: S,
     /// The elastic part, N.
     pub elastic: S,
+    /// `raw / elastic`, continued beyond the surface: positive while the surfaces press. Unlike
+    /// `raw` it does not vanish where the surfaces part, so that its sign change can be located.
+    pub sign: S,
+}
+
+impl<S: Scalar> NormalForce<S> {
+    /// No contact.
+    pub(crate) fn none() -> Self {
+        Self {
+            raw: S::zero(),
+            elastic: S::zero(),
+            sign: S::one(),
+        }
+    }
+
+    /// An elastic force with a damping force beside it.
+    #[inline]
+    fn damped(elastic: S, damping: S) -> Self {
+        Self {
+            raw: elastic + damping,
+            elastic,
+            sign: damping / elastic.max(S::constant(1e-200)) + 1.0,
+        }
+    }
 }
 
 impl<S: Scalar> ContactLaw<S> {

@@ -28,9 +28,11 @@ impl<S: Scalar> Restitution<S> {
     pub(super) fn force(&self, penetration: S, rate: S, approach: S, factor: S) -> NormalForce<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         let v0 = approach.max(self.slowest_approach);
+        let sign = factor * rate / v0 + 1.0;
         NormalForce {
-            raw: elastic * (factor * rate / v0 + 1.0),
+            raw: elastic * sign,
             elastic,
+            sign,
         }
     }
 }

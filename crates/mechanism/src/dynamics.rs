@@ -1,0 +1,577 @@
+//! The equations of motion of the whole machine, written once for every scalar.
+
+use crate::drive::Drive;
+use crate::effects::Effect;
+use crate::energy::{self, Energy};
+use crate::gas::{Chamber, GasState};
+use crate::joints::guide::{Guide, GuideState};
+use crate::joints::revolute::{JointModel, JointState, Revolute};
+use crate::machine::{Direction, Machine, Throw};
+use crate::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
+use crate::plane::{Vec2, moment, origin, turned};
+use crate::shaft::{Shaft, ShaftMotion};
+use crate::state::{Layout, ThrowLayout};
+use crate::system;
+use crate::throw::{Accelerations, Gas, Joints, Loads, Motion, Response, following_target};
+use scalar::Scalar;
+
+/// A machine in motion: parameters, mode, and what the last evaluation found.
+#[derive(Clone, Debug)]
+pub struct Dynamics<S> {
+    machine: Machine<S>,
+    layout: Layout,
+    mode: Mode<S>,
+    scales: Vec<S>,
+    evaluation: Evaluation<S>,
+}
+
+/// Everything that one evaluation of the equations of motion finds.
+#[derive(Clone, Debug)]
+pub struct Evaluation<S> {
+    /// Crank angle θ, unwrapped, rad.
+    pub angle: S,
+    /// Its rate, rad/s.
+    pub speed: S,
+    /// The shaft.
+    pub shaft: ShaftMotion<S>,
+    /// The main bearing.
+    pub main: JointState<S>,
+    /// Each throw.
+    pub throws: Vec<ThrowEvaluation<S>>,
+    /// Acceleration of the frame, m/s²; 0 without one.
+    pub frame: Vec2<S>,
+    /// Force of the machine on the frame, N.
+    pub frame_force: Vec2<S>,
+}
+
+/// One throw's part of an [`Evaluation`].
+#[derive(Clone, Copy, Debug)]
+pub struct ThrowEvaluation<S> {
+    /// Poses and rates.
+    pub motion: Motion<S>,
+    /// Joints, with their contact forces.
+    pub joints: Joints<S>,
+    /// Gas.
+    pub gas: Gas<S>,
+    /// Accelerations and rigid joints' forces.
+    pub accelerations: Accelerations<S>,
+    loads: Loads<S>,
+}
+
+impl<S: Scalar> Dynamics<S> {
+    /// The machine at rest in its mode at t = 0: contacts apart, valves as the dead centres say.
+    /// With `ledger` the state carries the energy ledger along.
+    pub fn new(machine: Machine<S>, ledger: bool) -> Self {
+        let layout = Layout::new(&machine, ledger);
+        let zero = S::zero();
+        let throws = machine.throws.len();
+        let mode = Mode {
+            main: ContactMode::apart(),
+            throws: vec![
+                ThrowMode {
+                    big_end: ContactMode::apart(),
+                    small_end: ContactMode::apart(),
+                    guide: [ContactMode::apart(); 4],
+                    outward: S::one(),
+                    head_end: ChamberMode::closed(),
+                    crank_end: ChamberMode::closed(),
+                };
+                throws
+            ],
+        };
+        let evaluation = Evaluation {
+            angle: zero,
+            speed: zero,
+            shaft: ShaftMotion {
+                angular: zero,
+                centre: origin(),
+                torque: zero,
+                bearing_force: origin(),
+                push: zero,
+            },
+            main: JointState::ideal(),
+            throws: Vec::with_capacity(throws),
+            frame: origin(),
+            frame_force: origin(),
+        };
+        let mut dynamics = Self {
+            scales: system::scales(&machine, &layout),
+            machine,
+            layout,
+            mode,
+            evaluation,
+        };
+        dynamics.start();
+        dynamics
+    }
+
+    /// Sets the mode that the initial state calls for.
+    fn start(&mut self) {
+        let y = self.initial_state();
+        self.set_outward(S::zero(), &y);
+        self.evaluate(S::zero(), &y);
+        self.close_links();
+        for (mode, throw) in self.mode.throws.iter_mut().zip(&self.evaluation.throws) {
+            mode.head_end = throw.gas.head_end.mode();
+            mode.crank_end = throw.gas.crank_end.mode();
+        }
+    }
+
+    /// Journals on massless links follow from the beginning.
+    fn close_links(&mut self) {
+        let link = |joint: &Revolute<S>, mode: &mut ContactMode<S>| {
+            if joint
+                .clear()
+                .is_some_and(|c| c.model == JointModel::MasslessLink)
+            {
+                mode.touching = S::one();
+            }
+        };
+        link(&self.machine.main, &mut self.mode.main);
+        for (throw, mode) in self.machine.throws.iter().zip(&mut self.mode.throws) {
+            link(&throw.big_end, &mut mode.big_end);
+            link(&throw.small_end, &mut mode.small_end);
+        }
+    }
+
+    fn set_outward(&mut self, t: S, y: &[S]) {
+        let (angle, _) = self.crank(t, y);
+        for (throw, mode) in self.machine.throws.iter().zip(&mut self.mode.throws) {
+            let (sine, cosine) = throw.local_angle(angle).sin_cos();
+            // At a dead centre the sine is rounding; there the new phase counts.
+            let tiny = S::constant(1e-12);
+            let at_centre = sine.abs().lt(tiny);
+            let by_sine = S::select(sine.lt(S::zero()), S::zero(), S::one());
+            let by_cosine = S::select(cosine.lt(S::zero()), S::zero(), S::one());
+            mode.outward = S::select(at_centre, by_cosine, by_sine);
+        }
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &Machine<S> {
+        &self.machine
+    }
+
+    /// What the state vector holds.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The present mode.
+    pub fn mode(&self) -> &Mode<S> {
+        &self.mode
+    }
+
+    pub(crate) fn mode_mut(&mut self) -> &mut Mode<S> {
+        &mut self.mode
+    }
+
+    pub(crate) fn tolerance_scales(&self) -> &[S] {
+        &self.scales
+    }
+
+    /// A revolute joint and its state at the last evaluation.
+    pub(crate) fn joint(&self, place: Place) -> (&Revolute<S>, &JointState<S>) {
+        let (machine, at) = (&self.machine, &self.evaluation);
+        match place {
+            Place::Main => (&machine.main, &at.main),
+            Place::BigEnd(i) => (&machine.throws[i].big_end, &at.throws[i].joints.big_end),
+            Place::SmallEnd(i) => (&machine.throws[i].small_end, &at.throws[i].joints.small_end),
+        }
+    }
+
+    /// What the last evaluation found.
+    pub fn evaluation(&self) -> &Evaluation<S> {
+        &self.evaluation
+    }
+
+    /// The state of MODEL.md, section 4: the ideal mechanism's pose and rates, journals centred.
+    /// A journal on a massless link cannot be centred: it starts where the ideal joint's force
+    /// would press it.
+    pub fn initial_state(&self) -> Vec<S> {
+        let mut y = vec![S::zero(); self.layout.dimension];
+        for (throw, layout) in self.machine.throws.iter().zip(&self.layout.throws) {
+            // Toward the head: the side on which inertia presses at top dead centre.
+            for (joint, at) in [
+                (&throw.big_end, layout.big_end),
+                (&throw.small_end, layout.small_end),
+            ] {
+                place_on_link(joint, at, &mut y);
+            }
+        }
+        place_on_link(&self.machine.main, self.layout.main, &mut y);
+        y
+    }
+
+    /// Crank angle and speed.
+    fn crank(&self, t: S, y: &[S]) -> (S, S) {
+        let reference = self.machine.drive.reference_speed();
+        match self.layout.crank {
+            None => (reference * t, reference),
+            Some(i) => (reference * t + y[i], reference + y[i + 1]),
+        }
+    }
+
+    /// Evaluates the equations of motion at `(t, y)` in the present mode.
+    pub fn evaluate(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
+        self.evaluate_forces(t, y);
+        self.evaluate_accelerations();
+        self.shake_frame(y);
+        &self.evaluation
+    }
+
+    /// Poses, rates, and the forces that follow from them.
+    pub(crate) fn evaluate_forces(&mut self, t: S, y: &[S]) {
+        let (angle, speed) = self.crank(t, y);
+        let gravity = self.gravity();
+        let evaluation = &mut self.evaluation;
+        evaluation.angle = angle;
+        evaluation.speed = speed;
+        evaluation.main = revolute_state(
+            &self.machine.main,
+            pair(y, self.layout.main),
+            [speed, S::zero()],
+            &self.mode.main,
+        );
+        evaluation.throws.clear();
+        let parts = self.layout.throws.iter().zip(&self.mode.throws);
+        for (throw, (layout, mode)) in self.machine.throws.iter().zip(parts) {
+            let shaft = pair(y, self.layout.main).map(|v| throw.local(v));
+            let gravity = throw.local(gravity);
+            let angle = throw.local_angle(angle);
+            evaluation.throws.push(ThrowEvaluation::new(
+                throw,
+                &self.machine.effects,
+                Standing {
+                    layout,
+                    mode,
+                    shaft,
+                    angle,
+                    speed,
+                    gravity,
+                },
+                y,
+            ));
+        }
+    }
+
+    fn gravity(&self) -> Vec2<S> {
+        Vec2::new(self.machine.gravity_x, self.machine.gravity_y)
+    }
+
+    /// The accelerations that follow from the forces.
+    fn evaluate_accelerations(&mut self) {
+        let speed = self.evaluation.speed;
+        let (sine, cosine) = self.evaluation.angle.sin_cos();
+        let mut shaft = Shaft::new(
+            &self.machine,
+            Vec2::new(cosine, sine),
+            speed,
+            self.gravity(),
+        );
+        let torque = match &self.machine.drive {
+            Drive::Given(_) => None,
+            Drive::Free(motor) => {
+                Some(motor.mean_torque + motor.slope * (motor.reference_speed - speed))
+            }
+        };
+        let target = following_target(&self.evaluation.main);
+        self.couple(&mut shaft, torque, target);
+    }
+
+    /// Joins throws and shaft and finds all accelerations from the loads stored in the evaluation.
+    fn couple(&mut self, shaft: &mut Shaft<S>, torque: Option<S>, target: S) {
+        // With a given speed and an ideal main bearing the crank pins' accelerations are known.
+        let moving = torque.is_some() || self.machine.main.clear().is_some();
+        let evaluation = &mut self.evaluation;
+        let mut responses: Vec<Response<S>> = Vec::with_capacity(self.machine.throws.len());
+        for ((throw, at), mode) in self
+            .machine
+            .throws
+            .iter()
+            .zip(&evaluation.throws)
+            .zip(&self.mode.throws)
+        {
+            let touching = [mode.big_end.touching, mode.small_end.touching];
+            let response = Response::new(throw, &at.motion, &at.joints, &at.loads, touching);
+            shaft.add_force(throw.local(at.loads.pin_force), at.loads.pin_moment);
+            if throw.big_end.is_rigid() {
+                shaft.add_throw(
+                    &response.slope,
+                    throw.local(response.offset),
+                    throw.local(at.motion.pin),
+                    throw.local(at.motion.pin + at.joints.big_end.arm),
+                    throw.local(at.loads.pin_bias),
+                );
+            }
+            responses.push(response);
+        }
+        evaluation.shaft = shaft.solve(
+            &self.machine.main,
+            &evaluation.main,
+            self.mode.main.touching,
+            torque,
+            target,
+        );
+        for ((throw, at), response) in self
+            .machine
+            .throws
+            .iter()
+            .zip(&mut evaluation.throws)
+            .zip(&responses)
+        {
+            let mut pin = at.loads.pin_bias;
+            if moving {
+                pin += throw.local(evaluation.shaft.centre)
+                    + turned(at.motion.pin) * evaluation.shaft.angular;
+            }
+            at.accelerations = response.accelerations(throw, &at.loads, &at.joints, pin);
+            if throw.guide.clear().is_none() {
+                // What an ideal guide must bear, so that the crosshead stays on its line.
+                let small = at.accelerations.small_force;
+                at.joints.guide.force = Vec2::new(S::zero(), small.y - at.loads.crosshead_force.y);
+                at.joints.guide.moment =
+                    moment(at.joints.small_end.arm, small) - at.loads.crosshead_moment;
+            }
+        }
+    }
+
+    /// Force on the frame: the reactions of main bearing, guides and cylinder covers.
+    fn shake_frame(&mut self, y: &[S]) {
+        let evaluation = &mut self.evaluation;
+        let mut force = -evaluation.shaft.bearing_force;
+        for (throw, at) in self.machine.throws.iter().zip(&evaluation.throws) {
+            let along = Vec2::new(at.gas.force + at.gas.effects, S::zero());
+            force += throw.local(-(along + at.joints.guide.force));
+        }
+        evaluation.frame_force = force;
+        if let Some(frame) = &self.machine.frame {
+            let [place, rate] = pair(y, self.layout.frame);
+            evaluation.frame = frame.acceleration(force, place, rate);
+        }
+    }
+
+    /// Lets the journal at `place` hit its bearing without rebound: the rates in `y` jump, so that
+    /// it no longer approaches. The energy lost is entered as damping.
+    ///
+    /// An impulse obeys the same equations as a force, with rates in place of their derivatives
+    /// and nothing but the impulse at work.
+    pub(crate) fn catch(&mut self, place: Place, t: S, y: &mut [S]) {
+        self.evaluate_forces(t, y);
+        let before = self.energy().total();
+        let wanted = -self.joint(place).1.penetration_rate;
+        for at in &mut self.evaluation.throws {
+            at.loads = Loads::none();
+        }
+        match place {
+            Place::Main => {}
+            Place::BigEnd(i) => self.evaluation.throws[i].loads.big_target = wanted,
+            Place::SmallEnd(i) => self.evaluation.throws[i].loads.small_target = wanted,
+        }
+        self.evaluation.main.force = origin();
+        let main_target = match place {
+            Place::Main => wanted,
+            _ => S::zero(),
+        };
+        let (sine, cosine) = self.evaluation.angle.sin_cos();
+        let direction = Vec2::new(cosine, sine);
+        let mut shaft = Shaft::new(&self.machine, direction, S::zero(), origin());
+        let torque = match &self.machine.drive {
+            Drive::Given(_) => None,
+            Drive::Free(_) => Some(S::zero()),
+        };
+        self.couple(&mut shaft, torque, main_target);
+        self.add_jumps(y);
+
+        self.evaluate_forces(t, y);
+        if let Some(i) = self.layout.ledger {
+            y[i + 3] += before - self.energy().total();
+        }
+    }
+
+    /// Adds the "accelerations" of an impulse to the rates.
+    fn add_jumps(&self, y: &mut [S]) {
+        let mut add = |at: Option<usize>, jump: Vec2<S>| {
+            if let Some(i) = at {
+                y[i + 2] += jump.x;
+                y[i + 3] += jump.y;
+            }
+        };
+        let at = &self.evaluation;
+        add(self.layout.main, at.shaft.centre);
+        for (layout, throw) in self.layout.throws.iter().zip(&at.throws) {
+            add(layout.big_end, throw.accelerations.big_end);
+            add(layout.small_end, throw.accelerations.small_end);
+            add(layout.guide, throw.accelerations.guide);
+        }
+        if let Some(i) = self.layout.crank {
+            y[i + 1] += at.shaft.angular;
+        }
+    }
+
+    /// Kinetic, potential and elastic energy at the last evaluation, J.
+    pub fn energy(&self) -> Energy<S> {
+        energy::of(&self.machine, &self.evaluation)
+    }
+}
+
+/// A revolute joint of the machine.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Place {
+    /// The main bearing.
+    Main,
+    /// The big end of a throw.
+    BigEnd(usize),
+    /// The small end of a throw.
+    SmallEnd(usize),
+}
+
+/// Where and how a throw stands: what its evaluation needs beside the machine.
+struct Standing<'a, S> {
+    layout: &'a ThrowLayout,
+    mode: &'a ThrowMode<S>,
+    shaft: [Vec2<S>; 2],
+    angle: S,
+    speed: S,
+    gravity: Vec2<S>,
+}
+
+impl<S: Scalar> ThrowEvaluation<S> {
+    fn new(throw: &Throw<S>, effects: &[Effect<S>], at: Standing<'_, S>, y: &[S]) -> Self {
+        let big = pair(y, at.layout.big_end);
+        let small = pair(y, at.layout.small_end);
+        let guide = pair(y, at.layout.guide);
+        let motion = Motion::new(throw, at.shaft, at.angle, at.speed, big, small, guide);
+        let spin = motion.rod_rate;
+        let joints = Joints {
+            big_end: revolute_state(&throw.big_end, big, [at.speed, spin], &at.mode.big_end),
+            small_end: revolute_state(
+                &throw.small_end,
+                small,
+                [guide[1].y, spin],
+                &at.mode.small_end,
+            ),
+            guide: match &throw.guide {
+                Guide::Ideal => GuideState::ideal(),
+                Guide::Clear(clear) => {
+                    clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide)
+                }
+            },
+        };
+        let gas = gas(throw, effects, &motion, at.speed, at.mode);
+        let loads = Loads::new(throw, at.gravity, at.speed, &motion, &joints, &gas);
+        Self {
+            motion,
+            joints,
+            gas,
+            loads,
+            accelerations: Accelerations {
+                crosshead: S::zero(),
+                big_end: origin(),
+                small_end: origin(),
+                guide: origin(),
+                big_force: origin(),
+                small_force: origin(),
+                rod: S::zero(),
+            },
+        }
+    }
+}
+
+/// The gas of a throw (MODEL.md, sections 3 and 6), and the effects on the piston.
+fn gas<S: Scalar>(
+    throw: &Throw<S>,
+    effects: &[Effect<S>],
+    motion: &Motion<S>,
+    speed: S,
+    mode: &ThrowMode<S>,
+) -> Gas<S> {
+    let cylinder = &throw.cylinder;
+    let lines = [cylinder.suction, cylinder.discharge];
+    let piston = motion.crosshead_rate / (throw.crank_radius * speed);
+    let open = effects
+        .iter()
+        .fold(lines, |open, effect| effect.line_pressures(open, piston));
+    let chamber = |dead: S| Chamber {
+        dead,
+        stroke: throw.crank_radius * 2.0,
+        lines,
+        exponent: cylinder.exponent,
+    };
+    let area = |radius: S| radius * radius * std::f64::consts::PI;
+    let face = area(cylinder.piston_radius);
+
+    let reach = throw.crank_radius + throw.rod.length;
+    let to_head = cylinder.head_clearance + reach - motion.crosshead;
+    let head_end =
+        chamber(cylinder.head_clearance).state(to_head, mode.outward, open, &mode.head_end);
+    let (crank_end, force) = match &cylinder.crank_end {
+        None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
+        Some(end) => {
+            let to_cover =
+                end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
+            let inward = S::one() - mode.outward;
+            let gas = chamber(end.clearance).state(to_cover, inward, open, &mode.crank_end);
+            let rod = area(end.rod_radius);
+            let force =
+                gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
+            (gas, force)
+        }
+    };
+    let effects = effects.iter().fold(S::zero(), |sum, effect| {
+        sum + effect.piston_force(motion.crosshead_rate, head_end.pressure)
+    });
+    Gas {
+        head_end,
+        crank_end,
+        force,
+        effects,
+    }
+}
+
+impl<S: Scalar> Throw<S> {
+    /// Angle since this throw's own top dead centre, rad.
+    pub fn local_angle(&self, angle: S) -> S {
+        match self.direction {
+            Direction::Forward => angle + self.pin_angle,
+            Direction::Opposed => angle + self.pin_angle - std::f64::consts::PI,
+        }
+    }
+
+    /// A vector of the machine's frame in the throw's own, and back: an opposed throw's frame is
+    /// turned by half a revolution.
+    pub(crate) fn local(&self, v: Vec2<S>) -> Vec2<S> {
+        match self.direction {
+            Direction::Forward => v,
+            Direction::Opposed => -v,
+        }
+    }
+}
+
+/// Two vectors at `at`: position and rate; zeros where there is nothing.
+fn pair<S: Scalar>(y: &[S], at: Option<usize>) -> [Vec2<S>; 2] {
+    match at {
+        None => [origin(); 2],
+        Some(i) => [Vec2::new(y[i], y[i + 1]), Vec2::new(y[i + 2], y[i + 3])],
+    }
+}
+
+fn revolute_state<S: Scalar>(
+    joint: &Revolute<S>,
+    [offset, rate]: [Vec2<S>; 2],
+    spins: [S; 2],
+    mode: &ContactMode<S>,
+) -> JointState<S> {
+    match joint {
+        Revolute::Ideal => JointState::ideal(),
+        Revolute::Clear(clear) => clear.state(offset, rate, spins, mode),
+    }
+}
+
+fn place_on_link<S: Scalar>(joint: &Revolute<S>, at: Option<usize>, y: &mut [S]) {
+    if let (Some(i), Some(clear)) = (at, joint.clear())
+        && clear.model == JointModel::MasslessLink
+    {
+        y[i] = -clear.clearance;
+    }
+}

@@ -1,0 +1,154 @@
+//! The crankshaft: the equation that couples the throws.
+//!
+//! Unknown are the angular acceleration (free crank) and the acceleration of the shaft's centre
+//! (main bearing with clearance). With a rigid big end the throw's force on the crank pin depends
+//! on them; [`crate::throw::Response`] gives that dependence, so that any number of throws leads to
+//! at most three equations:
+//!
+//! ```text
+//! J θ̈ + m ε turned(u)·Ö      = T + Σ moments + m ε turned(u)·g + moment at the main bearing
+//! m (Ö + ε turned(u) θ̈ − ε u θ̇²) = Σ pin forces + main bearing's force + m g
+//! ```
+
+use crate::joints::revolute::{JointModel, JointState, Revolute};
+use crate::machine::Machine;
+use crate::plane::{Vec2, diagonal, inverse, moment, origin, outer, turned};
+use nalgebra::Matrix2;
+use scalar::Scalar;
+
+/// The shaft's equations of motion as `matrix × (θ̈, Ö) = right`, throws included.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shaft<S> {
+    /// Coefficient of θ̈ in the moment equation, kg m².
+    pub inertia: S,
+    /// Coefficients of Ö in the moment equation, and of θ̈ in the force equation.
+    pub coupling: [Vec2<S>; 2],
+    /// Coefficient of Ö in the force equation, kg.
+    pub mass: Matrix2<S>,
+    /// Right side of the moment equation, without the drive's torque.
+    pub moment: S,
+    /// Right side of the force equation.
+    pub force: Vec2<S>,
+}
+
+/// How the shaft moves.
+#[derive(Clone, Copy, Debug)]
+pub struct ShaftMotion<S> {
+    /// Angular acceleration θ̈, rad/s².
+    pub angular: S,
+    /// Acceleration of the shaft's centre, m/s².
+    pub centre: Vec2<S>,
+    /// Torque of the drive on the shaft, N m.
+    pub torque: S,
+    /// Force of the main bearing on the shaft, N.
+    pub bearing_force: Vec2<S>,
+    /// Push of a rigidly following main bearing, N.
+    pub(crate) push: S,
+}
+
+impl<S: Scalar> Shaft<S> {
+    /// The shaft alone, in direction `u` turning at `speed`, under gravity.
+    pub fn new(machine: &Machine<S>, u: Vec2<S>, speed: S, gravity: Vec2<S>) -> Self {
+        let shaft = &machine.crankshaft;
+        let lever = turned(u) * (shaft.mass * shaft.eccentricity);
+        Self {
+            inertia: shaft.inertia,
+            coupling: [lever, lever],
+            mass: diagonal(shaft.mass, shaft.mass),
+            moment: lever.dot(&gravity),
+            force: gravity * shaft.mass + u * (shaft.mass * shaft.eccentricity * speed * speed),
+        }
+    }
+
+    /// Adds a known force on a crank pin.
+    pub fn add_force(&mut self, force: Vec2<S>, moment: S) {
+        self.force += force;
+        self.moment += moment;
+    }
+
+    /// Adds the throw's rigid big-end force: on the pin acts `−(slope A + offset)`, where the pin's
+    /// acceleration is `A = Ö + θ̈ turned(pin) + bias`. `arm` is where it acts.
+    pub fn add_throw(
+        &mut self,
+        slope: &Matrix2<S>,
+        offset: Vec2<S>,
+        pin: Vec2<S>,
+        arm: Vec2<S>,
+        bias: Vec2<S>,
+    ) {
+        let along = turned(pin);
+        let known = slope * bias + offset;
+        self.mass += *slope;
+        self.coupling[1] += slope * along;
+        self.coupling[0] += slope.transpose() * turned(arm);
+        self.inertia += turned(arm).dot(&(slope * along));
+        self.add_force(-known, -moment(arm, known));
+    }
+
+    /// Solves for the shaft's motion. `torque` is the drive's where the crank is free, and none
+    /// where its speed is given; `joint` is the main bearing.
+    pub fn solve(
+        &self,
+        main: &Revolute<S>,
+        joint: &JointState<S>,
+        touching: S,
+        torque: Option<S>,
+        target: S,
+    ) -> ShaftMotion<S> {
+        let (zero, one) = (S::zero(), S::one());
+        // With the speed given θ̈ = 0 and the moment equation yields the torque.
+        let free = if torque.is_some() { one } else { zero };
+        let drive = torque.unwrap_or(zero);
+        let clear = match main {
+            Revolute::Ideal => {
+                let angular = free * (self.moment + drive) / self.inertia;
+                let bearing_force = self.coupling[1] * angular - self.force;
+                return ShaftMotion {
+                    angular,
+                    centre: origin(),
+                    torque: torque.unwrap_or(-self.moment),
+                    bearing_force,
+                    push: zero,
+                };
+            }
+            Revolute::Clear(clear) => clear,
+        };
+        let contact_moment = moment(joint.arm, joint.force);
+        // Eliminate θ̈ = free (moment + drive − coupling·Ö + ...) / inertia.
+        let give = free / self.inertia;
+        let condensed = self.mass - outer(self.coupling[1], self.coupling[0]) * give;
+        let answer = inverse(&condensed);
+        let centre_for = |force: Vec2<S>, moment: S| {
+            answer
+                * (self.force + force - self.coupling[1] * (give * (self.moment + drive + moment)))
+        };
+        let mut force = joint.force;
+        let mut moment_of = contact_moment;
+        let mut centre = centre_for(force, moment_of);
+        let mut push = zero;
+        if clear.model != JointModel::ThreeMode {
+            // The bearing pushes the journal back along −(n + μ t).
+            let active = match clear.model {
+                JointModel::MasslessLink => one,
+                _ => touching,
+            };
+            let unit = -(joint.normal + turned(joint.normal) * joint.coefficient);
+            let unit_moment = moment(joint.arm, unit);
+            let effect = answer * (unit - self.coupling[1] * (give * unit_moment));
+            push = active * (target - joint.normal.dot(&centre)) / joint.normal.dot(&effect);
+            force = unit * push;
+            moment_of = unit_moment * push;
+            centre = centre_for(force, moment_of);
+        }
+        let angular = give * (self.moment + drive + moment_of - self.coupling[0].dot(&centre));
+        let torque =
+            torque.unwrap_or_else(|| self.coupling[0].dot(&centre) - self.moment - moment_of);
+        ShaftMotion {
+            angular,
+            centre,
+            torque,
+            bearing_force: force,
+            push,
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The machine as a system to integrate: derivatives, guards, switches.
+
+use crate::drive::Drive;
+use crate::dynamics::{Dynamics, Place};
+use crate::energy;
+use crate::joints::guide::Guide;
+use crate::joints::revolute::{CONTACT_GUARDS, JointModel, Revolute, switch_contact};
+use crate::machine::Machine;
+use crate::mode::{ContactMode, flagged};
+use crate::plane::Vec2;
+use crate::state::Layout;
+use integrate::{Real, System};
+use scalar::Scalar;
+
+/// Rate scale over offset scale, 1/s: contact rings at some hundred Hz.
+const RATE: f64 = 1e3;
+/// Scale of a frame's displacement, m.
+const FRAME: f64 = 1e-5;
+/// Scale of the crank angle's deviation, rad.
+const ANGLE: f64 = 1e-3;
+
+/// Guards of a throw: big end, small end, four corners, dead centres, two valves a chamber.
+const THROW_GUARDS: usize = 6 * CONTACT_GUARDS + 5;
+
+/// The size of each component of the state that counts as 1 for the tolerance: clearances for
+/// offsets. The ledger does not steer the step.
+pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S> {
+    let mut scales = vec![S::constant(f64::INFINITY); layout.dimension];
+    let mut set = |at: Option<usize>, [first, second]: [S; 2]| {
+        if let Some(i) = at {
+            let sizes = [first, second, first * RATE, second * RATE];
+            scales[i..i + 4].copy_from_slice(&sizes);
+        }
+    };
+    let size = |joint: &Revolute<S>| joint.clear().map_or(S::zero(), |c| c.clearance);
+    set(layout.main, [size(&machine.main); 2]);
+    for (throw, at) in machine.throws.iter().zip(&layout.throws) {
+        set(at.big_end, [size(&throw.big_end); 2]);
+        set(at.small_end, [size(&throw.small_end); 2]);
+        if let Guide::Clear(guide) = &throw.guide {
+            set(
+                at.guide,
+                [guide.clearance, guide.clearance / guide.half_length],
+            );
+        }
+    }
+    set(layout.frame, [S::constant(FRAME); 2]);
+    if let (Some(i), Drive::Free(motor)) = (layout.crank, &machine.drive) {
+        scales[i] = S::constant(ANGLE);
+        scales[i + 1] = motor.reference_speed * ANGLE;
+    }
+    scales
+}
+
+impl<S: Scalar> Dynamics<S> {
+    /// Writes the derivative of the state that belongs to the last evaluation.
+    fn write_derivative(&self, y: &[S], dy: &mut [S]) {
+        let (layout, at) = (self.layout(), self.evaluation());
+        let mut write = |index: Option<usize>, second: Vec2<S>| {
+            if let Some(i) = index {
+                dy[i] = y[i + 2];
+                dy[i + 1] = y[i + 3];
+                dy[i + 2] = second.x;
+                dy[i + 3] = second.y;
+            }
+        };
+        write(layout.main, at.shaft.centre);
+        for (layout, throw) in layout.throws.iter().zip(&at.throws) {
+            write(layout.big_end, throw.accelerations.big_end);
+            write(layout.small_end, throw.accelerations.small_end);
+            write(layout.guide, throw.accelerations.guide);
+        }
+        write(layout.frame, at.frame);
+        if let Some(i) = layout.crank {
+            dy[i] = y[i + 1];
+            dy[i + 1] = at.shaft.angular;
+        }
+        if let Some(i) = layout.ledger {
+            let powers = energy::powers(self.machine(), at);
+            dy[i] = powers.gas;
+            dy[i + 1] = powers.drive;
+            dy[i + 2] = powers.friction;
+            dy[i + 3] = powers.damping;
+        }
+    }
+
+    /// True where a joint's guard needs the forces of rigid joints.
+    fn has_two_mode_joint(&self) -> bool {
+        let two_mode = |joint: &Revolute<S>| {
+            joint
+                .clear()
+                .is_some_and(|c| c.model == JointModel::TwoMode)
+        };
+        two_mode(&self.machine().main)
+            || self
+                .machine()
+                .throws
+                .iter()
+                .any(|t| two_mode(&t.big_end) || two_mode(&t.small_end))
+    }
+
+    fn write_guards(&self, guards: &mut [S]) {
+        guards.fill(S::one());
+        let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
+        if let Revolute::Clear(clear) = &machine.main {
+            let values = clear.guards(&at.main, &mode.main, at.shaft.push);
+            guards[..CONTACT_GUARDS].copy_from_slice(&values);
+        }
+        let chunks = guards[CONTACT_GUARDS..].chunks_mut(THROW_GUARDS);
+        for (((throw, at), mode), guards) in machine
+            .throws
+            .iter()
+            .zip(&at.throws)
+            .zip(&mode.throws)
+            .zip(chunks)
+        {
+            let joints = &at.joints;
+            let mut slots = guards.chunks_mut(CONTACT_GUARDS);
+            for (joint, state, mode, force) in [
+                (
+                    &throw.big_end,
+                    &joints.big_end,
+                    &mode.big_end,
+                    at.accelerations.big_force,
+                ),
+                (
+                    &throw.small_end,
+                    &joints.small_end,
+                    &mode.small_end,
+                    at.accelerations.small_force,
+                ),
+            ] {
+                let slot = slots.next();
+                if let (Revolute::Clear(clear), Some(slot)) = (joint, slot) {
+                    let push = state.normal.dot(&force);
+                    slot.copy_from_slice(&clear.guards(state, mode, push));
+                }
+            }
+            for (corner, mode) in joints.guide.corners.iter().zip(&mode.guide) {
+                let slot = slots.next();
+                if let (Guide::Clear(clear), Some(slot)) = (&throw.guide, slot) {
+                    slot.copy_from_slice(&clear.guards(corner, mode));
+                }
+            }
+            let gas = &mut guards[6 * CONTACT_GUARDS..];
+            let sine = at.motion.angle_sin_cos.0;
+            gas[0] = flagged(mode.outward, sine, -sine);
+            gas[1..3].copy_from_slice(&at.gas.head_end.guards(&mode.head_end));
+            if throw.cylinder.crank_end.is_some() {
+                gas[3..5].copy_from_slice(&at.gas.crank_end.guards(&mode.crank_end));
+            }
+        }
+    }
+}
+
+impl<S: Real> System<S> for Dynamics<S> {
+    fn dimension(&self) -> usize {
+        self.layout().dimension
+    }
+
+    fn derivative(&mut self, t: S, y: &[S], dy: &mut [S]) {
+        self.evaluate(t, y);
+        self.write_derivative(y, dy);
+    }
+
+    fn scales(&self) -> &[S] {
+        self.tolerance_scales()
+    }
+
+    fn guard_count(&self) -> usize {
+        CONTACT_GUARDS + THROW_GUARDS * self.machine().throws.len()
+    }
+
+    fn guards(&mut self, t: S, y: &[S], guards: &mut [S]) {
+        if self.has_two_mode_joint() {
+            self.evaluate(t, y);
+        } else {
+            self.evaluate_forces(t, y);
+        }
+        self.write_guards(guards);
+    }
+
+    fn switch(&mut self, guard: usize, t: S, y: &mut [S]) {
+        self.evaluate(t, y);
+        let Some(index) = guard.checked_sub(CONTACT_GUARDS) else {
+            return self.switch_joint(Place::Main, guard, t, y);
+        };
+        let (throw, guard) = (index / THROW_GUARDS, index % THROW_GUARDS);
+        let (contact, part) = (guard / CONTACT_GUARDS, guard % CONTACT_GUARDS);
+        match contact {
+            0 => self.switch_joint(Place::BigEnd(throw), part, t, y),
+            1 => self.switch_joint(Place::SmallEnd(throw), part, t, y),
+            2..=5 => {
+                let corner = contact - 2;
+                let rate =
+                    self.evaluation().throws[throw].joints.guide.corners[corner].penetration_rate;
+                let mode = &mut self.mode_mut().throws[throw].guide[corner];
+                switch_contact(mode, part, rate);
+            }
+            _ => self.switch_gas(throw, part, t, y),
+        }
+    }
+}
+
+impl<S: Real> Dynamics<S> {
+    fn switch_joint(&mut self, place: Place, guard: usize, t: S, y: &mut [S]) {
+        let (model, rate) = {
+            let (joint, state) = self.joint(place);
+            let model = joint.clear().map(|c| c.model);
+            (model, state.penetration_rate)
+        };
+        if model == Some(JointModel::TwoMode) {
+            let touching = self.contact_mode(place).touching;
+            if touching.value() > 0.0 {
+                self.contact_mode(place).touching = S::zero();
+            } else {
+                self.contact_mode(place).touching = S::one();
+                self.catch(place, t, y);
+            }
+        } else {
+            switch_contact(self.contact_mode(place), guard, rate);
+        }
+    }
+
+    fn contact_mode(&mut self, place: Place) -> &mut ContactMode<S> {
+        let mode = self.mode_mut();
+        match place {
+            Place::Main => &mut mode.main,
+            Place::BigEnd(throw) => &mut mode.throws[throw].big_end,
+            Place::SmallEnd(throw) => &mut mode.throws[throw].small_end,
+        }
+    }
+
+    /// A dead centre (part 0) or a valve.
+    fn switch_gas(&mut self, throw: usize, part: usize, t: S, y: &[S]) {
+        if part == 0 {
+            let mode = &mut self.mode_mut().throws[throw];
+            mode.outward = S::one() - mode.outward;
+            // The new polytrope decides which valves are open.
+            self.evaluate(t, y);
+            let gas = self.evaluation().throws[throw].gas;
+            let mode = &mut self.mode_mut().throws[throw];
+            mode.head_end = gas.head_end.mode();
+            mode.crank_end = gas.crank_end.mode();
+            return;
+        }
+        let mode = &mut self.mode_mut().throws[throw];
+        let chamber = if part <= 2 {
+            &mut mode.head_end
+        } else {
+            &mut mode.crank_end
+        };
+        let valve = if part % 2 == 1 {
+            &mut chamber.suction
+        } else {
+            &mut chamber.discharge
+        };
+        *valve = S::one() - *valve;
+    }
+}

@@ -1,0 +1,390 @@
+//! One throw: from the crank pin's motion and the joints' offsets to forces and accelerations.
+//!
+//! Everything here is in the throw's own frame: x toward its head, origin at the shaft's ideal
+//! axis. Two steps, because the crank's acceleration may depend on every throw:
+//!
+//! 1. [`Motion`] and [`Loads`]: poses, rates, and every force that follows from them.
+//! 2. [`Response`]: the unknown forces of rigid joints as an affine function of the crank pin's
+//!    acceleration, by eliminating the small end, then the big end. A joint with clearance has no
+//!    unknown force, so with both ends clear nothing is solved at all.
+
+use crate::gas::GasState;
+use crate::joints::guide::GuideState;
+use crate::joints::revolute::{JointModel, JointState, Revolute};
+use crate::machine::Throw;
+use crate::plane::{Vec2, diagonal, inverse, moment, origin, outer, turned};
+use nalgebra::Matrix2;
+use scalar::Scalar;
+
+/// Rate, 1/s, at which a following journal is drawn back onto its surface should rounding have
+/// moved it off (Baumgarte 1972).
+const STABILISATION: f64 = 300.0;
+
+/// Poses and rates of one throw.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<S> {
+    /// Crank angle α since this throw's own top dead centre, rad.
+    pub angle: S,
+    /// Its sine and cosine.
+    pub angle_sin_cos: (S, S),
+    /// Crank pin, from the shaft's centre, m.
+    pub pin: Vec2<S>,
+    /// Sine and cosine of the rod's angle φ.
+    pub rod_sin_cos: (S, S),
+    /// Rod's angular speed, rad/s.
+    pub rod_rate: S,
+    /// Big-end eye, m, and its velocity, m/s.
+    pub big_eye: [Vec2<S>; 2],
+    /// Crosshead pin along x, m.
+    pub crosshead: S,
+    /// Its speed, m/s.
+    pub crosshead_rate: S,
+}
+
+/// What acts on the bodies of one throw, as far as poses and rates tell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Loads<S> {
+    pub rod_force: Vec2<S>,
+    pub rod_moment: S,
+    pub crosshead_force: Vec2<S>,
+    pub crosshead_moment: S,
+    /// Force on the crank pin, and its moment about the shaft's centre.
+    pub pin_force: Vec2<S>,
+    pub pin_moment: S,
+    /// Centripetal acceleration of the crank pin about the shaft's centre, and of the eyes about
+    /// the rod's centre of mass.
+    pub pin_bias: Vec2<S>,
+    pub big_bias: Vec2<S>,
+    pub small_bias: Vec2<S>,
+    /// Wanted relative acceleration of following joints along their normal.
+    pub big_target: S,
+    pub small_target: S,
+}
+
+impl<S: Scalar> Loads<S> {
+    /// No loads: with a target, the answer to an impulse instead of a force.
+    pub fn none() -> Self {
+        let zero = S::zero();
+        Self {
+            rod_force: origin(),
+            rod_moment: zero,
+            crosshead_force: origin(),
+            crosshead_moment: zero,
+            pin_force: origin(),
+            pin_moment: zero,
+            pin_bias: origin(),
+            big_bias: origin(),
+            small_bias: origin(),
+            big_target: zero,
+            small_target: zero,
+        }
+    }
+}
+
+/// How a joint constrains its two centres at an instant.
+#[derive(Clone, Copy, Debug)]
+enum Constraint<S> {
+    /// Not at all: the force is known.
+    Open,
+    /// In both directions.
+    Pinned,
+    /// Along a normal, by a push along `force` (which friction tilts away from the normal).
+    /// `active` is 1 while it holds.
+    Following {
+        normal: Vec2<S>,
+        force: Vec2<S>,
+        active: S,
+    },
+}
+
+impl<S: Scalar> Constraint<S> {
+    fn new(joint: &Revolute<S>, state: &JointState<S>, touching: S) -> Self {
+        let following = |active| Constraint::Following {
+            normal: state.normal,
+            force: state.normal + turned(state.normal) * state.coefficient,
+            active,
+        };
+        match joint {
+            Revolute::Ideal => Constraint::Pinned,
+            Revolute::Clear(clear) => match clear.model {
+                JointModel::ThreeMode => Constraint::Open,
+                JointModel::TwoMode => following(touching),
+                JointModel::MasslessLink => following(S::one()),
+            },
+        }
+    }
+
+    /// The matrix that turns the missing relative acceleration into the joint's force, given how
+    /// the relative acceleration answers to that force.
+    fn stiffen(&self, answer: &Matrix2<S>) -> Option<Matrix2<S>> {
+        match *self {
+            Constraint::Open => None,
+            Constraint::Pinned => Some(inverse(answer)),
+            Constraint::Following {
+                normal,
+                force,
+                active,
+            } => {
+                let give = normal.dot(&(answer * force));
+                Some(outer(force, normal) * (active / give))
+            }
+        }
+    }
+}
+
+/// The target that keeps a following journal at its clearance: r̈ = 0 with stabilisation.
+pub(crate) fn following_target<S: Scalar>(joint: &JointState<S>) -> S {
+    let tangent = turned(joint.normal).dot(&joint.rate);
+    let distance = joint
+        .offset
+        .dot(&joint.offset)
+        .sqrt()
+        .max(S::constant(1e-300));
+    -(tangent * tangent) / distance
+        - joint.penetration_rate * (2.0 * STABILISATION)
+        - joint.penetration * (STABILISATION * STABILISATION)
+}
+
+/// The forces of rigid joints as functions of the crank pin's acceleration A:
+/// big end `slope A + offset`, both as forces on the rod.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Response<S> {
+    pub slope: Matrix2<S>,
+    pub offset: Vec2<S>,
+    /// Small-end force on the rod: `small_offset − small_slope × big-end force`.
+    small_slope: Matrix2<S>,
+    small_offset: Vec2<S>,
+    arms: Arms<S>,
+    rod_free: (Vec2<S>, S),
+    crosshead_free: Vec2<S>,
+    crosshead_give: Matrix2<S>,
+}
+
+/// Arms from the rod's centre of mass to its eyes and to where the rigid joints' forces act.
+#[derive(Clone, Copy, Debug)]
+struct Arms<S> {
+    big: Vec2<S>,
+    small: Vec2<S>,
+    big_force: Vec2<S>,
+    small_force: Vec2<S>,
+}
+
+/// Accelerations of one throw, and its rigid joints' forces.
+#[derive(Clone, Copy, Debug)]
+pub struct Accelerations<S> {
+    /// Crosshead along x, m/s².
+    pub crosshead: S,
+    /// Second rate of the big-end offset, m/s².
+    pub big_end: Vec2<S>,
+    /// Second rate of the small-end offset, m/s².
+    pub small_end: Vec2<S>,
+    /// Second rates of the crosshead's shift and tilt, m/s² and rad/s².
+    pub guide: Vec2<S>,
+    /// Force on the rod at the big end, of a rigid joint model (0 with compliant contact), N.
+    pub big_force: Vec2<S>,
+    /// The same at the small end.
+    pub small_force: Vec2<S>,
+    /// Rod's angular acceleration, rad/s².
+    pub rod: S,
+}
+
+impl<S: Scalar> Motion<S> {
+    /// The pose with the shaft's centre at `shaft` (position and velocity), the crank at `angle`
+    /// turning at `speed`, and the given joint offsets and rates.
+    pub(crate) fn new(
+        throw: &Throw<S>,
+        shaft: [Vec2<S>; 2],
+        angle: S,
+        speed: S,
+        big: [Vec2<S>; 2],
+        small: [Vec2<S>; 2],
+        guide: [Vec2<S>; 2],
+    ) -> Self {
+        let (sine, cosine) = angle.sin_cos();
+        let pin = Vec2::new(cosine, sine) * throw.crank_radius;
+        let eye = shaft[0] + pin - big[0];
+        let eye_rate = shaft[1] + turned(pin) * speed - big[1];
+        // The small-end eye's height follows from the crosshead's, and gives the rod's angle.
+        let rise = guide[0].x - small[0].y - eye.y;
+        let rise_rate = guide[1].x - small[1].y - eye_rate.y;
+        let length = throw.rod.length;
+        let rod_sine = rise / length;
+        let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
+        let rod_rate = rise_rate / (length * rod_cosine);
+        Self {
+            angle,
+            angle_sin_cos: (sine, cosine),
+            pin,
+            rod_sin_cos: (rod_sine, rod_cosine),
+            rod_rate,
+            big_eye: [eye, eye_rate],
+            crosshead: eye.x + length * rod_cosine + small[0].x,
+            crosshead_rate: eye_rate.x - length * rod_sine * rod_rate + small[1].x,
+        }
+    }
+
+    /// Unit vector along the rod, from big to small end.
+    pub(crate) fn along_rod(&self) -> Vec2<S> {
+        Vec2::new(self.rod_sin_cos.1, self.rod_sin_cos.0)
+    }
+}
+
+/// The joints of one throw at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Joints<S> {
+    /// Big end: crank pin in the rod.
+    pub big_end: JointState<S>,
+    /// Small end: crosshead pin in the rod.
+    pub small_end: JointState<S>,
+    /// Crosshead in its guide.
+    pub guide: GuideState<S>,
+}
+
+/// The gas of one throw at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Gas<S> {
+    /// Head end.
+    pub head_end: GasState<S>,
+    /// Crank end; pressure 0 in a single-acting cylinder.
+    pub crank_end: GasState<S>,
+    /// Force of the gas on the crosshead body along x, N.
+    pub force: S,
+    /// Force of the effects on the crosshead body along x, N.
+    pub effects: S,
+}
+
+impl<S: Scalar> Loads<S> {
+    pub fn new(
+        throw: &Throw<S>,
+        gravity: Vec2<S>,
+        speed: S,
+        motion: &Motion<S>,
+        joints: &Joints<S>,
+        gas: &Gas<S>,
+    ) -> Self {
+        let arms = Arms::new(throw, motion, joints);
+        let (big, small) = (&joints.big_end, &joints.small_end);
+        let mut loads = Self::none();
+        loads.rod_force = gravity * throw.rod.mass - big.force - small.force;
+        loads.rod_moment =
+            -moment(arms.big_force, big.force) - moment(arms.small_force, small.force);
+        loads.crosshead_force = gravity * throw.crosshead.mass
+            + small.force
+            + joints.guide.force
+            + Vec2::new(gas.force + gas.effects, S::zero());
+        loads.crosshead_moment = moment(small.arm, small.force) + joints.guide.moment;
+        loads.pin_force = big.force;
+        loads.pin_moment = moment(motion.pin + big.arm, big.force);
+        loads.pin_bias = -(motion.pin * (speed * speed));
+        let rate2 = motion.rod_rate * motion.rod_rate;
+        loads.big_bias = -(arms.big * rate2);
+        loads.small_bias = -(arms.small * rate2);
+        loads.big_target = following_target(big);
+        loads.small_target = following_target(small);
+        loads
+    }
+}
+
+impl<S: Scalar> Arms<S> {
+    fn new(throw: &Throw<S>, motion: &Motion<S>, joints: &Joints<S>) -> Self {
+        let along = motion.along_rod();
+        let big = -(along * throw.rod.centre_of_mass);
+        let small = along * (throw.rod.length - throw.rod.centre_of_mass);
+        Self {
+            big,
+            small,
+            big_force: big + joints.big_end.offset + joints.big_end.arm,
+            small_force: small + joints.small_end.offset + joints.small_end.arm,
+        }
+    }
+}
+
+impl<S: Scalar> Response<S> {
+    /// Eliminates the throw's rigid joints. `touching` are the flags of big and small end.
+    pub fn new(
+        throw: &Throw<S>,
+        motion: &Motion<S>,
+        joints: &Joints<S>,
+        loads: &Loads<S>,
+        touching: [S; 2],
+    ) -> Self {
+        let arms = Arms::new(throw, motion, joints);
+        let (mass, inertia) = (throw.rod.mass, throw.rod.inertia);
+        // Acceleration of an eye for a unit force: W = 1/m + (turned arm of the eye)(turned arm
+        // of the force)ᵀ / I.
+        let answer = |eye: Vec2<S>, force: Vec2<S>| {
+            let light = S::one() / mass;
+            diagonal(light, light) + outer(turned(eye), turned(force)) / inertia
+        };
+        let free = (loads.rod_force / mass, loads.rod_moment / inertia);
+        let free_at = |eye: Vec2<S>, bias: Vec2<S>| free.0 + turned(eye) * free.1 + bias;
+
+        let light = S::one() / throw.crosshead.mass;
+        let across = match throw.guide.clear() {
+            Some(_) => light,
+            None => S::zero(),
+        };
+        let crosshead_give = diagonal(light, across);
+        let crosshead_free = crosshead_give * loads.crosshead_force;
+
+        let mut response = Self {
+            slope: diagonal(S::zero(), S::zero()),
+            offset: origin(),
+            small_slope: diagonal(S::zero(), S::zero()),
+            small_offset: origin(),
+            arms,
+            rod_free: free,
+            crosshead_free,
+            crosshead_give,
+        };
+        let small = Constraint::new(&throw.small_end, &joints.small_end, touching[1]);
+        let small_answer = answer(arms.small, arms.small_force) + crosshead_give;
+        if let Some(stiff) = small.stiffen(&small_answer) {
+            let missing = crosshead_free
+                - free_at(arms.small, loads.small_bias)
+                - joints.small_end.normal * loads.small_target;
+            response.small_offset = stiff * missing;
+            response.small_slope = stiff * answer(arms.small, arms.big_force);
+        }
+        let big = Constraint::new(&throw.big_end, &joints.big_end, touching[0]);
+        let through = answer(arms.big, arms.small_force);
+        let big_answer = answer(arms.big, arms.big_force) - through * response.small_slope;
+        if let Some(stiff) = big.stiffen(&big_answer) {
+            let free_eye = free_at(arms.big, loads.big_bias) + through * response.small_offset;
+            response.slope = stiff;
+            response.offset = -(stiff * (free_eye + joints.big_end.normal * loads.big_target));
+        }
+        response
+    }
+
+    /// The accelerations, once the crank pin's is known.
+    pub fn accelerations(
+        &self,
+        throw: &Throw<S>,
+        loads: &Loads<S>,
+        joints: &Joints<S>,
+        pin: Vec2<S>,
+    ) -> Accelerations<S> {
+        let arms = &self.arms;
+        let big_force = self.slope * pin + self.offset;
+        let small_force = self.small_offset - self.small_slope * big_force;
+        let centre = self.rod_free.0 + (big_force + small_force) / throw.rod.mass;
+        let rod = self.rod_free.1
+            + (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
+                / throw.rod.inertia;
+        let big_eye = centre + turned(arms.big) * rod + loads.big_bias;
+        let small_eye = centre + turned(arms.small) * rod + loads.small_bias;
+        let crosshead = self.crosshead_free - self.crosshead_give * small_force;
+        let tilt = (loads.crosshead_moment - moment(joints.small_end.arm, small_force))
+            / throw.crosshead.inertia;
+        Accelerations {
+            crosshead: crosshead.x,
+            big_end: pin - big_eye,
+            small_end: crosshead - small_eye,
+            guide: Vec2::new(crosshead.y, tilt),
+            big_force,
+            small_force,
+            rod,
+        }
+    }
+}
