@@ -127,7 +127,9 @@ impl<S: Real> Integrator<S> {
                 continue;
             }
             self.step.extend(system);
-            let switching = self.locate(system)?;
+            let Some(switching) = self.locate(system)? else {
+                continue;
+            };
             if self.step.length.value() > 0.0 {
                 observe(system, &self.step);
                 self.work.accepted += 1;
@@ -203,13 +205,19 @@ impl<S: Real> Integrator<S> {
         self.step.length.value() * fifth / (denominator * counted as f64).sqrt()
     }
 
-    /// Ends the step at the first switch in it, and tells which guard that is.
-    fn locate(&mut self, system: &mut impl System<S>) -> Result<Option<usize>, Error> {
+    /// Ends the step at the first switch in it, and tells which guard that is. `None` where the
+    /// shortened step does not keep the tolerance: what lies before the switch can be too short for
+    /// the stages of the whole step to have seen it.
+    #[expect(
+        clippy::option_option,
+        reason = "no step, a step, a step that ends in a switch"
+    )]
+    fn locate(&mut self, system: &mut impl System<S>) -> Result<Option<Option<usize>>, Error> {
         let (last, when, count) = self.last_switch;
         let now = self.time();
         let ignored = (when == now && count >= CALM).then_some(last);
         let Some(crossing) = self.finder.first(system, &self.step, ignored) else {
-            return Ok(None);
+            return Ok(Some(None));
         };
         let length = self.step.length.value() * crossing.share;
         let minute = 4.0 * f64::EPSILON * now.abs();
@@ -224,12 +232,16 @@ impl<S: Real> Integrator<S> {
             }
             self.last_switch = (crossing.guard, now, repeats);
         } else {
-            self.step.take(system, S::constant(length));
+            let next = self.length;
+            if !self.attempt(system, length, true)? {
+                return Ok(None);
+            }
+            self.length = next;
             self.step.extend(system);
             let reached = (self.step.start + self.step.length).value();
             self.last_switch = (crossing.guard, reached, 1);
         }
-        Ok(Some(crossing.guard))
+        Ok(Some(Some(crossing.guard)))
     }
 
     /// A first step length, from the sizes of state and derivative (Hairer, Nørsett and Wanner

@@ -157,9 +157,7 @@ impl<S: Scalar> GuideClearance<S> {
             let penetration = moved * across - self.clearance;
             let penetration_rate = (rate.x + rate.y * arm.x) * across;
             let slip = speed - rate.y * arm.y;
-            let law = self
-                .contact
-                .force(penetration, penetration_rate, mode.approach);
+            let law = self.contact.force(penetration, penetration_rate, mode);
             let normal_force = flagged(mode.pressed, law.raw, S::zero());
             let stored = flagged(mode.touching, law.elastic, S::zero());
             let friction = self.friction.coefficient(slip) * normal_force;

@@ -160,10 +160,7 @@ impl<S: Scalar> Clearance<S> {
             JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
         };
         let NormalForce { raw, elastic, sign } = match self.model {
-            JointModel::ThreeMode => {
-                self.contact
-                    .force(penetration, penetration_rate, mode.approach)
-            }
+            JointModel::ThreeMode => self.contact.force(penetration, penetration_rate, mode),
             JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
         };
         let normal_force = flagged(mode.pressed, raw, S::zero());

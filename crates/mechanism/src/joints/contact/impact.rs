@@ -10,6 +10,7 @@
 
 use super::{NormalForce, power};
 use crate::lift::parameters;
+use crate::mode::flagged;
 use scalar::Scalar;
 
 parameters! {
@@ -28,9 +29,10 @@ parameters! {
 
 impl<S: Scalar> Impact<S> {
     #[inline]
-    pub(super) fn force(&self, penetration: S, rate: S) -> NormalForce<S> {
+    pub(super) fn force(&self, penetration: S, rate: S, deep: S) -> NormalForce<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
-        let u = (penetration / self.depth).clamp(S::zero(), S::one());
+        // Which side of the kink at u = 1 counts is the mode's to say.
+        let u = flagged(deep, S::one(), (penetration / self.depth).max(S::zero()));
         let damping = self.damping * u * u * (S::constant(3.0) - u - u);
         NormalForce::damped(elastic, damping * rate)
     }

@@ -20,6 +20,7 @@ pub use kelvin_voigt::KelvinVoigt;
 pub use restitution::Restitution;
 
 use crate::lift::alternatives;
+use crate::mode::ContactMode;
 use scalar::{Mask, Scalar};
 
 alternatives! {
@@ -74,11 +75,13 @@ impl<S: Scalar> NormalForce<S> {
 }
 
 impl<S: Scalar> ContactLaw<S> {
-    /// The force at penetration δ (m), rate δ̇ (m/s) and approach speed v₀ (m/s).
+    /// The force at penetration δ (m) and rate δ̇ (m/s), in the contact's mode (approach speed, and
+    /// which side of the law's kink).
     #[inline]
-    pub fn force(&self, penetration: S, rate: S, approach: S) -> NormalForce<S> {
+    pub fn force(&self, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S> {
+        let approach = mode.approach;
         match self {
-            ContactLaw::Impact(law) => law.force(penetration, rate),
+            ContactLaw::Impact(law) => law.force(penetration, rate, mode.deep),
             ContactLaw::Hertz(law) => law.force(penetration),
             ContactLaw::KelvinVoigt(law) => law.force(penetration, rate),
             ContactLaw::HuntCrossley(law) => {
