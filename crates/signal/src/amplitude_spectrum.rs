@@ -63,10 +63,9 @@ pub fn band_mean_squares(
     edges: &[f64],
 ) -> Result<Vec<f64>, Error> {
     check(x, sample_rate)?;
-    if let Some(pair) = edges
-        .windows(2)
-        .find(|p| p[0].partial_cmp(&p[1]) != Some(std::cmp::Ordering::Less))
-    {
+    // Written so that an edge that is not a number is found too.
+    let increases = |pair: &[f64]| pair[0] < pair[1];
+    if let Some(pair) = edges.windows(2).find(|pair| !increases(pair)) {
         return Err(Error::OutOfRange {
             what: "edge of a frequency band, Hz",
             value: pair[1],
@@ -84,12 +83,11 @@ pub fn band_mean_squares(
         let energy = sides(k, n) * c.norm_sqr();
         total += energy;
         let frequency = k as f64 * sample_rate / n as f64;
-        let edges_below = edges.partition_point(|&edge| edge <= frequency);
         let at_the_end = edges.last() == Some(&frequency);
-        if let Some(band) = edges_below.checked_sub(1 + usize::from(at_the_end)) {
-            if let Some(sum) = bands.get_mut(band) {
-                *sum += energy;
-            }
+        let below = edges.partition_point(|&edge| edge <= frequency);
+        let band = below.checked_sub(1 + usize::from(at_the_end));
+        if let Some(sum) = band.and_then(|b| bands.get_mut(b)) {
+            *sum += energy;
         }
     }
     if total > 0.0 {

@@ -81,13 +81,9 @@ mod tests {
             expected[0] = Complex64::from_polar(3.0, 0.7);
             expected[6] = Complex64::from_polar(0.4, -1.1);
             expected[19] = Complex64::from_polar(0.05, -TAU / 4.0);
-            for k in 0..20 {
-                assert!(
-                    (orders.of_mean[k] - expected[k]).norm() < 5e-6,
-                    "{start} order {}",
-                    k + 1
-                );
-                assert!((orders.rms[k] - expected[k].norm()).abs() < 5e-6);
+            for ((c, rms), expected) in orders.of_mean.iter().zip(&orders.rms).zip(expected) {
+                assert!((c - expected).norm() < 5e-6, "from {start}: {c}");
+                assert!((rms - expected.norm()).abs() < 5e-6);
             }
         }
     }
