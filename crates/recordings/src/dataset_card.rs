@@ -19,7 +19,8 @@ pub struct DatasetCard {
     pub tags: Vec<String>,
     /// The machine: names and values, in the order in which to show them.
     pub machine: Vec<(String, String)>,
-    /// Rows by split, then by fault: `rows["train"]["big_end"]`.
+    /// Rows by split, then by fault: `rows["train"]["big_end"]`, the same in every table. Splits
+    /// without rows are shown but not offered: `datasets` refuses a dataset that has one.
     pub rows: BTreeMap<String, BTreeMap<String, u64>>,
     /// The tables; the first is the one that is loaded when none is named.
     pub subsets: Vec<Subset>,
@@ -36,8 +37,6 @@ pub struct DatasetCard {
 pub struct Subset {
     /// `signals`, `features`.
     pub name: String,
-    /// The splits that have files.
-    pub splits: Vec<String>,
     /// The columns.
     pub schema: Schema,
 }
@@ -80,16 +79,18 @@ impl DatasetCard {
             "size_categories: [{}]",
             json!(size_category(self.total()))
         )?;
-        if !self.subsets.is_empty() {
-            writeln!(f, "configs:")?;
-        }
-        for (i, subset) in self.subsets.iter().enumerate() {
+        let splits = self.splits_with_rows();
+        let offered = self.subsets.iter().filter(|_| !splits.is_empty());
+        for (i, subset) in offered.enumerate() {
+            if i == 0 {
+                writeln!(f, "configs:")?;
+            }
             writeln!(f, "- config_name: {}", json!(subset.name))?;
             if i == 0 {
                 writeln!(f, "  default: true")?;
             }
             writeln!(f, "  data_files:")?;
-            for split in in_order(subset.splits.iter()) {
+            for split in &splits {
                 let files = format!("{}/{split}-*.parquet", subset.name);
                 writeln!(f, "  - split: {}\n    path: {}", json!(split), json!(files))?;
             }
@@ -140,6 +141,14 @@ impl DatasetCard {
         self.rows.values().flat_map(BTreeMap::values).sum()
     }
 
+    fn splits_with_rows(&self) -> Vec<&str> {
+        let splits = self
+            .rows
+            .iter()
+            .filter(|(_, faults)| faults.values().sum::<u64>() > 0);
+        in_order(splits.map(|(split, _)| split))
+    }
+
     fn loading(&self, f: &mut Formatter) -> fmt::Result {
         writeln!(
             f,
@@ -147,7 +156,7 @@ impl DatasetCard {
         )?;
         for subset in &self.subsets {
             let name = &subset.name;
-            let splits = in_order(subset.splits.iter());
+            let splits = self.splits_with_rows();
             let Some(split) = splits.first() else {
                 continue;
             };
@@ -155,8 +164,8 @@ impl DatasetCard {
                 f,
                 "
 ```python
-import datasets, pandas, polars, pyarrow.dataset
-{name} = datasets.load_dataset(\".\", \"{name}\")[\"{split}\"]
+import os, datasets, pandas, polars, pyarrow.dataset
+{name} = datasets.load_dataset(os.getcwd(), \"{name}\")[\"{split}\"]
 {name} = pandas.read_parquet(\"{name}\")      # every split; units in {name}.attrs[\"units\"]
 {name} = polars.scan_parquet(\"{name}/{split}-*.parquet\").collect()
 {name} = pyarrow.dataset.dataset(\"{name}\").to_table()
@@ -241,5 +250,87 @@ fn size_category(rows: u64) -> &'static str {
         100_000..1_000_000 => "100K<n<1M",
         1_000_000..10_000_000 => "1M<n<10M",
         _ => "n>10M",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Column, Kind};
+
+    fn card() -> DatasetCard {
+        let column = Column::new("clearance_m", Kind::Real, "of a | joint")
+            .unit("m")
+            .optional();
+        let faults =
+            |rows: &[(&str, u64)]| rows.iter().map(|(f, n)| ((*f).to_owned(), *n)).collect();
+        let rows = [
+            ("test", faults(&[("none", 1)])),
+            ("train", faults(&[("big_end", 2), ("none", 30)])),
+            ("validation", faults(&[])),
+        ];
+        DatasetCard {
+            title: "Yes: no".into(),
+            summary: "All of it.".into(),
+            license: "cc0-1.0".into(),
+            tags: vec!["a".into()],
+            machine: vec![("stroke".into(), "240 mm".into())],
+            rows: rows
+                .map(|(split, faults)| (split.to_owned(), faults))
+                .into(),
+            subsets: ["signals", "features"]
+                .map(|name| Subset {
+                    name: name.into(),
+                    schema: Schema::new(vec![column.clone()]).unwrap(),
+                })
+                .into(),
+            mcap_example: None,
+            command: "gen-dataset sweep.yaml".into(),
+            version: "0.1.0".into(),
+        }
+    }
+
+    #[test]
+    fn the_front_matter_names_the_splits_that_have_rows() {
+        let text = card().to_string();
+        let front_matter = text.split("---\n").nth(1).unwrap();
+        let expected = r#"pretty_name: "Yes: no"
+license: "cc0-1.0"
+tags: ["a"]
+size_categories: ["n<1K"]
+configs:
+- config_name: "signals"
+  default: true
+  data_files:
+  - split: "train"
+    path: "signals/train-*.parquet"
+  - split: "test"
+    path: "signals/test-*.parquet"
+- config_name: "features"
+  data_files:
+  - split: "train"
+    path: "features/train-*.parquet"
+  - split: "test"
+    path: "features/test-*.parquet"
+"#;
+        assert_eq!(front_matter, expected);
+
+        let mut empty = card();
+        empty.rows.clear();
+        assert!(!empty.to_string().contains("config"));
+    }
+
+    #[test]
+    fn rows_are_counted_by_fault_and_split() {
+        let text = card().to_string();
+        let expected = "| fault | train | validation | test | all |
+|---|---|---|---|---|
+| `none` | 30 | 0 | 1 | 31 |
+| `big_end` | 2 | 0 | 0 | 2 |
+| all | 32 | 0 | 1 | 33 |
+";
+        assert!(text.contains(expected), "{text}");
+        let column = r"| `clearance_m` | a real number, or nothing | m | of a \| joint |";
+        assert_eq!(text.matches(column).count(), 2, "{text}");
     }
 }

@@ -80,3 +80,22 @@ impl Manifest {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_manifest_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("manifest.json");
+        let message = || Manifest::read(&path).unwrap_err().to_string();
+        assert!(message().starts_with("cannot read `"), "{}", message());
+        fs::write(&path, r#"{"version": "0.1.0", "seed": -1}"#).unwrap();
+        assert!(
+            message().contains("as a manifest: invalid value: integer `-1`"),
+            "{}",
+            message()
+        );
+    }
+}

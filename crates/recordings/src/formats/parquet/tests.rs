@@ -88,7 +88,7 @@ fn on_disk(folder: &tempfile::TempDir, bytes: &[u8]) -> PathBuf {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
     fn rows_read_back_as_they_were(rows in rows(), rows_per_group in 1_usize..20) {
