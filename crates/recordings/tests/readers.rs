@@ -198,15 +198,15 @@ impl Dataset {
     }
 
     fn mcap(&mut self, case: usize, samples: usize) {
-        let (name, split, fault, _) = CASES[case];
+        let name = CASES[case].0;
         let path = format!("mcap/{name}.mcap");
-        let labels = [
-            ("case_id", name),
-            ("split", split),
-            ("fault", fault),
-            ("sample_rate_hz", "24000"),
-        ];
-        let labels: BTreeMap<_, _> = labels.map(|(k, v)| (k.to_owned(), v.to_owned())).into();
+        let columns = labels().into_iter().map(|column| column.name);
+        let known = columns
+            .zip(label_values(case))
+            .filter(|(_, value)| *value != Value::Missing);
+        let mut labels: BTreeMap<_, _> =
+            known.map(|(name, value)| (name, text_of(&value))).collect();
+        labels.insert("sample_rate_hz".into(), "24000".into());
         let (acceleration, pressure) = (noise(case, samples), noise(case + 7, samples));
         let recording = Recording {
             sample_rate_hz: 24_000.0,
@@ -426,5 +426,13 @@ fn json_of(value: &Value) -> Json {
         Value::Flag(flag) => json!(flag),
         Value::Samples(samples) => json!(samples),
         Value::Missing => Json::Null,
+    }
+}
+
+/// A label as text.
+fn text_of(value: &Value) -> String {
+    match json_of(value) {
+        Json::String(text) => text,
+        other => other.to_string(),
     }
 }
