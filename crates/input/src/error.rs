@@ -1,5 +1,7 @@
 //! One message per mistake: where it is, which key, what was found, what was expected.
 
+use serde::de::Unexpected;
+use serde_json::Value;
 use std::fmt;
 
 /// A mistake in a file that a person wrote.
@@ -125,6 +127,12 @@ impl Error {
         )
     }
 
+    /// What stands at `key` does not go together with the rest of the file. What it is, as it is
+    /// written, is filled in from the file.
+    pub(crate) fn clash(key: impl Into<String>, expected: impl fmt::Display) -> Self {
+        Self::found(key, "", expected)
+    }
+
     /// The key `name` must be there and is not.
     pub fn missing(name: impl Into<String>) -> Self {
         Self::new(name, Problem::Missing { expected: None })
@@ -171,9 +179,18 @@ impl Error {
         self
     }
 
-    pub(crate) fn expecting(mut self, description: impl FnOnce() -> Option<String>) -> Self {
-        if let Problem::Missing { expected } = &mut *self.problem {
-            *expected = description();
+    /// Fills in what stands in the file, and what belongs in the place of a missing key.
+    pub(crate) fn complete(
+        mut self,
+        written: Option<&Value>,
+        expectation: impl FnOnce() -> Option<String>,
+    ) -> Self {
+        match (&mut *self.problem, written) {
+            (Problem::Found { found, .. }, Some(value)) if found.is_empty() => {
+                *found = shown(value);
+            }
+            (Problem::Missing { expected }, _) if expected.is_none() => *expected = expectation(),
+            _ => {}
         }
         self
     }
@@ -242,11 +259,11 @@ impl serde::de::Error for Error {
         Self::new("", Problem::Other(message.to_string()))
     }
 
-    fn invalid_type(found: serde::de::Unexpected, expected: &dyn serde::de::Expected) -> Self {
+    fn invalid_type(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
         Self::found("", words(&found), expected)
     }
 
-    fn invalid_value(found: serde::de::Unexpected, expected: &dyn serde::de::Expected) -> Self {
+    fn invalid_value(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
         Self::found("", words(&found), expected)
     }
 
@@ -272,8 +289,8 @@ impl serde::de::Error for Error {
 }
 
 /// What was found, as its author would recognise it.
-fn words(found: &serde::de::Unexpected) -> String {
-    use serde::de::Unexpected::*;
+fn words(found: &Unexpected) -> String {
+    use Unexpected::*;
     match found {
         Bool(value) => value.to_string(),
         Unsigned(value) => value.to_string(),
@@ -284,6 +301,27 @@ fn words(found: &serde::de::Unexpected) -> String {
         Seq => "a list".to_owned(),
         Map => "a section".to_owned(),
         other => other.to_string(),
+    }
+}
+
+/// A value of the tree, as its author would recognise it.
+pub(crate) fn shown(value: &Value) -> String {
+    words(&unexpected(value))
+}
+
+/// A value of the tree in serde's terms.
+pub(crate) fn unexpected(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::Null => Unexpected::Unit,
+        Value::Bool(value) => Unexpected::Bool(*value),
+        Value::Number(number) => match (number.as_u64(), number.as_i64(), number.as_f64()) {
+            (Some(value), _, _) => Unexpected::Unsigned(value),
+            (_, Some(value), _) => Unexpected::Signed(value),
+            (_, _, value) => Unexpected::Float(value.unwrap_or(f64::NAN)),
+        },
+        Value::String(text) => Unexpected::Str(text),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Object(_) => Unexpected::Map,
     }
 }
 

@@ -4,7 +4,7 @@
 //! (`throws.throw1.joints.big_end.clearance`), an effect's (`effects.valve_loss.discharge`), or
 //! what a sensor measures (`sensors.cylinder_pressure.range`; the first of several).
 
-use crate::error::Error;
+use crate::error::{Error, shown};
 use crate::schema::Node;
 use serde_json::{Map, Value};
 
@@ -30,7 +30,7 @@ pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
                 if !other.is_null() {
                     let at = keys[..depth].join(".");
                     let expected = format!("a section, so that {path} can be set");
-                    return Err(Error::found(at, &*other, expected));
+                    return Err(Error::found(at, shown(other), expected));
                 }
                 *other = Value::Object(Map::new());
                 other[key.as_str()].take();

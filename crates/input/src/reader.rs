@@ -5,7 +5,7 @@
 //! `tag:law=impact` is a section whose key `law` names the variant, `impact` where it is left out
 //! (`tag:measure`: it must be there). serde's own `tag` attribute would lose the path.
 
-use crate::error::Error;
+use crate::error::{Error, unexpected};
 use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, EnumAccess, Error as _, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
@@ -61,21 +61,6 @@ impl<'de> Reader<'de> {
             key: Some(tag),
             content,
         })
-    }
-}
-
-fn unexpected(node: &Value) -> Unexpected<'_> {
-    match node {
-        Value::Null => Unexpected::Unit,
-        Value::Bool(value) => Unexpected::Bool(*value),
-        Value::Number(number) => match (number.as_u64(), number.as_i64(), number.as_f64()) {
-            (Some(value), _, _) => Unexpected::Unsigned(value),
-            (_, Some(value), _) => Unexpected::Signed(value),
-            (_, _, value) => Unexpected::Float(value.unwrap_or(f64::NAN)),
-        },
-        Value::String(text) => Unexpected::Str(text),
-        Value::Array(_) => Unexpected::Seq,
-        Value::Object(_) => Unexpected::Map,
     }
 }
 

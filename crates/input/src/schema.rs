@@ -103,6 +103,7 @@ impl<'a> Node<'a> {
     fn expand(root: &'a Value, schemas: impl IntoIterator<Item = &'a Value>) -> Self {
         let mut alternatives = Vec::new();
         let mut open: Vec<&Value> = schemas.into_iter().collect();
+        open.reverse();
         while let Some(schema) = open.pop() {
             let target = schema["$ref"].as_str().and_then(|r| r.strip_prefix('#'));
             open.extend(target.and_then(|target| root.pointer(target)));
@@ -147,15 +148,26 @@ impl<'a> Node<'a> {
         })
     }
 
-    /// What belongs here, in words.
+    /// What belongs here, in words; none where that depends on more than the place.
     pub(crate) fn expected(&self) -> Option<String> {
-        let first = self.alternatives.first()?;
-        if first.get("pattern").is_some() {
-            return first["description"].as_str().map(str::to_owned);
+        let mut texts = self
+            .alternatives
+            .iter()
+            .filter(|s| s.get("pattern").is_some());
+        if let Some(text) = texts.next() {
+            let only = texts.next().is_none();
+            return text["description"]
+                .as_str()
+                .filter(|_| only)
+                .map(str::to_owned);
         }
-        let keys = self.keys();
-        Some(match first["type"].as_str()? {
-            "object" => format!("a section with the keys {}", keys.join(", ")),
+        let names = self.alternatives.iter().filter_map(|s| s["const"].as_str());
+        let names: Vec<&str> = names.collect();
+        if !names.is_empty() {
+            return Some(format!("one of {}", names.join(", ")));
+        }
+        Some(match self.alternatives.first()?["type"].as_str()? {
+            "object" => format!("a section with the keys {}", self.keys().join(", ")),
             "array" => "a list".to_owned(),
             "number" => "a plain number".to_owned(),
             "integer" => "a whole number".to_owned(),

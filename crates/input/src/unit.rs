@@ -113,7 +113,10 @@ impl fmt::Display for Dimension {
             return f.write_str(kind.unit);
         }
         if let Some(exponent) = self.stiffness_exponent() {
-            return write!(f, "N/m^{exponent}");
+            return match exponent {
+                1.0 => f.write_str("N/m"),
+                _ => write!(f, "N/m^{exponent}"),
+            };
         }
         let mut separator = "";
         for (exponent, name) in self.exponents().into_iter().zip(["m", "kg", "s", "rad"]) {

@@ -216,10 +216,9 @@ fn resolve_stiffness(
     let unit = Dimension::stiffness(exponent);
     match source {
         Or::Scalar(given) if unit == Dimension::stiffness(given.exponent) => Ok(given.si),
-        Or::Scalar(given) => Err(Error::found(
+        Or::Scalar(_) => Err(Error::clash(
             "",
-            format_args!("a stiffness in {}", Dimension::stiffness(given.exponent)),
-            format_args!("one in {unit}, because the exponent is {exponent}"),
+            format_args!("a stiffness in {unit}, because the exponent is {exponent}"),
         )),
         Or::Section(_) if unit != Dimension::stiffness(1.5) => Err(Error::found(
             "",
@@ -321,7 +320,7 @@ impl Friction {
                 let (low, high) = (law.stiction_speed, law.transition_speed);
                 if low.si() >= high.si() {
                     let expected = format_args!("a velocity above stiction_speed, {low}");
-                    return Err(Error::found("transition_speed", high, expected));
+                    return Err(Error::clash("transition_speed", expected));
                 }
                 FrictionLaw::Adams(friction::Adams {
                     static_coefficient: law.static_coefficient.get(),
@@ -333,7 +332,7 @@ impl Friction {
             Friction::Ambrosio(law) => {
                 if law.slow.si() >= law.fast.si() {
                     let expected = format_args!("a velocity above slow, {}", law.slow);
-                    return Err(Error::found("fast", law.fast, expected));
+                    return Err(Error::clash("fast", expected));
                 }
                 FrictionLaw::Ambrosio(friction::Ambrosio {
                     coefficient: law.coefficient.get(),

@@ -138,7 +138,7 @@ impl Gap {
             return Ok(clearance.si());
         }
         let expected = format_args!("a length below {name}, {size}");
-        Err(Error::found("clearance", clearance, expected))
+        Err(Error::clash("clearance", expected))
     }
 }
 

@@ -207,8 +207,8 @@ impl MachineFile {
 fn locate(document: &Document, error: Error) -> Error {
     let key = shared::written_key(&document.tree, error.key()).to_owned();
     let error = error.with_key(key.clone());
-    let error = error.expecting(|| schema::Node::machine().walk(&key)?.expected());
-    document.locate(error)
+    let written = shared::find(&document.tree, &key);
+    document.locate(error.complete(written, || schema::Node::machine().walk(&key)?.expected()))
 }
 
 impl Sections {
@@ -327,17 +327,12 @@ fn check_name(name: &str, before: &[Throw]) -> Result<(), Error> {
     let mut letters = name.chars();
     let sound = letters.next().is_some_and(|c| c.is_ascii_alphabetic())
         && letters.all(|c| c.is_ascii_alphanumeric() || c == '_');
-    let quoted = crate::error::quoted(name);
     if !sound {
         let expected = "a letter, then letters, digits and _, e.g. 'throw1'";
-        return Err(Error::found("name", quoted, expected));
+        return Err(Error::clash("name", expected));
     }
     if before.iter().any(|throw| throw.name == name) {
-        return Err(Error::found(
-            "name",
-            format_args!("{quoted} again"),
-            "another name",
-        ));
+        return Err(Error::clash("name", "a name that no other throw has"));
     }
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use crate::quantity::{
-    Acceleration, Angle, Frequency, FromZero, Inertia, Length, Mass, NonNegative, Number, Positive,
-    Pressure, Quantity, Ratio, Speed, Torque, TorqueSlope,
+    AboveZero, Acceleration, Angle, Frequency, Inertia, Length, Mass, NonNegative, Number,
+    Positive, Pressure, Quantity, Ratio, Speed, Torque, TorqueSlope,
 };
 use mechanism::drive::{Drive, GivenSpeed, MotorLine};
 use mechanism::frame::Frame;
@@ -102,15 +102,11 @@ impl Rod {
         let length = self.length;
         if length.si() <= crank.si() {
             let expected = format_args!("a length above the crank radius, {crank}");
-            return Err(Error::found("length", length, expected));
+            return Err(Error::clash("length", expected));
         }
         if self.centre_of_mass.si() > length.si() {
             let expected = format_args!("a length up to that of the rod, {length}");
-            return Err(Error::found(
-                "centre_of_mass",
-                self.centre_of_mass,
-                expected,
-            ));
+            return Err(Error::clash("centre_of_mass", expected));
         }
         Ok(mechanism::Rod {
             length: length.si(),
@@ -157,7 +153,7 @@ pub(super) struct Cylinder {
     /// Pressure behind a single-acting piston, and on the end of a double-acting one's rod.
     back: NonNegative<Pressure>,
     /// Polytropic exponent of the gas.
-    exponent: Number<FromZero>,
+    exponent: Number<AboveZero>,
     /// Gap between piston and head at top dead centre.
     head_clearance: Positive<Length>,
     /// The second chamber of a double-acting cylinder.
@@ -180,16 +176,12 @@ impl Cylinder {
         let (suction, discharge, piston) = (self.suction, self.discharge, self.piston_radius);
         if discharge.si() < suction.si() {
             let expected = format_args!("a pressure of at least suction, {suction}");
-            return Err(Error::found("discharge", discharge, expected));
+            return Err(Error::clash("discharge", expected));
         }
         let crank_end = match &self.crank_end {
             Some(end) if end.rod_radius.si() >= piston.si() => {
                 let expected = format_args!("a length below piston_radius, {piston}");
-                return Err(Error::found(
-                    "crank_end.rod_radius",
-                    end.rod_radius,
-                    expected,
-                ));
+                return Err(Error::clash("crank_end.rod_radius", expected));
             }
             other => other.as_ref().map(|end| gas::CrankEnd {
                 rod_radius: end.rod_radius.si(),

@@ -2,7 +2,7 @@
 
 use super::sections::Resonance;
 use crate::choice::Count;
-use crate::error::{Error, quoted};
+use crate::error::{Error, Problem, quoted};
 use crate::quantity::{
     Acceleration, Angle, Any, Frequency, Kind, NonNegative, Number, Part, Positive, Pressure,
     Quantity, Ratio, describe, found, text_schema,
@@ -261,8 +261,8 @@ impl SensorSection {
             }
             Self::FrameAcceleration(s) => {
                 if machine.frame.is_none() {
-                    let expected = "one with a section 'frame'";
-                    return Err(Error::found("measure", "a machine without frame", expected));
+                    let expected = "a section frame in the machine";
+                    return Err(Error::clash("measure", expected));
                 }
                 let axis = match s.axis {
                     Axis::X => sensor::Axis::X,
@@ -275,8 +275,8 @@ impl SensorSection {
                 let end = match s.end {
                     End::Head => sensor::ChamberEnd::Head,
                     End::Crank if machine.throws[throw].cylinder.crank_end.is_none() => {
-                        let expected = "'head', or a section 'crank_end' in the cylinder";
-                        return Err(Error::found("end", "'crank'", expected));
+                        let expected = "'head', or a section crank_end in the cylinder";
+                        return Err(Error::clash("end", expected));
                     }
                     End::Crank => sensor::ChamberEnd::Crank,
                 };
@@ -290,8 +290,9 @@ impl SensorSection {
                 (Measured::CrankAngle, chain)
             }
         };
-        if chain.bits.is_some() && chain.range.is_none() {
-            return Err(Error::missing("range"));
+        if let (Some(bits), None) = (chain.bits, chain.range) {
+            let found = format_args!("{bits} without a range");
+            return Err(Error::found("bits", found, "a key range beside it"));
         }
         Ok(Sensor { measured, chain })
     }
@@ -301,7 +302,10 @@ impl SensorSection {
 fn throw(name: &Option<String>, names: &[&str]) -> Result<usize, Error> {
     match name {
         None if names.len() == 1 => Ok(0),
-        None => Err(Error::missing("throw")),
+        None => {
+            let expected = Some(format!("one of {}", names.join(", ")));
+            Err(Error::new("throw", Problem::Missing { expected }))
+        }
         Some(name) => names
             .iter()
             .position(|known| known == name)

@@ -80,7 +80,7 @@ pub(super) fn written_key<'a>(tree: &Value, key: &'a str) -> &'a str {
 }
 
 /// The node at a dotted path of keys and indices.
-fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
+pub(super) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
     key.split('.').try_fold(tree, |node, part| match node {
         Value::Array(items) => items.get(part.parse::<usize>().ok()?),
         node => node.get(part),
