@@ -59,10 +59,13 @@ impl AngleGrid {
             });
         }
         let count = revolutions * n as i64;
-        // Of an odd number left over, the one before the first sample goes.
-        let first = points.start + (points.end - points.start - count + 1) / 2;
+        let middle = 0.5 * (angle.angles()[0] + angle.angles()[samples - 1]) / step;
+        let centred = (middle - 0.5 * (count - 1) as f64).round() as i64;
+        let first = centred.clamp(points.start, points.end - count);
 
-        let factor = (angle.samples_per_revolution() / n as f64).ceil().max(1.0) as usize;
+        // Up to 1 % more samples than points is as good as none: rounding must not decide.
+        let excess = angle.samples_per_revolution() / (1.01 * n as f64);
+        let factor = excess.ceil().max(1.0) as usize;
         let decimator = Decimator::new(factor)?;
         let fine = |i: usize| {
             let offset = (i as f64 - decimator.half_length() as f64) / factor as f64;

@@ -12,6 +12,7 @@ pub struct PhasePortrait {
     velocity: Vec<f64>,
     acceleration: Vec<f64>,
     points_per_revolution: usize,
+    area: f64,
 }
 
 impl PhasePortrait {
@@ -43,12 +44,15 @@ impl PhasePortrait {
         let time: f64 = intervals.iter().sum();
         let mean = a.iter().zip(&intervals).map(|(a, dt)| a * dt).sum::<f64>() / time;
         let centred: Vec<f64> = a.iter().map(|a| a - mean).collect();
+        let squares = centred.iter().zip(&intervals).map(|(a, dt)| a * a * dt);
+        let area = squares.sum::<f64>() / acceleration.count() as f64;
         let increments = centred.iter().zip(&intervals).map(|(a, dt)| a * dt);
         let points = acceleration.points_per_revolution();
         Ok(Self {
             velocity: integrate(increments.collect(), points),
             acceleration: centred,
             points_per_revolution: points,
+            area,
         })
     }
 
@@ -62,17 +66,13 @@ impl PhasePortrait {
         &self.acceleration
     }
 
-    /// Area that a revolution encloses, m²/s³, averaged over the revolutions: ½ ∮ (a dv − v da)
-    /// of the closed polygon, positive the way the motion goes. Since a = dv/dt it is the
-    /// revolution's time times the mean square of the acceleration.
+    /// Area that a revolution encloses, m²/s³, averaged over the revolutions and positive the way
+    /// the motion goes: ½ ∮ (a dv − v da) = ∮ a dv = ∫ a² dt. The last is what is computed: exact
+    /// where a polygon through the points falls short by its chords, 5e-4 where an impact is
+    /// sampled coarsely. The area thus tells the time of a revolution times the mean square of
+    /// the acceleration.
     pub fn area(&self) -> f64 {
-        let area = |(v, a): (&[f64], &[f64])| -> f64 {
-            let next = |i: usize| (i + 1) % v.len();
-            (0..v.len())
-                .map(|i| 0.5 * (a[i] * v[next(i)] - v[i] * a[next(i)]))
-                .sum()
-        };
-        self.average(area)
+        self.area
     }
 
     /// Width of a revolution, peak to peak of the velocity, m/s, averaged over the revolutions.
@@ -173,6 +173,16 @@ mod tests {
         (portrait, grid.resample(&times).unwrap().samples().to_vec())
     }
 
+    /// Area of the polygon through the points of the first revolution.
+    fn polygon(portrait: &PhasePortrait) -> f64 {
+        let n = portrait.points_per_revolution;
+        let [v, a] = [portrait.velocity(), portrait.acceleration()];
+        let next = |i: usize| (i + 1) % n;
+        (0..n)
+            .map(|i| 0.5 * (a[i] * v[next(i)] - v[i] * a[next(i)]))
+            .sum()
+    }
+
     /// v = V sin ωt: an ellipse of half axes V and Vω, to which a sensor's offset adds nothing.
     #[test]
     fn harmonic_motion_is_an_ellipse() {
@@ -180,6 +190,7 @@ mod tests {
         let (portrait, _) = portrait(6500, |t| w * t, |t| v * w * (w * t).cos() + 4.0);
         let ellipse = std::f64::consts::PI * v * v * w;
         assert!((portrait.area() / ellipse - 1.0).abs() < 1e-4);
+        assert!((polygon(&portrait) / ellipse - 1.0).abs() < 1e-4);
         assert!((portrait.velocity_extent() / (2.0 * v) - 1.0).abs() < 1e-4);
         assert!((portrait.acceleration_extent() / (2.0 * v * w) - 1.0).abs() < 1e-4);
         assert!(portrait.scatter().unwrap() < 1e-4);
