@@ -72,10 +72,10 @@ impl CasePicture<'_> {
 
     fn acceleration(&self) -> Panel {
         Panel {
-            title: "Crosshead acceleration".to_owned(),
+            title: "Crosshead acceleration: each revolution, and the mean".to_owned(),
             x: Axis::crank_angle(),
             y: Axis::linear("acceleration (m/s²)"),
-            series: self.over_crank_angle(self.acceleration_m_s2, Colour::Class(0), "acceleration"),
+            series: self.over_crank_angle(self.acceleration_m_s2, Colour::Class(0), ""),
             ..Panel::default()
         }
     }
@@ -94,7 +94,7 @@ impl CasePicture<'_> {
             ""
         };
         Panel {
-            title: "Contact force".to_owned(),
+            title: "Contact force: each revolution, and the mean".to_owned(),
             x: Axis::crank_angle(),
             y: Axis::linear("normal force (N)"),
             series: series.collect(),
@@ -113,7 +113,7 @@ impl CasePicture<'_> {
             title: "Velocity-acceleration portrait".to_owned(),
             x: Axis::linear("velocity (m/s)"),
             y: Axis::linear("acceleration (m/s²)"),
-            series: vec![Series::new("", Colour::Class(0), Mark::FaintLine, points)],
+            series: vec![Series::new("", Colour::Class(0), Mark::Line, points)],
             ..Panel::default()
         }
     }
@@ -129,12 +129,7 @@ impl CasePicture<'_> {
         let mut series: Vec<Series> = each
             .map(|curve| Series::new("", colour, Mark::FaintLine, curve))
             .collect();
-        series.push(Series::new(
-            format!("{name}, mean of revolutions"),
-            colour,
-            Mark::BoldLine,
-            mean,
-        ));
+        series.push(Series::new(name, colour, Mark::BoldLine, mean));
         series
     }
 }

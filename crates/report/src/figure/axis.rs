@@ -36,14 +36,13 @@ pub(super) fn drawable(value: f64) -> bool {
 }
 
 /// The range that shows all data of the panels: the given range of the first panel that has one,
-/// otherwise that of the values, with a margin unless lines run straight across.
-pub(super) fn range(panels: &[&Panel], direction: Direction) -> (f64, f64) {
-    if let Some((low, high)) = panels.iter().find_map(|panel| direction.axis(panel).range) {
-        return wide_enough(low, high);
+/// otherwise that of the values, with a margin unless lines run straight across. None where there
+/// is nothing to show.
+pub(super) fn range(panels: &[&Panel], direction: Direction) -> Option<(f64, f64)> {
+    let scale = direction.axis(panels.first()?).scale;
+    if let Some(given) = panels.iter().find_map(|panel| direction.axis(panel).range) {
+        return Some(usable(given, scale));
     }
-    let scale = panels
-        .first()
-        .map_or(Scale::Linear, |panel| direction.axis(panel).scale);
     let values = panels.iter().flat_map(|panel| values(panel, direction));
     let (low, high) = values
         .filter(|&v| drawable(v) && (scale != Scale::Log || v > 0.0))
@@ -51,26 +50,20 @@ pub(super) fn range(panels: &[&Panel], direction: Direction) -> (f64, f64) {
             (low.min(v), high.max(v))
         });
     if low > high {
-        return if scale == Scale::Log {
-            (0.1, 1.0)
-        } else {
-            (0.0, 1.0)
-        };
+        return None;
     }
+    let (low, high) = usable((low, high), scale);
     if scale == Scale::Log {
-        let low = low.max(high * 10_f64.powf(-DECADES)).log10();
-        let high = high.log10();
-        let margin = (high - low).max(0.2) * MARGIN;
-        return (10_f64.powf(low - margin), 10_f64.powf(high + margin));
+        let room = (high / low).powf(MARGIN);
+        return Some((low / room, high * room));
     }
-    let (low, high) = wide_enough(low, high);
     let series = || panels.iter().flat_map(|panel| &panel.series);
     let from_zero =
         direction == Direction::Y && low >= 0.0 && series().any(|s| s.mark == Mark::Area);
     let across = direction == Direction::X
         && series().all(|s| s.mark != Mark::Points && s.points.is_sorted_by(|a, b| a[0] <= b[0]));
-    let margin = if across { 0.0 } else { (high - low) * MARGIN };
-    (if from_zero { 0.0 } else { low - margin }, high + margin)
+    let room = if across { 0.0 } else { (high - low) * MARGIN };
+    Some((if from_zero { 0.0 } else { low - room }, high + room))
 }
 
 /// Everything that the panel shows in this direction.
@@ -83,13 +76,26 @@ fn values(panel: &Panel, direction: Direction) -> impl Iterator<Item = f64> {
     points.map(move |&point| direction.of(point)).chain(circles)
 }
 
-/// The range, widened where it is a single value, upside down or not a number.
-fn wide_enough(low: f64, high: f64) -> (f64, f64) {
+/// The range, widened where it is a single value, upside down or not a number, and on a logarithmic
+/// axis cut to what is positive.
+fn usable((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
     if !drawable(low) || !drawable(high) {
-        return (0.0, 1.0);
+        return if scale == Scale::Log {
+            (0.1, 1.0)
+        } else {
+            (0.0, 1.0)
+        };
     }
-    let least = low.abs().max(high.abs()) * 1e-9;
-    if high - low > least {
+    if scale == Scale::Log {
+        let high = high.max(f64::MIN_POSITIVE * 1e20);
+        let low = low.max(high * 10_f64.powf(-DECADES));
+        return if high > low * 1.01 {
+            (low, high)
+        } else {
+            (high / 2.0, high * 2.0)
+        };
+    }
+    if high - low > low.abs().max(high.abs()) * 1e-9 {
         return (low, high);
     }
     let half = if low == 0.0 { 0.5 } else { low.abs() * 0.05 };
@@ -109,41 +115,35 @@ pub(super) struct Ruler {
 }
 
 impl Ruler {
-    /// A ruler over the range with a tick about every `spacing` of its `length` pixels.
-    pub(super) fn new(axis: &Axis, (low, high): (f64, f64), length: f64, spacing: f64) -> Self {
+    /// A ruler over the range with a tick about every `spacing` of its `length` pixels; without
+    /// ticks where there is no range.
+    pub(super) fn new(axis: &Axis, range: Option<(f64, f64)>, length: f64, spacing: f64) -> Self {
+        let (low, high) = range.unwrap_or(usable((f64::NAN, f64::NAN), axis.scale));
+        let label = axis.label.clone();
         let mut ruler = Self {
             scale: axis.scale,
             low,
             high,
-            label: axis.label.clone(),
+            label,
             ticks: Vec::new(),
         };
         let count = (length / spacing).max(1.0);
-        if axis.scale == Scale::Log {
-            ruler.ticks = ruler.decades(count);
-            if ruler.ticks.len() >= 2 {
-                return ruler;
+        if range.is_some() {
+            match axis.scale {
+                Scale::Linear => ruler.steps(round_step((high - low) / count)),
+                Scale::Degrees => ruler.steps(degree_step((high - low) / count)),
+                Scale::Log if high / low >= 100.0 => ruler.decades(count),
+                Scale::Log => ruler.steps(round_step((high - low) / count)),
             }
         }
-        let step = match axis.scale {
-            Scale::Degrees => degree_step((high - low) / count),
-            Scale::Linear | Scale::Log => round_step((high - low) / count),
-        };
-        ruler.steps(step);
         ruler
-    }
-
-    /// Its lowest and highest value.
-    pub(super) fn range(&self) -> (f64, f64) {
-        (self.low, self.high)
     }
 
     /// Where the value stands between the ends of the axis: 0 to 1, or beyond.
     pub(super) fn place(&self, value: f64) -> f64 {
         if self.scale == Scale::Log {
-            let low = self.low.max(f64::MIN_POSITIVE);
-            let floor = low * 1e-3;
-            return (value.max(floor).log10() - low.log10()) / (self.high.log10() - low.log10());
+            let decades = |v: f64| (v / self.low).log10();
+            return decades(value.max(self.low * 1e-3)) / decades(self.high);
         }
         (value - self.low) / (self.high - self.low)
     }
@@ -178,21 +178,20 @@ impl Ruler {
             .collect();
     }
 
-    fn decades(&self, count: f64) -> Vec<(f64, String)> {
+    /// Ticks at powers of ten: as plain numbers if all are short ones.
+    fn decades(&mut self, count: f64) {
         let (low, high) = (self.low.log10(), self.high.log10());
         let stride = ((high - low) / count).ceil().max(1.0) as usize;
         let whole = ((low - 1e-9).ceil() as i32)..=((high + 1e-9).floor() as i32);
-        whole
+        let plain = *whole.start() >= -2 && *whole.end() <= 3;
+        let label = |exponent: i32| match plain {
+            true => text::number(10_f64.powi(exponent), 1),
+            false => format!("10{}", text::superscript(exponent)),
+        };
+        let ticks = whole
             .step_by(stride)
-            .map(|exponent| {
-                let label = if (-2..=3).contains(&exponent) {
-                    text::number(10_f64.powi(exponent), 1)
-                } else {
-                    format!("10{}", text::superscript(exponent))
-                };
-                (self.place(10_f64.powi(exponent)), label)
-            })
-            .collect()
+            .map(|n| (self.place(10_f64.powi(n)), label(n)));
+        self.ticks = ticks.collect();
     }
 }
 
@@ -229,7 +228,7 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, range: (f64, f64), length: f64, spacing: f64) -> Vec<String> {
-        Ruler::new(axis, range, length, spacing)
+        Ruler::new(axis, Some(range), length, spacing)
             .ticks
             .into_iter()
             .map(|(_, label)| label)
@@ -253,13 +252,13 @@ mod tests {
         );
         assert_eq!(
             labels(&Axis::log("y"), (2e-4, 2e3), 200.0, 25.0),
-            ["10⁻³", "0.01", "0.1", "1", "10", "100", "1000"]
+            ["10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²", "10³"]
         );
     }
 
     #[test]
     fn large_numbers_move_their_power_of_ten_to_the_label() {
-        let ruler = Ruler::new(&Axis::linear("force (N)"), (0.0, 4.1e5), 200.0, 50.0);
+        let ruler = Ruler::new(&Axis::linear("force (N)"), Some((0.0, 4.1e5)), 200.0, 50.0);
         assert_eq!(ruler.label, "force (10³ N)");
         assert_eq!(ruler.ticks[1].1, "200");
     }
@@ -272,21 +271,25 @@ mod tests {
             ..Panel::default()
         };
         let y = |points| range(&[&panel(points)], Direction::Y);
-        assert_eq!(y(vec![]), (0.1, 1.0));
-        let (low, high) = y(vec![
+        assert_eq!(y(vec![]), None);
+        assert_eq!(y(vec![[0.0, -1.0]]), None);
+        let mixed = vec![
             [0.0, 0.0],
             [1.0, -3.0],
             [2.0, 1e-40],
             [3.0, f64::NAN],
             [4.0, 10.0],
-        ]);
+        ];
+        let (low, high) = y(mixed).unwrap();
         assert!(
             low > 1e-9 && low < 1e-7 && high > 10.0 && high < 100.0,
             "{low} to {high}"
         );
-        let flat = panel(vec![[5.0, 1.0], [5.0, f64::INFINITY]]);
-        assert_eq!(range(&[&flat], Direction::X), (4.75, 5.25));
-        let huge = panel(vec![[f64::MAX, 1.0], [-f64::MAX, 1.0]]);
-        assert_eq!(range(&[&huge], Direction::X), (0.0, 1.0));
+        let x = |points| range(&[&panel(points)], Direction::X);
+        assert_eq!(
+            x(vec![[5.0, 1.0], [5.0, f64::INFINITY]]),
+            Some((4.75, 5.25))
+        );
+        assert_eq!(x(vec![[f64::MAX, 1.0], [-f64::MAX, 1.0]]), None);
     }
 }

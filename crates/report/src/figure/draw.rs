@@ -28,7 +28,7 @@ pub(super) fn figure(figure: &Figure) -> String {
             TITLE_SIZE,
             "font-weight=\"600\"",
         );
-        top += 8.0;
+        top += 10.0;
     }
     top = legend(&mut body, figure, top);
     let (placed, height) = layout::place(figure, top);
@@ -301,14 +301,14 @@ fn mark(out: &mut String, series: &Series, points: &[[f64; 2]], bottom: f64) {
     let line = path(points);
     let _ = match series.mark {
         Mark::FaintLine => write!(out, "<path {} d=\"{line}\"/>", stroke(0.8, 0.4)),
-        Mark::Line => write!(out, "<path {} d=\"{line}\"/>", stroke(1.2, 1.0)),
-        Mark::BoldLine => write!(out, "<path {} d=\"{line}\"/>", stroke(2.2, 1.0)),
+        Mark::Line => write!(out, "<path {} d=\"{line}\"/>", stroke(1.0, 1.0)),
+        Mark::BoldLine => write!(out, "<path {} d=\"{line}\"/>", stroke(2.0, 1.0)),
         Mark::Area => {
             let closed = format!("{line}L{} {}H{}z", px(last[0]), px(bottom), px(first[0]));
             write!(
                 out,
                 "<path fill=\"{colour}\" fill-opacity=\".25\" d=\"{closed}\"/><path {} d=\"{line}\"/>",
-                stroke(1.2, 1.0)
+                stroke(1.0, 1.0)
             )
         }
         Mark::Points => {

@@ -11,7 +11,7 @@ pub(super) const LABEL_SIZE: f64 = 12.0;
 pub(super) const TICK_SIZE: f64 = 11.0;
 
 /// Room at the outer edges of the image.
-const EDGE: f64 = 12.0;
+const EDGE: f64 = 14.0;
 /// Room between the tick labels of a panel and its neighbour.
 const GAP: f64 = 18.0;
 /// Height of a line of text.
@@ -34,6 +34,7 @@ pub(super) struct Frame {
 pub(super) struct Placed<'a> {
     pub(super) panel: &'a Panel,
     pub(super) frame: Frame,
+    ranges: [Option<(f64, f64)>; 2],
     pub(super) x: Ruler,
     pub(super) y: Ruler,
     /// Whether ticks and label of the axis are written, or shown by a neighbour.
@@ -80,16 +81,10 @@ fn cell<'a>(figure: &'a Figure, panel: &'a Panel, column: usize, x_shown: bool) 
     let mut ranges = [Direction::X, Direction::Y]
         .map(|direction| shared_range(figure, panel, column, direction));
     if panel.equal_axes {
-        let half = ranges
-            .iter()
-            .map(|(low, high)| (high - low) / 2.0)
-            .fold(0.0, f64::max);
-        ranges = ranges.map(|(low, high)| {
-            (
-                f64::midpoint(low, high) - half,
-                f64::midpoint(low, high) + half,
-            )
-        });
+        let half = |range: &(f64, f64)| (range.1 - range.0) / 2.0;
+        let half = ranges.iter().flatten().map(half).fold(0.0, f64::max);
+        let around = |middle: f64| (middle - half, middle + half);
+        ranges = ranges.map(|range| range.map(|(low, high)| around(f64::midpoint(low, high))));
     }
     let y = Ruler::new(&panel.y, ranges[1], height, Y_TICKS);
     let widest = y
@@ -107,6 +102,7 @@ fn cell<'a>(figure: &'a Figure, panel: &'a Panel, column: usize, x_shown: bool) 
             height,
         },
         x: Ruler::new(&panel.x, ranges[0], height, X_TICKS),
+        ranges,
         y,
         x_shown,
         y_shown,
@@ -157,15 +153,20 @@ fn spread(row: &mut [Placed<'_>], top: f64, figure: &Figure) -> f64 {
             width,
             height,
         };
-        cell.x = Ruler::new(&cell.panel.x, cell.x.range(), width, X_TICKS);
-        cell.y = Ruler::new(&cell.panel.y, cell.y.range(), height, Y_TICKS);
+        cell.x = Ruler::new(&cell.panel.x, cell.ranges[0], width, X_TICKS);
+        cell.y = Ruler::new(&cell.panel.y, cell.ranges[1], height, Y_TICKS);
         left += width + GAP;
     }
     height
 }
 
 /// The range of the axis, from all panels that share it.
-fn shared_range(figure: &Figure, panel: &Panel, column: usize, direction: Direction) -> (f64, f64) {
+fn shared_range(
+    figure: &Figure,
+    panel: &Panel,
+    column: usize,
+    direction: Direction,
+) -> Option<(f64, f64)> {
     let share = match direction {
         Direction::X => figure.share_x,
         Direction::Y => figure.share_y,

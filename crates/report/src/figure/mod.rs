@@ -162,11 +162,17 @@ pub fn in_rows(panels: Vec<Panel>, columns: usize) -> Vec<Vec<Panel>> {
     rows
 }
 
-/// The lowest and highest values that all panels need, x and y, with the room that figures leave
-/// around data. For figures that are drawn apart and compared by eye.
-pub fn common_ranges<'a>(panels: impl IntoIterator<Item = &'a Panel>) -> [(f64, f64); 2] {
-    let panels: Vec<&Panel> = panels.into_iter().collect();
-    [axis::Direction::X, axis::Direction::Y].map(|direction| axis::range(&panels, direction))
+/// Gives all panels the range of x and y that shows the data of each, for figures that are drawn
+/// apart and compared by eye.
+pub fn share_ranges<'a>(panels: impl IntoIterator<Item = &'a mut Panel>) {
+    let mut panels: Vec<&mut Panel> = panels.into_iter().collect();
+    let all: Vec<&Panel> = panels.iter().map(|panel| &**panel).collect();
+    let x = axis::range(&all, axis::Direction::X);
+    let y = axis::range(&all, axis::Direction::Y);
+    for panel in &mut panels {
+        panel.x.range = x;
+        panel.y.range = y;
+    }
 }
 
 impl Axis {
