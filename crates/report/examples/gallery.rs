@@ -26,6 +26,12 @@ fn main() -> io::Result<()> {
         case("Single-stage compressor, 500 rpm, two joints", &two),
     )?;
     fs::write(out.join("spectrum.svg"), spectrum(&two))?;
+    for (name, page) in [
+        ("grid.html", common::pages::grid()),
+        ("random.html", common::pages::random()),
+    ] {
+        fs::write(out.join(name), page.html().map_err(io::Error::other)?)?;
+    }
     Ok(())
 }
 

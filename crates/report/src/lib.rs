@@ -13,6 +13,15 @@
 //! out lopsided, angles get ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
 
 pub mod case_picture;
+pub mod dataset_page;
 pub mod figure;
 mod revolutions;
 pub mod text;
+
+/// What can go wrong in making a page.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The template could not be filled in.
+    #[error("the page could not be written: {0}")]
+    Template(#[from] askama::Error),
+}

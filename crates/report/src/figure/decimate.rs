@@ -4,13 +4,12 @@
 
 /// Largest distance in pixels between a line as recorded and as drawn.
 const TOLERANCE: f64 = 0.1;
-/// Most vertices of one line; where more remain the tolerance is doubled until they do not.
-const MOST_VERTICES: usize = 6_000;
 /// Most separate points of one series.
 const MOST_POINTS: usize = 4_000;
 
-/// The vertices of a line that shows the same as the line through all points.
-pub(super) fn line(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+/// At most `most` vertices of a line that shows the same as the line through all points. Where more
+/// are needed the tolerance is doubled until they are not.
+pub(super) fn line(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let mut kept = if points.is_sorted_by(|a, b| a[0] <= b[0]) {
         column_extremes(points)
     } else {
@@ -18,7 +17,7 @@ pub(super) fn line(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     };
     let mut tolerance = TOLERANCE;
     kept = within(&kept, tolerance);
-    while kept.len() > MOST_VERTICES {
+    while kept.len() > most.max(2) {
         tolerance *= 2.0;
         kept = within(&kept, tolerance);
     }
@@ -272,10 +271,10 @@ mod tests {
             (state >> 11) as f64 / (1_u64 << 53) as f64 * 300.0
         };
         let cloud: Vec<[f64; 2]> = (0..50_000).map(|_| [next(), next()]).collect();
-        assert!(line(&cloud).len() <= MOST_VERTICES);
+        assert!(line(&cloud, 3_000).len() <= 3_000);
         let kept = points(&cloud);
         assert!(kept.len() <= MOST_POINTS);
         assert_eq!(extremes(&kept), extremes(&cloud));
-        assert!(line(&[]).is_empty() && points(&[]).is_empty());
+        assert!(line(&[], 0).is_empty() && points(&[]).is_empty());
     }
 }

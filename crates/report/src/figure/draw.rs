@@ -84,7 +84,7 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
                 vec![[left, middle], [left + KEY, middle]]
             }
         };
-        mark(out, series, &sample, baseline);
+        mark(out, series, &[sample], baseline);
         write_text(out, [left + KEY + 6.0, baseline], &label, LABEL_SIZE, "");
         left += width + KEY_GAP;
     }
@@ -140,9 +140,7 @@ fn panel(out: &mut String, cell: &Placed<'_>) {
     );
     guides(out, cell);
     for series in &cell.panel.series {
-        for stretch in in_pixels(series, cell) {
-            mark(out, series, &stretch, height);
-        }
+        mark(out, series, &in_pixels(series, cell), height);
     }
     out.push_str("</svg>");
     let _ = write!(
@@ -242,7 +240,7 @@ fn guides(out: &mut String, cell: &Placed<'_>) {
             let (rx, ry) = (px((edge - x).abs()), px((y - top).abs()));
             let _ = write!(
                 out,
-                "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{rx}\" ry=\"{ry}\" fill=\"#f3f5f7\" stroke=\"#9aa3ab\" stroke-width=\"3\"/>",
+                "<ellipse cx=\"{}\" cy=\"{}\" rx=\"{rx}\" ry=\"{ry}\" fill=\"#f3f5f7\" stroke=\"#9aa3ab\" stroke-width=\"2\"/>",
                 px(x),
                 px(y)
             );
@@ -262,33 +260,30 @@ fn pixel(point: [f64; 2], cell: &Placed<'_>) -> [f64; 2] {
 /// The stretches of the series between interruptions, in pixels and as few as needed.
 fn in_pixels(series: &Series, cell: &Placed<'_>) -> Vec<Vec<[f64; 2]>> {
     // What lies far outside the frame is drawn at a place that is far outside, too.
-    let limit = |v: f64| v.clamp(-1e5, 1e5);
+    let place = |&point: &[f64; 2]| pixel(point, cell).map(|v| v.clamp(-1e5, 1e5));
     let stretches = series
         .points
         .split(|point| !drawable(point[0]) || !drawable(point[1]));
-    let stretches = stretches.map(|stretch| -> Vec<[f64; 2]> {
-        stretch
-            .iter()
-            .map(|&point| pixel(point, cell).map(limit))
-            .collect()
-    });
+    let stretches = stretches.map(|stretch| stretch.iter().map(place).collect::<Vec<_>>());
     if series.mark == Mark::Points {
         let all: Vec<[f64; 2]> = stretches.flatten().collect();
         return vec![decimate::points(&all)];
     }
-    stretches
-        .filter(|stretch| !stretch.is_empty())
-        .map(|stretch| decimate::line(&stretch))
+    let lines: Vec<Vec<[f64; 2]>> = stretches.filter(|stretch| stretch.len() > 1).collect();
+    // A line that fills the panel needs no more vertices than this to look full.
+    let most = (cell.frame.width * cell.frame.height / 12.0).clamp(1_000.0, 6_000.0) as usize;
+    let each = most / lines.len().max(1);
+    lines
+        .iter()
+        .map(|line| decimate::line(line, each))
         .collect()
 }
 
-/// Points in pixels as the series is to look; an area reaches down to `bottom`.
-fn mark(out: &mut String, series: &Series, points: &[[f64; 2]], bottom: f64) {
+/// Stretches of a series in pixels, drawn as the series is to look; an area reaches down to
+/// `bottom`.
+fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: f64) {
     let colour = palette::hex(series.colour);
     let cycle = palette::cycle(series.colour);
-    let (Some(first), Some(last)) = (points.first(), points.last()) else {
-        return;
-    };
     let stroke = |width: f64, opacity: f64| {
         let dashes = match cycle {
             0 => String::new(),
@@ -298,31 +293,37 @@ fn mark(out: &mut String, series: &Series, points: &[[f64; 2]], bottom: f64) {
             "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\"{dashes}"
         )
     };
-    let line = path(points);
-    let _ = match series.mark {
-        Mark::FaintLine => write!(out, "<path {} d=\"{line}\"/>", stroke(0.8, 0.4)),
-        Mark::Line => write!(out, "<path {} d=\"{line}\"/>", stroke(1.0, 1.0)),
-        Mark::BoldLine => write!(out, "<path {} d=\"{line}\"/>", stroke(2.0, 1.0)),
-        Mark::Area => {
-            let closed = format!("{line}L{} {}H{}z", px(last[0]), px(bottom), px(first[0]));
-            write!(
-                out,
-                "<path fill=\"{colour}\" fill-opacity=\".25\" d=\"{closed}\"/><path {} d=\"{line}\"/>",
-                stroke(1.0, 1.0)
-            )
-        }
+    let data: String = match series.mark {
         Mark::Points => {
             let shape = SHAPES[cycle % SHAPES.len()];
-            let all: String = points
+            stretches
                 .iter()
+                .flatten()
                 .map(|p| format!("M{} {}{shape}", px(p[0]), px(p[1])))
-                .collect();
-            write!(
-                out,
-                "<path fill=\"{colour}\" fill-opacity=\".6\" d=\"{all}\"/>"
-            )
+                .collect()
         }
+        _ => stretches.iter().map(|stretch| path(stretch)).collect(),
     };
+    if data.is_empty() {
+        return;
+    }
+    if series.mark == Mark::Area {
+        let _ = write!(out, "<path fill=\"{colour}\" fill-opacity=\".25\" d=\"");
+        for stretch in stretches {
+            if let (Some(first), Some(last)) = (stretch.first(), stretch.last()) {
+                let down = format!("L{} {}H{}z", px(last[0]), px(bottom), px(first[0]));
+                let _ = write!(out, "{}{down}", path(stretch));
+            }
+        }
+        out.push_str("\"/>");
+    }
+    let style = match series.mark {
+        Mark::FaintLine => stroke(0.8, 0.4),
+        Mark::Line | Mark::Area => stroke(1.0, 1.0),
+        Mark::BoldLine => stroke(2.0, 1.0),
+        Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),
+    };
+    let _ = write!(out, "<path {style} d=\"{data}\"/>");
 }
 
 /// Outlines of point marks, from the middle: disc, square, triangle, diamond.

@@ -1,6 +1,8 @@
 //! Signals that look like those of a compressor with clearance, made without the simulation:
 //! slider-crank kinematics, plus ringing where a journal crosses its clearance.
 
+pub mod pages;
+
 use std::f64::consts::{PI, TAU};
 
 pub const SAMPLE_RATE_HZ: f64 = 10_000.0;
