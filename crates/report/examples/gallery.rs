@@ -1,34 +1,34 @@
 //! Writes every kind of figure and page, with made-up signals, to `target/gallery/`.
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/report/synthetic/mod.rs"]
+mod synthetic;
 
-use common::Recording;
 use report::case_picture::{CasePicture, ClearJoint};
 use report::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use std::{fs, io, path::Path};
+use synthetic::Recording;
 
 fn main() -> io::Result<()> {
     let out = Path::new("target/gallery");
     fs::create_dir_all(out)?;
     fs::write(
         out.join("case-ideal.svg"),
-        case("Ideal machine, 500 rpm", &common::recording(&[], 8, 1)),
+        case("Ideal machine, 500 rpm", &synthetic::recording(&[], 8, 1)),
     )?;
-    let one = common::recording(&[("big_end", 1e-4)], 8, 2);
+    let one = synthetic::recording(&[("big_end", 1e-4)], 8, 2);
     fs::write(
         out.join("case-big-end.svg"),
         case("Single-stage compressor, 500 rpm, big end 0.1 mm", &one),
     )?;
-    let two = common::recording(&[("big_end", 3e-4), ("small_end", 2e-4)], 12, 3);
+    let two = synthetic::recording(&[("big_end", 3e-4), ("small_end", 2e-4)], 12, 3);
     fs::write(
         out.join("case-two-joints.svg"),
         case("Single-stage compressor, 500 rpm, two joints", &two),
     )?;
     fs::write(out.join("spectrum.svg"), spectrum(&two))?;
     for (name, page) in [
-        ("grid.html", common::pages::grid()),
-        ("random.html", common::pages::random()),
+        ("grid.html", synthetic::datasets::grid()),
+        ("random.html", synthetic::datasets::random()),
     ] {
         fs::write(out.join(name), page.html().map_err(io::Error::other)?)?;
     }
@@ -57,7 +57,7 @@ fn case(title: &str, recording: &Recording) -> String {
 }
 
 fn spectrum(recording: &Recording) -> String {
-    let (frequency, amplitude) = common::spectrum(&recording.acceleration_m_s2);
+    let (frequency, amplitude) = synthetic::spectrum(&recording.acceleration_m_s2);
     let points = frequency.into_iter().zip(amplitude).map(|(f, a)| [f, a]);
     let panel = Panel {
         x: Axis::linear("frequency (Hz)"),

@@ -75,6 +75,17 @@ pub fn quantity(value: f64, unit: &str) -> String {
     }
 }
 
+/// The unit that suits values up to `largest` in `unit`, and what to multiply them by: lengths below
+/// a decimetre are read in millimetres, pressures in kilopascals or megapascals.
+pub fn readable_unit(largest: f64, unit: &str) -> (f64, &str) {
+    match unit {
+        "m" if largest.abs() < 0.1 => (1e3, "mm"),
+        "Pa" if largest.abs() >= 1e7 => (1e-6, "MPa"),
+        "Pa" if largest.abs() >= 1e3 => (1e-3, "kPa"),
+        _ => (1.0, unit),
+    }
+}
+
 /// A radial clearance given in metres, in millimetres as the field writes it: «0.1 mm».
 pub fn clearance(metres: f64) -> String {
     quantity(metres * 1e3, "mm")
@@ -185,6 +196,9 @@ mod tests {
         assert_eq!(number(f64::NAN, 3), "–");
         assert_eq!(decimal(-0.001, 2), "0.00");
         assert_eq!(clearance(1e-4), "0.1\u{a0}mm");
+        assert_eq!(readable_unit(4e-4, "m"), (1e3, "mm"));
+        assert_eq!(readable_unit(4e5, "Pa"), (1e-3, "kPa"));
+        assert_eq!(readable_unit(400.0, "rpm"), (1.0, "rpm"));
     }
 
     #[test]

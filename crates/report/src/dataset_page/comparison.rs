@@ -4,8 +4,8 @@
 
 use super::captions::{self, Level};
 use super::examples::portrait;
-use super::page::Plate;
-use super::{ClearanceGrid, JointSet, Response};
+use super::page::{Plate, class_colour};
+use super::{ClearanceGrid, DatasetPage, JointSet, Response};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::revolutions::Revolutions;
 use crate::text;
@@ -22,7 +22,7 @@ struct Drawn<'a> {
 }
 
 /// All figures of the grid: by clearance for each set, across sets, and both again as portraits.
-pub(super) fn plates(grid: &ClearanceGrid) -> Vec<Plate> {
+pub(super) fn plates(page: &DatasetPage, grid: &ClearanceGrid) -> Vec<Plate> {
     let sets: Vec<&JointSet> = grid
         .joint_sets
         .iter()
@@ -31,11 +31,17 @@ pub(super) fn plates(grid: &ClearanceGrid) -> Vec<Plate> {
         .collect();
     let mut plates: Vec<Plate> = sets.iter().map(|set| by_clearance(grid, set)).collect();
     let common = common_clearance(&sets);
-    plates.extend(common.map(|clearance| across_sets(grid, &sets, clearance)));
+    plates.extend(
+        common.map(|clearance| {
+            across_sets(grid, &by_colour_of_set(page, &sets, clearance), clearance)
+        }),
+    );
     if !sets.is_empty() {
         plates.push(portraits_by_clearance(grid, &sets));
     }
-    plates.extend(common.map(|clearance| portraits_across_sets(grid, &sets, clearance)));
+    plates.extend(common.map(|clearance| {
+        portraits_across_sets(grid, &by_colour_of_set(page, &sets, clearance), clearance)
+    }));
     plates
 }
 
@@ -112,8 +118,7 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     }
 }
 
-fn across_sets(grid: &ClearanceGrid, sets: &[&JointSet], clearance: f64) -> Plate {
-    let drawn = by_colour_of_set(sets, clearance);
+fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Plate {
     let rms: Vec<(String, f64)> = drawn
         .iter()
         .filter_map(|d| Some((d.name.clone(), Level::of(d.response)?.rms)))
@@ -134,16 +139,20 @@ fn across_sets(grid: &ClearanceGrid, sets: &[&JointSet], clearance: f64) -> Plat
             captions::ends(&rms, "m/s²"),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
-        svg: overlaid_and_apart(grid, &drawn),
+        svg: overlaid_and_apart(grid, drawn),
     }
 }
 
-fn by_colour_of_set<'a>(sets: &[&'a JointSet], clearance: f64) -> Vec<Drawn<'a>> {
-    let drawn = sets.iter().enumerate().filter_map(|(i, set)| {
+fn by_colour_of_set<'a>(
+    page: &DatasetPage,
+    sets: &[&'a JointSet],
+    clearance: f64,
+) -> Vec<Drawn<'a>> {
+    let drawn = sets.iter().filter_map(|set| {
         let response = at_clearance(set, clearance)?;
         Some(Drawn {
             name: text::words(&set.joints),
-            colour: Colour::Class(i),
+            colour: class_colour(page, &set.joints),
             response,
         })
     });
@@ -169,7 +178,7 @@ fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
         .map(|response| one_revolution("no clearance", Colour::Ink, response));
     let overlaid = order
         .iter()
-        .map(|d| one_revolution(&d.name, d.colour, d.response))
+        .map(|d| one_revolution("", d.colour, d.response))
         .chain(ideal.clone());
     let panel = |title: &str, series: Vec<Series>| Panel {
         title: title.to_owned(),
@@ -179,10 +188,9 @@ fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
         ..Panel::default()
     };
     let apart = drawn.iter().map(|d| {
-        let series = ideal
-            .clone()
+        let series = [one_revolution(&d.name, d.colour, d.response)]
             .into_iter()
-            .chain([one_revolution(&d.name, d.colour, d.response)]);
+            .chain(ideal.clone());
         panel(&d.name, series.collect())
     });
     Figure {
@@ -229,8 +237,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
     }
 }
 
-fn portraits_across_sets(grid: &ClearanceGrid, sets: &[&JointSet], clearance: f64) -> Plate {
-    let drawn = by_colour_of_set(sets, clearance);
+fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Plate {
     let panels: Vec<Panel> = drawn
         .iter()
         .map(|d| portrait(&text::capitalised(&d.name), d.response, d.colour))

@@ -31,9 +31,15 @@ pub(super) fn plates(page: &DatasetPage, sweep: &RandomSweep) -> Vec<Plate> {
 
 fn histograms(all: &[Histogram]) -> Plate {
     let panels = all.iter().map(|histogram| {
-        let (edges, counts) = binned(&histogram.values);
+        let (factor, unit) = readable(histogram.values.iter().copied(), &histogram.unit);
+        let values: Vec<f64> = histogram
+            .values
+            .iter()
+            .map(|value| value * factor)
+            .collect();
+        let (edges, counts) = binned(&values);
         Panel {
-            x: Axis::linear(label(&histogram.name, &histogram.unit)),
+            x: Axis::linear(label(&histogram.name, unit)),
             y: Axis::linear("cases"),
             series: vec![Series::histogram("", Colour::Class(0), &edges, &counts)],
             note: if counts.is_empty() {
@@ -56,6 +62,14 @@ fn histograms(all: &[Histogram]) -> Plate {
         }
         .svg(),
     }
+}
+
+/// The factor and the unit in which the values read well.
+fn readable(values: impl Iterator<Item = f64>, unit: &str) -> (f64, &str) {
+    let largest = values
+        .filter(|v| v.is_finite())
+        .fold(0.0_f64, |largest, v| largest.max(v.abs()));
+    text::readable_unit(largest, unit)
 }
 
 /// Edges and counts of equal bins over the finite values; none where there are no values.
@@ -81,12 +95,14 @@ fn binned(values: &[f64]) -> (Vec<f64>, Vec<usize>) {
 
 fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let ((x, x_unit), (y, y_unit)) = (&scatter.x, &scatter.y);
+    let points = || scatter.classes.iter().flat_map(|(_, points)| points);
+    let (x_factor, x_unit) = readable(points().map(|point| point[0]), x_unit);
     let series = scatter.classes.iter().map(|(fault, points)| {
         Series::new(
             fault_words(fault),
             class_colour(page, fault),
             Mark::Points,
-            points.iter().copied(),
+            points.iter().map(|p| [p[0] * x_factor, p[1]]),
         )
     });
     let y_label = label(y, y_unit);

@@ -2,7 +2,8 @@
 
 use super::examples::{self, MOST_EXAMPLES, fault_words};
 use super::{
-    Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow, comparison, distributions,
+    Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow, ParameterRange, comparison,
+    distributions,
 };
 use crate::figure::Colour;
 use crate::{Error, text};
@@ -55,7 +56,7 @@ impl DatasetPage {
     }
 }
 
-/// The colour that a class has in all figures of the page.
+/// The colour that a class has in all figures of the page; grey if the page does not count it.
 pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
     page.faults
         .iter()
@@ -71,7 +72,7 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery> {
             "Responses by joint and clearance",
             "The same machine at the same operating point, with different clearances in different joints. Each line over \
              crank angle is the last complete revolution of its recording; peak and rms are those of the whole recording.",
-            comparison::plates(grid),
+            comparison::plates(page, grid),
         ),
         Design::Random(sweep) => (
             "distributions",
@@ -130,7 +131,6 @@ fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
             "Sample rate",
             format!("{}\u{a0}Hz", text::number(page.sample_rate_hz, 6)),
         ),
-        ("Channels", page.channels.join(", ")),
         ("Splits", page.splits.join(", ")),
         ("Failed cases", text::count(page.failed.len())),
         ("Seed", page.seed.to_string()),
@@ -187,8 +187,15 @@ impl View<'_> {
         text::mean_and_spread(*mean, *spread)
     }
 
-    fn number(value: &f64) -> String {
-        text::number(*value, 4)
+    /// Lowest and highest value of a parameter and their unit, in a unit that reads well.
+    fn range(range: &ParameterRange) -> [String; 3] {
+        let (factor, unit) =
+            text::readable_unit(range.low.abs().max(range.high.abs()), &range.unit);
+        [
+            text::number(range.low * factor, 4),
+            text::number(range.high * factor, 4),
+            unit.to_owned(),
+        ]
     }
 
     fn count(n: &usize) -> String {

@@ -9,6 +9,8 @@ const MARGIN: f64 = 0.05;
 const DECADES: f64 = 8.0;
 /// Values beyond this are not drawn: their differences would overflow.
 const LARGEST: f64 = 1e300;
+/// Ranges up to this are drawn as zero: their parts would underflow.
+const SMALLEST: f64 = 1e-280;
 
 /// One of the two axes of a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +89,7 @@ fn usable((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
         };
     }
     if scale == Scale::Log {
-        let high = high.max(f64::MIN_POSITIVE * 1e20);
+        let high = high.max(SMALLEST);
         let low = low.max(high * 10_f64.powf(-DECADES));
         return if high > low * 1.01 {
             (low, high)
@@ -95,10 +97,11 @@ fn usable((low, high): (f64, f64), scale: Scale) -> (f64, f64) {
             (high / 2.0, high * 2.0)
         };
     }
-    if high - low > low.abs().max(high.abs()) * 1e-9 {
+    let size = low.abs().max(high.abs());
+    if high - low > size * 1e-9 && size > SMALLEST {
         return (low, high);
     }
-    let half = if low == 0.0 { 0.5 } else { low.abs() * 0.05 };
+    let half = if size > SMALLEST { size * 0.05 } else { 0.5 };
     (low - half, low + half)
 }
 
@@ -118,7 +121,8 @@ impl Ruler {
     /// A ruler over the range with a tick about every `spacing` of its `length` pixels; without
     /// ticks where there is no range.
     pub(super) fn new(axis: &Axis, range: Option<(f64, f64)>, length: f64, spacing: f64) -> Self {
-        let (low, high) = range.unwrap_or(usable((f64::NAN, f64::NAN), axis.scale));
+        // Panels that share a range need not have the same scale.
+        let (low, high) = usable(range.unwrap_or((f64::NAN, f64::NAN)), axis.scale);
         let label = axis.label.clone();
         let mut ruler = Self {
             scale: axis.scale,
@@ -130,10 +134,9 @@ impl Ruler {
         let count = (length / spacing).max(1.0);
         if range.is_some() {
             match axis.scale {
-                Scale::Linear => ruler.steps(round_step((high - low) / count)),
                 Scale::Degrees => ruler.steps(degree_step((high - low) / count)),
-                Scale::Log if high / low >= 100.0 => ruler.decades(count),
-                Scale::Log => ruler.steps(round_step((high - low) / count)),
+                Scale::Log if high >= 5.0 * low => ruler.powers(count),
+                Scale::Linear | Scale::Log => ruler.steps(round_step((high - low) / count)),
             }
         }
         ruler
@@ -178,20 +181,36 @@ impl Ruler {
             .collect();
     }
 
-    /// Ticks at powers of ten: as plain numbers if all are short ones.
-    fn decades(&mut self, count: f64) {
-        let (low, high) = (self.low.log10(), self.high.log10());
-        let stride = ((high - low) / count).ceil().max(1.0) as usize;
-        let whole = ((low - 1e-9).ceil() as i32)..=((high + 1e-9).floor() as i32);
-        let plain = *whole.start() >= -2 && *whole.end() <= 3;
-        let label = |exponent: i32| match plain {
-            true => text::number(10_f64.powi(exponent), 1),
+    /// Ticks at powers of ten, and at twice and five times these where there is room; as plain numbers
+    /// if all are short ones.
+    fn powers(&mut self, count: f64) {
+        let (first, last) = (
+            self.low.log10().floor() as i32,
+            self.high.log10().ceil() as i32,
+        );
+        let stride = (f64::from(last - first) / count).ceil().max(1.0) as i32;
+        let between: &[f64] = if 3.0 * f64::from(last - first) <= count.max(6.0) {
+            &[1.0, 2.0, 5.0]
+        } else {
+            &[1.0]
+        };
+        let plain = first >= -2 && last <= 4;
+        let label = |factor: f64, exponent: i32| match plain || between.len() > 1 {
+            true => text::number(factor * 10_f64.powi(exponent), 1),
             false => format!("10{}", text::superscript(exponent)),
         };
-        let ticks = whole
-            .step_by(stride)
-            .map(|n| (self.place(10_f64.powi(n)), label(n)));
-        self.ticks = ticks.collect();
+        let powers = (first..=last).filter(|exponent| exponent % stride == 0);
+        let ticks =
+            powers.flat_map(|exponent| between.iter().map(move |&factor| (factor, exponent)));
+        let placed = ticks.map(|(factor, exponent)| {
+            (
+                self.place(factor * 10_f64.powi(exponent)),
+                label(factor, exponent),
+            )
+        });
+        self.ticks = placed
+            .filter(|(at, _)| (-1e-9..=1.0 + 1e-9).contains(at))
+            .collect();
     }
 }
 

@@ -77,14 +77,20 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
             (left, baseline) = (12.0, baseline + 18.0);
         }
         let middle = baseline - 4.0;
-        let sample = match series.mark {
-            Mark::Points => vec![[left + KEY / 2.0, middle]],
-            Mark::Area => vec![[left, middle - 4.0], [left + KEY, middle - 4.0]],
-            Mark::FaintLine | Mark::Line | Mark::BoldLine => {
-                vec![[left, middle], [left + KEY, middle]]
-            }
+        let (kind, sample) = match series.mark {
+            Mark::Points => (Mark::Points, vec![[left + KEY / 2.0, middle]]),
+            Mark::Area => (
+                Mark::Area,
+                vec![[left, middle - 4.0], [left + KEY, middle - 4.0]],
+            ),
+            _ => (Mark::BoldLine, vec![[left, middle], [left + KEY, middle]]),
         };
-        mark(out, series, &[sample], baseline);
+        mark(
+            out,
+            &Series::new("", series.colour, kind, []),
+            &[sample],
+            baseline,
+        );
         write_text(out, [left + KEY + 6.0, baseline], &label, LABEL_SIZE, "");
         left += width + KEY_GAP;
     }

@@ -13,7 +13,7 @@ pub(super) const TICK_SIZE: f64 = 11.0;
 /// Room at the outer edges of the image.
 const EDGE: f64 = 14.0;
 /// Room between the tick labels of a panel and its neighbour.
-const GAP: f64 = 18.0;
+const GAP: f64 = 26.0;
 /// Height of a line of text.
 const LINE: f64 = 18.0;
 /// Distances in pixels between ticks that are aimed at.

@@ -1,7 +1,7 @@
 //! Signals that look like those of a compressor with clearance, made without the simulation:
 //! slider-crank kinematics, plus ringing where a journal crosses its clearance.
 
-pub mod pages;
+pub mod datasets;
 
 use std::f64::consts::{PI, TAU};
 
