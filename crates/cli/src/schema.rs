@@ -1,0 +1,31 @@
+//! `crosshead schema`: the JSON Schema of a file that people write.
+
+use crate::Failure;
+use clap::{Args, ValueEnum};
+
+/// Arguments of `crosshead schema`.
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  crosshead schema machine > machine.schema.json")]
+pub struct Arguments {
+    /// Which file
+    file: File,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum File {
+    /// machine.yaml: a compressor
+    Machine,
+}
+
+/// Prints the schema.
+///
+/// # Errors
+/// None in practice: a schema is always writable as JSON.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let schema = match arguments.file {
+        File::Machine => input::schema::machine_schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
+    println!("{text}");
+    Ok(())
+}
