@@ -7,7 +7,6 @@
 
 pub mod failure;
 
-
 pub mod schema;
 pub mod simulate;
 

@@ -84,7 +84,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let record = simulate::simulate(&machine.machine, &machine.sensors, &settings, true)
         .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
-    let throws: Vec<&str> = machine.machine.throws.iter().map(|t| t.name.as_str()).collect();
+    let throws: Vec<&str> = machine
+        .machine
+        .throws
+        .iter()
+        .map(|t| t.name.as_str())
+        .collect();
     let mut noise = stream(arguments.seed, 0, Purpose::Noise);
     let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
 
@@ -97,7 +102,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let svg = picture_of(&machine, &record);
     write_whole(&picture, |mut file| {
-        file.write_all(svg.as_bytes()).map_err(recordings::Error::Write)?;
+        file.write_all(svg.as_bytes())
+            .map_err(recordings::Error::Write)?;
         Ok(file)
     })?;
     summarise(&machine, &record, &channels, &[&signals, &picture]);
@@ -132,10 +138,11 @@ fn scalar_of(text: &str) -> Value {
 }
 
 fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
-    let rate = Quantity::<Frequency, AboveZero>::parse(&arguments.sample_rate).map_err(|found| {
-        let expected = Quantity::<Frequency, AboveZero>::expected();
-        Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
-    })?;
+    let rate =
+        Quantity::<Frequency, AboveZero>::parse(&arguments.sample_rate).map_err(|found| {
+            let expected = Quantity::<Frequency, AboveZero>::expected();
+            Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
+        })?;
     let tolerance = arguments.tolerance;
     if !(1e-14..=1e-2).contains(&tolerance) {
         return Err(Failure::input(format!(
@@ -191,14 +198,33 @@ fn table(
         data.push(Data::Real(values));
     };
     for channel in channels {
-        let values = channel.samples.iter().map(|x| Some(f64::from(*x))).collect();
-        add(&channel.name, &channel.unit, "as the sensor reads it", values);
+        let values = channel
+            .samples
+            .iter()
+            .map(|x| Some(f64::from(*x)))
+            .collect();
+        add(
+            &channel.name,
+            &channel.unit,
+            "as the sensor reads it",
+            values,
+        );
     }
+    let stride = trace.map_or(1, |trace| trace.stride);
     for (trace, name) in trace.iter().flat_map(|t| t.throws.iter().zip(throws)) {
         for (column, unit, values) in motion_columns(trace) {
-            let prefix = if name.is_empty() { String::new() } else { format!("{name}.") };
-            let values = values.iter().copied().map(Some).collect();
-            add(&format!("{prefix}{column}"), unit, "the motion itself", values);
+            let prefix = if name.is_empty() {
+                String::new()
+            } else {
+                format!("{name}.")
+            };
+            let values = values.iter().step_by(stride).copied().map(Some).collect();
+            add(
+                &format!("{prefix}{column}"),
+                unit,
+                "the motion itself",
+                values,
+            );
         }
     }
     Table::from_columns(Schema::new(columns)?, data)
@@ -209,7 +235,11 @@ fn motion_columns(throw: &ThrowTrace) -> Vec<(String, &'static str, &[f64])> {
     let mut columns: Vec<(String, &'static str, &[f64])> = vec![
         ("true_crosshead_position_m".into(), "m", &throw.position),
         ("true_crosshead_velocity_m_s".into(), "m/s", &throw.velocity),
-        ("true_crosshead_acceleration_m_s2".into(), "m/s^2", &throw.acceleration),
+        (
+            "true_crosshead_acceleration_m_s2".into(),
+            "m/s^2",
+            &throw.acceleration,
+        ),
         ("true_cylinder_pressure_pa".into(), "Pa", &throw.pressure),
     ];
     for (name, joint) in [("big_end", &throw.big_end), ("small_end", &throw.small_end)] {
@@ -217,8 +247,16 @@ fn motion_columns(throw: &ThrowTrace) -> Vec<(String, &'static str, &[f64])> {
             columns.extend([
                 (format!("true_{name}_offset_x_m"), "m", joint.x.as_slice()),
                 (format!("true_{name}_offset_y_m"), "m", joint.y.as_slice()),
-                (format!("true_{name}_normal_force_n"), "N", joint.normal_force.as_slice()),
-                (format!("true_{name}_friction_force_n"), "N", joint.friction_force.as_slice()),
+                (
+                    format!("true_{name}_normal_force_n"),
+                    "N",
+                    joint.normal_force.as_slice(),
+                ),
+                (
+                    format!("true_{name}_friction_force_n"),
+                    "N",
+                    joint.friction_force.as_slice(),
+                ),
             ]);
         }
     }
@@ -289,6 +327,5 @@ fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &
 
 /// A speed in rad/s as people say it.
 fn rpm(speed: f64) -> String {
-    format!("{:.4} rpm", speed * 30.0 / std::f64::consts::PI)
-        .replace(".0000", "")
+    format!("{:.4} rpm", speed * 30.0 / std::f64::consts::PI).replace(".0000", "")
 }

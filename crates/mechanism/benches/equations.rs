@@ -28,12 +28,19 @@ fn right_hand_side(c: &mut Criterion) {
     let mut dual = Dynamics::<Dual<f64, 1>>::new(lift::constants(&machine), false);
     let dual_y: Vec<Dual<f64, 1>> = y.iter().map(|y| Dual::constant(*y)).collect();
     group.bench_function("dual", |b| {
-        b.iter(|| dual.evaluate(black_box(Dual::constant(t)), black_box(&dual_y)).speed);
+        b.iter(|| {
+            dual.evaluate(black_box(Dual::constant(t)), black_box(&dual_y))
+                .speed
+        });
     });
     let mut lanes = Dynamics::new(lift::lanes([&machine; 8]), false);
     let lanes_y: Vec<Lanes<8>> = y.iter().map(|y| Lanes([*y; 8])).collect();
     group.bench_function("eight lanes", |b| {
-        b.iter(|| lanes.evaluate(black_box(Lanes([t; 8])), black_box(&lanes_y)).speed);
+        b.iter(|| {
+            lanes
+                .evaluate(black_box(Lanes([t; 8])), black_box(&lanes_y))
+                .speed
+        });
     });
     let mut dy = y.clone();
     let mut with_ledger = Dynamics::new(machine, true);

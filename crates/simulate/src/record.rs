@@ -52,7 +52,7 @@ pub struct Record {
     pub start: f64,
     /// One series of samples per sensor, in the order of the sensors and in SI.
     pub series: Vec<Vec<f64>>,
-    /// Poses, rates and forces at the samples, where they were asked for.
+    /// Poses, rates and forces, where they were asked for.
     pub trace: Option<Trace>,
     /// Revolutions that were thrown away.
     pub transient: u32,
@@ -87,7 +87,7 @@ pub fn simulate(
     let length = run.revolution * f64::from(settings.revolutions);
     // A sample that falls on the end of the last revolution belongs to the next.
     let samples = (length * settings.sample_rate - 1e-9).ceil().max(1.0) as usize;
-    let mut trace = traced.then(|| Trace::new(machine));
+    let mut trace = traced.then(|| Trace::new(machine, factor as usize));
     let before = run.ledger();
     run.sample(start, inner_rate, samples, &mut chains, trace.as_mut())?;
     let energy_residual = run.residual(&before);
@@ -200,11 +200,7 @@ impl Run {
         }
         let end = time(total.saturating_sub(1));
         let state = &mut self.state;
-        let factor = chains.factor;
-        let recorded = |i: usize| {
-            i.checked_sub(lead)
-                .filter(|offset| offset % factor == 0 && offset / factor < samples)
-        };
+        let recorded = lead..lead + samples * chains.factor;
         let observe = |dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
             let stop = step.start + step.length;
             while next < total && time(next) <= stop {
@@ -213,7 +209,7 @@ impl Run {
                 let at = dynamics.evaluate(t, state);
                 chains.push(at);
                 if let Some(trace) = trace.as_deref_mut()
-                    && recorded(next).is_some()
+                    && recorded.contains(&next)
                 {
                     trace.push(at);
                 }

@@ -1,12 +1,14 @@
-//! The motion itself at the sample times, as no sensor sees it: for pictures and checks.
+//! The motion itself, as no sensor sees it: for pictures and checks.
 
 use mechanism::joints::revolute::{JointState, Revolute};
 use mechanism::{Evaluation, Machine};
 use std::f64::consts::TAU;
 
-/// Poses, rates and forces, one entry per sample.
+/// Poses, rates and forces at the rate at which the motion is sampled before decimation.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
+    /// Entries per recorded sample: entry `i * stride` belongs to sample `i`.
+    pub stride: usize,
     /// Crank angle in [0, 2π), rad.
     pub crank_angle: Vec<f64>,
     /// Torque of the drive on the shaft, N m.
@@ -69,8 +71,9 @@ impl JointTrace {
 }
 
 impl Trace {
-    pub(crate) fn new(machine: &Machine) -> Self {
+    pub(crate) fn new(machine: &Machine, stride: usize) -> Self {
         Self {
+            stride,
             main: JointTrace::new(&machine.main),
             throws: machine
                 .throws
