@@ -1,1 +1,3 @@
 //! sweep.yaml becomes cases, shards and a committed dataset.
+
+pub mod design;
