@@ -2,4 +2,6 @@
 
 pub mod design;
 pub mod distribution;
+pub mod in_order;
 mod normal;
+pub mod split;
