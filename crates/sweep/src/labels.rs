@@ -64,11 +64,15 @@ impl Joint {
     /// Its clearance in `case`, and the one up to which it is healthy, m.
     fn clearances(&self, case: &Resolved) -> [f64; 2] {
         let (machine, normal) = (&case.machine, &case.normal_clearance);
-        let revolute =
-            |joint: &mechanism::joints::revolute::Revolute| joint.clear().map_or(0.0, |c| c.clearance);
+        let revolute = |joint: &mechanism::joints::revolute::Revolute| {
+            joint.clear().map_or(0.0, |c| c.clearance)
+        };
         match self.place {
             Place::Main => [revolute(&machine.main), normal.main],
-            Place::BigEnd(i) => [revolute(&machine.throws[i].big_end), normal.throws[i].big_end],
+            Place::BigEnd(i) => [
+                revolute(&machine.throws[i].big_end),
+                normal.throws[i].big_end,
+            ],
             Place::SmallEnd(i) => [
                 revolute(&machine.throws[i].small_end),
                 normal.throws[i].small_end,
@@ -97,6 +101,9 @@ pub fn labels(joints: &[Joint], case: &Resolved) -> Labels {
             faulty => faulty.join("+"),
         },
         faulty_joints: faulty.len(),
-        clearances_m: clearances.into_iter().map(|[clearance, _]| clearance).collect(),
+        clearances_m: clearances
+            .into_iter()
+            .map(|[clearance, _]| clearance)
+            .collect(),
     }
 }

@@ -86,13 +86,19 @@ impl Block {
 
     fn zip(axes: &Axes<Levels>, key: &str, frame: &Frame) -> Result<Self, Error> {
         let (sets, axes) = levels(axes, key, frame)?;
-        let lengths = std::iter::once(("joints", sets.len()))
-            .chain(axes.iter().map(|axis| (axis.key.as_str(), axis.values.len())));
+        let lengths = std::iter::once(("joints", sets.len())).chain(
+            axes.iter()
+                .map(|axis| (axis.key.as_str(), axis.values.len())),
+        );
         let several: Vec<(&str, usize)> = lengths.filter(|(_, length)| *length != 1).collect();
         let count = several.first().map_or(1, |(_, length)| *length);
         if let Some((axis, length)) = several.iter().find(|(_, length)| *length != count) {
             let expected = format!("{count} values, as {} has, or one", several[0].0);
-            return Err(Error::found(*axis, format_args!("{length} values"), expected));
+            return Err(Error::found(
+                *axis,
+                format_args!("{length} values"),
+                expected,
+            ));
         }
         let count = count as u64;
         Ok(Block::Zip { sets, axes, count })
@@ -126,7 +132,11 @@ impl Block {
                     Ok((target, sampler))
                 });
                 let (target, values) = values.map_err(|e| e.under(&key))?;
-                Ok(Axis { key, target, values })
+                Ok(Axis {
+                    key,
+                    target,
+                    values,
+                })
             })
             .collect::<Result<Vec<_>, Error>>()?;
         let own = own(&axes);
@@ -146,8 +156,15 @@ impl Block {
         };
         let draws = block.draws();
         if block.is_sobol() && draws > sobol::DIMENSIONS {
-            let expected = format!("at most {} with sobol; latin_hypercube has no limit", sobol::DIMENSIONS);
-            return Err(Error::found(key, format_args!("{draws} draws a case"), expected));
+            let expected = format!(
+                "at most {} with sobol; latin_hypercube has no limit",
+                sobol::DIMENSIONS
+            );
+            return Err(Error::found(
+                key,
+                format_args!("{draws} draws a case"),
+                expected,
+            ));
         }
         Ok(block)
     }
@@ -171,7 +188,9 @@ impl Block {
     pub(super) fn count(&self) -> u64 {
         match self {
             Block::Grid { sizes, .. } => {
-                let parts = sizes.iter().filter_map(|sizes| full_factorial::count(sizes));
+                let parts = sizes
+                    .iter()
+                    .filter_map(|sizes| full_factorial::count(sizes));
                 parts.sum()
             }
             Block::Zip { count, .. } | Block::Random { count, .. } => *count,
@@ -231,7 +250,9 @@ impl Block {
         };
         let dimensions = 0..self.draws();
         match design {
-            Design::Sobol => dimensions.map(|d| sobol::scrambled(*seed, index, d)).collect(),
+            Design::Sobol => dimensions
+                .map(|d| sobol::scrambled(*seed, index, d))
+                .collect(),
             Design::LatinHypercube => dimensions
                 .map(|d| latin_hypercube::point(*seed, index, *count, d))
                 .collect(),
@@ -255,7 +276,10 @@ impl Block {
             }
             Block::Zip { sets, axes, .. } => {
                 let of = |length: usize| if length == 1 { 0 } else { index as usize };
-                (of(sets.len()), axes.iter().map(|axis| of(axis.values.len())).collect())
+                (
+                    of(sets.len()),
+                    axes.iter().map(|axis| of(axis.values.len())).collect(),
+                )
             }
             Block::Random { .. } => (0, Vec::new()),
         }
@@ -289,11 +313,12 @@ impl Block {
     /// Key in the sweep file, and path in the machine file, of what case `index` sets.
     pub(super) fn keys(&self, index: u64, frame: &Frame) -> Vec<(String, String)> {
         let mut keys = Vec::new();
-        let mut add = |key: String, target: &Target, value: &Value, set: &[usize], own: &[usize]| {
-            let mut assigned = Vec::new();
-            frame.assign(target, value, set, own, &mut assigned);
-            keys.extend(assigned.into_iter().map(|(path, _)| (key.clone(), path)));
-        };
+        let mut add =
+            |key: String, target: &Target, value: &Value, set: &[usize], own: &[usize]| {
+                let mut assigned = Vec::new();
+                frame.assign(target, value, set, own, &mut assigned);
+                keys.extend(assigned.into_iter().map(|(path, _)| (key.clone(), path)));
+            };
         match self {
             Block::Random { axes, joints, .. } => {
                 for axis in axes {
@@ -308,7 +333,13 @@ impl Block {
                         1 => axis.key.clone(),
                         _ => format!("{}.{level}", axis.key),
                     };
-                    add(key, &axis.target, &axis.values[level], &sets[set], &own(axes));
+                    add(
+                        key,
+                        &axis.target,
+                        &axis.values[level],
+                        &sets[set],
+                        &own(axes),
+                    );
                 }
             }
         }
@@ -357,7 +388,10 @@ fn tried(count: u64) -> Box<dyn Iterator<Item = u64>> {
 }
 
 fn find<'a, T>(axes: &'a Axes<T>, name: &str) -> Option<&'a T> {
-    axes.0.iter().find(|(n, _)| n == name).map(|(_, values)| values)
+    axes.0
+        .iter()
+        .find(|(n, _)| n == name)
+        .map(|(_, values)| values)
 }
 
 fn others<T>(axes: &Axes<T>) -> impl Iterator<Item = (&str, &T)> {
@@ -372,7 +406,10 @@ fn each<T>(values: &[Value], check: impl Fn(&Value) -> Result<T, Error>) -> Resu
 }
 
 /// The sets of joints and the other axes of a grid or a zip.
-#[expect(clippy::type_complexity, reason = "used once, and a name would say no more")]
+#[expect(
+    clippy::type_complexity,
+    reason = "used once, and a name would say no more"
+)]
 fn levels(
     axes: &Axes<Levels>,
     key: &str,
@@ -397,7 +434,11 @@ fn levels(
                 Ok((target, values))
             });
             let (target, values) = axis.map_err(|e| e.under(&key))?;
-            Ok(Axis { key, target, values })
+            Ok(Axis {
+                key,
+                target,
+                values,
+            })
         })
         .collect::<Result<Vec<_>, Error>>()?;
     check_clearances(&sets, &axes, key, frame)?;
@@ -439,7 +480,11 @@ fn check_clearances<V>(
         Some(&joint) => {
             let path = &frame.joints[joint].clearance_path;
             let expected = format!("an axis clearance, or {path}, beside it");
-            Err(Error::found(format!("{key}.joints"), "joints without clearance", expected))
+            Err(Error::found(
+                format!("{key}.joints"),
+                "joints without clearance",
+                expected,
+            ))
         }
     }
 }

@@ -11,7 +11,10 @@ use crate::sweep_file::{Amount, Draw, Spread, Values};
 #[derive(Clone, Debug)]
 pub(super) enum Sampler {
     /// One of several values.
-    Choice { values: Vec<Value>, weights: Vec<f64> },
+    Choice {
+        values: Vec<Value>,
+        weights: Vec<f64>,
+    },
     /// A number.
     Number {
         distribution: Distribution,

@@ -24,7 +24,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 pub use axes::{Axes, Block, Design, Random};
-pub use values::{Amount, Draw, Levels, Range, Spacing, Spread};
+pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 
 /// A sweep: cases, how each is run, and how the dataset is divided.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -64,7 +64,7 @@ pub struct SweepFile {
 }
 
 /// How each case is run.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
     /// Revolutions that are recorded.
