@@ -10,12 +10,12 @@ mod sampler;
 pub use case::{Case, OperatingPoint};
 pub use estimate::Estimate;
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use input::choice::Or;
 use input::yaml::Document;
-use input::{Error, MachineFile, Problem, paths};
-use mechanism::Machine;
+use input::{Error, MachineFile, Problem, Resolved, paths};
 use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
@@ -59,8 +59,8 @@ pub struct Plan {
     pub joints: Vec<Joint>,
     /// What the sweep sets or varies beside clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
-    /// The machine of the file, before any case changes it.
-    pub machine: Machine,
+    /// The machine and its sensors as the file has them, before any case changes them.
+    pub base: Resolved,
     throws: Vec<String>,
     tree: Value,
     blocks: Vec<Block>,
@@ -108,7 +108,7 @@ impl Plan {
                 .and_then(|machine| Ok((machine.clone(), machine.resolve()?)))
                 .map_err(|e| document.locate(e.under("machine")))?,
         };
-        let plan = Self::build(&file, machine.to_tree(), resolved.machine, &document.tree);
+        let plan = Self::build(&file, machine.to_tree(), resolved, &document.tree);
         let plan = plan.map_err(|error| document.locate(error))?;
         plan.try_cases(document)?;
         Ok(plan)
@@ -117,7 +117,7 @@ impl Plan {
     fn build(
         file: &SweepFile,
         tree: &Value,
-        machine: Machine,
+        base: Resolved,
         document: &Value,
     ) -> Result<Self, Error> {
         let sweep = resolved_sweep(document, tree);
@@ -130,10 +130,10 @@ impl Plan {
             shares: shares(file)?,
             format: file.format,
             shard_size: file.shard_size.map_or(256, |n| n.get()).into(),
-            joints: joints(&machine),
+            joints: joints(&base.machine),
             parameters: Vec::new(),
-            throws: machine.throws.iter().map(|t| t.name.clone()).collect(),
-            machine,
+            throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
+            base,
             tree: tree.clone(),
             blocks: Vec::new(),
             vary: Vec::new(),
@@ -193,6 +193,18 @@ impl Plan {
     /// Names of the throws, where there are several; one empty name otherwise.
     pub fn throws(&self) -> &[String] {
         &self.throws
+    }
+
+    /// Name and unit of every channel of a recording, in order.
+    pub fn channels(&self) -> Vec<(String, &'static str)> {
+        channels(&self.base, &self.throws)
+    }
+
+    /// Samples of one channel and window at the machine file's speed.
+    pub fn samples_per_window(&self) -> f64 {
+        let windows = self.windows.map(|w| w.revolutions.get());
+        let revolutions = f64::from(windows.unwrap_or(self.settings.revolutions));
+        revolutions * TAU / self.base.speed * self.settings.sample_rate
     }
 
     /// The sweep with everything in it that it depends on, the machine included: reading it gives
@@ -260,12 +272,25 @@ impl Plan {
         for (position, block) in self.blocks.iter().enumerate() {
             for inside in block.probes() {
                 let case = self.case((start + inside) * self.repeats);
-                if let Err(error) = case {
+                if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
                     let keys = block.keys(inside, &self.frame());
                     return Err(document.locate(self.blame(error, keys, position, inside)));
                 }
             }
             start += block.count();
+        }
+        Ok(())
+    }
+
+    /// All rows of a table have the same columns, so all cases have the same joints and sensors.
+    fn check_columns(&self, case: &Case) -> Result<(), Error> {
+        if channels(&case.resolved, &self.throws) != self.channels() {
+            let found = "sensors that measure something else";
+            return Err(Error::found("sensors", found, "those of the machine file"));
+        }
+        if joints(&case.resolved.machine) != self.joints {
+            let found = "throws with other names";
+            return Err(Error::found("throws", found, "those of the machine file"));
         }
         Ok(())
     }
@@ -318,6 +343,12 @@ impl Plan {
             unit,
         }
     }
+}
+
+fn channels(machine: &Resolved, throws: &[String]) -> Vec<(String, &'static str)> {
+    let throws: Vec<&str> = throws.iter().map(String::as_str).collect();
+    let sensors = machine.sensors.iter().map(|sensor| &sensor.measured);
+    sensors.map(|m| (m.column(&throws), m.unit())).collect()
 }
 
 /// `_n_s_m` of `N s/m`: the ending of a column's name.
