@@ -32,11 +32,7 @@ struct Hand {
 /// `g` in the throw's frame.
 fn by_hand(throw: &Throw, alpha: f64, w: f64, dw: f64, g: [f64; 2]) -> Hand {
     let (r, l) = (throw.crank_radius, throw.rod.length);
-    let (a, m, i) = (
-        throw.rod.centre_of_mass,
-        throw.rod.mass,
-        throw.rod.inertia,
-    );
+    let (a, m, i) = (throw.rod.centre_of_mass, throw.rod.mass, throw.rod.inertia);
     let ms = throw.crosshead.mass;
     let (s, c) = alpha.sin_cos();
     // The rod's angle from R sin α + L sin φ = 0, and its derivatives.
