@@ -6,6 +6,9 @@ use crate::system::{Real, System};
 /// Shares of the step at which the guards are looked at, beside its beginning and end.
 const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
+/// Looks at ever smaller shares before a guard counts as overdue: the last is at 4^−13.
+const EARLY_LOOKS: usize = 12;
+
 /// A guard that crossed zero, and where in the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
@@ -69,9 +72,8 @@ impl<S: Real> Finder<S> {
         guard: usize,
     ) -> Option<f64> {
         let seen: [f64; LOOKS.len()] = std::array::from_fn(|i| self.looks[i][guard]);
-        // Beyond its boundary from the start and not on the way back: the switch is overdue.
         if seen[0] <= 0.0 && seen[1] <= 0.0 {
-            return Some(0.0);
+            return Some(self.early(system, step, guard, seen[1]));
         }
         for i in 0..LOOKS.len() - 1 {
             let (a, b) = (seen[i], seen[i + 1]);
@@ -97,6 +99,28 @@ impl<S: Real> Finder<S> {
             }
         }
         None
+    }
+
+    /// Where a guard crosses that is not positive at the first two looks. Either it came back
+    /// between them (a short flight after the switch that began the step), or it never was
+    /// positive: then the switch is overdue, and the crossing at the very beginning.
+    fn early(
+        &mut self,
+        system: &mut impl System<S>,
+        step: &Step<S>,
+        guard: usize,
+        seen: f64,
+    ) -> f64 {
+        let (mut later, mut beyond) = (LOOKS[1], seen);
+        for _ in 0..EARLY_LOOKS {
+            let share = later / 4.0;
+            let value = self.look(system, step, share)[guard].value();
+            if value > 0.0 {
+                return self.root(system, step, guard, [share, later], [value, beyond]);
+            }
+            (later, beyond) = (share, value);
+        }
+        0.0
     }
 
     /// The guards at `share` of the step.

@@ -1,6 +1,8 @@
 //! Machines for the tests, and runs of them.
 #![allow(dead_code)]
 
+pub mod random;
+
 use integrate::Integrator;
 use mechanism::drive::{Drive, GivenSpeed, MotorLine};
 use mechanism::gas::{CrankEnd, Cylinder};

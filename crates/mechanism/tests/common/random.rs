@@ -1,0 +1,204 @@
+//! Random machines and random states for property tests.
+
+use super::single_stage;
+use integrate::System;
+use mechanism::drive::{Drive, MotorLine};
+use mechanism::effects::{Effect, RingFriction, ValveLoss};
+use mechanism::gas::CrankEnd;
+use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
+use mechanism::joints::friction::{Adams, Ambrosio, Coulomb, FrictionLaw};
+use mechanism::joints::guide::{Guide, GuideClearance};
+use mechanism::joints::revolute::{Clearance, JointModel, Revolute};
+use mechanism::{Direction, Dynamics, Machine, Throw};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// So many cases, the same in every run.
+pub fn cases(number: u32) -> ProptestConfig {
+    ProptestConfig {
+        cases: number,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_251_121),
+        max_shrink_iters: 40,
+        ..ProptestConfig::default()
+    }
+}
+
+/// A contact law of any kind.
+pub fn contact() -> impl Strategy<Value = ContactLaw> {
+    let restitution = |e| Restitution {
+        stiffness: 2e10,
+        exponent: 1.5,
+        restitution: e,
+        slowest_approach: 1e-3,
+    };
+    prop_oneof![
+        (1e10..8e10, 1.4..1.7, 5e2..3e4, 5e-6..3e-5).prop_map(|(stiffness, exponent, c, depth)| {
+            ContactLaw::Impact(Impact {
+                stiffness,
+                exponent,
+                damping: c,
+                depth,
+            })
+        }),
+        (1e10..8e10).prop_map(|stiffness| ContactLaw::Hertz(Hertz {
+            stiffness,
+            exponent: 1.5
+        })),
+        (5e7..4e8, 1e3..2e4).prop_map(|(stiffness, damping)| ContactLaw::KelvinVoigt(
+            KelvinVoigt { stiffness, damping }
+        )),
+        (0.3..0.95).prop_map(move |e| ContactLaw::HuntCrossley(restitution(e))),
+        (0.3..0.95).prop_map(move |e| ContactLaw::LankaraniNikravesh(restitution(e))),
+        (0.3..0.95).prop_map(move |e| ContactLaw::Flores(restitution(e))),
+    ]
+}
+
+/// A friction law of any kind.
+pub fn friction() -> impl Strategy<Value = FrictionLaw> {
+    prop_oneof![
+        Just(FrictionLaw::none()),
+        (0.01..0.1, 0.005..0.05).prop_map(|(coefficient, slip_speed)| {
+            FrictionLaw::Coulomb(Coulomb {
+                coefficient,
+                slip_speed,
+            })
+        }),
+        (0.02..0.1).prop_map(|coefficient| FrictionLaw::Adams(Adams {
+            static_coefficient: 1.5 * coefficient,
+            dynamic_coefficient: coefficient,
+            stiction_speed: 0.02,
+            transition_speed: 0.1,
+        })),
+        (0.01..0.1).prop_map(|coefficient| FrictionLaw::Ambrosio(Ambrosio {
+            coefficient,
+            slow: 0.01,
+            fast: 0.1,
+        })),
+    ]
+}
+
+/// A joint of any of the given models, or an ideal one.
+pub fn joint(models: &'static [JointModel]) -> impl Strategy<Value = Revolute> {
+    let clear = (
+        5e-5..4e-4,
+        0.03..0.06,
+        contact(),
+        friction(),
+        proptest::sample::select(models),
+    )
+        .prop_map(|(clearance, journal_radius, contact, friction, model)| {
+            Revolute::Clear(Clearance {
+                clearance,
+                journal_radius,
+                contact,
+                friction,
+                model,
+            })
+        });
+    prop_oneof![1 => Just(Revolute::Ideal), 3 => clear]
+}
+
+/// A guide with clearance, or an ideal one.
+pub fn guide() -> impl Strategy<Value = Guide> {
+    let clear = (5e-5..4e-4, contact(), friction()).prop_map(|(clearance, contact, friction)| {
+        Guide::Clear(GuideClearance {
+            clearance,
+            half_length: 0.12,
+            half_height: 0.08,
+            contact,
+            friction,
+        })
+    });
+    prop_oneof![1 => Just(Guide::Ideal), 2 => clear]
+}
+
+fn throw(models: &'static [JointModel]) -> impl Strategy<Value = Throw> {
+    let bodies = (6.0..20.0, 0.15..0.35, 0.3..1.0, 12.0..30.0, 0.08..0.3);
+    let gas = (0.0..2e5, any::<bool>(), 0.015..0.05);
+    let place = (any::<bool>(), 0.0..6.28);
+    (bodies, joint(models), joint(models), guide(), gas, place).prop_map(
+        |(bodies, big_end, small_end, guide, gas, place)| {
+            let mut throw = single_stage().throws.remove(0);
+            throw.rod.mass = bodies.0;
+            throw.rod.centre_of_mass = bodies.1;
+            throw.rod.inertia = bodies.2;
+            throw.crosshead.mass = bodies.3;
+            throw.crosshead.inertia = bodies.4;
+            throw.big_end = big_end;
+            throw.small_end = small_end;
+            throw.guide = guide;
+            throw.cylinder.back = gas.0;
+            throw.cylinder.crank_end = gas.1.then_some(CrankEnd {
+                rod_radius: 0.02,
+                clearance: 0.03,
+            });
+            throw.cylinder.head_clearance = gas.2;
+            if place.0 {
+                throw.direction = Direction::Opposed;
+            }
+            throw.pin_angle = place.1;
+            throw
+        },
+    )
+}
+
+fn effects() -> impl Strategy<Value = Vec<Effect>> {
+    let rings = Effect::RingFriction(RingFriction {
+        coulomb_force: 30.0,
+        per_pressure: 2e-4,
+        slip_speed: 0.02,
+    });
+    let valves = Effect::ValveLoss(ValveLoss {
+        suction: 0.1,
+        discharge: 0.2,
+    });
+    proptest::sample::subsequence(vec![rings, valves], 0..=2)
+}
+
+/// A machine of one or two throws whose joints are of the given models, on a free crank or not,
+/// in any direction of gravity.
+pub fn machine(models: &'static [JointModel]) -> impl Strategy<Value = Machine> {
+    let throws = proptest::collection::vec(throw(models), 1..=2);
+    let shaft = (30.0..100.0, 4.0..12.0, 0.0..0.03);
+    (
+        throws,
+        joint(models),
+        shaft,
+        any::<bool>(),
+        0.0..6.28_f64,
+        effects(),
+    )
+        .prop_map(|(throws, main, shaft, free, down, effects)| {
+            let mut machine = single_stage();
+            machine.throws = throws;
+            machine.main = main;
+            machine.crankshaft.mass = shaft.0;
+            machine.crankshaft.inertia = shaft.1;
+            machine.crankshaft.eccentricity = shaft.2;
+            (machine.gravity_x, machine.gravity_y) = (9.81 * down.cos(), 9.81 * down.sin());
+            machine.effects = effects;
+            if free {
+                machine.drive = Drive::Free(MotorLine {
+                    reference_speed: super::SPEED,
+                    mean_torque: 60.0,
+                    slope: 40.0,
+                });
+            }
+            machine
+        })
+}
+
+/// Switches into the mode that `(t, y)` calls for. A rigid joint beyond its clearance whose force
+/// would pull has none; there any mode serves.
+pub fn settle(dynamics: &mut Dynamics<f64>, t: f64, y: &mut [f64]) {
+    let mut guards = vec![0.0; dynamics.guard_count()];
+    for _ in 0..5 {
+        for guard in 0..guards.len() {
+            dynamics.guards(t, y, &mut guards);
+            if guards[guard] <= 0.0 {
+                dynamics.switch(guard, t, y);
+            }
+        }
+    }
+}
