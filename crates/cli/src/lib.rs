@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout)]
 
 pub mod failure;
+pub mod gen_dataset;
 
 pub mod schema;
 pub mod simulate;

@@ -15,6 +15,8 @@ pub struct Arguments {
 enum File {
     /// machine.yaml: a compressor
     Machine,
+    /// sweep.yaml: the cases of a dataset
+    Sweep,
 }
 
 /// Prints the schema.
@@ -24,6 +26,7 @@ enum File {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let schema = match arguments.file {
         File::Machine => input::schema::machine_schema(),
+        File::Sweep => sweep::sweep_file::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");

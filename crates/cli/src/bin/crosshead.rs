@@ -13,6 +13,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Simulate a sweep of cases and write a labelled dataset (the same as the program gen-dataset)
+    GenDataset(cli::gen_dataset::Arguments),
     /// Simulate one run of a machine: signals and a picture
     Simulate(cli::simulate::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
@@ -21,6 +23,7 @@ enum Verb {
 
 fn main() -> ExitCode {
     cli::finish(match Arguments::parse().verb {
+        Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })

@@ -114,6 +114,15 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The same sweep with its recordings in another format.
+    #[must_use]
+    pub fn with_format(mut self, format: Format) -> Self {
+        self.format = format;
+        self.sweep["format"] = json!(format.name());
+        self.id = id(&self.sweep);
+        self
+    }
+
     fn build(
         file: &SweepFile,
         tree: &Value,

@@ -117,6 +117,11 @@ pub struct Splits {
     pub test: Option<Quantity<Ratio, Part>>,
 }
 
+/// The JSON Schema of sweep files, for editors and checks.
+pub fn schema() -> Value {
+    input::schema::of::<SweepFile>()
+}
+
 impl Splits {
     /// Train, validation, test, each from 0 to 1.
     pub fn shares(&self) -> [f64; 3] {
@@ -143,6 +148,16 @@ pub enum Format {
     Parquet,
     /// One MCAP file per case, for Foxglove and ROS tools.
     Mcap,
+}
+
+impl Format {
+    /// Its name in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Parquet => "parquet",
+            Format::Mcap => "mcap",
+        }
+    }
 }
 
 /// A weight of a choice.
