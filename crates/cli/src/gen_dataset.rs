@@ -95,16 +95,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let started = Instant::now();
     let mut bar = Bar::default();
-    let manifest = generate(&plan, &out, &options, &simulate_case, &mut bar).map_err(|e| {
-        if e.is_input() {
-            Failure::input(e)
-        } else {
-            Failure::work(e)
-        }
-    })?;
+    let manifest = generate(&plan, &out, &options, &simulate_case, &mut bar)
+        .map_err(|error| failure(arguments, error))?;
     bar.finish();
     summarise(&manifest, &out, started.elapsed().as_secs_f64());
     failures(&manifest)
+}
+
+fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
+    match error {
+        sweep::Error::TooManyCases { .. } => {
+            Failure::input(format!("{}: cases: {error}", arguments.sweep.display()))
+        }
+        error if error.is_input() => Failure::input(error),
+        error => Failure::work(error),
+    }
 }
 
 /// The bar on standard error: rate and time left; nothing where that is no terminal.

@@ -57,8 +57,8 @@ impl Output {
         let (empty, ours) = look(root)?;
         match existing {
             _ if empty => {}
-            Existing::Refuse => return Err(Error::Exists(root.to_owned())),
             _ if !ours => return Err(Error::NotOurs(root.to_owned())),
+            Existing::Refuse => return Err(Error::Exists(root.to_owned())),
             Existing::Resume | Existing::Overwrite => {}
         }
         for folder in ["_sweep/commits", "_sweep/tmp"] {
