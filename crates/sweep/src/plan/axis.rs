@@ -46,18 +46,20 @@ pub(super) struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// What the axis `name` sets; `sets` tells whether the block has an axis `joints`.
-    pub(super) fn target(&self, name: &str, sets: bool) -> Result<Target, Error> {
+    /// What the axis `name` at `key` of the sweep file sets; `sets` tells whether the block has an
+    /// axis `joints`.
+    pub(super) fn target(&self, name: &str, sets: bool, key: &str) -> Result<Target, Error> {
         match name {
             "clearance" if sets => Ok(Target::Clearance),
             "clearance" => Err(Error::found(
-                "",
+                key,
                 "a clearance without joints",
                 "an axis joints beside it, e.g. 'joints: [[], [big_end]]'",
             )),
             "load" => Ok(Target::Load),
             path => {
-                paths::get(self.machine, path).map_err(|error| self.with_short_names(error))?;
+                let found = paths::get(self.machine, path);
+                found.map_err(|e| Error::new(key, self.with_short_names(e).problem().clone()))?;
                 let joint = self.joints.iter().position(|j| j.clearance_path == path);
                 Ok(match joint {
                     Some(joint) if sets => Target::ClearanceOf { joint },

@@ -1,6 +1,6 @@
 //! A block of cases, made ready: what its case at an index sets in the machine file.
 
-use input::Error;
+use input::{Error, paths};
 use serde_json::Value;
 
 use super::axis::{Assignments, Axis, Frame, JointSet, Target};
@@ -119,19 +119,15 @@ impl Block {
         let axes = others(&block.axes)
             .map(|(name, draw)| {
                 let key = format!("{key}.{name}");
-                let target = frame.target(name, joints.is_some());
+                let target = frame.target(name, joints.is_some(), &key)?;
                 let given = match &target {
-                    Ok(Target::Path(path)) => input::paths::get(frame.machine, path).ok().flatten(),
+                    Target::Path(path) => paths::get(frame.machine, path)?,
                     _ => None,
                 };
-                let values = target.and_then(|target| {
-                    let sampler = Sampler::new(draw, given)?;
-                    if let (Target::Load, Sampler::Choice { values, .. }) = (&target, &sampler) {
-                        each(values, |load| frame.check_load(load))?;
-                    }
-                    Ok((target, sampler))
-                });
-                let (target, values) = values.map_err(|e| e.under(&key))?;
+                let values = Sampler::new(draw, given).map_err(|e| e.under(&key))?;
+                if let (Target::Load, Sampler::Choice { values, .. }) = (&target, &values) {
+                    each(values, |load| frame.check_load(load)).map_err(|e| e.under(&key))?;
+                }
                 Ok(Axis {
                     key,
                     target,
@@ -426,14 +422,11 @@ fn levels(
     let axes = others(axes)
         .map(|(name, levels)| {
             let key = format!("{key}.{name}");
-            let axis = frame.target(name, joints.is_some()).and_then(|target| {
-                let values = expand(levels)?;
-                if target == Target::Load {
-                    each(&values, |load| frame.check_load(load))?;
-                }
-                Ok((target, values))
-            });
-            let (target, values) = axis.map_err(|e| e.under(&key))?;
+            let target = frame.target(name, joints.is_some(), &key)?;
+            let values = expand(levels).map_err(|e| e.under(&key))?;
+            if target == Target::Load {
+                each(&values, |load| frame.check_load(load)).map_err(|e| e.under(&key))?;
+            }
             Ok(Axis {
                 key,
                 target,

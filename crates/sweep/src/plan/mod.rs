@@ -133,7 +133,7 @@ impl Plan {
         let mut plan = Self {
             name: file.name.clone(),
             id: id(&sweep),
-            seed: file.seed,
+            seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
             windows: file.windows,
             shares: shares(file)?,
@@ -432,7 +432,7 @@ fn shares(file: &SweepFile) -> Result<[f64; 3], Error> {
     let shares = file.splits.shares();
     let total: f64 = shares.iter().sum();
     if (total - 1.0).abs() > 1e-9 {
-        let found = format_args!("{} % together", total * 100.0);
+        let found = format_args!("{} % together", (total * 1e9).round() / 1e7);
         return Err(Error::found("splits", found, "shares that add up to 100 %"));
     }
     Ok(shares)

@@ -1,6 +1,7 @@
 //! A value that is drawn, made ready: a number in (0, 1) in, a value for the machine file out.
 
 use input::Error;
+use input::quantity::{Kind, Speed};
 use input::unit::Dimension;
 use serde_json::Value;
 
@@ -60,7 +61,7 @@ fn equally_likely(values: &[Value]) -> Result<Sampler, Error> {
 fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
     let given = || {
         let amount = given.and_then(Amount::of);
-        amount.ok_or_else(|| Error::found("", "no value in the machine file", "one to vary about"))
+        amount.ok_or_else(|| Error::found("", "no number in the machine file", "one to vary about"))
     };
     let number = |name: &str, distribution, amounts: &[Amount]| {
         same_dimension(amounts).map_err(|e| e.under(name))?;
@@ -104,7 +105,7 @@ fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
             let weights: Vec<f64> = choice.weights.iter().map(|w| w.get()).collect();
             if weights.len() != choice.values.len() || weights.iter().sum::<f64>() <= 0.0 {
                 let found = format_args!("{} weights", weights.len());
-                let expected = format_args!("{}, not all 0", choice.values.len().max(1));
+                let expected = format_args!("one per value, {}, not all 0", choice.values.len());
                 return Err(Error::found("choice.weights", found, expected));
             }
             Ok(Sampler::Choice {
@@ -145,6 +146,12 @@ pub(super) fn same_dimension(amounts: &[Amount]) -> Result<(), Error> {
 
 /// An amount as messages show it.
 pub(super) fn text(amount: &Amount) -> String {
+    if amount.dimension == Some(Speed::DIMENSION) {
+        // Nobody writes rad/s. Twelve digits, because the way there and back rounds.
+        let rpm = amount.si * 30.0 / std::f64::consts::PI;
+        let rounded: f64 = format!("{rpm:.11e}").parse().unwrap_or(rpm);
+        return format!("{rounded} rpm");
+    }
     match amount.to_value() {
         Value::String(text) => text,
         number => number.to_string(),

@@ -36,7 +36,7 @@ pub struct SweepFile {
     pub machine: Or<String, Map<String, Value>>,
     /// What all random numbers follow from; 0 where it is left out.
     #[serde(default)]
-    pub seed: u64,
+    pub seed: Option<Count<0, { u32::MAX }>>,
     /// How each case is run.
     pub run: Run,
     /// How often each case is recorded, with other noise each time; once where it is left out.
