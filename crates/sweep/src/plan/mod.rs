@@ -4,7 +4,10 @@
 mod axis;
 mod block;
 mod case;
+mod drawn;
 mod estimate;
+mod levels;
+mod listed;
 mod sampler;
 
 pub use case::{Case, OperatingPoint};
