@@ -127,9 +127,9 @@ impl Error {
         )
     }
 
-    /// What stands at `key` does not go together with the rest of the file. What it is, as it is
-    /// written, is filled in from the file.
-    pub(crate) fn clash(key: impl Into<String>, expected: impl fmt::Display) -> Self {
+    /// What stands at `key` does not go together with the rest of the file;
+    /// [`Document::locate`](crate::yaml::Document::locate) fills in what it is, as it is written.
+    pub fn clash(key: impl Into<String>, expected: impl fmt::Display) -> Self {
         Self::found(key, "", expected)
     }
 
@@ -179,18 +179,22 @@ impl Error {
         self
     }
 
-    /// Fills in what stands in the file, and what belongs in the place of a missing key.
-    pub(crate) fn complete(
-        mut self,
-        written: Option<&Value>,
-        expectation: impl FnOnce() -> Option<String>,
-    ) -> Self {
-        match (&mut *self.problem, written) {
-            (Problem::Found { found, .. }, Some(value)) if found.is_empty() => {
-                *found = shown(value);
-            }
-            (Problem::Missing { expected }, _) if expected.is_none() => *expected = expectation(),
-            _ => {}
+    /// Fills in what stands in the file, if that is still open.
+    pub(crate) fn written(mut self, value: &Value) -> Self {
+        if let Problem::Found { found, .. } = &mut *self.problem
+            && found.is_empty()
+        {
+            *found = shown(value);
+        }
+        self
+    }
+
+    /// Fills in what belongs in the place of a missing key, if that is still open.
+    pub(crate) fn expecting(mut self, expectation: impl FnOnce() -> Option<String>) -> Self {
+        if let Problem::Missing { expected } = &mut *self.problem
+            && expected.is_none()
+        {
+            *expected = expectation();
         }
         self
     }
@@ -206,7 +210,7 @@ impl Error {
             }
             line += &part;
         }
-        line
+        one_line(&line)
     }
 }
 
@@ -229,7 +233,9 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             strsim::damerau_levenshtein(name, c),
         )
     };
-    let allowed = (name.chars().count() / 3).max(1);
+    // One letter can be anything.
+    let letters = name.chars().count();
+    let allowed = (letters / 3).max(usize::from(letters > 1));
     candidates
         .into_iter()
         .map(|c| (slips(c), c))
@@ -325,19 +331,26 @@ pub(crate) fn unexpected(value: &Value) -> Unexpected<'_> {
     }
 }
 
-/// `text` in quotation marks, on one line and of bearable length.
+/// `text` in quotation marks, of bearable length.
 pub(crate) fn quoted(text: &str) -> String {
     const LONGEST: usize = 60;
-    let shown = text.chars().take(LONGEST).flat_map(|c| {
-        let plain = (!c.is_control()).then_some(c);
-        let escape = c.is_control().then(|| c.escape_default());
-        plain.into_iter().chain(escape.into_iter().flatten())
-    });
-    let shown: String = shown.collect();
-    match text.chars().nth(LONGEST) {
-        Some(_) => format!("'{shown}…'"),
-        None => format!("'{shown}'"),
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("'{}…'", &text[..end]),
+        None => format!("'{text}'"),
     }
+}
+
+/// `text` with its line breaks and other control characters written out.
+fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            line.extend(c.escape_default());
+        } else {
+            line.push(c);
+        }
+    }
+    line
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 use crate::error::{Error, shown};
 use crate::schema::Node;
+use crate::yaml::find;
 use serde_json::{Map, Value};
 
 /// Puts `value` at `path`, whether or not the file has the key.
@@ -33,7 +34,6 @@ pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
                     return Err(Error::found(at, shown(other), expected));
                 }
                 *other = Value::Object(Map::new());
-                other[key.as_str()].take();
                 &mut other[key.as_str()]
             }
         };
@@ -47,18 +47,12 @@ pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
 /// # Errors
 /// Where the format has no such path or the file has no such list item.
 pub fn get<'a>(tree: &'a Value, path: &str) -> Result<Option<&'a Value>, Error> {
-    let keys = resolve(tree, path)?;
-    let find = |keys: &[String]| {
-        keys.iter().try_fold(tree, |node, key| match node {
-            Value::Array(items) => items.get(key.parse::<usize>().ok()?),
-            node => node.get(key),
-        })
-    };
-    let shared = match keys.as_slice() {
-        [list, _, rest @ ..] if list == "throws" && !rest.is_empty() => Some(rest),
-        _ => None,
-    };
-    Ok(find(&keys).or_else(|| find(shared?)))
+    let key = resolve(tree, path)?.join(".");
+    let shared = key
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'))
+        .and_then(|(_, rest)| find(tree, rest));
+    Ok(find(tree, &key).or(shared))
 }
 
 /// The path as keys and indices, names of list items replaced.

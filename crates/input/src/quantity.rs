@@ -259,7 +259,7 @@ pub(crate) fn text_schema(expected: &str, negative: bool, examples: &[&str]) -> 
     json_schema!({
         "type": "string",
         "description": expected,
-        "pattern": format!("^\\s*{sign}([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?\\s*[^0-9\\s.].*$"),
+        "pattern": format!("^\\s*{sign}([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?\\s*[^0-9\\s.eE].*$"),
         "examples": examples,
     })
 }

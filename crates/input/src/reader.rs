@@ -3,7 +3,8 @@
 //! The tree is the same whether it was written by hand or put together by a sweep, and so are the
 //! messages. Beyond what serde does by itself there is one convention: an enum whose serde name is
 //! `tag:law=impact` is a section whose key `law` names the variant, `impact` where it is left out
-//! (`tag:measure`: it must be there). serde's own `tag` attribute would lose the path.
+//! (`tag:measure`: it must be there). serde's own `tag` attribute would lose the path; schemars'
+//! stays, for the schema.
 
 use crate::error::{Error, unexpected};
 use serde::de::value::StrDeserializer;

@@ -43,6 +43,9 @@ pub enum UnitError {
     /// It does not begin with a number, or with one that is too large.
     #[error("no number")]
     NoNumber,
+    /// A decimal comma.
+    #[error("the decimal sign is a point")]
+    Comma,
     /// Nothing follows the number.
     #[error("no unit")]
     NoUnit,
@@ -219,6 +222,9 @@ pub fn parse(text: &str) -> Result<Measure, UnitError> {
     if rest.trim().is_empty() {
         return Err(UnitError::NoUnit);
     }
+    if rest.starts_with(',') {
+        return Err(UnitError::Comma);
+    }
     let scale = Scale::parse(rest)?;
     let si = scale.apply(number).ok_or(UnitError::NoNumber)?;
     Ok(Measure {
@@ -373,7 +379,7 @@ fn split_exponent(factor: &str) -> Result<(&str, f64), UnitError> {
         .collect();
     let exponent: f64 = plain.parse().map_err(|_| UnitError::Form)?;
     // Larger ones are slips of the keyboard, and would overflow the power of ten.
-    if name.is_empty() || !(exponent.abs() <= 9.0) {
+    if name.is_empty() || exponent.is_nan() || exponent.abs() > 9.0 {
         return Err(UnitError::Form);
     }
     Ok((name, exponent))

@@ -72,6 +72,8 @@ impl Document {
     /// Where the text is empty or not YAML, or a section has a key twice.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
         let options = serde_saphyr::options! {
+            // Deep enough for any file of ours, and no test of the stack.
+            budget: serde_saphyr::budget! { max_depth: 20 },
             strict_booleans: true,
             with_snippet: false,
             reject_unsupported_tags: true,
@@ -116,8 +118,13 @@ impl Document {
         reader::read(&self.tree).map_err(|error| self.locate(error))
     }
 
-    /// `error` with the file's name, and the place of its key or of the section that lacks it.
+    /// `error` with the value as it is written, the file's name, and the place of its key or of the
+    /// section that lacks it.
     pub fn locate(&self, error: Error) -> Error {
+        let error = match find(&self.tree, error.key()) {
+            Some(value) => error.written(value),
+            None => error,
+        };
         let Some(file) = &self.file else {
             return error;
         };
@@ -132,6 +139,15 @@ impl Document {
     }
 }
 
+/// The node at a dotted path of keys and indices; the tree itself at the empty one.
+pub(crate) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
+    let mut parts = key.split('.').filter(|_| !key.is_empty());
+    parts.try_fold(tree, |node, part| match node {
+        Value::Array(items) => items.get(part.parse::<usize>().ok()?),
+        node => node.get(part),
+    })
+}
+
 /// `a.b`, then `a`, of `a.b.c`.
 fn parents(key: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(key.rsplit_once('.'), |(parent, _)| parent.rsplit_once('.'))
@@ -144,7 +160,10 @@ fn syntax(error: &serde_saphyr::Error) -> Error {
         Yaml::AliasError { error, .. } => error,
         error => error,
     };
-    let message = UserMessageFormatter.format_message(error).into_owned();
+    let message = match error {
+        Yaml::Budget { .. } => "nested too deeply, or too large".to_owned(),
+        other => UserMessageFormatter.format_message(other).into_owned(),
+    };
     let mine = Error::new("", Problem::Syntax(message));
     match error.location() {
         Some(location) => mine.at(place(&location)),

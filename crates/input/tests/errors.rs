@@ -95,6 +95,8 @@ messages! {
         "m.yaml:5:3: rod.lenght: unknown key; expected one of length, mass, centre_of_mass, inertia; did you mean 'length'?";
     unknown_key_far_from_any: "name: small" => "name: small\ncolour: red",
         "m.yaml:2:1: colour: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects";
+    key_with_a_line_break: "name: small" => "name: small\n\"a\\nb\": 1",
+        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects";
     misspelt_joint: "  big_end:" => "  big_ned:",
         "m.yaml:18:3: joints.big_ned: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?";
     misspelt_contact_law: "law: impact" => "law: impct",
@@ -318,4 +320,27 @@ fn a_tree_without_file_has_messages_without_lines() {
         "rod.mass: found 12, expected a mass greater than 0 with its unit, e.g. '12 kg'"
     );
     assert_eq!((error.key(), error.place()), ("rod.mass", None));
+}
+
+#[test]
+fn deep_and_self_repeating_files_are_refused() {
+    let deep = refusal(&"[".repeat(100_000));
+    assert_eq!(
+        deep,
+        "m.yaml:1:256: not valid YAML: recursion limit exceeded"
+    );
+    let nested = refusal(&format!("name: {}1{}", "{a: ".repeat(90), "}".repeat(90)));
+    assert_eq!(
+        nested,
+        "m.yaml:1:83: not valid YAML: nested too deeply, or too large"
+    );
+    let mut laughs = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n".to_owned();
+    for i in 1..9 {
+        let below = format!("*a{}, ", i - 1).repeat(10);
+        laughs += &format!("a{i}: &a{i} [{below}]\n");
+    }
+    assert_eq!(
+        refusal(&laughs),
+        "m.yaml:1:13: not valid YAML: nested too deeply, or too large"
+    );
 }

@@ -207,8 +207,7 @@ impl MachineFile {
 fn locate(document: &Document, error: Error) -> Error {
     let key = shared::written_key(&document.tree, error.key()).to_owned();
     let error = error.with_key(key.clone());
-    let written = shared::find(&document.tree, &key);
-    document.locate(error.complete(written, || schema::Node::machine().walk(&key)?.expected()))
+    document.locate(error.expecting(|| schema::Node::machine().walk(&key)?.expected()))
 }
 
 impl Sections {

@@ -1,5 +1,6 @@
 //! Sections at the top of a machine of several throws hold for each of them, key by key.
 
+use crate::yaml::find;
 use serde_json::{Map, Value};
 use std::borrow::Cow;
 
@@ -77,12 +78,4 @@ pub(super) fn written_key<'a>(tree: &Value, key: &'a str) -> &'a str {
         Some(rest) if find(tree, key).is_none() && find(tree, rest).is_some() => rest,
         _ => key,
     }
-}
-
-/// The node at a dotted path of keys and indices.
-pub(super) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
-    key.split('.').try_fold(tree, |node, part| match node {
-        Value::Array(items) => items.get(part.parse::<usize>().ok()?),
-        node => node.get(part),
-    })
 }
