@@ -100,7 +100,7 @@ fn windows(case: &Case, recording: &Recording) -> Result<Vec<Range<usize>>, Fail
         .min()
         .unwrap_or(0);
     let Some(windows) = case.windows else {
-        return Ok(vec![0..recorded]);
+        return Ok(std::iter::once(0..recorded).collect());
     };
     let revolutions = f64::from(windows.revolutions.get());
     let length = revolutions * TAU / case.resolved.speed * recording.sample_rate_hz;

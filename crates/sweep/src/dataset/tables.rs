@@ -78,10 +78,7 @@ fn about(plan: &Plan) -> Vec<Column> {
         integer("faulty_joints", "how many joints those are"),
     ];
     columns.extend(plan.joints.iter().map(|joint| {
-        let meaning = format!(
-            "radial clearance of the joint {}; 0 where it is ideal",
-            joint.name
-        );
+        let meaning = format!("clearance of the joint {}; 0 where it is ideal", joint.name);
         real(format!("clearance_{}_m", joint.name), "m", meaning)
     }));
     columns.push(real("speed_rpm".into(), "rpm", "speed of the crank".into()));

@@ -103,6 +103,12 @@ impl Frame<'_> {
         Ok(set)
     }
 
+    /// What is said of `joints` that are no list of sets.
+    pub(super) fn not_sets() -> Error {
+        let expected = "a list of lists of joints, e.g. [[], [big_end], [big_end, small_end]]";
+        Error::found("", "something else", expected)
+    }
+
     /// What `target` at `value` sets in a case with the oversized joints `set`; `own` are the
     /// joints that have an axis of their own.
     pub(super) fn assign(
@@ -175,4 +181,56 @@ fn check_pressures(load: &Value) -> Result<(), Error> {
         Some(key) => Err(Error::unknown_key(key, &LOAD)),
         None => Ok(()),
     }
+}
+
+impl Target {
+    /// Whether the target is anything in a case with the joints `set`, of which `own` have an axis
+    /// of their own.
+    pub(super) fn says(&self, set: &[usize], own: &[usize]) -> bool {
+        match self {
+            Target::Clearance => set.iter().any(|joint| !own.contains(joint)),
+            Target::ClearanceOf { joint } => set.contains(joint),
+            Target::Load | Target::Path(_) => true,
+        }
+    }
+}
+
+/// The joints with an axis of their own.
+pub(super) fn own<V>(axes: &[Axis<V>]) -> JointSet {
+    let joint = |axis: &Axis<V>| match axis.target {
+        Target::ClearanceOf { joint } => Some(joint),
+        _ => None,
+    };
+    axes.iter().filter_map(joint).collect()
+}
+
+/// Checks that every joint of the sets of the block at `key` gets its clearance from somewhere.
+pub(super) fn check_clearances<V>(
+    sets: &[JointSet],
+    axes: &[Axis<V>],
+    key: &str,
+    frame: &Frame,
+) -> Result<(), Error> {
+    if axes.iter().any(|axis| axis.target == Target::Clearance) {
+        return Ok(());
+    }
+    let own = own(axes);
+    match sets.iter().flatten().find(|joint| !own.contains(joint)) {
+        None => Ok(()),
+        Some(&joint) => {
+            let path = &frame.joints[joint].clearance_path;
+            let expected = format!("an axis clearance, or {path}, beside it");
+            let key = format!("{key}.joints");
+            Err(Error::found(key, "joints without clearance", expected))
+        }
+    }
+}
+
+/// Reads every value of a list, and says which one is wrong.
+pub(super) fn each<T>(
+    values: &[Value],
+    read: impl Fn(&Value) -> Result<T, Error>,
+) -> Result<Vec<T>, Error> {
+    let read = |(i, value)| read(value).map_err(|e| e.under(i));
+    values.iter().enumerate().map(read).collect()
 }

@@ -59,12 +59,19 @@ impl OperatingPoint {
     pub(super) fn of(case: &Resolved) -> Self {
         let throws = case.machine.throws.iter();
         Self {
-            speed_rpm: case.speed * 30.0 / std::f64::consts::PI,
+            speed_rpm: rpm(case.speed),
             pressures_pa: throws
                 .map(|throw| [throw.cylinder.suction, throw.cylinder.discharge])
                 .collect(),
         }
     }
+}
+
+/// A speed in rad/s as rev/min, to twelve digits: the way there and back rounds, and who looks for
+/// the cases at 500 rpm must find them.
+pub(super) fn rpm(speed: f64) -> f64 {
+    let rpm = speed * 30.0 / std::f64::consts::PI;
+    format!("{rpm:.11e}").parse().unwrap_or(rpm)
 }
 
 /// A number that stands for the physics of a case: the machine without sensors and names, and how

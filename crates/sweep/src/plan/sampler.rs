@@ -5,6 +5,7 @@ use input::quantity::{Kind, Speed};
 use input::unit::Dimension;
 use serde_json::Value;
 
+use super::case::rpm;
 use crate::distribution::{Distribution, choose};
 use crate::sweep_file::{Amount, Draw, Spread, Values};
 
@@ -147,10 +148,8 @@ pub(super) fn same_dimension(amounts: &[Amount]) -> Result<(), Error> {
 /// An amount as messages show it.
 pub(super) fn text(amount: &Amount) -> String {
     if amount.dimension == Some(Speed::DIMENSION) {
-        // Nobody writes rad/s. Twelve digits, because the way there and back rounds.
-        let rpm = amount.si * 30.0 / std::f64::consts::PI;
-        let rounded: f64 = format!("{rpm:.11e}").parse().unwrap_or(rpm);
-        return format!("{rounded} rpm");
+        // Nobody writes rad/s.
+        return format!("{} rpm", rpm(amount.si));
     }
     match amount.to_value() {
         Value::String(text) => text,

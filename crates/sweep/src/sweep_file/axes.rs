@@ -58,6 +58,20 @@ impl<T> Default for Axes<T> {
     }
 }
 
+impl<T> Axes<T> {
+    /// The values of the axis `joints`, where there is one.
+    pub fn joints(&self) -> Option<&T> {
+        let joints = self.0.iter().find(|(name, _)| name == "joints");
+        joints.map(|(_, values)| values)
+    }
+
+    /// The other axes.
+    pub fn others(&self) -> impl Iterator<Item = (&str, &T)> {
+        let named = self.0.iter().map(|(name, values)| (name.as_str(), values));
+        named.filter(|(name, _)| *name != "joints")
+    }
+}
+
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Axes<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Section<T>(PhantomData<T>);

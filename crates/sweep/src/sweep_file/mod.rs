@@ -63,6 +63,13 @@ pub struct SweepFile {
     pub shard_size: Option<Count<1, 1_000_000>>,
 }
 
+/// The JSON Schema of sweep.yaml, for editors and checks.
+pub fn schema() -> Value {
+    let mut schema = input::schema::of::<SweepFile>();
+    schema["title"] = "sweep.yaml".into();
+    schema
+}
+
 /// How each case is run.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
