@@ -7,12 +7,13 @@ use input::{MachineFile, Resolved};
 use recordings::formats::{csv, parquet};
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use report::case_picture::{CasePicture, ClearJoint};
-use scalar::random::{Purpose, stream};
+use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
 use simulate::{JointTrace, Record, Settings, ThrowTrace, Trace, Transient};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use sweep::Plan;
 
 /// Rows per group of the Parquet file.
 const ROWS_PER_GROUP: usize = 65_536;
@@ -22,10 +23,14 @@ const ROWS_PER_GROUP: usize = 65_536;
 #[command(after_help = "\
 Examples:
   crosshead simulate data/machines/single-stage.yaml --set joints.big_end.clearance='0.2 mm'
-  crosshead simulate machine.yaml --revolutions 5 --sample-rate '50 kHz' --format csv --out run1")]
+  crosshead simulate machine.yaml --revolutions 5 --sample-rate '50 kHz' --format csv --out run1
+  crosshead simulate datasets/paper2/sweep.yaml --case case-000003")]
 pub struct Arguments {
-    /// The machine file
+    /// The machine file, or with --case a sweep file
     machine: PathBuf,
+    /// Simulate this case of a sweep, as its dataset has it
+    #[arg(long, value_name = "CASE_ID", conflicts_with_all = ["set", "revolutions", "transient", "sample_rate", "tolerance", "seed"])]
+    case: Option<String>,
     /// Folder to write into [default: NAME-run, NAME being the machine file's]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -69,11 +74,14 @@ enum Format {
 /// # Errors
 /// A wrong machine file or argument, an integration that fails, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let machine = read_machine(arguments)?;
-    let settings = settings(arguments)?;
+    let (machine, settings, mut noise) = what_to_run(arguments)?;
     let out = arguments.out.clone().unwrap_or_else(|| {
         let stem = arguments.machine.file_stem().unwrap_or_default();
-        PathBuf::from(format!("{}-run", stem.to_string_lossy()))
+        let name = arguments
+            .case
+            .clone()
+            .map_or(stem.to_string_lossy(), Into::into);
+        PathBuf::from(format!("{name}-run"))
     });
     let signals = out.join(match arguments.format {
         Format::Parquet => "signals.parquet",
@@ -90,7 +98,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .iter()
         .map(|t| t.name.as_str())
         .collect();
-    let mut noise = stream(arguments.seed, 0, Purpose::Noise);
     let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
 
     std::fs::create_dir_all(&out).map_err(|e| Failure::input(format!("{}: {e}", out.display())))?;
@@ -108,6 +115,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     summarise(&machine, &record, &channels, &[&signals, &picture]);
     Ok(())
+}
+
+/// The machine, how it is run, and the random numbers of its noise.
+fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Failure> {
+    let Some(id) = &arguments.case else {
+        let noise = stream(arguments.seed, 0, Purpose::Noise);
+        return Ok((read_machine(arguments)?, settings(arguments)?, noise));
+    };
+    let plan = Plan::read(&arguments.machine)?;
+    let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
+    let index = index.filter(|i| *i < plan.cases() && plan.case_id(*i) == *id);
+    let Some(index) = index else {
+        return Err(Failure::input(format!(
+            "--case: found {id}, expected one of {} to {}",
+            plan.case_id(0),
+            plan.case_id(plan.cases() - 1)
+        )));
+    };
+    let case = plan.case(index)?;
+    let noise = case.noise();
+    Ok((case.resolved, case.settings, noise))
 }
 
 fn read_machine(arguments: &Arguments) -> Result<Resolved, Failure> {

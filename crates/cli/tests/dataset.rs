@@ -84,7 +84,15 @@ fn the_bytes_do_not_depend_on_threads_and_the_resolved_sweep_gives_them_again() 
         let out = |name: &str| folder.path().join(format!("{name}-{format}"));
         let run = |sweep: &Path, out: &Path, threads: &str| {
             let (sweep, out) = (sweep.to_str().unwrap(), out.to_str().unwrap());
-            gen_dataset(&[sweep, "--out", out, "--threads", threads, "--format", format]);
+            gen_dataset(&[
+                sweep,
+                "--out",
+                out,
+                "--threads",
+                threads,
+                "--format",
+                format,
+            ]);
         };
         run(&sweep, &out("one"), "1");
         run(&sweep, &out("two"), "2");
@@ -108,7 +116,12 @@ fn a_dry_run_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = write_sweep(folder.path());
     let out = folder.path().join("out");
-    let arguments = [sweep.to_str().unwrap(), "--out", out.to_str().unwrap(), "--dry-run"];
+    let arguments = [
+        sweep.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--dry-run",
+    ];
     let output = gen_dataset(&arguments);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("12 cases, 24 rows, 3 shards"), "{text}");
@@ -128,7 +141,11 @@ fn a_failing_case_is_recorded_and_the_others_go_on() {
       clearance: [0.1 mm, 0.1 mm]
       joints.big_end.contact.stiffness: [24 GN/m^1.5, 1e40 GN/m^1.5]
 ";
-    std::fs::write(&sweep, format!("{head}{cases}").replace("repeats: 2", "repeats: 1")).unwrap();
+    std::fs::write(
+        &sweep,
+        format!("{head}{cases}").replace("repeats: 2", "repeats: 1"),
+    )
+    .unwrap();
     let out = folder.path().join("out");
     let output = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
         .args([&sweep, Path::new("--out"), &out])

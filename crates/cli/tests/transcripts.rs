@@ -4,7 +4,5 @@
 
 #[test]
 fn transcripts() {
-    trycmd::TestCases::new()
-        .case("../../tests/cli/*.md")
-        .run();
+    trycmd::TestCases::new().case("../../tests/cli/*.md").run();
 }

@@ -142,12 +142,15 @@ fn to_mcap(
             samples: &channel.samples,
         })
         .collect();
+    let sample_rate_hz = recording.sample_rate_hz;
+    let mut labels = labels(plan, case);
+    labels.insert("sample_rate_hz".to_owned(), sample_rate_hz.to_string());
     Ok(mcap::write(
         Vec::new(),
         &mcap::Recording {
-            sample_rate_hz: recording.sample_rate_hz,
+            sample_rate_hz,
             channels: &channels,
-            labels: &labels(plan, case),
+            labels: &labels,
             sweep_yaml,
         },
     )?)

@@ -1,7 +1,7 @@
 //! One case of a sweep.
 
 use input::Resolved;
-use scalar::random::{Purpose, stream};
+use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use simulate::Settings;
@@ -41,7 +41,7 @@ pub struct Case {
 
 impl Case {
     /// The stream of random numbers for the noise of this case's sensors.
-    pub fn noise(&self) -> impl rand::Rng + use<> {
+    pub fn noise(&self) -> Stream {
         stream(self.seed, self.index, Purpose::Noise)
     }
 }

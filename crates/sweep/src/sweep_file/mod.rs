@@ -124,11 +124,6 @@ pub struct Splits {
     pub test: Option<Quantity<Ratio, Part>>,
 }
 
-/// The JSON Schema of sweep files, for editors and checks.
-pub fn schema() -> Value {
-    input::schema::of::<SweepFile>()
-}
-
 impl Splits {
     /// Train, validation, test, each from 0 to 1.
     pub fn shares(&self) -> [f64; 3] {
