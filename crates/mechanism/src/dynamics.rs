@@ -162,7 +162,8 @@ impl<S: Scalar> Dynamics<S> {
         &self.mode
     }
 
-    pub(crate) fn mode_mut(&mut self) -> &mut Mode<S> {
+    /// The present mode, to be changed: whoever steps lanes puts each lane into its own.
+    pub fn mode_mut(&mut self) -> &mut Mode<S> {
         &mut self.mode
     }
 

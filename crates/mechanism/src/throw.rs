@@ -139,7 +139,7 @@ pub(crate) fn following_target<S: Scalar>(joint: &JointState<S>) -> S {
         .offset
         .dot(&joint.offset)
         .sqrt()
-        .max(S::constant(1e-300));
+        .max(S::constant(1e-30));
     -(tangent * tangent) / distance
         - joint.penetration_rate * (2.0 * STABILISATION)
         - joint.penetration * (STABILISATION * STABILISATION)

@@ -148,8 +148,9 @@ impl<S: Scalar> Clearance<S> {
     ) -> JointState<S> {
         let distance = offset.dot(&offset).sqrt();
         // A centred journal has no direction; any will do, as nothing acts there.
-        let safe = distance.max(S::constant(1e-300));
-        let normal = offset / safe;
+        let least = S::constant(1e-300);
+        let x = S::select(distance.lt(least), least, offset.x);
+        let normal = Vec2::new(x, offset.y) / distance.max(least);
         let tangent = turned(normal);
         let penetration = distance - self.clearance;
         let penetration_rate = normal.dot(&rate);

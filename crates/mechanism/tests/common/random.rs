@@ -13,6 +13,16 @@ use mechanism::{Direction, Dynamics, Machine, Throw};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
+/// Every model of a joint.
+pub const MODELS: &[JointModel] = &[
+    JointModel::ThreeMode,
+    JointModel::TwoMode,
+    JointModel::MasslessLink,
+];
+
+/// How many random numbers in [-1, 1] a random state wants.
+pub const SEEDS: usize = 23;
+
 /// So many cases, the same in every run.
 pub fn cases(number: u32) -> ProptestConfig {
     ProptestConfig {
@@ -201,4 +211,38 @@ pub fn settle(dynamics: &mut Dynamics<f64>, t: f64, y: &mut [f64]) {
             }
         }
     }
+}
+
+/// A state with offsets up to 1.2 clearances and rates up to 0.3 m/s.
+pub fn random_state(dynamics: &Dynamics<f64>, seeds: &[f64]) -> Vec<f64> {
+    let machine = dynamics.machine();
+    let mut y = dynamics.initial_state();
+    let mut next = seeds.iter().copied().cycle();
+    let mut one = || next.next().unwrap();
+    let mut place = |at: Option<usize>, sizes: [f64; 2]| {
+        if let Some(i) = at {
+            for (j, size) in sizes.into_iter().enumerate() {
+                y[i + j] = 1.2 * size * one();
+                y[i + 2 + j] = 0.3 * size / sizes[0] * one();
+            }
+        }
+    };
+    let clearance = |joint: &Revolute| joint.clear().map_or(0.0, |c| c.clearance);
+    let layout = dynamics.layout();
+    place(layout.main, [clearance(&machine.main); 2]);
+    for (throw, at) in machine.throws.iter().zip(&layout.throws) {
+        place(at.big_end, [clearance(&throw.big_end); 2]);
+        place(at.small_end, [clearance(&throw.small_end); 2]);
+        if let Guide::Clear(guide) = &throw.guide {
+            place(
+                at.guide,
+                [guide.clearance, guide.clearance / guide.half_length],
+            );
+        }
+    }
+    if let (Some(i), Drive::Free(_)) = (layout.crank, &machine.drive) {
+        y[i] = one();
+        y[i + 1] = one();
+    }
+    y
 }
