@@ -50,7 +50,7 @@ pub struct Arguments {
     #[arg(long, default_value = "10 kHz")]
     sample_rate: String,
     /// Relative local error of the integration
-    #[arg(long, default_value_t = 1e-9)]
+    #[arg(long, default_value = "1e-9")]
     tolerance: f64,
     /// Seed of the sensors' noise
     #[arg(long, default_value_t = 0)]

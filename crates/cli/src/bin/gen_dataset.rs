@@ -9,7 +9,11 @@ fn main() -> ExitCode {
 
 /// Simulate a sweep of cases and write a labelled dataset
 #[derive(Parser)]
-#[command(name = "gen-dataset", version, about)]
+#[command(
+    name = "gen-dataset",
+    version,
+    about = "Simulate a sweep of cases and write a labelled dataset"
+)]
 struct Program {
     #[command(flatten)]
     arguments: cli::gen_dataset::Arguments,
