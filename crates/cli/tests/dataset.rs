@@ -161,3 +161,71 @@ fn a_failing_case_is_recorded_and_the_others_go_on() {
     assert!(reason.contains("t = "), "{reason}");
     assert_eq!(manifest["counts"]["cases"], 2);
 }
+
+#[test]
+fn an_interrupted_dataset_is_resumed_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    std::fs::write(&sweep, text.replace("count: 6", "count: 60")).unwrap();
+    let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
+    let (sweep, out) = (sweep.to_str().unwrap(), broken.to_str().unwrap());
+    gen_dataset(&[sweep, "--out", whole.to_str().unwrap()]);
+
+    let mut child = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
+        .args([sweep, "--out", out, "--threads", "1"])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let commits = broken.join("_sweep/commits");
+    let committed = || std::fs::read_dir(&commits).map_or(0, Iterator::count);
+    while committed() == 0 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let interrupt = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(interrupt.success());
+    let output = child.wait_with_output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("--resume goes on from there"), "{message}");
+    assert!(!broken.join("manifest.json").exists());
+
+    gen_dataset(&[sweep, "--out", out, "--resume"]);
+    assert!(
+        bytes(&whole) == bytes(&broken),
+        "other bytes after the resumption"
+    );
+}
+
+#[test]
+fn a_full_disk_leaves_no_half_written_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let out = folder.path().join("out");
+    // A limit on the size of files, in kilobytes: what the system refuses is a write, as on a full
+    // disk. The signal that comes with it is ignored.
+    let script = "trap '' XFSZ; ulimit -f 100; exec \"$@\"";
+    let output = Command::new("bash")
+        .args(["-c", script, "bash", env!("CARGO_BIN_EXE_gen-dataset")])
+        .args([&sweep, Path::new("--out"), &out])
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    let left = bytes(&out);
+    assert!(!left.contains_key("manifest.json"));
+    for (name, content) in &left {
+        assert!(name.ends_with(".parquet"), "{name}");
+        assert!(content.ends_with(b"PAR1"), "{name} is half written");
+    }
+    // With room again, it goes on from there.
+    let again = folder.path().join("again");
+    let (sweep, again) = (sweep.to_str().unwrap(), again.to_str().unwrap());
+    gen_dataset(&[sweep, "--out", out.to_str().unwrap(), "--resume"]);
+    gen_dataset(&[sweep, "--out", again]);
+    assert!(bytes(&out) == bytes(Path::new(again)));
+}
