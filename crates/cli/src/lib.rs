@@ -1,1 +1,14 @@
-//! The verbs of the command line, one file each.
+//! The programs `gen-dataset` and `crosshead`: parse, one call, one message.
+//!
+//! Every verb is a file here: its arguments as a struct, and a `run` that calls the libraries.
+//! Results go to files, summaries to standard output, progress and the one message of a failure to
+//! standard error. Exit status: 0 done, 1 the work failed, 2 the input or the arguments are wrong.
+#![allow(clippy::print_stdout)]
+
+pub mod failure;
+pub mod gen_dataset;
+
+pub mod schema;
+pub mod simulate;
+
+pub use failure::{Failure, finish};

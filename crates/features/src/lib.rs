@@ -1,1 +1,198 @@
 //! Signals summed up as one row of named numbers.
+//!
+//! [`definitions`] says which columns a recording's channels give, [`features`] their values for
+//! a window of it, in the same order. Both read one table, so that a name, its unit, its
+//! documentation and its value cannot part. A feature that has no value says why ([`Reason`]);
+//! none is ever NaN or infinite.
+//!
+//! | channel | features |
+//! |---|---|
+//! | all but the crank angle | statistics of the samples |
+//! | accelerations (m/s^2), pressures (Pa) | orders 1 to 20 of the shaft |
+//! | accelerations | frequency bands, velocity-acceleration portrait |
+//!
+//! A new feature is a function where its signal processing lives, and a line in the table.
+
+mod reason;
+mod spectral;
+mod statistics;
+mod table;
+
+pub use reason::Reason;
+
+use signal::channel::Channel;
+use signal::phase_portrait::PhasePortrait;
+use statistics::Statistics;
+use std::cell::LazyCell;
+use table::{Line, Unit, Value};
+
+/// What one column of a features table holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Definition {
+    /// Column name: the channel without its unit, a point, the feature, and the unit if it has
+    /// one: `crosshead_acceleration.order_03_m_s2`.
+    pub name: String,
+    /// The unit written out, `m/s^2`; `1` for a pure number.
+    pub unit: String,
+    /// What it is, in a sentence.
+    pub description: String,
+    /// How it is computed, x being the samples.
+    pub formula: &'static str,
+    /// Where it is defined.
+    pub source: &'static str,
+}
+
+/// A stretch of a recording that is summed up as one row.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'a> {
+    /// Sample rate, Hz.
+    pub sample_rate: f64,
+    /// Mean speed of the shaft, rpm. Used where there is no crank angle.
+    pub speed_rpm: f64,
+    /// Crank angle of each sample in [0, 2π), rad. Without one the speed is taken as constant.
+    pub crank_angle: Option<&'a [f32]>,
+    /// The channels, all as long as the crank angle. One named `crank_angle_rad` is passed over.
+    pub channels: &'a [Channel],
+}
+
+/// The columns that channels give, from their names and units.
+pub fn definitions<'a>(channels: impl IntoIterator<Item = (&'a str, &'a str)>) -> Vec<Definition> {
+    let measured = channels.into_iter().filter(|(name, _)| has_features(name));
+    measured
+        .flat_map(|(name, unit)| table::lines(unit).map(move |line| definition(name, unit, line)))
+        .collect()
+}
+
+/// The features of a window, in the order of [`definitions`] of its channels: for each the value,
+/// or why it has none.
+pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
+    let grid = LazyCell::new(|| spectral::angle_grid(window));
+    let mut row = Vec::new();
+    for channel in window.channels.iter().filter(|c| has_features(&c.name)) {
+        let lines = table::lines(&channel.unit);
+        let x: Vec<f64> = channel.samples.iter().map(|x| f64::from(*x)).collect();
+        let statistics = match Statistics::new(&x) {
+            Ok(statistics) => statistics,
+            Err(reason) => {
+                row.extend(lines.map(|_| Err(reason.clone())));
+                continue;
+            }
+        };
+        // Each analysis is made when the first line asks for it.
+        let bands = LazyCell::new(|| spectral::bands(&x, window.sample_rate));
+        let revolutions = LazyCell::new(|| Ok(held(&grid)?.resample(&x)?));
+        let orders = LazyCell::new(|| spectral::Orders::new(held(&revolutions)?, held(&grid)?));
+        let portrait = LazyCell::new(|| {
+            let (revolutions, grid) = (held(&revolutions)?, held(&grid)?);
+            Ok(PhasePortrait::new(revolutions, grid, window.sample_rate)?)
+        });
+        row.extend(lines.map(|line| match line.value {
+            Value::Statistic(value) => value(&statistics),
+            // What is left of a constant after filtering is rounding.
+            _ if statistics.is_constant() => Err(Reason::Constant),
+            Value::Band(index) => spectral::band(held(&bands)?, index, window.sample_rate),
+            Value::Order(order) => held(&orders)?.of_mean(order),
+            Value::OrderRms(order) => held(&orders)?.rms(order),
+            Value::Portrait(value) => Ok(value(held(&portrait)?)?),
+        }));
+    }
+    row
+}
+
+/// The result of an analysis, or a copy of the reason why there is none.
+fn held<T>(analysis: &Result<T, Reason>) -> Result<&T, Reason> {
+    analysis.as_ref().map_err(Reason::clone)
+}
+
+fn has_features(channel: &str) -> bool {
+    channel != "crank_angle_rad"
+}
+
+fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
+    let unit = match line.unit {
+        Unit::OfChannel => channel_unit,
+        Unit::Pure => "1",
+        Unit::Of(unit) => unit,
+    };
+    let stem = channel
+        .strip_suffix(&ending(channel_unit))
+        .unwrap_or(channel);
+    Definition {
+        name: format!("{stem}.{}{}", line.name, ending(unit)),
+        unit: unit.to_owned(),
+        description: line.description.clone(),
+        formula: line.formula,
+        source: line.source,
+    }
+}
+
+/// How a column name ends for a unit: `_m_s2` for `m/s^2`, nothing for a pure number.
+fn ending(unit: &str) -> String {
+    if unit.is_empty() || unit == "1" {
+        return String::new();
+    }
+    let letters = unit.chars().filter(|c| *c != '^').map(|c| match c {
+        '/' | ' ' => '_',
+        c => c.to_ascii_lowercase(),
+    });
+    std::iter::once('_').chain(letters).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn column_names_end_in_their_unit() {
+        let channels = [
+            ("crank_angle_rad", "rad"),
+            ("throw1.crosshead_acceleration_m_s2", "m/s^2"),
+            ("cylinder_pressure_pa", "Pa"),
+            ("torque_n_m", "N m"),
+            ("Kanal 3", "V"),
+        ];
+        let definitions = definitions(channels);
+        assert_eq!(definitions.len(), 63 + 50 + 10 + 10);
+        let unit_of = |name: &str| {
+            let found = definitions.iter().find(|d| d.name == name);
+            found
+                .unwrap_or_else(|| panic!("no column {name}"))
+                .unit
+                .as_str()
+        };
+        assert_eq!(unit_of("throw1.crosshead_acceleration.rms_m_s2"), "m/s^2");
+        assert_eq!(unit_of("throw1.crosshead_acceleration.kurtosis"), "1");
+        assert_eq!(
+            unit_of("throw1.crosshead_acceleration.order_03_m_s2"),
+            "m/s^2"
+        );
+        assert_eq!(
+            unit_of("throw1.crosshead_acceleration.band_0020_0040_m2_s4"),
+            "m^2/s^4"
+        );
+        assert_eq!(
+            unit_of("throw1.crosshead_acceleration.band_2560_up_m2_s4"),
+            "m^2/s^4"
+        );
+        assert_eq!(
+            unit_of("throw1.crosshead_acceleration.portrait_area_m2_s3"),
+            "m^2/s^3"
+        );
+        assert_eq!(unit_of("cylinder_pressure.mean_pa"), "Pa");
+        assert_eq!(unit_of("cylinder_pressure.order_20_rms_pa"), "Pa");
+        assert_eq!(unit_of("torque.peak_n_m"), "N m");
+        assert_eq!(unit_of("Kanal 3.skewness"), "1");
+    }
+
+    #[test]
+    fn every_name_is_there_once() {
+        let mut names: Vec<String> = definitions([("a_m_s2", "m/s^2"), ("p_pa", "Pa")])
+            .into_iter()
+            .map(|d| d.name)
+            .collect();
+        let count = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), count);
+    }
+}

@@ -1,1 +1,23 @@
 //! The files that people write: quantities with units, machine.yaml, their errors and schemas.
+//!
+//! A file is read in three steps, and a sweep joins at the second:
+//!
+//! ```text
+//! text ──yaml──> tree of keys and values ──reader──> sections with units ──resolve──> Machine (SI)
+//!                  (knows its lines)       (knows its paths)     (checks what must go together)
+//! ```
+//!
+//! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected.
+
+pub mod choice;
+pub mod error;
+pub mod machine_file;
+pub mod paths;
+pub mod quantity;
+mod reader;
+pub mod schema;
+pub mod unit;
+pub mod yaml;
+
+pub use error::{Error, Place, Problem, nearest};
+pub use machine_file::{MachineFile, NormalClearance, Resolved, ThrowNormalClearance};

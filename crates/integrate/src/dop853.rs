@@ -126,13 +126,13 @@ impl<S: Scalar> Step<S> {
     pub fn interpolate(&self, share: S, out: &mut [S]) {
         let n = self.dimension();
         let rest = S::one() - share;
-        for j in 0..n {
+        for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
             let mut sum = S::zero();
             for i in (0..PIECES).rev() {
                 let factor = if i % 2 == 0 { share } else { rest };
                 sum = (sum + self.pieces[i * n + j]) * factor;
             }
-            out[j] = self.from[j] + sum;
+            *out = *from + sum;
         }
     }
 }

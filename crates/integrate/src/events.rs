@@ -46,8 +46,8 @@ impl<S: Real> Finder<S> {
         if self.guards.is_empty() {
             return None;
         }
-        for i in 0..LOOKS.len() {
-            self.look(system, step, LOOKS[i]);
+        for (i, share) in LOOKS.into_iter().enumerate() {
+            self.look(system, step, share);
             for (seen, guard) in self.looks[i].iter_mut().zip(&self.guards) {
                 *seen = guard.value();
             }

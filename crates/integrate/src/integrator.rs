@@ -15,6 +15,18 @@ pub enum Error {
         /// Length of the last step tried, s.
         step: f64,
     },
+    /// The tolerance asks for more steps than any run can afford.
+    #[error(
+        "the tolerance cannot be met at t = {time} s: {steps} steps led no further than {span:.3e} s"
+    )]
+    TooManySteps {
+        /// Time reached, s.
+        time: f64,
+        /// Steps taken.
+        steps: u64,
+        /// Time that they covered, s.
+        span: f64,
+    },
     /// The switches follow each other without time passing.
     #[error("guard {guard} switches without end at t = {time} s")]
     Chatter {
@@ -54,6 +66,9 @@ pub struct Integrator<S> {
 /// integration gives up.
 const CALM: u32 = 3;
 const CHATTER: u32 = 50;
+/// Steps, accepted or not, that one longest step's time may take on average, beside as many to
+/// begin with. A run at 1e-12 needs some hundred.
+const BUDGET: f64 = 50_000.0;
 
 impl<S: Real> Integrator<S> {
     /// Starts at `(t, y)`. Steps keep the local error below `tolerance` times the larger of a
@@ -113,7 +128,14 @@ impl<S: Real> Integrator<S> {
         end: f64,
         mut observe: impl FnMut(&mut T, &Step<S>),
     ) -> Result<(), Error> {
+        let (from, before) = (self.time(), self.work);
         while self.time() < end {
+            let span = self.time() - from;
+            let steps = self.work.accepted + self.work.rejected - before.accepted - before.rejected;
+            if steps as f64 > BUDGET * (1.0 + span / self.longest) {
+                let time = self.time();
+                return Err(Error::TooManySteps { time, steps, span });
+            }
             let remaining = end - self.time();
             let mut length = self.length.min(self.longest);
             // Never leave a last step too short to be told from none.

@@ -17,5 +17,5 @@ mod system;
 mod tableau;
 
 pub use dop853::Step;
-pub use integrator::{Error, Integrator};
+pub use integrator::{Error, Integrator, Work};
 pub use system::{Real, System};

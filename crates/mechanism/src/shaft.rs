@@ -97,11 +97,14 @@ impl<S: Scalar> Shaft<S> {
     ) -> ShaftMotion<S> {
         let (zero, one) = (S::zero(), S::one());
         // With the speed given θ̈ = 0 and the moment equation yields the torque.
-        let free = if torque.is_some() { one } else { zero };
+        let give = match torque {
+            Some(_) => one / self.inertia,
+            None => zero,
+        };
         let drive = torque.unwrap_or(zero);
         let clear = match main {
             Revolute::Ideal => {
-                let angular = free * (self.moment + drive) / self.inertia;
+                let angular = give * (self.moment + drive);
                 let bearing_force = self.coupling[1] * angular - self.force;
                 return ShaftMotion {
                     angular,
@@ -114,8 +117,7 @@ impl<S: Scalar> Shaft<S> {
             Revolute::Clear(clear) => clear,
         };
         let contact_moment = moment(joint.arm, joint.force);
-        // Eliminate θ̈ = free (moment + drive − coupling·Ö + ...) / inertia.
-        let give = free / self.inertia;
+        // Eliminate θ̈ = give (moment + drive − coupling·Ö + ...).
         let condensed = self.mass - outer(self.coupling[1], self.coupling[0]) * give;
         let answer = inverse(&condensed);
         let centre_for = |force: Vec2<S>, moment: S| {

@@ -1,1 +1,27 @@
 //! Figures and self-contained pages from plain structs.
+//!
+//! - [`figure`]: panels with lines, points and areas as SVG;
+//! - [`case_picture`]: the picture of one simulated case;
+//! - [`dataset_page`]: the HTML page of a dataset;
+//! - [`text`]: numbers with units, words, escaping.
+//!
+//! Structs go in, text comes out: nothing here reads or writes a file, and the same structs always
+//! give the same bytes. Pages load nothing from anywhere.
+//!
+//! The figures are drawn by a module of our own. Of the plotting crates, kuva 0.6 was tried: its
+//! grids hide the tick labels of panels that then do not have the common range, equal axes come
+//! out lopsided, angles get ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
+
+pub mod case_picture;
+pub mod dataset_page;
+pub mod figure;
+mod revolutions;
+pub mod text;
+
+/// What can go wrong in making a page.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The template could not be filled in.
+    #[error("the page could not be written: {0}")]
+    Template(#[from] askama::Error),
+}

@@ -73,6 +73,7 @@ impl<S: Scalar, const N: usize> Sub for Dual<S, N> {
 
 impl<S: Scalar, const N: usize> Mul for Dual<S, N> {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule")]
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.value, other.value);
@@ -82,6 +83,7 @@ impl<S: Scalar, const N: usize> Mul for Dual<S, N> {
 
 impl<S: Scalar, const N: usize> Div for Dual<S, N> {
     type Output = Self;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "the quotient rule")]
     #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;

@@ -7,6 +7,9 @@
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
+/// A stream of random numbers.
+pub type Stream = ChaCha8Rng;
+
 /// What a stream of a case is drawn for; another purpose never shifts the numbers of this one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
@@ -21,7 +24,7 @@ pub enum Purpose {
 }
 
 /// The stream of `purpose` for case (or group) `index` of the sweep with this `seed`.
-pub fn stream(seed: u64, index: u64, purpose: Purpose) -> ChaCha8Rng {
+pub fn stream(seed: u64, index: u64, purpose: Purpose) -> Stream {
     let mut key = [0_u8; 32];
     key[..8].copy_from_slice(&seed.to_le_bytes());
     key[8] = purpose as u8;

@@ -1,9 +1,20 @@
-//! A machine at an operating point becomes a run: transient, sensors, energy ledger.
+//! A machine at an operating point becomes a run.
+//!
+//! [`simulate`](simulate()) integrates the machine past its transient and records what its sensors
+//! see, anti-aliased, without noise. [`measure`](measure()) is the rest of the measuring chain:
+//! noise, range, resolution. The two are apart because repeated measurements of one run differ in
+//! noise alone.
 
+pub mod measure;
+pub mod record;
 pub mod sensor;
 pub mod settings;
+pub mod trace;
 
+pub use measure::measure;
+pub use record::{Error, Record, simulate};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
 pub use settings::{Settings, Transient};
+pub use trace::{JointTrace, ThrowTrace, Trace};

@@ -1,1 +1,18 @@
 //! sweep.yaml becomes cases, shards and a committed dataset.
+
+pub mod dataset;
+pub mod design;
+pub mod distribution;
+mod error;
+pub mod in_order;
+pub mod labels;
+mod normal;
+pub mod plan;
+mod runner;
+pub mod split;
+pub mod sweep_file;
+
+pub use dataset::{Existing, Options, Progress, Recording, Runner, finalize, generate, run_shards};
+pub use error::Error;
+pub use plan::{Case, Estimate, Plan};
+pub use runner::simulate_case;

@@ -1,1 +1,30 @@
-fn main() {}
+//! `crosshead`: everything beside the main job, which it has as a subcommand too.
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Labelled recordings of reciprocating compressors with worn bearings.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Simulate a sweep of cases and write a labelled dataset (the same as the program gen-dataset)
+    GenDataset(cli::gen_dataset::Arguments),
+    /// Simulate one run of a machine: signals and a picture
+    Simulate(cli::simulate::Arguments),
+    /// Print the JSON Schema of a file, for editors and checks
+    Schema(cli::schema::Arguments),
+}
+
+fn main() -> ExitCode {
+    cli::finish(match Arguments::parse().verb {
+        Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
+        Verb::Simulate(arguments) => cli::simulate::run(&arguments),
+        Verb::Schema(arguments) => cli::schema::run(&arguments),
+    })
+}

@@ -1,0 +1,47 @@
+//! How a verb fails, and what the shell sees of it.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Why a verb stopped; the text is the one message that is printed.
+#[derive(Debug)]
+pub enum Failure {
+    /// The input or the arguments are wrong; nothing was written. Exit status 2.
+    Input(String),
+    /// The work failed. Exit status 1.
+    Work(String),
+}
+
+impl Failure {
+    /// Wrong input.
+    pub fn input(message: impl ToString) -> Self {
+        Self::Input(message.to_string())
+    }
+
+    /// Failed work.
+    pub fn work(message: impl ToString) -> Self {
+        Self::Work(message.to_string())
+    }
+
+    /// A file of the output that could not be written.
+    pub fn unwritten(path: &Path, error: impl ToString) -> Self {
+        Self::Work(format!("{}: {}", path.display(), error.to_string()))
+    }
+}
+
+impl From<input::Error> for Failure {
+    fn from(error: input::Error) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Prints the message of a failure and tells the shell.
+pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
+    let (message, status) = match outcome {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Input(message)) => (message, 2),
+        Err(Failure::Work(message)) => (message, 1),
+    };
+    eprintln!("error: {message}");
+    ExitCode::from(status)
+}

@@ -1,0 +1,210 @@
+//! `gen-dataset`: a sweep becomes a labelled dataset.
+
+use crate::Failure;
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use recordings::Manifest;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use sweep::dataset::{Existing, Options, Progress, generate};
+use sweep::sweep_file::Format;
+use sweep::{Plan, simulate_case};
+
+/// Cases that `--dry-run` simulates to measure the time.
+const SAMPLE_CASES: u64 = 3;
+
+/// Arguments of `gen-dataset`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  gen-dataset pipelines/paper2.yaml
+  gen-dataset pipelines/bearing-faults.yaml --out faults --threads 8
+  gen-dataset pipelines/bearing-faults.yaml --out faults --resume
+  gen-dataset pipelines/bearing-faults.yaml --dry-run
+
+Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// The sweep file
+    sweep: PathBuf,
+    /// Folder of the dataset [default: datasets/NAME, NAME being the sweep's]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Format of the recordings, instead of the sweep's own
+    #[arg(long, value_enum)]
+    format: Option<FormatArgument>,
+    /// Threads that simulate [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Go on with a dataset that was interrupted
+    #[arg(long, conflicts_with = "overwrite")]
+    resume: bool,
+    /// Replace a dataset that is there
+    #[arg(long)]
+    overwrite: bool,
+    /// Tell what would be made, from a measured sample, and write nothing
+    #[arg(long)]
+    dry_run: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum FormatArgument {
+    /// Parquet tables, one row per window
+    Parquet,
+    /// One MCAP file per case
+    Mcap,
+}
+
+/// Writes the dataset.
+///
+/// # Errors
+/// Wrong input, an output that cannot be written, or cases that failed (the others are there).
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut plan = Plan::read(&arguments.sweep)?;
+    if let Some(format) = arguments.format {
+        plan = plan.with_format(match format {
+            FormatArgument::Parquet => Format::Parquet,
+            FormatArgument::Mcap => Format::Mcap,
+        });
+    }
+    if arguments.dry_run {
+        return dry_run(&plan);
+    }
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("datasets").join(&plan.name));
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    // A second Ctrl-C while the first is being obeyed changes nothing: finished shards are safe.
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let existing = match (arguments.resume, arguments.overwrite) {
+        (true, _) => Existing::Resume,
+        (_, true) => Existing::Overwrite,
+        _ => Existing::Refuse,
+    };
+    let threads = arguments.threads.map_or_else(
+        || std::thread::available_parallelism().map_or(1, Into::into),
+        usize::from,
+    );
+    let options = Options {
+        existing,
+        threads,
+        cancel: &cancel,
+    };
+    let started = Instant::now();
+    let mut bar = Bar::default();
+    let manifest = generate(&plan, &out, &options, &simulate_case, &mut bar)
+        .map_err(|error| failure(arguments, error))?;
+    bar.finish();
+    summarise(&manifest, &out, started.elapsed().as_secs_f64());
+    failures(&manifest)
+}
+
+fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
+    match error {
+        sweep::Error::TooManyCases { .. } => {
+            Failure::input(format!("{}: cases: {error}", arguments.sweep.display()))
+        }
+        error if error.is_input() => Failure::input(error),
+        error => Failure::work(error),
+    }
+}
+
+/// The bar on standard error: rate and time left; nothing where that is no terminal.
+#[derive(Default)]
+struct Bar {
+    bar: Option<ProgressBar>,
+    failed: u64,
+}
+
+impl Progress for Bar {
+    fn begins(&mut self, cases: u64, finished: u64) {
+        let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr());
+        let template = "{bar:40} {pos}/{len} cases  {per_sec}  {eta} left  {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        bar.set_position(finished);
+        bar.reset_eta();
+        self.bar = Some(bar);
+    }
+
+    fn case_done(&mut self, _case: u64, failed: bool) {
+        let Some(bar) = &self.bar else { return };
+        bar.inc(1);
+        if failed {
+            self.failed += 1;
+            bar.set_message(format!("{} failed", self.failed));
+        }
+    }
+}
+
+impl Bar {
+    fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
+    let bytes: u64 = manifest.files.iter().map(|file| file.bytes).sum();
+    let rows: u64 = manifest
+        .counts
+        .rows
+        .values()
+        .flat_map(|of| of.values())
+        .sum();
+    println!(
+        "{}: {} cases, {rows} rows, {} files, {:.1} MB in {seconds:.1} s",
+        out.display(),
+        manifest.counts.cases,
+        manifest.files.len() + 1,
+        bytes as f64 / 1e6
+    );
+}
+
+fn failures(manifest: &Manifest) -> Result<(), Failure> {
+    let failed = &manifest.failed;
+    let Some(first) = failed.first() else {
+        return Ok(());
+    };
+    Err(Failure::work(format!(
+        "{} of {} cases failed; the manifest has all of them. The first: {}: {}\n  again: {}",
+        manifest.counts.failed, manifest.counts.cases, first.case_id, first.reason, first.command
+    )))
+}
+
+/// Says how large the dataset will be and how long it will take, from a few simulated cases.
+fn dry_run(plan: &Plan) -> Result<(), Failure> {
+    let estimate = plan.estimate();
+    println!(
+        "{}: {} cases, {} rows, {} shards, {:.0} revolutions to simulate",
+        plan.name, estimate.cases, estimate.rows, estimate.shards, estimate.revolutions
+    );
+    println!(
+        "recordings before compression: {:.1} MB",
+        estimate.bytes / 1e6
+    );
+    let sample = estimate.cases.min(SAMPLE_CASES);
+    let started = Instant::now();
+    for i in 0..sample {
+        let case = plan.case(i * (estimate.cases / sample))?;
+        simulate_case(&case).map_err(|e| Failure::work(format!("{}: {e}", case.id)))?;
+    }
+    let each = started.elapsed().as_secs_f64() / sample as f64;
+    println!(
+        "time: {:.0} s on one core, measured on {sample} cases ({:.2} s each)",
+        each * estimate.cases as f64,
+        each
+    );
+    if estimate.cases > sweep::plan::MOST_CASES {
+        println!(
+            "a dataset can have at most {} cases: this sweep will be refused",
+            sweep::plan::MOST_CASES
+        );
+    }
+    Ok(())
+}

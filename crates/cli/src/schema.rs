@@ -1,0 +1,34 @@
+//! `crosshead schema`: the JSON Schema of a file that people write.
+
+use crate::Failure;
+use clap::{Args, ValueEnum};
+
+/// Arguments of `crosshead schema`.
+#[derive(Args, Debug)]
+#[command(after_help = "Example:\n  crosshead schema machine > machine.schema.json")]
+pub struct Arguments {
+    /// Which file
+    file: File,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum File {
+    /// machine.yaml: a compressor
+    Machine,
+    /// sweep.yaml: the cases of a dataset
+    Sweep,
+}
+
+/// Prints the schema.
+///
+/// # Errors
+/// None in practice: a schema is always writable as JSON.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let schema = match arguments.file {
+        File::Machine => input::schema::machine_schema(),
+        File::Sweep => sweep::sweep_file::schema(),
+    };
+    let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
+    println!("{text}");
+    Ok(())
+}

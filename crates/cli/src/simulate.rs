@@ -1,0 +1,359 @@
+//! `crosshead simulate`: one run of a machine, its signals and a picture.
+
+use crate::Failure;
+use clap::{Args, ValueEnum};
+use input::quantity::{AboveZero, Frequency, Quantity};
+use input::{MachineFile, Resolved};
+use recordings::formats::{csv, parquet};
+use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
+use report::case_picture::{CasePicture, ClearJoint};
+use scalar::random::{Purpose, Stream, stream};
+use serde_json::Value;
+use signal::channel::Channel;
+use simulate::{JointTrace, Record, Settings, ThrowTrace, Trace, Transient};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use sweep::Plan;
+
+/// Rows per group of the Parquet file.
+const ROWS_PER_GROUP: usize = 65_536;
+
+/// Arguments of `crosshead simulate`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  crosshead simulate data/machines/single-stage.yaml --set joints.big_end.clearance='0.2 mm'
+  crosshead simulate machine.yaml --revolutions 5 --sample-rate '50 kHz' --format csv --out run1
+  crosshead simulate datasets/paper2/sweep.yaml --case case-000003")]
+pub struct Arguments {
+    /// The machine file, or with --case a sweep file
+    machine: PathBuf,
+    /// Simulate this case of a sweep, as its dataset has it
+    #[arg(long, value_name = "CASE_ID", conflicts_with_all = ["set", "revolutions", "transient", "sample_rate", "tolerance", "seed"])]
+    case: Option<String>,
+    /// Folder to write into [default: NAME-run, NAME being the machine file's]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Format of the signals
+    #[arg(long, value_enum, default_value_t = Format::Parquet)]
+    format: Format,
+    /// Change a value of the machine file; may be repeated
+    #[arg(long, value_name = "PATH=VALUE")]
+    set: Vec<String>,
+    /// Revolutions to record
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    revolutions: u32,
+    /// Revolutions to leave out before
+    #[arg(long, default_value_t = 10)]
+    transient: u32,
+    /// Sample rate of the recording
+    #[arg(long, default_value = "10 kHz")]
+    sample_rate: String,
+    /// Relative local error of the integration
+    #[arg(long, default_value = "1e-9")]
+    tolerance: f64,
+    /// Seed of the sensors' noise
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Also write the motion itself, as no sensor sees it
+    #[arg(long)]
+    trace: bool,
+    /// Replace the files of an earlier run
+    #[arg(long)]
+    overwrite: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Parquet,
+    Csv,
+}
+
+/// Runs the machine and writes `signals.parquet` (or `.csv`) and `picture.svg`.
+///
+/// # Errors
+/// A wrong machine file or argument, an integration that fails, or files that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (machine, settings, mut noise) = what_to_run(arguments)?;
+    let out = arguments.out.clone().unwrap_or_else(|| {
+        let stem = arguments.machine.file_stem().unwrap_or_default();
+        let name = arguments
+            .case
+            .clone()
+            .map_or(stem.to_string_lossy(), Into::into);
+        PathBuf::from(format!("{name}-run"))
+    });
+    let signals = out.join(match arguments.format {
+        Format::Parquet => "signals.parquet",
+        Format::Csv => "signals.csv",
+    });
+    let picture = out.join("picture.svg");
+    refuse_existing(&[&signals, &picture], arguments.overwrite)?;
+
+    let record = simulate::simulate(&machine.machine, &machine.sensors, &settings, true)
+        .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
+    let throws: Vec<&str> = machine
+        .machine
+        .throws
+        .iter()
+        .map(|t| t.name.as_str())
+        .collect();
+    let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
+
+    std::fs::create_dir_all(&out).map_err(|e| Failure::input(format!("{}: {e}", out.display())))?;
+    let trace = record.trace.as_ref().filter(|_| arguments.trace);
+    let table = table(&record, &channels, trace, &throws).map_err(Failure::work)?;
+    write_whole(&signals, |file| match arguments.format {
+        Format::Parquet => parquet::write_table(file, &table, ROWS_PER_GROUP),
+        Format::Csv => csv::write_table(file, &table),
+    })?;
+    let svg = picture_of(&machine, &record);
+    write_whole(&picture, |mut file| {
+        file.write_all(svg.as_bytes())
+            .map_err(recordings::Error::Write)?;
+        Ok(file)
+    })?;
+    summarise(&machine, &record, &channels, &[&signals, &picture]);
+    Ok(())
+}
+
+/// The machine, how it is run, and the random numbers of its noise.
+fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Failure> {
+    let Some(id) = &arguments.case else {
+        let noise = stream(arguments.seed, 0, Purpose::Noise);
+        return Ok((read_machine(arguments)?, settings(arguments)?, noise));
+    };
+    let plan = Plan::read(&arguments.machine)?;
+    let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
+    let index = index.filter(|i| *i < plan.cases() && plan.case_id(*i) == *id);
+    let Some(index) = index else {
+        return Err(Failure::input(format!(
+            "--case: found {id}, expected one of {} to {}",
+            plan.case_id(0),
+            plan.case_id(plan.cases() - 1)
+        )));
+    };
+    let case = plan.case(index)?;
+    let noise = case.noise();
+    Ok((case.resolved, case.settings, noise))
+}
+
+fn read_machine(arguments: &Arguments) -> Result<Resolved, Failure> {
+    let file = input::machine_file::read(&arguments.machine)?;
+    if arguments.set.is_empty() {
+        return Ok(file.resolve()?);
+    }
+    let mut tree = file.to_tree().clone();
+    for change in &arguments.set {
+        let (path, value) = change.split_once('=').ok_or_else(|| {
+            Failure::input(format!(
+                "--set {change}: expected PATH=VALUE, e.g. joints.big_end.clearance='0.2 mm'"
+            ))
+        })?;
+        input::paths::set(&mut tree, path.trim(), scalar_of(value.trim()))
+            .map_err(|e| Failure::input(format!("--set {change}: {e}")))?;
+    }
+    let changed = MachineFile::from_tree(&tree).and_then(|file| file.resolve());
+    changed.map_err(|e| Failure::input(format!("with --set: {e}")))
+}
+
+/// A number where the text is one, the text itself elsewhere.
+fn scalar_of(text: &str) -> Value {
+    serde_json::from_str(text)
+        .ok()
+        .filter(|value: &Value| value.is_number() || value.is_boolean())
+        .unwrap_or_else(|| Value::String(text.to_owned()))
+}
+
+fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
+    let rate =
+        Quantity::<Frequency, AboveZero>::parse(&arguments.sample_rate).map_err(|found| {
+            let expected = Quantity::<Frequency, AboveZero>::expected();
+            Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
+        })?;
+    let tolerance = arguments.tolerance;
+    if !(1e-14..=1e-2).contains(&tolerance) {
+        return Err(Failure::input(format!(
+            "--tolerance: found {tolerance}, expected a number from 1e-14 to 1e-2"
+        )));
+    }
+    Ok(Settings {
+        transient: Transient::Revolutions(arguments.transient),
+        revolutions: arguments.revolutions,
+        sample_rate: rate.si(),
+        tolerance,
+    })
+}
+
+fn refuse_existing(paths: &[&Path], overwrite: bool) -> Result<(), Failure> {
+    match paths.iter().find(|path| path.exists() && !overwrite) {
+        None => Ok(()),
+        Some(path) => Err(Failure::input(format!(
+            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
+            path.display()
+        ))),
+    }
+}
+
+/// Writes a file that appears whole or not at all.
+fn write_whole(
+    path: &Path,
+    write: impl FnOnce(WholeFile) -> Result<WholeFile, recordings::Error>,
+) -> Result<(), Failure> {
+    let temporary = path.with_extension("part");
+    WholeFile::create(&temporary, path)
+        .and_then(write)
+        .and_then(WholeFile::commit)
+        .map(drop)
+        .map_err(Failure::work)
+}
+
+fn table(
+    record: &Record,
+    channels: &[Channel],
+    trace: Option<&Trace>,
+    throws: &[&str],
+) -> Result<Table, recordings::Error> {
+    let mut columns = vec![Column::new("t_s", Kind::Real, "time since the first sample").unit("s")];
+    let count = channels.first().map_or_else(
+        || record.series.first().map_or(0, Vec::len),
+        |channel| channel.samples.len(),
+    );
+    let times = (0..count).map(|i| Some(i as f64 / record.sample_rate));
+    let mut data = vec![Data::Real(times.collect())];
+    let mut add = |name: &str, unit: &str, about: &str, values: Vec<Option<f64>>| {
+        columns.push(Column::new(name, Kind::Real, about).unit(unit));
+        data.push(Data::Real(values));
+    };
+    for channel in channels {
+        let values = channel
+            .samples
+            .iter()
+            .map(|x| Some(f64::from(*x)))
+            .collect();
+        add(
+            &channel.name,
+            &channel.unit,
+            "as the sensor reads it",
+            values,
+        );
+    }
+    let stride = trace.map_or(1, |trace| trace.stride);
+    for (trace, name) in trace.iter().flat_map(|t| t.throws.iter().zip(throws)) {
+        for (column, unit, values) in motion_columns(trace) {
+            let prefix = if name.is_empty() {
+                String::new()
+            } else {
+                format!("{name}.")
+            };
+            let values = values.iter().step_by(stride).copied().map(Some).collect();
+            add(
+                &format!("{prefix}{column}"),
+                unit,
+                "the motion itself",
+                values,
+            );
+        }
+    }
+    Table::from_columns(Schema::new(columns)?, data)
+}
+
+/// The motion of a throw as columns with their units.
+fn motion_columns(throw: &ThrowTrace) -> Vec<(String, &'static str, &[f64])> {
+    let mut columns: Vec<(String, &'static str, &[f64])> = vec![
+        ("true_crosshead_position_m".into(), "m", &throw.position),
+        ("true_crosshead_velocity_m_s".into(), "m/s", &throw.velocity),
+        (
+            "true_crosshead_acceleration_m_s2".into(),
+            "m/s^2",
+            &throw.acceleration,
+        ),
+        ("true_cylinder_pressure_pa".into(), "Pa", &throw.pressure),
+    ];
+    for (name, joint) in [("big_end", &throw.big_end), ("small_end", &throw.small_end)] {
+        if let Some(joint) = joint {
+            columns.extend([
+                (format!("true_{name}_offset_x_m"), "m", joint.x.as_slice()),
+                (format!("true_{name}_offset_y_m"), "m", joint.y.as_slice()),
+                (
+                    format!("true_{name}_normal_force_n"),
+                    "N",
+                    joint.normal_force.as_slice(),
+                ),
+                (
+                    format!("true_{name}_friction_force_n"),
+                    "N",
+                    joint.friction_force.as_slice(),
+                ),
+            ]);
+        }
+    }
+    columns
+}
+
+/// The picture of the first throw, and of every clear joint of it.
+fn picture_of(machine: &Resolved, record: &Record) -> String {
+    let (Some(trace), Some(throw)) = (
+        &record.trace,
+        record.trace.as_ref().and_then(|t| t.throws.first()),
+    ) else {
+        return String::new();
+    };
+    let joint = |name: &'static str, joint: &Option<JointTrace>| -> Option<_> {
+        joint.clone().map(|joint| (name, joint))
+    };
+    let clear: Vec<(&str, JointTrace)> = [
+        joint("main", &trace.main),
+        joint("big_end", &throw.big_end),
+        joint("small_end", &throw.small_end),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let title = format!("{}, {}", machine.name, rpm(machine.speed));
+    CasePicture {
+        title: &title,
+        crank_angle_rad: &trace.crank_angle,
+        acceleration_m_s2: &throw.acceleration,
+        velocity_m_s: &throw.velocity,
+        joints: clear
+            .iter()
+            .map(|(name, joint)| ClearJoint {
+                name,
+                clearance_m: joint.clearance,
+                x_m: &joint.x,
+                y_m: &joint.y,
+                contact_force_n: &joint.normal_force,
+            })
+            .collect(),
+    }
+    .svg()
+}
+
+fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &[&Path]) {
+    println!("{}, {}", machine.name, rpm(machine.speed));
+    println!(
+        "  {} steps, {} contact and gas switches, energy closed to {:.1e} of the energy turned over",
+        record.work.accepted,
+        record.work.switches,
+        record.energy_residual.abs()
+    );
+    for channel in channels {
+        let samples = channel.samples.iter().map(|x| f64::from(*x));
+        let count = channel.samples.len().max(1) as f64;
+        let rms = (samples.clone().map(|x| x * x).sum::<f64>() / count).sqrt();
+        let peak = samples.map(f64::abs).fold(0.0, f64::max);
+        println!(
+            "  {}: rms {rms:.4e}, peak {peak:.4e} {}",
+            channel.name, channel.unit
+        );
+    }
+    for file in files {
+        println!("{}", file.display());
+    }
+}
+
+/// A speed in rad/s as people say it.
+fn rpm(speed: f64) -> String {
+    format!("{:.4} rpm", speed * 30.0 / std::f64::consts::PI).replace(".0000", "")
+}

@@ -1,0 +1,163 @@
+//! gen-dataset as a user runs it: the same bytes however it is run, and Python reads them.
+
+#[path = "../../../tests/readers/venv.rs"]
+mod venv;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The root of the project.
+fn project() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A sweep of twelve cases in three shards that takes a second or two.
+const SWEEP: &str = "
+name: small
+machine: MACHINE
+seed: 7
+run: {revolutions: 4, transient: 2, tolerance: 1e-8}
+repeats: 2
+windows: {count: 2, revolutions: 2}
+shard_size: 5
+splits: {train: 60 %, validation: 20 %, test: 20 %}
+cases:
+  - random:
+      design: latin_hypercube
+      count: 6
+      axes:
+        joints: [[], [big_end], [big_end, small_end]]
+        clearance: {log_uniform: [0.1 mm, 0.3 mm]}
+        speed: {uniform: [450 rpm, 550 rpm]}
+vary:
+  joints.big_end.contact.damping: {lognormal: {factor: 1.5}}
+";
+
+fn write_sweep(folder: &Path) -> PathBuf {
+    let machine = project().join("data/machines/single-stage.yaml");
+    let path = folder.join("sweep.yaml");
+    let text = SWEEP.replace("MACHINE", &machine.display().to_string());
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn gen_dataset(arguments: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{arguments:?}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+/// Every file of a dataset that readers see, with its bytes.
+fn bytes(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(root).unwrap().display().to_string();
+            if name.starts_with("_sweep") {
+                continue;
+            }
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.insert(name, std::fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_threads_and_the_resolved_sweep_gives_them_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    for format in ["parquet", "mcap"] {
+        let out = |name: &str| folder.path().join(format!("{name}-{format}"));
+        let run = |sweep: &Path, out: &Path, threads: &str| {
+            let (sweep, out) = (sweep.to_str().unwrap(), out.to_str().unwrap());
+            gen_dataset(&[
+                sweep,
+                "--out",
+                out,
+                "--threads",
+                threads,
+                "--format",
+                format,
+            ]);
+        };
+        run(&sweep, &out("one"), "1");
+        run(&sweep, &out("two"), "2");
+        run(&out("one").join("sweep.yaml"), &out("again"), "2");
+        let one = bytes(&out("one"));
+        assert!(one.len() > 8, "{:?}", one.keys());
+        for other in ["two", "again"] {
+            let other = bytes(&out(other));
+            assert!(one.keys().eq(other.keys()), "{format}: other files");
+            for (name, content) in &one {
+                assert!(*content == other[name], "{format}: {name} differs");
+            }
+        }
+        let script = venv::readers().join("read_dataset.py");
+        venv::run(Command::new(venv::python()).arg(script).arg(out("one")));
+    }
+}
+
+#[test]
+fn a_dry_run_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let out = folder.path().join("out");
+    let arguments = [
+        sweep.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--dry-run",
+    ];
+    let output = gen_dataset(&arguments);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("12 cases, 24 rows, 3 shards"), "{text}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_failing_case_is_recorded_and_the_others_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    // A stiffness that no step is short enough for, in one of two cases.
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    let (head, _) = text.split_once("cases:").unwrap();
+    let cases = "cases:
+  - zip:
+      joints: [[big_end], [big_end]]
+      clearance: [0.1 mm, 0.1 mm]
+      joints.big_end.contact.stiffness: [24 GN/m^1.5, 1e40 GN/m^1.5]
+";
+    std::fs::write(
+        &sweep,
+        format!("{head}{cases}").replace("repeats: 2", "repeats: 1"),
+    )
+    .unwrap();
+    let out = folder.path().join("out");
+    let output = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
+        .args([&sweep, Path::new("--out"), &out])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("1 of 2 cases failed"), "{message}");
+    let manifest = std::fs::read_to_string(out.join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(manifest["failed"].as_array().unwrap().len(), 1);
+    let reason = manifest["failed"][0]["reason"].as_str().unwrap();
+    assert!(reason.contains("t = "), "{reason}");
+    assert_eq!(manifest["counts"]["cases"], 2);
+}

@@ -1,0 +1,28 @@
+//! Why a feature has no value.
+
+/// Why a feature has no value in a window.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Reason {
+    /// The feature tells the shape of a fluctuation, and there is none.
+    #[error("the signal is constant")]
+    Constant,
+    /// A frequency band begins where the recording ends.
+    #[error("the band begins at {low_hz} Hz, but the recording ends at {nyquist_hz} Hz")]
+    BandAboveNyquist {
+        /// Lower edge of the band, Hz.
+        low_hz: f64,
+        /// Half the sample rate, Hz.
+        nyquist_hz: f64,
+    },
+    /// The sample rate is too low, or the shaft too fast, for an order.
+    #[error("order {order} is asked for, but the recording resolves only {highest}")]
+    OrderTooHigh {
+        /// The order.
+        order: usize,
+        /// The highest that the samples per revolution allow.
+        highest: usize,
+    },
+    /// The signal cannot be analysed.
+    #[error(transparent)]
+    Signal(#[from] signal::Error),
+}

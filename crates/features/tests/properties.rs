@@ -1,0 +1,220 @@
+//! What must hold for the features of any window.
+
+use features::{Definition, Reason, Window, definitions, features};
+use proptest::prelude::*;
+use signal::channel::Channel;
+use std::f64::consts::TAU;
+
+fn channel(name: &str, unit: &str, samples: Vec<f32>) -> Channel {
+    Channel {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        samples,
+    }
+}
+
+fn acceleration(samples: Vec<f32>) -> [Channel; 1] {
+    [channel("crosshead_acceleration_m_s2", "m/s^2", samples)]
+}
+
+fn defined(channels: &[Channel]) -> Vec<Definition> {
+    definitions(channels.iter().map(|c| (c.name.as_str(), c.unit.as_str())))
+}
+
+/// `per_revolution` samples per revolution at 10 kHz, without a crank angle.
+fn window(channels: &[Channel], per_revolution: f64) -> Window<'_> {
+    Window {
+        sample_rate: 10_000.0,
+        speed_rpm: 60.0 * 10_000.0 / per_revolution,
+        crank_angle: None,
+        channels,
+    }
+}
+
+/// A revolution with some orders and one sharp knock.
+fn knocking(amplitudes: [f64; 4], angle: f64) -> f64 {
+    let orders = amplitudes.iter().zip(1..);
+    let smooth: f64 = orders
+        .map(|(a, k)| a * (f64::from(k) * angle + a).cos())
+        .sum();
+    smooth + 8.0 * (-200.0 * (1.0 - (angle - 2.0).cos())).exp()
+}
+
+fn wave() -> impl Strategy<Value = [f64; 4]> {
+    prop::array::uniform4(0.1..5.0)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The unit says how a feature grows with the signal.
+    #[test]
+    fn features_scale_as_their_unit_says(
+        amplitudes in wave(),
+        noise in prop::collection::vec(-1.0..1.0, 1300),
+        power in -20i32..20,
+    ) {
+        let scale = 2.0f64.powi(power);
+        let x = |scale: f64| -> Vec<f32> {
+            let angle = |i: usize| TAU * i as f64 / 400.0;
+            let values = noise.iter().enumerate().map(|(i, n)| n + knocking(amplitudes, angle(i)));
+            values.map(|v| (v as f32) * scale as f32).collect()
+        };
+        let one = acceleration(x(1.0));
+        let scaled = acceleration(x(scale));
+        let values = features(&window(&one, 400.0));
+        for ((definition, a), b) in defined(&one).iter().zip(values).zip(features(&window(&scaled, 400.0))) {
+            let factor = match definition.unit.as_str() {
+                "1" => 1.0,
+                "m/s^2" | "m/s" => scale,
+                "m^2/s^4" | "m^2/s^3" => scale * scale,
+                unit => panic!("{unit}"),
+            };
+            let (a, b) = (a.unwrap(), b.unwrap());
+            prop_assert!((a * factor - b).abs() <= 1e-9 * b.abs(), "{}: {a} {b}", definition.name);
+        }
+    }
+
+    /// A periodic motion gives the same features whenever the window starts, as long as it holds
+    /// the same revolutions of it.
+    #[test]
+    fn features_do_not_depend_on_the_start_of_a_periodic_motion(
+        amplitudes in wave(),
+        start in 0usize..1024,
+    ) {
+        let x = |start: usize| -> (Vec<f32>, Vec<f32>) {
+            let angle = |i: usize| TAU * ((i + start) % 1024) as f64 / 1024.0;
+            (0..4096).map(|i| (knocking(amplitudes, angle(i)) as f32, angle(i) as f32)).unzip()
+        };
+        let row = |start: usize| {
+            let (samples, angle) = x(start);
+            let channels = acceleration(samples);
+            let window = Window { crank_angle: Some(&angle), ..window(&channels, 1024.0) };
+            (features(&window), defined(&channels))
+        };
+        let ((a, definitions), (b, _)) = (row(0), row(start));
+        let rms = a[1].clone().unwrap();
+        for ((definition, a), b) in definitions.iter().zip(a).zip(b) {
+            let (a, b) = (a.unwrap(), b.unwrap());
+            // Sums of all samples agree to rounding. At the ends of the record resampling sees
+            // its reflection, which the start of the window moves.
+            let tolerance = if definition.name.contains(".portrait_area") {
+                1e-4 * a
+            } else if definition.unit == "m/s" {
+                1e-3 * a
+            } else {
+                1e-3 * rms
+            };
+            prop_assert!((a - b).abs() <= tolerance, "{}: {a} {b}", definition.name);
+        }
+    }
+
+    /// Bands add up to the variance, which mean and RMS tell too.
+    #[test]
+    fn bands_add_up_to_the_variance(x in prop::collection::vec(-100.0f32..100.0, 2..600)) {
+        let channels = acceleration(x);
+        let named = |part: &str| -> f64 {
+            let row = features(&window(&channels, 400.0));
+            let columns = defined(&channels);
+            let found = columns.iter().zip(row).filter(|(d, _)| d.name.contains(part));
+            found.map(|(_, value)| value.unwrap()).sum()
+        };
+        let variance = named(".rms_m_s2").powi(2) - named(".mean_m_s2").powi(2);
+        prop_assert!((named(".band_") - variance).abs() <= 1e-9 * variance.max(1.0));
+    }
+
+    /// Whatever the samples and angles: a value per column, finite, or a reason.
+    #[test]
+    fn rows_are_whole_and_finite(
+        x in prop::collection::vec(prop_oneof![
+            20 => -1e3f32..1e3,
+            1 => Just(f32::NAN),
+            1 => Just(f32::MAX),
+            1 => Just(f32::MIN_POSITIVE),
+        ], 0..300),
+        plain in prop::collection::vec(-1e3f32..1e3, 0..300),
+        angle in prop::option::of(prop::collection::vec(0.0f32..7.0, 0..300)),
+        per_revolution in prop_oneof![-10.0..500.0, Just(0.0), Just(f64::NAN)],
+    ) {
+        let channels = [
+            channel("crosshead_acceleration_m_s2", "m/s^2", x),
+            channel("crank_angle_rad", "rad", vec![]),
+            channel("cylinder_pressure_pa", "Pa", plain),
+        ];
+        let window = Window { crank_angle: angle.as_deref(), ..window(&channels, per_revolution) };
+        let row = features(&window);
+        prop_assert_eq!(row.len(), defined(&channels).len());
+        for value in row.into_iter().flatten() {
+            prop_assert!(value.is_finite());
+        }
+    }
+}
+
+#[test]
+fn features_without_a_value_say_why() {
+    let reason = |samples: Vec<f32>, per_revolution: f64, part: &str| {
+        let channels = acceleration(samples);
+        let row = features(&window(&channels, per_revolution));
+        let columns = defined(&channels);
+        let mut found = columns
+            .iter()
+            .zip(row)
+            .filter(|(d, _)| d.name.contains(part));
+        found.next().unwrap().1.unwrap_err()
+    };
+    let ramp: Vec<f32> = (0..400).map(|i| i as f32).collect();
+    let few = signal::Error::TooFewSamples { needed: 1, got: 0 };
+    assert_eq!(reason(vec![], 100.0, "mean"), few.into());
+    let nan = signal::Error::NotFinite { index: 1 };
+    assert_eq!(reason(vec![1.0, f32::NAN], 100.0, "order_01"), nan.into());
+    assert_eq!(reason(vec![2.5; 400], 100.0, "kurtosis"), Reason::Constant);
+    assert_eq!(
+        reason(vec![2.5; 400], 100.0, "portrait_scatter"),
+        Reason::Constant
+    );
+    assert_eq!(reason(vec![0.0; 400], 100.0, "crest"), Reason::Constant);
+    assert!(matches!(
+        reason(ramp.clone(), 500.0, "order_01"),
+        Reason::Signal(signal::Error::TooFewRevolutions { needed: 1, .. })
+    ));
+    assert!(matches!(
+        reason(ramp.clone(), 300.0, "portrait_scatter"),
+        Reason::Signal(signal::Error::TooFewRevolutions { needed: 2, .. })
+    ));
+    let high = Reason::OrderTooHigh {
+        order: 17,
+        highest: 16,
+    };
+    assert_eq!(reason(ramp.clone(), 40.5, "order_17"), high);
+
+    let slow = acceleration(ramp);
+    let mut window = window(&slow, 100.0);
+    window.sample_rate = 4000.0;
+    window.speed_rpm = 2400.0;
+    let last_band = features(&window)[18].clone();
+    let low_hz = 2560.0;
+    let nyquist_hz = 2000.0;
+    assert_eq!(
+        last_band,
+        Err(Reason::BandAboveNyquist { low_hz, nyquist_hz })
+    );
+}
+
+/// The transforms keep state per thread; the bits must not show it.
+#[test]
+fn rows_do_not_depend_on_what_the_thread_did_before() {
+    let samples = |n: usize| -> Vec<f32> {
+        (0..n)
+            .map(|i| (i as f32 * 0.7).sin() + (i % 7) as f32)
+            .collect()
+    };
+    let row = move |n: usize| {
+        let channels = acceleration(samples(n));
+        features(&window(&channels, 397.0))
+    };
+    let fresh = std::thread::spawn(move || row(4608)).join().unwrap();
+    for n in (500..5000).step_by(36) {
+        row(n);
+    }
+    assert_eq!(row(4608), fresh);
+}

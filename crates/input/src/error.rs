@@ -1,0 +1,369 @@
+//! One message per mistake: where it is, which key, what was found, what was expected.
+
+use serde::de::Unexpected;
+use serde_json::Value;
+use std::fmt;
+
+/// A mistake in a file that a person wrote.
+///
+/// Shown on one line: `file:line:column: key: problem`. What is not known is left out: a tree
+/// that was built in memory has no lines, a syntax error has no key.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", self.line())]
+pub struct Error {
+    file: Option<String>,
+    place: Option<Place>,
+    key: String,
+    problem: Box<Problem>,
+}
+
+/// Line and column in a file, both counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Line.
+    pub line: u64,
+    /// Column, in characters.
+    pub column: u64,
+}
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Problem {
+    /// A value of the wrong kind, dimension or size.
+    #[error("found {found}, expected {expected}")]
+    Found {
+        /// The value as it stands in the file.
+        found: String,
+        /// What belongs there, with an example.
+        expected: String,
+    },
+    /// A key that does not exist.
+    #[error("unknown key; expected {}", choices(.known, .nearest))]
+    UnknownKey {
+        /// The keys that do exist there.
+        known: Vec<String>,
+        /// The one that was probably meant.
+        nearest: Option<String>,
+    },
+    /// A name that is not in the list that the place allows.
+    #[error("found {}, expected {}", quoted(.found), choices(.known, .nearest))]
+    UnknownName {
+        /// The name as it stands in the file.
+        found: String,
+        /// The names that can stand there.
+        known: Vec<String>,
+        /// The one that was probably meant.
+        nearest: Option<String>,
+    },
+    /// A key that must be there and is not.
+    #[error("missing{}", .expected.as_ref().map_or(String::new(), |e| format!("; expected {e}")))]
+    Missing {
+        /// What belongs there, where it is known.
+        expected: Option<String>,
+    },
+    /// A key that stands twice in one section.
+    #[error("the key stands here a second time")]
+    Duplicate,
+    /// Text that is not YAML.
+    #[error("not valid YAML: {0}")]
+    Syntax(String),
+    /// A file without content.
+    #[error("the file is empty")]
+    Empty,
+    /// A file that cannot be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
+    /// Anything else.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl Error {
+    /// `problem` at the dotted path `key` (empty for the whole file).
+    pub fn new(key: impl Into<String>, problem: Problem) -> Self {
+        Self {
+            file: None,
+            place: None,
+            key: key.into(),
+            problem: Box::new(problem),
+        }
+    }
+
+    /// `found` stands at `key` where `expected` belongs.
+    pub fn found(
+        key: impl Into<String>,
+        found: impl fmt::Display,
+        expected: impl fmt::Display,
+    ) -> Self {
+        Self::new(
+            key,
+            Problem::Found {
+                found: found.to_string(),
+                expected: expected.to_string(),
+            },
+        )
+    }
+
+    /// The name `found` stands at `key` where one of `known` belongs.
+    pub fn unknown_name(key: impl Into<String>, found: &str, known: &[&str]) -> Self {
+        Self::new(
+            key,
+            Problem::UnknownName {
+                found: found.to_owned(),
+                nearest: nearest(found, known.iter().copied()).map(str::to_owned),
+                known: owned(known),
+            },
+        )
+    }
+
+    /// The key `name` stands in a section that has only the keys `known`.
+    pub fn unknown_key(name: &str, known: &[&str]) -> Self {
+        Self::new(
+            name,
+            Problem::UnknownKey {
+                nearest: nearest(name, known.iter().copied()).map(str::to_owned),
+                known: owned(known),
+            },
+        )
+    }
+
+    /// What stands at `key` does not go together with the rest of the file;
+    /// [`Document::locate`](crate::yaml::Document::locate) fills in what it is, as it is written.
+    pub fn clash(key: impl Into<String>, expected: impl fmt::Display) -> Self {
+        Self::found(key, "", expected)
+    }
+
+    /// The key `name` must be there and is not.
+    pub fn missing(name: impl Into<String>) -> Self {
+        Self::new(name, Problem::Missing { expected: None })
+    }
+
+    /// The same mistake seen from one level up, where its section is called `key`.
+    #[must_use]
+    pub fn under(mut self, key: impl fmt::Display) -> Self {
+        self.key = join(&key.to_string(), &self.key);
+        self
+    }
+
+    /// The same mistake in `file`.
+    #[must_use]
+    pub fn in_file(mut self, file: &str) -> Self {
+        self.file = Some(file.to_owned());
+        self
+    }
+
+    /// The same mistake at `place`, unless its place is known already.
+    #[must_use]
+    pub fn at(mut self, place: Place) -> Self {
+        self.place.get_or_insert(place);
+        self
+    }
+
+    /// The dotted path of the key; empty for the whole file.
+    pub fn key(&self) -> &str {
+        &self.key
+    }
+
+    /// Line and column, where there is a file.
+    pub fn place(&self) -> Option<Place> {
+        self.place
+    }
+
+    /// What is wrong.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    pub(crate) fn with_key(mut self, key: String) -> Self {
+        self.key = key;
+        self
+    }
+
+    /// Fills in what stands in the file, if that is still open.
+    pub(crate) fn written(mut self, value: &Value) -> Self {
+        if let Problem::Found { found, .. } = &mut *self.problem
+            && found.is_empty()
+        {
+            *found = shown(value);
+        }
+        self
+    }
+
+    /// Fills in what belongs in the place of a missing key, if that is still open.
+    pub(crate) fn expecting(mut self, expectation: impl FnOnce() -> Option<String>) -> Self {
+        if let Problem::Missing { expected } = &mut *self.problem
+            && expected.is_none()
+        {
+            *expected = expectation();
+        }
+        self
+    }
+
+    fn line(&self) -> String {
+        let mut line = self.file.clone().unwrap_or_default();
+        if let (Some(_), Some(place)) = (&self.file, self.place) {
+            line += &format!(":{}:{}", place.line, place.column);
+        }
+        for part in [self.key.clone(), self.problem.to_string()] {
+            if !line.is_empty() && !part.is_empty() {
+                line += ": ";
+            }
+            line += &part;
+        }
+        one_line(&line)
+    }
+}
+
+/// `a.b` of `a` and `b`; either may be empty.
+pub(crate) fn join(head: &str, tail: &str) -> String {
+    match (head, tail) {
+        (head, "") => head.to_owned(),
+        ("", tail) => tail.to_owned(),
+        (head, tail) => format!("{head}.{tail}"),
+    }
+}
+
+/// The candidate that `name` was probably meant to be: the one with the fewest slips of the
+/// keyboard (Damerau 1964), if they are few for its length. Case counts less than letters.
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    let slips = |c: &str| {
+        (
+            strsim::damerau_levenshtein(&lower, &c.to_lowercase()),
+            strsim::damerau_levenshtein(name, c),
+        )
+    };
+    // One letter can be anything.
+    let letters = name.chars().count();
+    let allowed = (letters / 3).max(usize::from(letters > 1));
+    candidates
+        .into_iter()
+        .map(|c| (slips(c), c))
+        .filter(|((distance, _), _)| *distance <= allowed)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate)
+}
+
+fn owned(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+fn choices(known: &[String], nearest: &Option<String>) -> String {
+    let list = match known {
+        [] => "nothing here".to_owned(),
+        [only] => only.clone(),
+        several => format!("one of {}", several.join(", ")),
+    };
+    match nearest {
+        Some(name) => format!("{list}; did you mean '{name}'?"),
+        None => list,
+    }
+}
+
+impl serde::de::Error for Error {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self::new("", Problem::Other(message.to_string()))
+    }
+
+    fn invalid_type(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
+        Self::found("", words(&found), expected)
+    }
+
+    fn invalid_value(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
+        Self::found("", words(&found), expected)
+    }
+
+    fn invalid_length(length: usize, expected: &dyn serde::de::Expected) -> Self {
+        Self::found("", format_args!("a list of {length}"), expected)
+    }
+
+    fn unknown_variant(found: &str, known: &'static [&'static str]) -> Self {
+        Self::unknown_name("", found, known)
+    }
+
+    fn unknown_field(name: &str, known: &'static [&'static str]) -> Self {
+        Self::unknown_key(name, known)
+    }
+
+    fn missing_field(name: &'static str) -> Self {
+        Self::missing(name)
+    }
+
+    fn duplicate_field(name: &'static str) -> Self {
+        Self::new(name, Problem::Duplicate)
+    }
+}
+
+/// What was found, as its author would recognise it.
+fn words(found: &Unexpected) -> String {
+    use Unexpected::*;
+    match found {
+        Bool(value) => value.to_string(),
+        Unsigned(value) => value.to_string(),
+        Signed(value) => value.to_string(),
+        Float(value) => value.to_string(),
+        Str(text) => quoted(text),
+        Unit | Option => "nothing".to_owned(),
+        Seq => "a list".to_owned(),
+        Map => "a section".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// A value of the tree, as its author would recognise it.
+pub(crate) fn shown(value: &Value) -> String {
+    words(&unexpected(value))
+}
+
+/// A value of the tree in serde's terms.
+pub(crate) fn unexpected(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::Null => Unexpected::Unit,
+        Value::Bool(value) => Unexpected::Bool(*value),
+        Value::Number(number) => match (number.as_u64(), number.as_i64(), number.as_f64()) {
+            (Some(value), _, _) => Unexpected::Unsigned(value),
+            (_, Some(value), _) => Unexpected::Signed(value),
+            (_, _, value) => Unexpected::Float(value.unwrap_or(f64::NAN)),
+        },
+        Value::String(text) => Unexpected::Str(text),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Object(_) => Unexpected::Map,
+    }
+}
+
+/// `text` in quotation marks, of bearable length.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 60;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("'{}…'", &text[..end]),
+        None => format!("'{text}'"),
+    }
+}
+
+/// `text` with its line breaks and other control characters written out.
+fn one_line(text: &str) -> String {
+    let mut line = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c.is_control() {
+            line.extend(c.escape_default());
+        } else {
+            line.push(c);
+        }
+    }
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_name_is_the_one_with_the_fewest_slips() {
+        let joints = ["main", "big_end", "small_end", "guide"];
+        assert_eq!(nearest("big_ned", joints), Some("big_end"));
+        assert_eq!(nearest("Main", joints), Some("main"));
+        assert_eq!(nearest("valve", joints), None);
+        // "MPa" and "mPa" differ from "mpa" only in case: fewer capitals win.
+        assert_eq!(nearest("mpa", ["MPa", "mPa"]), Some("mPa"));
+    }
+}

@@ -1,0 +1,109 @@
+//! Dotted paths into a machine file's tree, for sweeps: `joints.big_end.clearance`.
+//!
+//! A part is a key, an index of a list (`sensors.0.noise.rms`), or the name of an item: a throw's
+//! (`throws.throw1.joints.big_end.clearance`), an effect's (`effects.valve_loss.discharge`), or
+//! what a sensor measures (`sensors.cylinder_pressure.range`; the first of several).
+
+use crate::error::{Error, shown};
+use crate::schema::Node;
+use crate::yaml::find;
+use serde_json::{Map, Value};
+
+/// Puts `value` at `path`, whether or not the file has the key.
+///
+/// The path is checked, the value is not: reading the tree does that.
+///
+/// # Errors
+/// Where the format has no such path, the file has no such list item, or a word such as `ideal`
+/// stands where the path needs a section.
+pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
+    let keys = resolve(tree, path)?;
+    let mut node = tree;
+    for (depth, key) in keys.iter().enumerate() {
+        node = match node {
+            Value::Array(items) => key
+                .parse::<usize>()
+                .ok()
+                .and_then(|index| items.get_mut(index))
+                .ok_or_else(|| Error::missing(keys[..=depth].join(".")))?,
+            Value::Object(section) => section.entry(key).or_insert(Value::Null),
+            other => {
+                if !other.is_null() {
+                    let at = keys[..depth].join(".");
+                    let expected = format!("a section, so that {path} can be set");
+                    return Err(Error::found(at, shown(other), expected));
+                }
+                *other = Value::Object(Map::new());
+                &mut other[key.as_str()]
+            }
+        };
+    }
+    *node = value;
+    Ok(())
+}
+
+/// The value at `path`; of a throw that does not have it, the one that the throws share.
+///
+/// # Errors
+/// Where the format has no such path or the file has no such list item.
+pub fn get<'a>(tree: &'a Value, path: &str) -> Result<Option<&'a Value>, Error> {
+    let key = resolve(tree, path)?.join(".");
+    let shared = key
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'))
+        .and_then(|(_, rest)| find(tree, rest));
+    Ok(find(tree, &key).or(shared))
+}
+
+/// The path as keys and indices, names of list items replaced.
+fn resolve(tree: &Value, path: &str) -> Result<Vec<String>, Error> {
+    let mut keys: Vec<String> = Vec::new();
+    let mut schema = Node::machine();
+    let mut node = Some(tree);
+    for part in path.split('.') {
+        let here = keys.join(".");
+        if let Some(items) = schema.items() {
+            let list = node
+                .and_then(Value::as_array)
+                .map_or(&[][..], Vec::as_slice);
+            let (index, below) = item(list, part).map_err(|error| error.under(here))?;
+            keys.push(index.to_string());
+            node = list.get(index);
+            schema = items;
+            if !below {
+                continue;
+            }
+        }
+        let Some(inner) = schema.key(part) else {
+            let error = Error::unknown_key(part, &schema.keys());
+            return Err(error.under(keys.join(".")));
+        };
+        keys.push(part.to_owned());
+        node = node.and_then(|node| node.get(part));
+        schema = inner;
+    }
+    Ok(keys)
+}
+
+/// The index of the item that `part` is the index or the name of, and whether its name is a key
+/// that the item's content stands below.
+fn item(list: &[Value], part: &str) -> Result<(usize, bool), Error> {
+    if let Ok(index) = part.parse::<usize>()
+        && index < list.len()
+    {
+        return Ok((index, false));
+    }
+    let mut names = Vec::new();
+    for (index, item) in list.iter().enumerate() {
+        let name = item["name"].as_str().or(item["measure"].as_str());
+        if name == Some(part) {
+            return Ok((index, false));
+        }
+        if name.is_none() && item.get(part).is_some() {
+            return Ok((index, true));
+        }
+        let key = item.as_object().and_then(|section| section.keys().next());
+        names.extend(name.or(key.map(String::as_str)));
+    }
+    Err(Error::unknown_name(part, part, &names))
+}

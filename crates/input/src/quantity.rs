@@ -1,0 +1,361 @@
+//! Quantities as files have them: a text with a unit whose dimension and range the type fixes.
+
+use crate::error::quoted;
+use crate::unit::{self, Dimension, Measure, UnitError};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
+use serde::{Serialize, Serializer};
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+/// A kind of quantity: what a length, a mass, ... is called and measured in.
+pub trait Kind {
+    /// Its name.
+    const NAME: &'static str;
+    /// Its name with an article: `a length`.
+    const WORDS: &'static str;
+    /// Something that people write: `0.1 mm`.
+    const EXAMPLE: &'static str;
+    /// Its dimension.
+    const DIMENSION: Dimension;
+}
+
+/// A row of the table of kinds.
+pub(crate) struct KindRow {
+    words: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) dimension: Dimension,
+}
+
+macro_rules! kinds {
+    ($( $name:ident, $words:literal, $unit:literal, $example:literal, $dimension:expr; )*) => {
+        $(
+            #[doc = concat!("Marks ", $words, ", in SI units ", $unit, ".")]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct $name;
+
+            impl Kind for $name {
+                const NAME: &'static str = stringify!($name);
+                const WORDS: &'static str = $words;
+                const EXAMPLE: &'static str = $example;
+                const DIMENSION: Dimension = $dimension;
+            }
+        )*
+
+        pub(crate) const KINDS: &[KindRow] = &[
+            $( KindRow { words: $words, unit: $unit, dimension: $dimension } ),*
+        ];
+    };
+}
+
+kinds! {
+    Length, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0);
+    Mass, "a mass", "kg", "12 kg", Dimension::of(0.0, 1.0, 0.0, 0.0);
+    Duration, "a duration", "s", "0.5 s", Dimension::of(0.0, 0.0, 1.0, 0.0);
+    Angle, "an angle", "rad", "30 deg", Dimension::of(0.0, 0.0, 0.0, 1.0);
+    Speed, "a rotational speed", "rad/s", "500 rpm", Dimension::of(0.0, 0.0, -1.0, 1.0);
+    Frequency, "a frequency", "Hz", "10 kHz", Dimension::of(0.0, 0.0, -1.0, 0.0);
+    Velocity, "a velocity", "m/s", "0.01 m/s", Dimension::of(1.0, 0.0, -1.0, 0.0);
+    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::of(1.0, 0.0, -2.0, 0.0);
+    Force, "a force", "N", "200 N", Dimension::of(1.0, 1.0, -2.0, 0.0);
+    Torque, "a torque", "N m", "60 N m", Dimension::of(2.0, 1.0, -2.0, 0.0);
+    TorqueSlope, "a torque per speed", "N m s", "40 N m s", Dimension::of(2.0, 1.0, -1.0, 0.0);
+    Pressure, "a pressure", "Pa", "0.393 MPa", Dimension::of(-1.0, 1.0, -2.0, 0.0);
+    Inertia, "a moment of inertia", "kg m^2", "0.6 kg m^2", Dimension::of(2.0, 1.0, 0.0, 0.0);
+    Damping, "a damping", "N s/m", "2e4 N s/m", Dimension::of(0.0, 1.0, -1.0, 0.0);
+    ForcePerPressure, "a force per pressure", "N/Pa", "1e-4 N/Pa", Dimension::of(2.0, 0.0, 0.0, 0.0);
+    Ratio, "a percentage", "%", "5 %", Dimension::NONE;
+}
+
+/// The values that a quantity or a number may have.
+pub trait Bound {
+    /// Name that stands before the kind in a schema.
+    const NAME: &'static str;
+    /// How messages say it, with a space before it.
+    const WORDS: &'static str;
+    /// Whether `value` (SI) is one of them.
+    fn holds(value: f64) -> bool;
+    /// JSON Schema keywords for a plain number.
+    fn keywords(schema: &mut Schema);
+}
+
+macro_rules! bounds {
+    ($( $(#[$meta:meta])* $name:ident, $prefix:literal, $words:literal, $test:expr, {$($key:literal: $value:literal),*}; )*) => {
+        $(
+            $(#[$meta])*
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct $name;
+
+            impl Bound for $name {
+                const NAME: &'static str = $prefix;
+                const WORDS: &'static str = $words;
+                fn holds(value: f64) -> bool {
+                    let test: fn(f64) -> bool = $test;
+                    test(value)
+                }
+                fn keywords(_schema: &mut Schema) {
+                    $( _schema.insert($key.to_owned(), serde_json::json!($value)); )*
+                }
+            }
+        )*
+    };
+}
+
+bounds! {
+    /// Every finite value.
+    Any, "", "", |_| true, {};
+    /// Values above 0.
+    AboveZero, "Positive", " greater than 0", |x| x > 0.0, {"exclusiveMinimum": 0};
+    /// Values from 0.
+    FromZero, "NonNegative", " of at least 0", |x| x >= 0.0, {"minimum": 0};
+    /// Values from 1.
+    FromOne, "AtLeastOne", " of at least 1", |x| x >= 1.0, {"minimum": 1};
+    /// A part of a whole: 0 to 1.
+    Part, "Part", " from 0 to 100 %", |x| (0.0..=1.0).contains(&x), {"minimum": 0, "maximum": 1};
+    /// A coefficient of restitution: above 0, to 1.
+    Rebound, "Rebound", " greater than 0, up to 1", |x| x > 0.0 && x <= 1.0, {"exclusiveMinimum": 0, "maximum": 1};
+    /// A Poisson's ratio: 0 to 0.5.
+    Contraction, "Contraction", " from 0 to 0.5", |x| (0.0..=0.5).contains(&x), {"minimum": 0, "maximum": 0.5};
+}
+
+/// A value of kind `K` within the bound `B`. Files have it as text with its unit, never as a bare
+/// number.
+pub struct Quantity<K, B = Any> {
+    si: f64,
+    kind: PhantomData<fn() -> (K, B)>,
+}
+
+/// A quantity greater than 0.
+pub type Positive<K> = Quantity<K, AboveZero>;
+/// A quantity of at least 0.
+pub type NonNegative<K> = Quantity<K, FromZero>;
+
+impl<K: Kind, B: Bound> Quantity<K, B> {
+    /// The quantity of `si` SI units; none where the bound forbids it or it is not finite.
+    pub fn new(si: f64) -> Option<Self> {
+        (si.is_finite() && B::holds(si)).then_some(Self {
+            si,
+            kind: PhantomData,
+        })
+    }
+
+    /// The value in SI units.
+    pub fn si(&self) -> f64 {
+        self.si
+    }
+
+    /// What belongs in the file, with an example.
+    pub fn expected() -> String {
+        format!(
+            "{}{} with its unit, e.g. '{}'",
+            K::WORDS,
+            B::WORDS,
+            K::EXAMPLE
+        )
+    }
+
+    /// Reads a text.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let measure = unit::parse(text).map_err(|error| found(text, &error))?;
+        if measure.dimension != K::DIMENSION {
+            return Err(format!("{} ({})", quoted(text), describe(&measure)));
+        }
+        Self::new(measure.si).ok_or_else(|| quoted(text))
+    }
+}
+
+/// `text` and what keeps it from being a quantity.
+pub(crate) fn found(text: &str, error: &UnitError) -> String {
+    match error {
+        UnitError::NoNumber => quoted(text),
+        error => format!("{} ({error})", quoted(text)),
+    }
+}
+
+/// What a measure of the wrong dimension is: `a mass`, or its unit.
+pub(crate) fn describe(measure: &Measure) -> String {
+    match KINDS.iter().find(|k| k.dimension == measure.dimension) {
+        Some(kind) => kind.words.to_owned(),
+        None => format!("in {}", measure.dimension),
+    }
+}
+
+impl<K> NonNegative<K> {
+    /// Nothing.
+    pub const ZERO: Self = Self {
+        si: 0.0,
+        kind: PhantomData,
+    };
+}
+
+impl<K, B> Clone for Quantity<K, B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<K, B> Copy for Quantity<K, B> {}
+
+impl<K, B> PartialEq for Quantity<K, B> {
+    fn eq(&self, other: &Self) -> bool {
+        self.si == other.si
+    }
+}
+
+impl<K: Kind, B> fmt::Debug for Quantity<K, B> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+/// The shortest text in SI units that reads back as exactly this value.
+impl<K: Kind, B> fmt::Display for Quantity<K, B> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let measure = Measure {
+            si: self.si,
+            dimension: K::DIMENSION,
+        };
+        measure.fmt(f)
+    }
+}
+
+impl<K: Kind, B> Serialize for Quantity<K, B> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de, K: Kind, B: Bound> Deserialize<'de> for Quantity<K, B> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Text<K, B>(PhantomData<(K, B)>);
+        impl<K: Kind, B: Bound> Visitor<'_> for Text<K, B> {
+            type Value = Quantity<K, B>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(&Quantity::<K, B>::expected())
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                Quantity::parse(text)
+                    .map_err(|found| E::invalid_value(Unexpected::Other(&found), &self))
+            }
+        }
+        deserializer.deserialize_str(Text(PhantomData))
+    }
+}
+
+impl<K: Kind, B: Bound> JsonSchema for Quantity<K, B> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}{}", B::NAME, K::NAME).into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        text_schema(&Self::expected(), B::holds(-1.0), &[K::EXAMPLE])
+    }
+}
+
+/// Schema of a text with a number and a unit.
+pub(crate) fn text_schema(expected: &str, negative: bool, examples: &[&str]) -> Schema {
+    let sign = if negative { "[+-]?" } else { "[+]?" };
+    json_schema!({
+        "type": "string",
+        "description": expected,
+        "pattern": format!("^\\s*{sign}([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?\\s*[^0-9\\s.eE].*$"),
+        "examples": examples,
+    })
+}
+
+/// A pure number within the bound `B`: an exponent, a coefficient.
+pub struct Number<B = Any> {
+    value: f64,
+    bound: PhantomData<fn() -> B>,
+}
+
+impl<B: Bound> Number<B> {
+    /// The number `value`; none where the bound forbids it or it is not finite.
+    pub fn new(value: f64) -> Option<Self> {
+        (value.is_finite() && B::holds(value)).then_some(Self {
+            value,
+            bound: PhantomData,
+        })
+    }
+
+    /// The number.
+    pub fn get(&self) -> f64 {
+        self.value
+    }
+}
+
+impl<B> Number<B> {
+    /// A default, which its author has checked against the bound.
+    pub(crate) const fn fixed(value: f64) -> Self {
+        Self {
+            value,
+            bound: PhantomData,
+        }
+    }
+}
+
+impl<B> Clone for Number<B> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<B> Copy for Number<B> {}
+
+impl<B> PartialEq for Number<B> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl<B> fmt::Debug for Number<B> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Debug::fmt(&self.value, f)
+    }
+}
+
+impl<B> Serialize for Number<B> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_f64(self.value)
+    }
+}
+
+impl<'de, B: Bound> Deserialize<'de> for Number<B> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Plain<B>(PhantomData<B>);
+        impl<B: Bound> Visitor<'_> for Plain<B> {
+            type Value = Number<B>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                write!(f, "a plain number{}", B::WORDS)
+            }
+            fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
+                Number::new(value)
+                    .ok_or_else(|| E::invalid_value(Unexpected::Other(&value.to_string()), &self))
+            }
+            fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
+                self.visit_f64(value as f64)
+            }
+            fn visit_u64<E: Error>(self, value: u64) -> Result<Self::Value, E> {
+                self.visit_f64(value as f64)
+            }
+        }
+        deserializer.deserialize_f64(Plain(PhantomData))
+    }
+}
+
+impl<B: Bound> JsonSchema for Number<B> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}Number", B::NAME).into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let mut schema = json_schema!({"type": "number"});
+        B::keywords(&mut schema);
+        schema
+    }
+}

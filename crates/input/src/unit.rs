@@ -1,0 +1,416 @@
+//! Text with a unit: `24 GN/m^1.5` becomes an SI value and a dimension, and back.
+//!
+//! ```text
+//! quantity = number unit          unit    = product ["/" product]
+//! product  = factor {sep factor}  sep     = " " | "*" | "·"
+//! factor   = [prefix] name [exponent]     exponent = "^1.5" | "²" | "2"
+//! ```
+//!
+//! Everything after the one `/` is in the denominator. Powers of ten are moved into the decimal
+//! number before it is rounded, so that `0.3 mm` is exactly the number that `0.0003` is.
+
+use crate::error::nearest;
+use scalar::Scalar;
+use std::f64::consts::PI;
+use std::fmt;
+
+/// Exponents of the base units. The angle counts as one, so that a speed in rpm cannot pass for a
+/// frequency in Hz.
+#[derive(Clone, Copy, Debug)]
+pub struct Dimension {
+    /// Exponent of the metre.
+    pub length: f64,
+    /// Exponent of the kilogram.
+    pub mass: f64,
+    /// Exponent of the second.
+    pub time: f64,
+    /// Exponent of the radian.
+    pub angle: f64,
+}
+
+/// A value with its dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measure {
+    /// The value in SI units.
+    pub si: f64,
+    /// What it is a value of.
+    pub dimension: Dimension,
+}
+
+/// Why a text is no quantity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum UnitError {
+    /// It does not begin with a number, or with one that is too large.
+    #[error("no number")]
+    NoNumber,
+    /// A decimal comma.
+    #[error("the decimal sign is a point")]
+    Comma,
+    /// Nothing follows the number.
+    #[error("no unit")]
+    NoUnit,
+    /// A unit that does not exist.
+    #[error("there is no unit '{name}'{}", .nearest.map_or(String::new(), |n| format!("; did you mean '{n}'?")))]
+    Unknown {
+        /// Its name.
+        name: String,
+        /// The unit that was probably meant.
+        nearest: Option<&'static str>,
+    },
+    /// Units in a form that is not understood.
+    #[error("the unit is not understood")]
+    Form,
+}
+
+impl Dimension {
+    /// A pure number.
+    pub const NONE: Self = Self::of(0.0, 0.0, 0.0, 0.0);
+
+    /// m^length kg^mass s^time rad^angle.
+    pub const fn of(length: f64, mass: f64, time: f64, angle: f64) -> Self {
+        Self {
+            length,
+            mass,
+            time,
+            angle,
+        }
+    }
+
+    /// N/m^n: the stiffness of a contact law with exponent n.
+    pub const fn stiffness(exponent: f64) -> Self {
+        Self::of(1.0 - exponent, 1.0, -2.0, 0.0)
+    }
+
+    /// The exponent n, if this is N/m^n.
+    pub fn stiffness_exponent(&self) -> Option<f64> {
+        let exponent = (1e9 * (1.0 - self.length)).round() / 1e9;
+        (*self == Self::stiffness(exponent)).then_some(exponent)
+    }
+
+    fn exponents(&self) -> [f64; 4] {
+        [self.length, self.mass, self.time, self.angle]
+    }
+
+    fn times(&self, unit: &Self, power: f64) -> Self {
+        Self {
+            length: self.length + power * unit.length,
+            mass: self.mass + power * unit.mass,
+            time: self.time + power * unit.time,
+            angle: self.angle + power * unit.angle,
+        }
+    }
+}
+
+/// Equal up to the rounding of fractional exponents.
+impl PartialEq for Dimension {
+    fn eq(&self, other: &Self) -> bool {
+        let pairs = self.exponents().into_iter().zip(other.exponents());
+        pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9)
+    }
+}
+
+/// The dimension in SI units: `N/m^1.5`, `kg m^2`; `%` for a pure number.
+impl fmt::Display for Dimension {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if let Some(kind) = crate::quantity::KINDS.iter().find(|k| k.dimension == *self) {
+            return f.write_str(kind.unit);
+        }
+        if let Some(exponent) = self.stiffness_exponent() {
+            return match exponent {
+                1.0 => f.write_str("N/m"),
+                _ => write!(f, "N/m^{exponent}"),
+            };
+        }
+        let mut separator = "";
+        for (exponent, name) in self.exponents().into_iter().zip(["m", "kg", "s", "rad"]) {
+            if exponent != 0.0 {
+                write!(f, "{separator}{name}^{exponent}")?;
+                separator = " ";
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The shortest text that [`parse`] reads as exactly this value: `2.4e10 N/m^1.5`, `5 %`.
+impl fmt::Display for Measure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let percent = if self.dimension == Dimension::NONE {
+            2
+        } else {
+            0
+        };
+        write!(f, "{} {}", decimal(self.si, percent), self.dimension)
+    }
+}
+
+struct Unit {
+    name: &'static str,
+    prefixed: bool,
+    /// Its size: 10^ten × numerator / denominator SI units.
+    ten: i32,
+    numerator: f64,
+    denominator: f64,
+    dimension: Dimension,
+}
+
+const fn unit(name: &'static str, prefixed: bool, ten: i32, dimension: Dimension) -> Unit {
+    Unit {
+        name,
+        prefixed,
+        ten,
+        numerator: 1.0,
+        denominator: 1.0,
+        dimension,
+    }
+}
+
+const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Dimension) -> Unit {
+    Unit {
+        numerator,
+        denominator,
+        ..unit(name, false, 0, dimension)
+    }
+}
+
+const UNITS: [Unit; 19] = [
+    unit("m", true, 0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
+    unit("g", true, -3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
+    unit("t", false, 3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
+    unit("s", true, 0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
+    odd("min", 60.0, 1.0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
+    odd("h", 3600.0, 1.0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
+    unit("rad", true, 0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
+    odd("deg", PI, 180.0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
+    odd("°", PI, 180.0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
+    odd("rpm", PI, 30.0, Dimension::of(0.0, 0.0, -1.0, 1.0)),
+    unit("Hz", true, 0, Dimension::of(0.0, 0.0, -1.0, 0.0)),
+    unit("N", true, 0, Dimension::of(1.0, 1.0, -2.0, 0.0)),
+    unit("J", true, 0, Dimension::of(2.0, 1.0, -2.0, 0.0)),
+    unit("W", true, 0, Dimension::of(2.0, 1.0, -3.0, 0.0)),
+    unit("Pa", true, 0, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
+    unit("bar", true, 5, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
+    unit("%", false, -2, Dimension::NONE),
+    unit("‰", false, -3, Dimension::NONE),
+    unit("1", false, 0, Dimension::NONE),
+];
+
+const PREFIXES: [(char, i32); 11] = [
+    ('n', -9),
+    ('u', -6),
+    ('µ', -6), // micro sign, U+00B5
+    ('μ', -6), // Greek mu, U+03BC
+    ('m', -3),
+    ('c', -2),
+    ('d', -1),
+    ('h', 2),
+    ('k', 3),
+    ('M', 6),
+    ('G', 9),
+];
+
+/// Names that are suggested for a misspelt one.
+const COMMON: [&str; 31] = [
+    "m", "mm", "um", "cm", "kg", "g", "t", "s", "ms", "min", "h", "rad", "deg", "rpm", "Hz", "kHz",
+    "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "%",
+];
+
+/// Reads a number with its unit.
+pub fn parse(text: &str) -> Result<Measure, UnitError> {
+    let text = text.trim();
+    let (number, rest) = split_number(text).ok_or(UnitError::NoNumber)?;
+    if rest.trim().is_empty() {
+        return Err(UnitError::NoUnit);
+    }
+    if rest.starts_with(',') {
+        return Err(UnitError::Comma);
+    }
+    let scale = Scale::parse(rest)?;
+    let si = scale.apply(number).ok_or(UnitError::NoNumber)?;
+    Ok(Measure {
+        si,
+        dimension: scale.dimension,
+    })
+}
+
+/// A decimal number as it is written: the digits with their point, and the power of ten.
+type Decimal<'a> = (&'a str, i32);
+
+/// The number at the start of `text`, and what follows it.
+fn split_number(text: &str) -> Option<(Decimal<'_>, &str)> {
+    let digits = |from: usize| {
+        let rest = &text.as_bytes()[from..];
+        from + rest.iter().take_while(|b| b.is_ascii_digit()).count()
+    };
+    let byte = |at: usize| text.as_bytes().get(at).copied();
+    let start = usize::from(matches!(byte(0), Some(b'+' | b'-')));
+    let whole = digits(start);
+    let end = match byte(whole) {
+        Some(b'.') => digits(whole + 1),
+        _ => whole,
+    };
+    if !text[start..end].contains(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let mantissa = &text[..end];
+    if matches!(byte(end), Some(b'e' | b'E')) {
+        let sign = end + 1 + usize::from(matches!(byte(end + 1), Some(b'+' | b'-')));
+        let stop = digits(sign);
+        if stop > sign {
+            let exponent = text[end + 1..stop].parse().ok()?;
+            return Some(((mantissa, exponent), &text[stop..]));
+        }
+    }
+    Some(((mantissa, 0), &text[end..]))
+}
+
+/// The size of a unit: 10^ten × numerator / denominator SI units.
+struct Scale {
+    ten: f64,
+    numerator: f64,
+    denominator: f64,
+    dimension: Dimension,
+}
+
+impl Scale {
+    fn parse(text: &str) -> Result<Self, UnitError> {
+        let mut scale = Self {
+            ten: 0.0,
+            numerator: 1.0,
+            denominator: 1.0,
+            dimension: Dimension::NONE,
+        };
+        for (i, product) in text.split('/').enumerate() {
+            let power = match i {
+                0 => 1.0,
+                1 => -1.0,
+                _ => return Err(UnitError::Form),
+            };
+            let separator = |c: char| c.is_whitespace() || "*·⋅".contains(c);
+            let mut factors = product
+                .split(separator)
+                .filter(|f| !f.is_empty())
+                .peekable();
+            factors.peek().ok_or(UnitError::Form)?;
+            for factor in factors {
+                let (name, exponent) = split_exponent(factor)?;
+                scale.multiply(name, power * exponent)?;
+            }
+        }
+        Ok(scale)
+    }
+
+    fn multiply(&mut self, name: &str, power: f64) -> Result<(), UnitError> {
+        let (unit, prefix) = find(name)?;
+        self.ten += power * f64::from(unit.ten + prefix);
+        let (above, below) = if power < 0.0 {
+            (unit.denominator, unit.numerator)
+        } else {
+            (unit.numerator, unit.denominator)
+        };
+        if unit.numerator != 1.0 {
+            self.numerator *= raise(above, power.abs());
+            self.denominator *= raise(below, power.abs());
+        }
+        self.dimension = self.dimension.times(&unit.dimension, power);
+        Ok(())
+    }
+
+    /// The number in SI units; none where it is not finite.
+    fn apply(&self, (mantissa, exponent): Decimal) -> Option<f64> {
+        let whole = self.ten.floor();
+        let exponent = exponent.checked_add(whole as i32)?;
+        let shifted: f64 = format!("{mantissa}e{exponent}").parse().ok()?;
+        let fraction = self.ten - whole;
+        let shifted = if fraction == 0.0 {
+            shifted
+        } else {
+            shifted * Scalar::powf(10.0, fraction)
+        };
+        let si = shifted * self.numerator / self.denominator;
+        si.is_finite().then_some(si)
+    }
+}
+
+fn raise(base: f64, power: f64) -> f64 {
+    if power == 1.0 {
+        base
+    } else {
+        Scalar::powf(base, power)
+    }
+}
+
+/// The unit called `name`, and the power of ten of its prefix.
+fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
+    if let Some(unit) = UNITS.iter().find(|u| u.name == name) {
+        return Ok((unit, 0));
+    }
+    for (prefix, ten) in PREFIXES {
+        if let Some(rest) = name.strip_prefix(prefix)
+            && let Some(unit) = UNITS.iter().find(|u| u.prefixed && u.name == rest)
+        {
+            return Ok((unit, ten));
+        }
+    }
+    Err(UnitError::Unknown {
+        name: name.chars().take(20).collect(),
+        nearest: nearest(name, COMMON),
+    })
+}
+
+/// `m^1.5`, `m²` or `m2`: the name and the exponent.
+fn split_exponent(factor: &str) -> Result<(&str, f64), UnitError> {
+    if factor == "1" {
+        return Ok((factor, 1.0));
+    }
+    let is_exponent = |c: char| c.is_ascii_digit() || "^⁰¹²³⁴⁵⁶⁷⁸⁹⁻".contains(c);
+    let Some(split) = factor.find(is_exponent) else {
+        return Ok((factor, 1.0));
+    };
+    let (name, exponent) = factor.split_at(split);
+    let plain: String = exponent
+        .strip_prefix('^')
+        .unwrap_or(exponent)
+        .chars()
+        .map(|c| match "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().position(|s| s == c) {
+            Some(i) => ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', '-'][i],
+            None => c,
+        })
+        .collect();
+    let exponent: f64 = plain.parse().map_err(|_| UnitError::Form)?;
+    // Larger ones are slips of the keyboard, and would overflow the power of ten.
+    if name.is_empty() || exponent.is_nan() || exponent.abs() > 9.0 {
+        return Err(UnitError::Form);
+    }
+    Ok((name, exponent))
+}
+
+/// The shortest decimal text of `value` × 10^`shift`, without rounding.
+fn decimal(value: f64, shift: i32) -> String {
+    let scientific = format!("{value:e}");
+    let Some((mantissa, exponent)) = scientific.split_once('e') else {
+        return scientific;
+    };
+    let exponent = exponent.parse::<i32>().unwrap_or(0) + shift;
+    let (sign, mantissa) = match mantissa.strip_prefix('-') {
+        Some(rest) => ("-", rest),
+        None => ("", mantissa),
+    };
+    let digits = mantissa.replace('.', "");
+    match exponent {
+        _ if value == 0.0 => format!("{sign}0"),
+        -4..0 => {
+            let zeros = "0".repeat((-exponent - 1) as usize);
+            format!("{sign}0.{zeros}{digits}")
+        }
+        0..6 => {
+            let point = exponent as usize + 1;
+            if digits.len() <= point {
+                format!("{sign}{digits:0<point$}")
+            } else {
+                format!("{sign}{}.{}", &digits[..point], &digits[point..])
+            }
+        }
+        _ => format!("{sign}{mantissa}e{exponent}"),
+    }
+}

@@ -1,0 +1,273 @@
+//! YAML text becomes a tree that remembers where each key and value stands.
+
+use crate::error::{Error, Place, Problem, join};
+use crate::reader;
+use serde::de::{self, Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Number, Value};
+use serde_saphyr::{
+    DuplicateKeyPolicy, MessageFormatter, NonFiniteFloatPolicy, Spanned, UserMessageFormatter,
+};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+/// A file's content: its tree, and where things stand in it.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// The content.
+    pub tree: Value,
+    file: Option<String>,
+    places: BTreeMap<String, Places>,
+}
+
+/// Where a key and its value stand.
+#[derive(Clone, Copy, Debug)]
+struct Places {
+    key: Place,
+    value: Place,
+}
+
+/// Reads `text` as a `T`; messages call the file `file_name`.
+///
+/// Sections become structs (with `deny_unknown_fields`), enums with the serde name `tag:law` are
+/// sections whose key `law` names the variant.
+///
+/// # Errors
+/// The first mistake, with its line.
+pub fn from_str<T: DeserializeOwned>(text: &str, file_name: &str) -> Result<T, Error> {
+    Document::parse(text, file_name)?.read()
+}
+
+/// Writes a tree as YAML; reading it gives the same tree.
+///
+/// # Errors
+/// Where the tree has a form that YAML cannot hold.
+pub fn to_string(tree: &Value) -> Result<String, Error> {
+    serde_saphyr::to_string(tree).map_err(|e| Error::new("", Problem::Other(e.to_string())))
+}
+
+impl Document {
+    /// The content of the file at `path`.
+    ///
+    /// # Errors
+    /// Where the file cannot be read or is not YAML.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let name = path.display().to_string();
+        let text = std::fs::read_to_string(path).map_err(|error| {
+            let reason = match error.kind() {
+                std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+                std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
+                std::io::ErrorKind::InvalidData => "it is not text in UTF-8".to_owned(),
+                std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+                _ => error.to_string(),
+            };
+            Error::new("", Problem::Unreadable(reason)).in_file(&name)
+        })?;
+        Self::parse(&text, &name)
+    }
+
+    /// The content `text` of a file that messages call `file_name`.
+    ///
+    /// # Errors
+    /// Where the text is empty or not YAML, or a section has a key twice.
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
+        let options = serde_saphyr::options! {
+            // Deep enough for any file of ours, and no test of the stack.
+            budget: serde_saphyr::budget! { max_depth: 20 },
+            strict_booleans: true,
+            with_snippet: false,
+            reject_unsupported_tags: true,
+            // Both are reported with their dotted path, which only the tree knows.
+            duplicate_keys: DuplicateKeyPolicy::PassThrough,
+            non_finite_float_policy: NonFiniteFloatPolicy::AsString,
+        };
+        let root: Option<Spanned<Node>> = serde_saphyr::from_str_with_options(text, options)
+            .map_err(|error| syntax(&error).in_file(file_name))?;
+        let mut places = BTreeMap::new();
+        let tree = match root {
+            None => Value::Null,
+            Some(node) => node
+                .value
+                .into_tree("", &mut places)
+                .map_err(|error| error.in_file(file_name))?,
+        };
+        if tree.is_null() {
+            return Err(Error::new("", Problem::Empty).in_file(file_name));
+        }
+        Ok(Self {
+            tree,
+            file: Some(file_name.to_owned()),
+            places,
+        })
+    }
+
+    /// A document that was put together in memory: its messages have no lines.
+    pub fn from_tree(tree: Value) -> Self {
+        Self {
+            tree,
+            file: None,
+            places: BTreeMap::new(),
+        }
+    }
+
+    /// Reads the content as a `T`.
+    ///
+    /// # Errors
+    /// The first mistake, with its line.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, Error> {
+        reader::read(&self.tree).map_err(|error| self.locate(error))
+    }
+
+    /// `error` with the value as it is written, the file's name, and the place of its key or of the
+    /// section that lacks it.
+    pub fn locate(&self, error: Error) -> Error {
+        let error = match find(&self.tree, error.key()) {
+            Some(value) => error.written(value),
+            None => error,
+        };
+        let Some(file) = &self.file else {
+            return error;
+        };
+        let found = |key: &str| self.places.get(key);
+        let place = match (found(error.key()), error.problem()) {
+            (Some(at), Problem::UnknownKey { .. } | Problem::Duplicate) => Some(at.key),
+            (Some(at), _) => Some(at.value),
+            (None, _) => parents(error.key()).find_map(|key| found(key).map(|at| at.key)),
+        };
+        let place = place.unwrap_or(Place { line: 1, column: 1 });
+        error.in_file(file).at(place)
+    }
+}
+
+/// The node at a dotted path of keys and indices; the tree itself at the empty one.
+pub(crate) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
+    let mut parts = key.split('.').filter(|_| !key.is_empty());
+    parts.try_fold(tree, |node, part| match node {
+        Value::Array(items) => items.get(part.parse::<usize>().ok()?),
+        node => node.get(part),
+    })
+}
+
+/// `a.b`, then `a`, of `a.b.c`.
+fn parents(key: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(key.rsplit_once('.'), |(parent, _)| parent.rsplit_once('.'))
+        .map(|(parent, _)| parent)
+}
+
+fn syntax(error: &serde_saphyr::Error) -> Error {
+    use serde_saphyr::Error as Yaml;
+    let error = match error.without_snippet() {
+        Yaml::AliasError { error, .. } => error,
+        error => error,
+    };
+    let message = match error {
+        Yaml::Budget { .. } => "nested too deeply, or too large".to_owned(),
+        other => UserMessageFormatter.format_message(other).into_owned(),
+    };
+    let mine = Error::new("", Problem::Syntax(message));
+    match error.location() {
+        Some(location) => mine.at(place(&location)),
+        None => mine,
+    }
+}
+
+fn place(location: &serde_saphyr::Location) -> Place {
+    Place {
+        line: location.line(),
+        column: location.column(),
+    }
+}
+
+/// A node of the YAML text.
+enum Node {
+    Scalar(Value),
+    List(Vec<Spanned<Node>>),
+    Section(Vec<(Spanned<String>, Spanned<Node>)>),
+}
+
+impl Node {
+    /// The node without places; those go to `places` under their dotted paths.
+    fn into_tree(self, path: &str, places: &mut BTreeMap<String, Places>) -> Result<Value, Error> {
+        let mut child = |name: &str, key: Place, node: Spanned<Self>| {
+            let below = join(path, name);
+            let value = place(&node.referenced);
+            if places
+                .insert(below.clone(), Places { key, value })
+                .is_some()
+            {
+                return Err(Error::new(below, Problem::Duplicate).at(key));
+            }
+            node.value.into_tree(&below, places)
+        };
+        match self {
+            Self::Scalar(value) => Ok(value),
+            Self::List(items) => {
+                let items = items.into_iter().enumerate();
+                items
+                    .map(|(i, item)| child(&i.to_string(), place(&item.referenced), item))
+                    .collect()
+            }
+            Self::Section(entries) => {
+                let mut section = Map::new();
+                for (key, value) in entries {
+                    let tree = child(&key.value, place(&key.referenced), value)?;
+                    section.insert(key.value, tree);
+                }
+                Ok(Value::Object(section))
+            }
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Node {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Any;
+        impl<'de> Visitor<'de> for Any {
+            type Value = Node;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a value, a list or a section")
+            }
+            fn visit_unit<E>(self) -> Result<Node, E> {
+                Ok(Node::Scalar(Value::Null))
+            }
+            fn visit_none<E: de::Error>(self) -> Result<Node, E> {
+                self.visit_unit()
+            }
+            fn visit_some<D: Deserializer<'de>>(self, inner: D) -> Result<Node, D::Error> {
+                Node::deserialize(inner)
+            }
+            fn visit_bool<E>(self, value: bool) -> Result<Node, E> {
+                Ok(Node::Scalar(Value::Bool(value)))
+            }
+            fn visit_u64<E>(self, value: u64) -> Result<Node, E> {
+                Ok(Node::Scalar(value.into()))
+            }
+            fn visit_i64<E>(self, value: i64) -> Result<Node, E> {
+                Ok(Node::Scalar(value.into()))
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Node, E> {
+                let number =
+                    Number::from_f64(value).ok_or_else(|| E::custom("numbers must be finite"))?;
+                Ok(Node::Scalar(Value::Number(number)))
+            }
+            fn visit_str<E>(self, text: &str) -> Result<Node, E> {
+                Ok(Node::Scalar(text.into()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Node, A::Error> {
+                let mut items = Vec::new();
+                while let Some(item) = list.next_element()? {
+                    items.push(item);
+                }
+                Ok(Node::List(items))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut section: A) -> Result<Node, A::Error> {
+                let mut entries = Vec::new();
+                while let Some(entry) = section.next_entry()? {
+                    entries.push(entry);
+                }
+                Ok(Node::Section(entries))
+            }
+        }
+        deserializer.deserialize_any(Any)
+    }
+}

@@ -1,0 +1,60 @@
+//! The committed JSON Schema is the one that the program gives.
+
+use serde_json::Value;
+use std::path::PathBuf;
+
+#[test]
+fn the_committed_schema_is_current() {
+    let path =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/schema/machine.schema.json");
+    let current = input::schema::machine_schema();
+    let committed = std::fs::read_to_string(path).unwrap_or_default();
+    let committed: Value = serde_json::from_str(&committed).unwrap_or_default();
+    assert!(
+        committed == current,
+        "data/schema/machine.schema.json is stale; refresh it with\n    \
+         cargo run --bin crosshead -- schema machine > data/schema/machine.schema.json"
+    );
+}
+
+#[test]
+fn every_reference_leads_to_a_definition() {
+    fn check(node: &Value, root: &Value, seen: &mut usize) {
+        if let Some(target) = node.get("$ref").and_then(Value::as_str) {
+            let pointer = target.strip_prefix('#').unwrap();
+            assert!(root.pointer(pointer).is_some(), "{target}");
+            *seen += 1;
+        }
+        match node {
+            Value::Object(section) => section.values().for_each(|v| check(v, root, seen)),
+            Value::Array(items) => items.iter().for_each(|v| check(v, root, seen)),
+            _ => {}
+        }
+    }
+    let schema = input::schema::machine_schema();
+    let mut seen = 0;
+    check(&schema, &schema, &mut seen);
+    assert!(seen > 50, "{seen}");
+}
+
+#[test]
+fn every_key_has_a_description() {
+    fn check(node: &Value, at: &str, missing: &mut Vec<String>) {
+        if let Some(properties) = node.get("properties").and_then(Value::as_object) {
+            for (key, value) in properties {
+                // Tags are described by the alternatives that they choose.
+                if value.get("description").is_none() && value.get("const").is_none() {
+                    missing.push(format!("{at}.{key}"));
+                }
+            }
+        }
+        if let Value::Object(section) = node {
+            for (key, value) in section.iter().filter(|(key, _)| *key != "else") {
+                check(value, &format!("{at}.{key}"), missing);
+            }
+        }
+    }
+    let mut missing = Vec::new();
+    check(&input::schema::machine_schema(), "", &mut missing);
+    assert_eq!(missing, [""; 0]);
+}

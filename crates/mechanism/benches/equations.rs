@@ -1,0 +1,80 @@
+//! One right-hand side (plain, dual, eight lanes), and one revolution.
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+use common::{REVOLUTION, Run, with_clearance};
+use criterion::{Criterion, criterion_group, criterion_main};
+use integrate::System;
+use mechanism::{Dynamics, lift};
+use scalar::{Dual, Lanes, Scalar};
+use std::hint::black_box;
+
+/// A state of the settled motion, and its time.
+fn settled() -> (f64, Vec<f64>) {
+    let mut run = Run::start(with_clearance(3e-4, 3e-4, 2e4), 1e-9, false);
+    run.advance(5.3 * REVOLUTION);
+    (run.integrator.time(), run.integrator.state().to_vec())
+}
+
+fn right_hand_side(c: &mut Criterion) {
+    let machine = with_clearance(3e-4, 3e-4, 2e4);
+    let (t, y) = settled();
+    let mut group = c.benchmark_group("right_hand_side");
+    let mut plain = Dynamics::new(machine.clone(), false);
+    group.bench_function("plain", |b| {
+        b.iter(|| plain.evaluate(black_box(t), black_box(&y)).speed);
+    });
+    let mut dual = Dynamics::<Dual<f64, 1>>::new(lift::constants(&machine), false);
+    let dual_y: Vec<Dual<f64, 1>> = y.iter().map(|y| Dual::constant(*y)).collect();
+    group.bench_function("dual", |b| {
+        b.iter(|| {
+            dual.evaluate(black_box(Dual::constant(t)), black_box(&dual_y))
+                .speed
+        });
+    });
+    let mut lanes = Dynamics::new(lift::lanes([&machine; 8]), false);
+    let lanes_y: Vec<Lanes<8>> = y.iter().map(|y| Lanes([*y; 8])).collect();
+    group.bench_function("eight lanes", |b| {
+        b.iter(|| {
+            lanes
+                .evaluate(black_box(Lanes([t; 8])), black_box(&lanes_y))
+                .speed
+        });
+    });
+    let mut dy = y.clone();
+    let mut with_ledger = Dynamics::new(machine, true);
+    let mut y = y;
+    y.resize(with_ledger.dimension(), 0.0);
+    dy.resize(y.len(), 0.0);
+    group.bench_function("derivative with ledger", |b| {
+        b.iter(|| with_ledger.derivative(black_box(t), black_box(&y), &mut dy));
+    });
+    group.finish();
+}
+
+fn revolution(c: &mut Criterion) {
+    let mut group = c.benchmark_group("revolution");
+    for tolerance in [1e-6, 1e-9, 1e-12] {
+        let mut run = Run::start(with_clearance(3e-4, 3e-4, 2e4), tolerance, false);
+        run.advance(5.0 * REVOLUTION);
+        let start = run.integrator.clone();
+        let mode = run.dynamics.clone();
+        group.bench_function(format!("tolerance {tolerance:e}"), |b| {
+            b.iter(|| {
+                let (mut integrator, mut dynamics) = (start.clone(), mode.clone());
+                integrator
+                    .advance(&mut dynamics, 6.0 * REVOLUTION, |_, _| ())
+                    .map(|()| integrator.state()[0])
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default().sample_size(30).without_plots();
+    targets = right_hand_side, revolution
+}
+criterion_main!(benches);

@@ -1,0 +1,336 @@
+//! `README.md` of a dataset: what is in it, for people, and the front matter by which Hugging Face
+//! `datasets` finds its tables.
+
+use crate::Schema;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+
+/// What the card of a dataset says; [`Display`] writes it.
+#[derive(Clone, Debug)]
+pub struct DatasetCard {
+    /// Title, in a few words.
+    pub title: String,
+    /// What the dataset is, in a paragraph.
+    pub summary: String,
+    /// Identifier of the licence: `cc0-1.0`, `cc-by-4.0`.
+    pub license: String,
+    /// Words by which to find it.
+    pub tags: Vec<String>,
+    /// The machine: names and values, in the order in which to show them.
+    pub machine: Vec<(String, String)>,
+    /// Rows by split, then by fault: `rows["train"]["big_end"]`, the same in every table. Splits
+    /// without rows are shown but not offered: `datasets` refuses a dataset that has one.
+    pub rows: BTreeMap<String, BTreeMap<String, u64>>,
+    /// The tables; the first is the one that is loaded when none is named.
+    pub subsets: Vec<Subset>,
+    /// One MCAP file, where there are such: `mcap/CASE.mcap`.
+    pub mcap_example: Option<String>,
+    /// The command that makes the dataset again.
+    pub command: String,
+    /// Version of the program that made it.
+    pub version: String,
+}
+
+/// One table of a dataset, in files `NAME/SPLIT-*.parquet`.
+#[derive(Clone, Debug)]
+pub struct Subset {
+    /// `signals`, `features`.
+    pub name: String,
+    /// The columns.
+    pub schema: Schema,
+}
+
+impl Display for DatasetCard {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        self.front_matter(f)?;
+        writeln!(f, "\n# {}\n\n{}", self.title, self.summary.trim())?;
+        self.machine(f)?;
+        self.counts(f)?;
+        self.loading(f)?;
+        self.columns(f)?;
+        writeln!(
+            f,
+            "\n## How it was made\n\nBy version {} of the program:\n",
+            self.version
+        )?;
+        writeln!(f, "```sh\n{}\n```\n", self.command)?;
+        writeln!(
+            f,
+            "`sweep.yaml` holds the machine, the sweep and the seed: running it again gives the \
+             same bytes.\n`manifest.json` lists the files with their checksums, and the cases that \
+             failed."
+        )
+    }
+}
+
+impl DatasetCard {
+    /// YAML between two lines of dashes. Strings are quoted as in JSON, which YAML contains.
+    fn front_matter(&self, f: &mut Formatter) -> fmt::Result {
+        writeln!(f, "---\npretty_name: {}", json!(self.title))?;
+        writeln!(
+            f,
+            "license: {}\ntags: {}",
+            json!(self.license),
+            json!(self.tags)
+        )?;
+        writeln!(
+            f,
+            "size_categories: [{}]",
+            json!(size_category(self.total()))
+        )?;
+        let splits = self.splits_with_rows();
+        let offered = self.subsets.iter().filter(|_| !splits.is_empty());
+        for (i, subset) in offered.enumerate() {
+            if i == 0 {
+                writeln!(f, "configs:")?;
+            }
+            writeln!(f, "- config_name: {}", json!(subset.name))?;
+            if i == 0 {
+                writeln!(f, "  default: true")?;
+            }
+            writeln!(f, "  data_files:")?;
+            for split in &splits {
+                let files = format!("{}/{split}-*.parquet", subset.name);
+                writeln!(f, "  - split: {}\n    path: {}", json!(split), json!(files))?;
+            }
+        }
+        writeln!(f, "---")
+    }
+
+    fn machine(&self, f: &mut Formatter) -> fmt::Result {
+        if self.machine.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\n## The machine\n\n| quantity | value |\n|---|---|")?;
+        for (name, value) in &self.machine {
+            writeln!(f, "| {} | {} |", cell(name), cell(value))?;
+        }
+        Ok(())
+    }
+
+    fn counts(&self, f: &mut Formatter) -> fmt::Result {
+        let splits = in_order(self.rows.keys());
+        let mut faults: Vec<_> = self.rows.values().flat_map(BTreeMap::keys).collect();
+        faults.sort_by_key(|fault| (*fault != "none", *fault));
+        faults.dedup();
+        writeln!(f, "\n## What is in it\n\nRows by fault and split:\n")?;
+        writeln!(f, "| fault | {} | all |", splits.join(" | "))?;
+        writeln!(f, "|---|{}---|", "---|".repeat(splits.len()))?;
+        for fault in faults {
+            let rows: Vec<_> = splits
+                .iter()
+                .map(|s| self.rows[*s].get(fault).copied().unwrap_or(0))
+                .collect();
+            writeln!(
+                f,
+                "| `{}` | {} | {} |",
+                cell(fault),
+                join(&rows),
+                rows.iter().sum::<u64>()
+            )?;
+        }
+        let rows: Vec<_> = splits
+            .iter()
+            .map(|split| self.rows[*split].values().sum())
+            .collect();
+        writeln!(f, "| all | {} | {} |", join(&rows), self.total())
+    }
+
+    fn total(&self) -> u64 {
+        self.rows.values().flat_map(BTreeMap::values).sum()
+    }
+
+    fn splits_with_rows(&self) -> Vec<&str> {
+        let splits = self
+            .rows
+            .iter()
+            .filter(|(_, faults)| faults.values().sum::<u64>() > 0);
+        in_order(splits.map(|(split, _)| split))
+    }
+
+    fn loading(&self, f: &mut Formatter) -> fmt::Result {
+        writeln!(
+            f,
+            "\n## How to load it\n\nFrom within this folder, in Python:"
+        )?;
+        for subset in &self.subsets {
+            let name = &subset.name;
+            let splits = self.splits_with_rows();
+            let Some(split) = splits.first() else {
+                continue;
+            };
+            writeln!(
+                f,
+                "
+```python
+import os, datasets, pandas, polars, pyarrow.dataset
+{name} = datasets.load_dataset(os.getcwd(), \"{name}\")[\"{split}\"]
+{name} = pandas.read_parquet(\"{name}\")      # every split; units in {name}.attrs[\"units\"]
+{name} = polars.scan_parquet(\"{name}/{split}-*.parquet\").collect()
+{name} = pyarrow.dataset.dataset(\"{name}\").to_table()
+```"
+            )?;
+        }
+        let Some(example) = &self.mcap_example else {
+            return Ok(());
+        };
+        writeln!(
+            f,
+            "
+```python
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+with open(\"{example}\", \"rb\") as file:
+    reader = make_reader(file, decoder_factories=[DecoderFactory()])
+    labels = next(record.metadata for record in reader.iter_metadata() if record.name == \"labels\")
+    samples = [message for _, _, _, message in reader.iter_decoded_messages(topics=[\"{topic}\"])]
+```
+
+Foxglove opens the files of `mcap/` as they are: add a Plot panel and drag a channel of
+`{topic}` into it. The labels are the metadata record `labels`.",
+            topic = crate::formats::mcap::TOPIC,
+        )
+    }
+
+    fn columns(&self, f: &mut Formatter) -> fmt::Result {
+        for subset in &self.subsets {
+            let columns = subset.schema.columns();
+            writeln!(
+                f,
+                "\n## Columns of `{}`\n\n| column | holds | unit | meaning |\n|---|---|---|---|",
+                subset.name
+            )?;
+            for column in columns {
+                let optional = if column.optional { ", or nothing" } else { "" };
+                let unit = column.unit.as_deref().unwrap_or_default();
+                let (name, kind) = (cell(&column.name), column.kind);
+                writeln!(
+                    f,
+                    "| `{name}` | {kind}{optional} | {} | {} |",
+                    cell(unit),
+                    cell(&column.description)
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Splits in the order of use: train, validation, test, then any other by name.
+fn in_order<'a>(splits: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+    let known = ["train", "validation", "test"];
+    let place = |split: &str| {
+        known
+            .iter()
+            .position(|k| *k == split)
+            .unwrap_or(known.len())
+    };
+    let mut splits: Vec<_> = splits.map(String::as_str).collect();
+    splits.sort_by_key(|split| (place(split), *split));
+    splits
+}
+
+/// Text that stays within a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+fn join(numbers: &[u64]) -> String {
+    let numbers: Vec<_> = numbers.iter().map(u64::to_string).collect();
+    numbers.join(" | ")
+}
+
+/// The classes that Hugging Face sorts datasets into.
+fn size_category(rows: u64) -> &'static str {
+    match rows {
+        0..1_000 => "n<1K",
+        1_000..10_000 => "1K<n<10K",
+        10_000..100_000 => "10K<n<100K",
+        100_000..1_000_000 => "100K<n<1M",
+        1_000_000..10_000_000 => "1M<n<10M",
+        _ => "n>10M",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Column, Kind};
+
+    fn card() -> DatasetCard {
+        let column = Column::new("clearance_m", Kind::Real, "of a | joint")
+            .unit("m")
+            .optional();
+        let faults =
+            |rows: &[(&str, u64)]| rows.iter().map(|(f, n)| ((*f).to_owned(), *n)).collect();
+        let rows = [
+            ("test", faults(&[("none", 1)])),
+            ("train", faults(&[("big_end", 2), ("none", 30)])),
+            ("validation", faults(&[])),
+        ];
+        DatasetCard {
+            title: "Yes: no".into(),
+            summary: "All of it.".into(),
+            license: "cc0-1.0".into(),
+            tags: vec!["a".into()],
+            machine: vec![("stroke".into(), "240 mm".into())],
+            rows: rows
+                .map(|(split, faults)| (split.to_owned(), faults))
+                .into(),
+            subsets: ["signals", "features"]
+                .map(|name| Subset {
+                    name: name.into(),
+                    schema: Schema::new(vec![column.clone()]).unwrap(),
+                })
+                .into(),
+            mcap_example: None,
+            command: "gen-dataset sweep.yaml".into(),
+            version: "0.1.0".into(),
+        }
+    }
+
+    #[test]
+    fn the_front_matter_names_the_splits_that_have_rows() {
+        let text = card().to_string();
+        let front_matter = text.split("---\n").nth(1).unwrap();
+        let expected = r#"pretty_name: "Yes: no"
+license: "cc0-1.0"
+tags: ["a"]
+size_categories: ["n<1K"]
+configs:
+- config_name: "signals"
+  default: true
+  data_files:
+  - split: "train"
+    path: "signals/train-*.parquet"
+  - split: "test"
+    path: "signals/test-*.parquet"
+- config_name: "features"
+  data_files:
+  - split: "train"
+    path: "features/train-*.parquet"
+  - split: "test"
+    path: "features/test-*.parquet"
+"#;
+        assert_eq!(front_matter, expected);
+
+        let mut empty = card();
+        empty.rows.clear();
+        assert!(!empty.to_string().contains("config"));
+    }
+
+    #[test]
+    fn rows_are_counted_by_fault_and_split() {
+        let text = card().to_string();
+        let expected = "| fault | train | validation | test | all |
+|---|---|---|---|---|
+| `none` | 30 | 0 | 1 | 31 |
+| `big_end` | 2 | 0 | 0 | 2 |
+| all | 32 | 0 | 1 | 33 |
+";
+        assert!(text.contains(expected), "{text}");
+        let column = r"| `clearance_m` | a real number, or nothing | m | of a \| joint |";
+        assert_eq!(text.matches(column).count(), 2, "{text}");
+    }
+}

@@ -1,0 +1,5 @@
+//! One file per format.
+
+pub mod csv;
+pub mod mcap;
+pub mod parquet;

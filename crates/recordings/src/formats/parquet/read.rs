@@ -1,0 +1,282 @@
+//! Parquet to tables: our own, and those of other programs.
+
+use crate::{Column, Data, Error, Kind, Schema, Table};
+use arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
+use arrow::compute::cast;
+use arrow::datatypes::{DataType, Field, Float32Type, Float64Type, Int64Type};
+use parquet::arrow::ProjectionMask;
+use parquet::arrow::arrow_reader::{
+    ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder,
+};
+use std::fs::File;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+
+/// Rows decoded at a time.
+const BATCH_ROWS: usize = 1 << 12;
+
+/// A Parquet file whose columns can be read by name.
+pub struct ParquetFile {
+    path: PathBuf,
+    file: File,
+    metadata: ArrowReaderMetadata,
+    rows: usize,
+    schema: Schema,
+}
+
+/// Reads every column of a file whose type tables have.
+///
+/// # Errors
+/// When the file is not there, is damaged or is not a Parquet file.
+pub fn read_table(path: &Path) -> Result<Table, Error> {
+    let file = ParquetFile::open(path)?;
+    let names: Vec<_> = file
+        .schema
+        .columns()
+        .iter()
+        .map(|c| c.name.as_str())
+        .collect();
+    file.read(&names, 0..file.rows)
+}
+
+impl ParquetFile {
+    /// Opens a file and reads what it says about itself.
+    ///
+    /// # Errors
+    /// When the file is not there, is damaged or is not a Parquet file.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let file = File::open(path).map_err(Error::io("open", path))?;
+        guarded(path, || {
+            let options = ArrowReaderOptions::new();
+            let metadata = ArrowReaderMetadata::load(&file, options).map_err(damaged(path))?;
+            let rows = metadata.metadata().file_metadata().num_rows();
+            Ok(Self {
+                path: path.to_owned(),
+                rows: usize::try_from(rows).map_err(damaged(path))?,
+                schema: schema(&metadata)?,
+                file: file.try_clone().map_err(Error::io("open", path))?,
+                metadata,
+            })
+        })
+    }
+
+    /// The columns whose type tables have; columns of other types (dates, lists of lists, ...)
+    /// stand beside them in the file and are left alone. A column of float32 is one of real
+    /// numbers, and narrower whole numbers are whole numbers.
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Some columns of some rows, the columns in the order asked for.
+    ///
+    /// # Errors
+    /// When a column or a row is not there, the column's type is none that tables have, or the
+    /// file is damaged.
+    pub fn read(&self, columns: &[&str], rows: Range<usize>) -> Result<Table, Error> {
+        if rows.start > rows.end || rows.end > self.rows {
+            return Err(Error::NoSuchRows {
+                path: self.path.clone(),
+                start: rows.start,
+                end: rows.end,
+                rows: self.rows,
+            });
+        }
+        let wanted = columns
+            .iter()
+            .map(|name| self.wanted(name))
+            .collect::<Result<Vec<_>, _>>()?;
+        let schema = Schema::new(wanted)?.with_metadata(self.schema.metadata().clone());
+        let mut data: Vec<Data> = schema
+            .columns()
+            .iter()
+            .map(|c| Data::empty(c.kind))
+            .collect();
+        guarded(&self.path, || {
+            self.decode(columns, rows.clone(), &schema, &mut data)
+        })?;
+        if let Some(short) = data.iter().find(|data| data.len() != rows.len()) {
+            let reason = format!("{} rows where it announces {}", short.len(), rows.len());
+            return Err(damaged(&self.path)(reason));
+        }
+        Table::from_columns(schema, data)
+    }
+
+    fn decode(
+        &self,
+        columns: &[&str],
+        rows: Range<usize>,
+        schema: &Schema,
+        data: &mut [Data],
+    ) -> Result<(), Error> {
+        for batch in self.batches(columns, rows)? {
+            let batch = batch.map_err(damaged(&self.path))?;
+            for (column, data) in schema.columns().iter().zip(&mut *data) {
+                self.append(&batch, &column.name, data)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn wanted(&self, name: &str) -> Result<Column, Error> {
+        let missing = match self.schema.position(name) {
+            Ok(position) => return Ok(self.schema.columns()[position].clone()),
+            Err(missing) => missing,
+        };
+        let field = self.metadata.schema().field_with_name(name);
+        Err(field.map_or(missing, |field| Error::ColumnType {
+            path: self.path.clone(),
+            column: name.to_owned(),
+            found: field.data_type().to_string(),
+        }))
+    }
+
+    fn batches(
+        &self,
+        columns: &[&str],
+        rows: Range<usize>,
+    ) -> Result<impl Iterator<Item = Result<RecordBatch, arrow::error::ArrowError>>, Error> {
+        let file = self
+            .file
+            .try_clone()
+            .map_err(Error::io("open", &self.path))?;
+        let roots = columns
+            .iter()
+            .filter_map(|name| self.metadata.schema().index_of(name).ok());
+        let mask = ProjectionMask::roots(self.metadata.parquet_schema(), roots);
+        ParquetRecordBatchReaderBuilder::new_with_metadata(file, self.metadata.clone())
+            .with_projection(mask)
+            .with_batch_size(BATCH_ROWS.min(rows.len().max(1)))
+            .with_offset(rows.start)
+            .with_limit(rows.len())
+            .build()
+            .map_err(damaged(&self.path))
+    }
+
+    fn append(&self, batch: &RecordBatch, name: &str, data: &mut Data) -> Result<(), Error> {
+        let missing = || damaged(&self.path)(format!("column `{name}` is not in its row groups"));
+        let array = batch.column_by_name(name).ok_or_else(missing)?;
+        append(array, data).map_err(damaged(&self.path))
+    }
+}
+
+/// The result of `read`, with an error in place of a panic: the Parquet library takes some damage
+/// to page headers (one flipped byte in 2000) for a mistake of its own.
+fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(damaged(path)("its pages contradict each other")))
+}
+
+fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
+    let path = path.to_owned();
+    move |error| Error::Damaged {
+        format: "Parquet",
+        path,
+        reason: error.to_string(),
+    }
+}
+
+fn schema(metadata: &ArrowReaderMetadata) -> Result<Schema, Error> {
+    let fields = metadata.schema().fields().iter();
+    let columns = fields.filter_map(|field| column(field)).collect();
+    let keys = metadata.metadata().file_metadata().key_value_metadata();
+    let keys = keys.into_iter().flatten().filter(|key| !is_ours(&key.key));
+    let keys = keys.filter_map(|key| Some((key.key.clone(), key.value.clone()?)));
+    Ok(Schema::new(columns)?.with_metadata(keys.collect()))
+}
+
+/// Keys that are made from the columns, or by the Parquet library.
+fn is_ours(key: &str) -> bool {
+    matches!(
+        key,
+        "ARROW:schema" | "PANDAS_ATTRS" | "units" | "descriptions"
+    )
+}
+
+fn column(field: &Field) -> Option<Column> {
+    Some(Column {
+        name: field.name().clone(),
+        kind: kind(field.data_type())?,
+        unit: field.metadata().get("unit").cloned(),
+        description: field
+            .metadata()
+            .get("description")
+            .cloned()
+            .unwrap_or_default(),
+        optional: field.is_nullable(),
+    })
+}
+
+fn kind(data_type: &DataType) -> Option<Kind> {
+    match data_type {
+        DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View => Some(Kind::Text),
+        DataType::Dictionary(_, values) => kind(values).filter(|kind| *kind == Kind::Text),
+        DataType::Float16 | DataType::Float32 | DataType::Float64 => Some(Kind::Real),
+        DataType::Boolean => Some(Kind::Flag),
+        DataType::List(item) | DataType::LargeList(item)
+            if *item.data_type() == DataType::Float32 =>
+        {
+            Some(Kind::Samples)
+        }
+        whole if whole.is_integer() => Some(Kind::Integer),
+        _ => None,
+    }
+}
+
+/// Appends an array of the kind of `data`, with an error in words when a number has no place in it.
+fn append(array: &ArrayRef, data: &mut Data) -> Result<(), String> {
+    let widened = |to| cast(array, &to).map_err(|error| error.to_string());
+    match data {
+        Data::Text(values) => {
+            let texts = widened(DataType::Utf8)?;
+            values.extend(
+                texts
+                    .as_string::<i32>()
+                    .iter()
+                    .map(|text| text.map(str::to_owned)),
+            );
+        }
+        Data::Integer(values) => {
+            let integers = widened(DataType::Int64)?;
+            if integers.null_count() > array.null_count() {
+                return Err("a whole number above 2^63 - 1".into());
+            }
+            values.extend(integers.as_primitive::<Int64Type>().iter());
+        }
+        Data::Real(values) => {
+            values.extend(
+                widened(DataType::Float64)?
+                    .as_primitive::<Float64Type>()
+                    .iter(),
+            );
+        }
+        Data::Flag(values) => values.extend(array.as_boolean().iter()),
+        Data::Samples(values) => match array.data_type() {
+            DataType::LargeList(_) => append_lists(array.as_list::<i64>().iter(), values)?,
+            _ => append_lists(array.as_list::<i32>().iter(), values)?,
+        },
+    }
+    Ok(())
+}
+
+fn append_lists(
+    lists: impl Iterator<Item = Option<ArrayRef>>,
+    values: &mut Vec<Option<Vec<f32>>>,
+) -> Result<(), String> {
+    for list in lists {
+        let samples = match &list {
+            None => None,
+            Some(list) if list.null_count() > 0 => {
+                return Err("a list with a missing sample".into());
+            }
+            Some(list) => Some(list.as_primitive::<Float32Type>().values().to_vec()),
+        };
+        values.push(samples);
+    }
+    Ok(())
+}

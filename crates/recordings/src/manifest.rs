@@ -1,0 +1,101 @@
+//! `manifest.json`: what a dataset consists of, for programs.
+
+use crate::Error;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// What a dataset consists of. A folder without it is not a complete dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the program that wrote the dataset.
+    pub version: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// How many cases and rows there are.
+    pub counts: Counts,
+    /// Every other file of the dataset, sorted by path.
+    pub files: Vec<FileEntry>,
+    /// The cases that have no row, sorted by identifier.
+    pub failed: Vec<FailedCase>,
+}
+
+/// How many cases and rows a dataset has.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Cases of the sweep.
+    pub cases: u64,
+    /// Cases that failed.
+    pub failed: u64,
+    /// Rows by split, then by fault: `rows["train"]["big_end"]`.
+    pub rows: BTreeMap<String, BTreeMap<String, u64>>,
+}
+
+/// One file of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileEntry {
+    /// Path within the dataset, with `/` between folders.
+    pub path: String,
+    /// Length in bytes.
+    pub bytes: u64,
+    /// SHA-256 of the content, in hexadecimal.
+    pub sha256: String,
+    /// Rows, where the file is a table.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<u64>,
+}
+
+/// A case that could not be simulated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FailedCase {
+    /// Identifier of the case.
+    pub case_id: String,
+    /// Why it failed, with the time at which it did.
+    pub reason: String,
+    /// The command that runs this case alone.
+    pub command: String,
+}
+
+impl Manifest {
+    /// The manifest as it is written: indented, with a newline at the end.
+    ///
+    /// # Errors
+    /// None in practice: everything in it has a form in JSON.
+    pub fn to_json(&self) -> Result<String, Error> {
+        let json = serde_json::to_string_pretty(self).map_err(|e| Error::encode("JSON", e))?;
+        Ok(json + "\n")
+    }
+
+    /// The manifest of a file.
+    ///
+    /// # Errors
+    /// When the file is not there or is not a manifest.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        serde_json::from_str(&text).map_err(|error| Error::Damaged {
+            format: "a manifest",
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_manifest_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("manifest.json");
+        let message = || Manifest::read(&path).unwrap_err().to_string();
+        assert!(message().starts_with("cannot read `"), "{}", message());
+        fs::write(&path, r#"{"version": "0.1.0", "seed": -1}"#).unwrap();
+        assert!(
+            message().contains("as a manifest: invalid value: integer `-1`"),
+            "{}",
+            message()
+        );
+    }
+}

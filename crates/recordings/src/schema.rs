@@ -1,0 +1,133 @@
+//! What a table holds: its columns, with their units and meanings.
+
+use crate::Error;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A string.
+    Text,
+    /// A whole number (64 bits).
+    Integer,
+    /// A real number (float64).
+    Real,
+    /// True or false.
+    Flag,
+    /// A recording: a list of float32, of any length from row to row.
+    Samples,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Text => "text",
+            Self::Integer => "a whole number",
+            Self::Real => "a real number",
+            Self::Flag => "a flag",
+            Self::Samples => "a list of samples",
+        })
+    }
+}
+
+/// A column: what stands in it and in which unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name, ending in the unit where there is one: `clearance_m`.
+    pub name: String,
+    /// What the values are.
+    pub kind: Kind,
+    /// Unit of the values as people write it: `m`, `m/s^2`. None for what has no unit.
+    pub unit: Option<String>,
+    /// What the values mean, in a sentence.
+    pub description: String,
+    /// Whether a value may be missing (null in files).
+    pub optional: bool,
+}
+
+impl Column {
+    /// A column without a unit in which no value may be missing.
+    pub fn new(name: impl Into<String>, kind: Kind, description: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            kind,
+            unit: None,
+            description: description.into(),
+            optional: false,
+        }
+    }
+
+    /// The same column with a unit.
+    pub fn unit(self, unit: impl Into<String>) -> Self {
+        Self {
+            unit: Some(unit.into()),
+            ..self
+        }
+    }
+
+    /// The same column, in which values may be missing.
+    pub fn optional(self) -> Self {
+        Self {
+            optional: true,
+            ..self
+        }
+    }
+}
+
+/// The columns of a table, each name once, and what holds for the whole table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Schema {
+    columns: Vec<Column>,
+    metadata: BTreeMap<String, String>,
+}
+
+impl Schema {
+    /// A schema of these columns, in this order.
+    ///
+    /// # Errors
+    /// When a column has no name, or two have the same.
+    pub fn new(columns: Vec<Column>) -> Result<Self, Error> {
+        let mut names = BTreeSet::new();
+        for (i, column) in columns.iter().enumerate() {
+            if column.name.is_empty() {
+                return Err(Error::NamelessColumn(i));
+            }
+            if !names.insert(&column.name) {
+                return Err(Error::DuplicateColumn(column.name.clone()));
+            }
+        }
+        Ok(Self {
+            columns,
+            metadata: BTreeMap::new(),
+        })
+    }
+
+    /// The same schema with keys and values that hold for the whole table
+    /// (`sample_rate_hz`, `version`, ...); they are kept in the file's metadata.
+    pub fn with_metadata(self, metadata: BTreeMap<String, String>) -> Self {
+        Self { metadata, ..self }
+    }
+
+    /// The columns, in order.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// What holds for the whole table.
+    pub fn metadata(&self) -> &BTreeMap<String, String> {
+        &self.metadata
+    }
+
+    /// Where the column of that name stands.
+    ///
+    /// # Errors
+    /// When there is none; the message lists those that there are.
+    pub fn position(&self, name: &str) -> Result<usize, Error> {
+        let found = self.columns.iter().position(|column| column.name == name);
+        found.ok_or_else(|| Error::NoColumn {
+            name: name.to_owned(),
+            among: self.columns.iter().map(|c| c.name.clone()).collect(),
+        })
+    }
+}

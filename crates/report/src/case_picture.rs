@@ -1,0 +1,165 @@
+//! The picture of one simulated case.
+
+use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series};
+use crate::revolutions::Revolutions;
+use crate::text;
+
+/// At most this many revolutions are drawn behind their mean: the last ones.
+const REVOLUTIONS: usize = 20;
+
+/// Everything that the picture shows, at the times of one recording.
+///
+/// All signals have the length of `crank_angle_rad`; where one is shorter, the shorter counts.
+#[derive(Clone, Debug)]
+pub struct CasePicture<'a> {
+    /// Heading: the machine, its operating point.
+    pub title: &'a str,
+    /// Crank angle, running on or starting again at every revolution.
+    pub crank_angle_rad: &'a [f64],
+    /// Acceleration of the crosshead.
+    pub acceleration_m_s2: &'a [f64],
+    /// Velocity of the crosshead.
+    pub velocity_m_s: &'a [f64],
+    /// The joints with clearance; none for an ideal machine.
+    pub joints: Vec<ClearJoint<'a>>,
+}
+
+/// What happens in one joint with clearance.
+#[derive(Clone, Debug)]
+pub struct ClearJoint<'a> {
+    /// Name in the data, for instance `big_end`.
+    pub name: &'a str,
+    /// Radial clearance.
+    pub clearance_m: f64,
+    /// The journal's centre from the bearing's.
+    pub x_m: &'a [f64],
+    /// The journal's centre from the bearing's, across `x_m`.
+    pub y_m: &'a [f64],
+    /// Normal contact force.
+    pub contact_force_n: &'a [f64],
+}
+
+impl CasePicture<'_> {
+    /// The picture as SVG: acceleration and contact force against crank angle, the
+    /// velocity-acceleration portrait, and the orbit of each journal in its clearance circle.
+    pub fn svg(&self) -> String {
+        let mut second = vec![self.portrait()];
+        second.extend(
+            self.joints
+                .iter()
+                .enumerate()
+                .map(|(i, joint)| orbit(joint, joint_colour(i))),
+        );
+        if self.joints.is_empty() {
+            second.push(Panel {
+                title: "Journal orbit".to_owned(),
+                x: Axis::linear("eccentricity x (µm)"),
+                y: Axis::linear("eccentricity y (µm)"),
+                equal_axes: true,
+                note: "ideal joints: no orbit".to_owned(),
+                ..Panel::default()
+            });
+        }
+        Figure {
+            title: self.title.to_owned(),
+            rows: vec![vec![self.acceleration(), self.contact_force()], second],
+            width: 1000.0,
+            row_height: 270.0,
+            ..Figure::default()
+        }
+        .svg()
+    }
+
+    fn acceleration(&self) -> Panel {
+        Panel {
+            title: "Crosshead acceleration: each revolution, and the mean".to_owned(),
+            x: Axis::crank_angle(),
+            y: Axis::linear("acceleration (m/s²)"),
+            series: self.over_crank_angle(self.acceleration_m_s2, Colour::Class(0), ""),
+            ..Panel::default()
+        }
+    }
+
+    fn contact_force(&self) -> Panel {
+        let series = self.joints.iter().enumerate().flat_map(|(i, joint)| {
+            self.over_crank_angle(
+                joint.contact_force_n,
+                joint_colour(i),
+                &text::words(joint.name),
+            )
+        });
+        let note = if self.joints.is_empty() {
+            "ideal joints: no contact force"
+        } else {
+            ""
+        };
+        Panel {
+            title: "Contact force: each revolution, and the mean".to_owned(),
+            x: Axis::crank_angle(),
+            y: Axis::linear("normal force (N)"),
+            series: series.collect(),
+            note: note.to_owned(),
+            ..Panel::default()
+        }
+    }
+
+    fn portrait(&self) -> Panel {
+        let points = self
+            .velocity_m_s
+            .iter()
+            .zip(self.acceleration_m_s2)
+            .map(|(&v, &a)| [v, a]);
+        Panel {
+            title: "Velocity-acceleration portrait".to_owned(),
+            x: Axis::linear("velocity (m/s)"),
+            y: Axis::linear("acceleration (m/s²)"),
+            series: vec![Series::new("", Colour::Class(0), Mark::Line, points)],
+            ..Panel::default()
+        }
+    }
+
+    /// The last revolutions lightly and their mean on top; a single revolution as a line.
+    fn over_crank_angle(&self, signal: &[f64], colour: Colour, name: &str) -> Vec<Series> {
+        let revolutions = Revolutions::new(self.crank_angle_rad, signal);
+        let Some(mean) = revolutions.mean() else {
+            return vec![Series::new(name, colour, Mark::Line, revolutions.longest())];
+        };
+        let skipped = revolutions.curves.len().saturating_sub(REVOLUTIONS);
+        let each = revolutions.curves.into_iter().skip(skipped);
+        let mut series: Vec<Series> = each
+            .map(|curve| Series::new("", colour, Mark::FaintLine, curve))
+            .collect();
+        series.push(Series::new(name, colour, Mark::BoldLine, mean));
+        series
+    }
+}
+
+/// The colour of the i-th joint, apart from that of the acceleration.
+fn joint_colour(i: usize) -> Colour {
+    Colour::Class(i + 1)
+}
+
+fn orbit(joint: &ClearJoint<'_>, colour: Colour) -> Panel {
+    const MICROMETRES: f64 = 1e6;
+    let points = joint
+        .x_m
+        .iter()
+        .zip(joint.y_m)
+        .map(|(&x, &y)| [x * MICROMETRES, y * MICROMETRES]);
+    let name = text::capitalised(&text::words(joint.name));
+    Panel {
+        title: format!(
+            "{name} orbit, clearance {}",
+            text::clearance(joint.clearance_m)
+        ),
+        x: Axis::linear("eccentricity x (µm)"),
+        y: Axis::linear("eccentricity y (µm)"),
+        series: vec![Series::new("", colour, Mark::Line, points)],
+        circles: vec![Circle {
+            centre: [0.0, 0.0],
+            radius: joint.clearance_m * MICROMETRES,
+        }],
+        equal_axes: true,
+        ..Panel::default()
+    }
+}

@@ -1,0 +1,127 @@
+//! One example of each class.
+
+use super::page::{Plate, class_colour};
+use super::{ClassExample, DatasetPage, Spectrum, captions};
+use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
+use crate::revolutions::Revolutions;
+use crate::text;
+
+/// At most this many classes have an example on the page.
+pub(super) const MOST_EXAMPLES: usize = 16;
+
+/// The figures of the first classes, all with the same axes.
+pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
+    let shown = || page.examples.iter().take(MOST_EXAMPLES);
+    let mut rows: Vec<[Panel; 4]> = shown()
+        .map(|example| panels(example, class_colour(page, &example.fault)))
+        .collect();
+    for column in 0..4 {
+        figure::share_ranges(rows.iter_mut().map(|row| &mut row[column]));
+    }
+    shown()
+        .zip(rows)
+        .map(|(example, [waveform, portrait, spectrum, orders])| {
+            plate(
+                example,
+                vec![vec![waveform, portrait], vec![spectrum, orders]],
+            )
+        })
+        .collect()
+}
+
+fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
+    let level = captions::Level::of(&example.response).map_or_else(String::new, |level| {
+        let (peak, rms) = (
+            text::quantity(level.peak, "m/s²"),
+            text::quantity(level.rms, "m/s²"),
+        );
+        format!(
+            " Peak {peak}, rms {rms}, crest factor {}.",
+            text::number(level.peak / level.rms, 3)
+        )
+    });
+    Plate {
+        heading: text::capitalised(&fault_words(&example.fault)),
+        caption: format!(
+            "{}: one revolution, the velocity-acceleration portrait of all revolutions, amplitude spectrum and order \
+             spectrum.{level} Axes are the same for all classes. Data: {}.",
+            text::capitalised(&example.operating_point),
+            captions::places([&example.response])
+        ),
+        svg: Figure {
+            rows,
+            row_height: 170.0,
+            ..Figure::default()
+        }
+        .svg(),
+    }
+}
+
+/// The label of a fault in words; a machine without one is healthy.
+pub(super) fn fault_words(fault: &str) -> String {
+    if fault == "none" {
+        "healthy".to_owned()
+    } else {
+        text::words(fault)
+    }
+}
+
+fn panels(example: &ClassExample, colour: Colour) -> [Panel; 4] {
+    let response = &example.response;
+    let revolution =
+        Revolutions::new(&response.crank_angle_rad, &response.acceleration_m_s2).longest();
+    let waveform = Panel {
+        title: "One revolution".to_owned(),
+        x: Axis::crank_angle(),
+        y: Axis::linear("acceleration (m/s²)"),
+        series: vec![Series::new("", colour, Mark::Line, revolution)],
+        ..Panel::default()
+    };
+    let spectrum = |title: &str, x: &str, spectrum: &Spectrum| Panel {
+        title: title.to_owned(),
+        x: Axis::linear(x),
+        y: Axis::log("amplitude (m/s²)"),
+        series: vec![Series::new(
+            "",
+            colour,
+            Mark::Line,
+            spectrum
+                .at
+                .iter()
+                .zip(&spectrum.amplitude_m_s2)
+                .map(|(&x, &y)| [x, y]),
+        )],
+        ..Panel::default()
+    };
+    [
+        waveform,
+        portrait("Portrait", response, colour),
+        spectrum("Spectrum", "frequency (Hz)", &example.spectrum),
+        spectrum(
+            "Order spectrum",
+            "order of crank speed",
+            &example.order_spectrum,
+        ),
+    ]
+}
+
+/// Acceleration against velocity.
+pub(super) fn portrait(title: &str, response: &super::Response, colour: Colour) -> Panel {
+    let points = response
+        .velocity_m_s
+        .iter()
+        .zip(&response.acceleration_m_s2)
+        .map(|(&v, &a)| [v, a]);
+    Panel {
+        title: title.to_owned(),
+        x: Axis::linear("velocity (m/s)"),
+        y: Axis::linear("acceleration (m/s²)"),
+        series: vec![Series::new("", colour, Mark::Line, points)],
+        note: if response.velocity_m_s.is_empty() {
+            "no velocity in the data".to_owned()
+        } else {
+            String::new()
+        },
+        ..Panel::default()
+    }
+}

@@ -1,0 +1,222 @@
+//! The HTML page of a dataset.
+//!
+//! The caller reads the tables of the dataset and fills a [`DatasetPage`]; [`DatasetPage::html`]
+//! is one file with its styles and figures inside, for a browser or a printer. Its size is bounded
+//! whatever the dataset: figures thin their lines, long tables end with a count of what is left
+//! out.
+
+mod captions;
+mod comparison;
+mod distributions;
+mod examples;
+mod page;
+
+/// All that the page tells. Numbers are SI; labels and names are as in the data.
+#[derive(Clone, Debug)]
+pub struct DatasetPage {
+    /// Name of the dataset.
+    pub name: String,
+    /// What it is, in a sentence or two.
+    pub about: String,
+    /// Version of the program that wrote it.
+    pub version: String,
+    /// Seed of the sweep.
+    pub seed: u64,
+    /// Rate of the channels in Hz.
+    pub sample_rate_hz: f64,
+    /// Samples in one window.
+    pub samples_per_window: usize,
+    /// The channels, by name.
+    pub channels: Vec<String>,
+    /// Names of the splits, in the order of the counts below.
+    pub splits: Vec<String>,
+    /// How many cases and windows there are of each fault.
+    pub faults: Vec<FaultCount>,
+    /// The parameters that vary, and how far.
+    pub ranges: Vec<ParameterRange>,
+    /// The cases that have no data.
+    pub failed: Vec<FailedCase>,
+    /// One example per fault.
+    pub examples: Vec<ClassExample>,
+    /// What is compared: depends on the design of the sweep.
+    pub design: Design,
+    /// The features of the table.
+    pub features: Vec<Feature>,
+    /// The values of the features for each fault.
+    pub feature_rows: Vec<FeatureRow>,
+    /// The columns of all tables.
+    pub columns: Vec<Column>,
+}
+
+/// Cases and windows of one fault.
+#[derive(Clone, Debug)]
+pub struct FaultCount {
+    /// Label, for instance `big_end+small_end`.
+    pub fault: String,
+    /// Cases in each split.
+    pub cases: Vec<usize>,
+    /// Windows in all splits.
+    pub windows: usize,
+}
+
+/// A parameter that varies over the cases.
+#[derive(Clone, Debug)]
+pub struct ParameterRange {
+    /// What it is: «speed», «clearance of the big end».
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Lowest value.
+    pub low: f64,
+    /// Highest value.
+    pub high: f64,
+    /// How many values differ from one another.
+    pub distinct: usize,
+}
+
+/// A case that ended without data.
+#[derive(Clone, Debug)]
+pub struct FailedCase {
+    /// Its number in the sweep.
+    pub case_id: String,
+    /// Why.
+    pub reason: String,
+    /// What to run to see it again.
+    pub command: String,
+}
+
+/// A part of one case's recording.
+#[derive(Clone, Debug, Default)]
+pub struct Response {
+    /// The case.
+    pub case_id: String,
+    /// The file it is in, from the dataset's folder.
+    pub file: String,
+    /// Crank angle, running on or starting again at every revolution.
+    pub crank_angle_rad: Vec<f64>,
+    /// Acceleration at these angles.
+    pub acceleration_m_s2: Vec<f64>,
+    /// Velocity at these angles; empty where the data have none.
+    pub velocity_m_s: Vec<f64>,
+}
+
+/// An amplitude spectrum of the acceleration.
+#[derive(Clone, Debug, Default)]
+pub struct Spectrum {
+    /// Frequencies in Hz, or orders of the crank's speed.
+    pub at: Vec<f64>,
+    /// Amplitudes at these.
+    pub amplitude_m_s2: Vec<f64>,
+}
+
+/// A case that stands for its class.
+#[derive(Clone, Debug)]
+pub struct ClassExample {
+    /// Label of the class.
+    pub fault: String,
+    /// What sets the case apart: «clearance 0.2 mm, 500 rpm».
+    pub operating_point: String,
+    /// Its signal.
+    pub response: Response,
+    /// Amplitude over frequency in Hz.
+    pub spectrum: Spectrum,
+    /// Amplitude over order of the crank's speed.
+    pub order_spectrum: Spectrum,
+}
+
+/// How the cases of the sweep lie.
+#[derive(Clone, Debug)]
+pub enum Design {
+    /// The same clearances in several sets of joints, all else equal.
+    Grid(ClearanceGrid),
+    /// Drawn at random.
+    Random(RandomSweep),
+}
+
+/// Responses by set of joints and clearance.
+#[derive(Clone, Debug)]
+pub struct ClearanceGrid {
+    /// What is the same in all cases: «500 rpm, full load».
+    pub operating_point: String,
+    /// The machine without clearance, if the sweep has it.
+    pub ideal: Option<Response>,
+    /// The sets of joints.
+    pub joint_sets: Vec<JointSet>,
+}
+
+/// The responses with clearance in the same joints.
+#[derive(Clone, Debug)]
+pub struct JointSet {
+    /// The joints as a label: `big_end+small_end`.
+    pub joints: String,
+    /// Radial clearance in m, and the response with it.
+    pub responses: Vec<(f64, Response)>,
+}
+
+/// Parameters and features of cases drawn at random.
+#[derive(Clone, Debug)]
+pub struct RandomSweep {
+    /// How parameters are spread over the cases.
+    pub histograms: Vec<Histogram>,
+    /// How features go with parameters.
+    pub scatters: Vec<Scatter>,
+}
+
+/// The values of one parameter over all cases.
+#[derive(Clone, Debug)]
+pub struct Histogram {
+    /// What it is, as [`ParameterRange::name`].
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// One value per case.
+    pub values: Vec<f64>,
+}
+
+/// A feature against a parameter, by fault.
+#[derive(Clone, Debug)]
+pub struct Scatter {
+    /// Name and unit of the parameter.
+    pub x: (String, String),
+    /// Name and unit of the feature.
+    pub y: (String, String),
+    /// True for a logarithmic axis of the feature.
+    pub log_y: bool,
+    /// Label of a fault, and the points (parameter, feature) with it.
+    pub classes: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+/// A feature of the table.
+#[derive(Clone, Debug)]
+pub struct Feature {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for none.
+    pub unit: String,
+}
+
+/// The features of one fault.
+#[derive(Clone, Debug)]
+pub struct FeatureRow {
+    /// Label of the fault.
+    pub fault: String,
+    /// Windows that were averaged.
+    pub windows: usize,
+    /// Mean and standard deviation of each feature, in the order of [`DatasetPage::features`].
+    pub values: Vec<(f64, f64)>,
+}
+
+/// A column of a table of the dataset.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// The table: `signals` or `features`.
+    pub table: String,
+    /// Its name.
+    pub name: String,
+    /// Its type, for instance `list<float32>`.
+    pub kind: String,
+    /// Its unit; empty for none.
+    pub unit: String,
+    /// What it is.
+    pub meaning: String,
+}

@@ -1,0 +1,208 @@
+//! The page itself: figures and tables in the order of reading.
+
+use super::examples::{self, MOST_EXAMPLES, fault_words};
+use super::{
+    Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow, ParameterRange, comparison,
+    distributions,
+};
+use crate::figure::Colour;
+use crate::{Error, text};
+use askama::Template;
+
+/// Longest tables on the page, in rows.
+const MOST_FAULTS: usize = 200;
+const MOST_FAILED: usize = 100;
+const MOST_COLUMNS: usize = 500;
+
+/// A figure with its heading and caption.
+pub(super) struct Plate {
+    pub(super) heading: String,
+    pub(super) caption: String,
+    pub(super) svg: String,
+}
+
+/// A part of the page that holds figures.
+struct Gallery {
+    id: &'static str,
+    heading: &'static str,
+    introduction: &'static str,
+    /// What is shown of how much; empty where all is shown.
+    left_out: String,
+    /// Number of its first figure.
+    first: usize,
+    plates: Vec<Plate>,
+}
+
+#[derive(Template)]
+#[template(path = "dataset_page.html")]
+struct View<'a> {
+    page: &'a DatasetPage,
+    facts: Vec<(&'static str, String)>,
+    galleries: Vec<Gallery>,
+}
+
+impl DatasetPage {
+    /// The page as one HTML file that loads nothing from anywhere.
+    ///
+    /// # Errors
+    /// [`Error::Template`] if the template cannot be filled in.
+    pub fn html(&self) -> Result<String, Error> {
+        Ok(View {
+            page: self,
+            facts: facts(self),
+            galleries: galleries(self),
+        }
+        .render()?)
+    }
+}
+
+/// The colour that a class has in all figures of the page; grey if the page does not count it.
+pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
+    page.faults
+        .iter()
+        .position(|count| count.fault == fault)
+        .map_or(Colour::Ink, Colour::Class)
+}
+
+fn galleries(page: &DatasetPage) -> Vec<Gallery> {
+    let examples = examples::plates(page);
+    let (id, heading, introduction, plates) = match &page.design {
+        Design::Grid(grid) => (
+            "responses",
+            "Responses by joint and clearance",
+            "The same machine at the same operating point, with different clearances in different joints. Each line over \
+             crank angle is the last complete revolution of its recording; peak and rms are those of the whole recording.",
+            comparison::plates(page, grid),
+        ),
+        Design::Random(sweep) => (
+            "distributions",
+            "Distributions",
+            "The cases of this dataset are drawn at random. This is how their parameters lie, and how features go with them.",
+            distributions::plates(page, sweep),
+        ),
+    };
+    let left_out = if page.examples.len() > MOST_EXAMPLES {
+        format!(
+            "Shown are the first {MOST_EXAMPLES} of {} classes.",
+            text::count(page.examples.len())
+        )
+    } else {
+        String::new()
+    };
+    vec![
+        Gallery {
+            id: "examples",
+            heading: "An example of each class",
+            introduction: "One recording from each class of fault, as the sensors give it.",
+            left_out,
+            first: 1,
+            plates: examples,
+        },
+        Gallery {
+            id,
+            heading,
+            introduction,
+            left_out: String::new(),
+            first: 1 + page.examples.len().min(MOST_EXAMPLES),
+            plates,
+        },
+    ]
+}
+
+fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
+    let cases: usize = page.faults.iter().flat_map(|count| &count.cases).sum();
+    let windows: usize = page.faults.iter().map(|count| count.windows).sum();
+    let seconds = page.samples_per_window as f64 / page.sample_rate_hz;
+    let window = if seconds.is_finite() {
+        format!(
+            "{} ({})",
+            text::counted(page.samples_per_window, "sample"),
+            text::quantity(seconds, "s")
+        )
+    } else {
+        text::counted(page.samples_per_window, "sample")
+    };
+    vec![
+        ("Cases", text::count(cases)),
+        ("Classes", text::count(page.faults.len())),
+        ("Windows", text::count(windows)),
+        ("Samples in a window", window),
+        (
+            "Sample rate",
+            format!("{}\u{a0}Hz", text::number(page.sample_rate_hz, 6)),
+        ),
+        ("Splits", page.splits.join(", ")),
+        ("Failed cases", text::count(page.failed.len())),
+        ("Seed", page.seed.to_string()),
+        ("Version", page.version.clone()),
+    ]
+}
+
+/// What the template asks for, formatted.
+impl View<'_> {
+    fn faults(&self) -> &[FaultCount] {
+        &self.page.faults[..self.page.faults.len().min(MOST_FAULTS)]
+    }
+
+    fn failed(&self) -> &[FailedCase] {
+        &self.page.failed[..self.page.failed.len().min(MOST_FAILED)]
+    }
+
+    fn columns(&self) -> &[Column] {
+        &self.page.columns[..self.page.columns.len().min(MOST_COLUMNS)]
+    }
+
+    fn feature_rows(&self) -> &[FeatureRow] {
+        &self.page.feature_rows[..self.page.feature_rows.len().min(MOST_FAULTS)]
+    }
+
+    /// A remark under a table that does not show all rows; empty if it does.
+    fn more(shown: usize, all: usize, where_all: &str) -> String {
+        if shown == all {
+            return String::new();
+        }
+        format!(
+            "Shown are the first {} of {}; all are in {where_all}.",
+            text::count(shown),
+            text::count(all)
+        )
+    }
+
+    /// Cases in the split over all faults.
+    fn split_total(&self, split: &usize) -> String {
+        text::count(
+            self.page
+                .faults
+                .iter()
+                .filter_map(|count| count.cases.get(*split))
+                .sum(),
+        )
+    }
+
+    fn case_total(count: &FaultCount) -> String {
+        text::count(count.cases.iter().sum())
+    }
+
+    fn value((mean, spread): &(f64, f64)) -> String {
+        text::mean_and_spread(*mean, *spread)
+    }
+
+    /// Lowest and highest value of a parameter and their unit, in a unit that reads well.
+    fn range(range: &ParameterRange) -> [String; 3] {
+        let (factor, unit) =
+            text::readable_unit(range.low.abs().max(range.high.abs()), &range.unit);
+        [
+            text::number(range.low * factor, 4),
+            text::number(range.high * factor, 4),
+            unit.to_owned(),
+        ]
+    }
+
+    fn count(n: &usize) -> String {
+        text::count(*n)
+    }
+
+    fn words(fault: &str) -> String {
+        fault_words(fault)
+    }
+}

@@ -1,0 +1,214 @@
+//! The page of a dataset stands alone, is bounded and takes nothing from the data for markup.
+
+use crate::synthetic::{self, datasets};
+use report::dataset_page::{DatasetPage, Design, FailedCase, JointSet, Response, Spectrum};
+
+/// The largest page there may be.
+const LARGEST: usize = 5_000_000;
+
+/// The attributes and functions through which a page loads something.
+fn loads_nothing(html: &str) {
+    let places = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    for forbidden in [
+        "http:", "https:", "src=", "url(", "@import", "<script", "<link", "<img", "<iframe",
+    ] {
+        assert!(!places.contains(forbidden), "{forbidden}");
+    }
+    for (at, _) in places.match_indices("href=\"") {
+        assert!(
+            places[at..].starts_with("href=\"#"),
+            "{}",
+            &places[at..at + 40]
+        );
+    }
+}
+
+/// Every entry of the contents leads somewhere, and no identifier is there twice.
+fn links_lead_somewhere(html: &str) {
+    let after = |pattern: &str| -> Vec<String> {
+        let parts = html.split(pattern).skip(1);
+        parts
+            .filter_map(|rest| rest.split('"').next())
+            .map(str::to_owned)
+            .collect()
+    };
+    let mut ids = after(" id=\"");
+    for target in after("href=\"#") {
+        assert!(ids.contains(&target), "#{target}");
+    }
+    let all = ids.len();
+    ids.sort();
+    ids.dedup();
+    assert_eq!(ids.len(), all);
+}
+
+#[test]
+fn both_kinds_of_page_stand_alone() {
+    for page in [datasets::grid(), datasets::random()] {
+        let html = page.html().unwrap();
+        loads_nothing(&html);
+        links_lead_somewhere(&html);
+        assert!(html.len() < 1_500_000, "{} bytes", html.len());
+        assert_eq!(html, page.html().unwrap());
+        for svg in html.split("<svg xmlns").skip(1) {
+            let svg = format!(
+                "<svg xmlns{}</svg>",
+                svg.split("</svg>\n<figcaption").next().unwrap()
+            );
+            roxmltree::Document::parse(&svg).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_grid_has_the_figures_of_the_study_and_says_what_they_show() {
+    let html = datasets::grid().html().unwrap();
+    for heading in [
+        "Clearance in big end",
+        "Clearance in small end",
+        "Clearance in big end + small end",
+        "Sets of joints at 0.3\u{a0}mm",
+        "Portraits by clearance",
+        "Portraits at 0.3\u{a0}mm",
+    ] {
+        assert!(html.contains(&format!("<h3>{heading}</h3>")), "{heading}");
+    }
+    assert!(html.contains("cases 1, 2, 3 in signals/train-00000-of-00001.parquet"));
+    assert_eq!(html.matches("<figcaption>").count(), 4 + 3 + 3);
+}
+
+#[test]
+fn a_peak_that_falls_is_not_said_to_rise() {
+    let mut page = datasets::grid();
+    let Design::Grid(grid) = &mut page.design else {
+        panic!("a grid")
+    };
+    let levels = [(1e-4, 900.0), (3e-4, 500.0), (2e-4, 700.0)];
+    grid.joint_sets = vec![JointSet {
+        joints: "main".to_owned(),
+        responses: levels
+            .map(|(clearance, peak)| {
+                let acceleration_m_s2 = vec![0.0, peak, 0.0];
+                (
+                    clearance,
+                    Response {
+                        acceleration_m_s2,
+                        crank_angle_rad: vec![0.1, 0.2, 0.3],
+                        ..Response::default()
+                    },
+                )
+            })
+            .into(),
+    }];
+    let html = page.html().unwrap();
+    assert!(html.contains("the peak falls at every step from 900\u{a0}m/s² to 500\u{a0}m/s²"));
+}
+
+#[test]
+fn random_cases_have_distributions_and_the_failed_one_its_reason() {
+    let html = datasets::random().html().unwrap();
+    assert!(html.contains("clearance of the big end (mm)"));
+    assert!(html.contains("<h3>Rms of the acceleration against largest clearance</h3>"));
+    assert!(
+        html.contains("the step fell below 1e-14 s at t = 0.4321 s in the big end&#39;s contact")
+    );
+    assert!(!html.contains("Portraits by clearance"));
+}
+
+#[test]
+fn text_from_the_data_is_never_markup() {
+    let hostile = "<script src='http://x'>&\"</script>".to_owned();
+    let mut page = datasets::random();
+    page.name.clone_from(&hostile);
+    page.about.clone_from(&hostile);
+    page.splits[0].clone_from(&hostile);
+    page.channels[0].clone_from(&hostile);
+    page.faults[1].fault.clone_from(&hostile);
+    page.failed[0].reason.clone_from(&hostile);
+    page.examples[1].fault.clone_from(&hostile);
+    page.examples[1].response.file.clone_from(&hostile);
+    page.columns[0].meaning.clone_from(&hostile);
+    page.features[0].name.clone_from(&hostile);
+    let html = page.html().unwrap();
+    assert!(!html.contains("<script"));
+}
+
+#[test]
+fn a_page_without_data_is_a_page() {
+    let empty = DatasetPage {
+        faults: Vec::new(),
+        splits: Vec::new(),
+        channels: Vec::new(),
+        examples: Vec::new(),
+        ranges: Vec::new(),
+        features: Vec::new(),
+        feature_rows: Vec::new(),
+        columns: Vec::new(),
+        sample_rate_hz: 0.0,
+        ..datasets::grid()
+    };
+    let mut none = empty.clone();
+    if let Design::Grid(grid) = &mut none.design {
+        grid.ideal = None;
+        grid.joint_sets = vec![JointSet {
+            joints: String::new(),
+            responses: vec![(f64::NAN, Response::default())],
+        }];
+    }
+    for page in [empty, none] {
+        links_lead_somewhere(&page.html().unwrap());
+    }
+}
+
+#[test]
+fn the_largest_dataset_has_a_page_of_bounded_size() {
+    // Noise is the worst there is: no point of a line can be left out.
+    let mut uniform = synthetic::Uniform(3);
+    let mut noise = |n: usize| {
+        (0..n)
+            .map(|_| 1e3 * (uniform.next() - 0.5))
+            .collect::<Vec<f64>>()
+    };
+    let samples = 24_000;
+    let mut response = || Response {
+        crank_angle_rad: (0..samples).map(|i| f64::from(i) * 5e-3).collect(),
+        acceleration_m_s2: noise(samples as usize),
+        velocity_m_s: noise(samples as usize),
+        ..Response::default()
+    };
+    let mut page = datasets::grid();
+    let mut example = page.examples[0].clone();
+    example.response = response();
+    let amplitude_m_s2: Vec<f64> = example
+        .response
+        .velocity_m_s
+        .iter()
+        .map(|v| v.abs())
+        .collect();
+    example.spectrum = Spectrum {
+        at: (0..samples).map(f64::from).collect(),
+        amplitude_m_s2,
+    };
+    example.order_spectrum = example.spectrum.clone();
+    page.examples = vec![example; 64];
+    page.failed = vec![
+        FailedCase {
+            case_id: "1".to_owned(),
+            reason: "r".repeat(200),
+            command: "c".repeat(100)
+        };
+        100_000
+    ];
+    if let Design::Grid(grid) = &mut page.design {
+        grid.ideal = Some(response());
+        let set = JointSet {
+            joints: "main".to_owned(),
+            responses: (1..=20)
+                .map(|i| (f64::from(i) * 1e-5, response()))
+                .collect(),
+        };
+        grid.joint_sets = vec![set; 15];
+    }
+    let html = page.html().unwrap();
+    assert!(html.len() < LARGEST, "{} bytes", html.len());
+}

@@ -1,0 +1,278 @@
+//! The crank angle of every sample: unwrapped and freed of the encoder's steps.
+
+use crate::error::{Error, positive};
+use std::f64::consts::{PI, TAU};
+
+/// One step of a 16-bit encoder, rad.
+const ENCODER_STEP: f64 = TAU / 65536.0;
+
+/// The angle is smoothed over this much to either side, rad (2°). Fluctuations of speed at the
+/// low orders that a flywheel lets through change by less than 1e-6 rad; the error of a 16-bit
+/// encoder shrinks with the root of the samples in the span.
+const SMOOTHING: f64 = 2.0 * PI / 180.0;
+
+/// Crank angle at each sample, unwrapped and strictly increasing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrankAngle {
+    angle: Vec<f64>,
+}
+
+impl CrankAngle {
+    /// From encoder readings in [0, 2π), rad.
+    ///
+    /// The readings are unwrapped ([`unwrap`]) and smoothed by a quadratic fitted to 2° on either
+    /// side of each sample (Savitzky and Golay 1964). At speeds where several samples share one
+    /// reading this also tells them apart.
+    ///
+    /// # Errors
+    /// Those of [`unwrap`], fewer than four samples, or a shaft that stands still.
+    pub fn from_encoder(wrapped: &[f64]) -> Result<Self, Error> {
+        let raw = unwrap(wrapped)?;
+        check_length(raw.len())?;
+        let per_sample = (raw[raw.len() - 1] - raw[0]) / (raw.len() - 1) as f64;
+        // A shaft that hardly turns gives an infinite quotient; the cast then saturates.
+        let half = (SMOOTHING / per_sample.max(0.0)).round() as usize;
+        let angle = smooth(&raw, half.min((raw.len() - 1) / 2));
+        match angle.windows(2).position(|pair| pair[1] <= pair[0]) {
+            Some(i) => Err(Error::AngleNotIncreasing {
+                index: i + 1,
+                step_rad: angle[i + 1] - angle[i],
+            }),
+            None => Ok(Self { angle }),
+        }
+    }
+
+    /// From a constant speed, starting at angle 0: without an encoder the phase is unknown.
+    ///
+    /// # Errors
+    /// Fewer than four samples, a rate or speed that is not positive, or less than two samples a
+    /// revolution.
+    pub fn from_speed(samples: usize, sample_rate: f64, speed_rpm: f64) -> Result<Self, Error> {
+        check_length(samples)?;
+        positive("sample rate, Hz", sample_rate)?;
+        positive("speed, rpm", speed_rpm)?;
+        let step = TAU * speed_rpm / 60.0 / sample_rate;
+        if step > PI {
+            return Err(Error::OutOfRange {
+                what: "speed, rpm",
+                value: speed_rpm,
+                allowed: "at most half a revolution per sample",
+            });
+        }
+        Ok(Self {
+            angle: (0..samples).map(|i| step * i as f64).collect(),
+        })
+    }
+
+    /// The angles, rad; four at least.
+    pub fn angles(&self) -> &[f64] {
+        &self.angle
+    }
+
+    /// Samples per revolution, on average.
+    pub fn samples_per_revolution(&self) -> f64 {
+        let last = self.angle.len() - 1;
+        TAU * last as f64 / (self.angle[last] - self.angle[0])
+    }
+
+    /// Revolutions that the samples cover, one sample interval each.
+    pub fn revolutions(&self) -> f64 {
+        self.angle.len() as f64 / self.samples_per_revolution()
+    }
+
+    /// The sample index, with its fraction, at which the crank stands at `angle`: cubic
+    /// interpolation of the inverse map; beyond the ends the speed is taken as constant.
+    pub(crate) fn position(&self, angle: f64) -> f64 {
+        let a = &self.angle;
+        let last = a.len() - 1;
+        let above = a.partition_point(|&x| x <= angle);
+        if above == 0 {
+            return (angle - a[0]) / (a[1] - a[0]);
+        }
+        if above > last {
+            return last as f64 + (angle - a[last]) / (a[last] - a[last - 1]);
+        }
+        let first = above.saturating_sub(2).min(last - 3);
+        let t: [f64; 4] = std::array::from_fn(|m| a[first + m] - angle);
+        let weight = |m: usize| -> f64 {
+            let others = (0..4).filter(|&l| l != m);
+            others.map(|l| t[l] / (t[l] - t[m])).product()
+        };
+        first as f64 + weight(1) + 2.0 * weight(2) + 3.0 * weight(3)
+    }
+}
+
+/// Unwraps crank angles in [0, 2π), rad: whole revolutions are added so that the angle grows.
+///
+/// A reading may repeat, or fall by one step of a 16-bit encoder; the result does the same.
+///
+/// # Errors
+/// A reading that is not finite or outside the range, one that falls further, and one that jumps
+/// by more than half a revolution (which looks the same): the sample is named.
+pub fn unwrap(wrapped: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut unwrapped = Vec::with_capacity(wrapped.len());
+    let mut angle = 0.0;
+    let mut before = 0.0;
+    for (index, &reading) in wrapped.iter().enumerate() {
+        if !reading.is_finite() {
+            return Err(Error::NotFinite { index });
+        }
+        if !(-ENCODER_STEP..=TAU + ENCODER_STEP).contains(&reading) {
+            return Err(Error::OutOfRange {
+                what: "crank angle, rad",
+                value: reading,
+                allowed: "in [0, 2π)",
+            });
+        }
+        let change = reading - before;
+        let step_rad = change - TAU * (change / TAU).round();
+        if index == 0 {
+            angle = reading;
+        } else if step_rad < -1.5 * ENCODER_STEP {
+            return Err(Error::AngleNotIncreasing { index, step_rad });
+        } else {
+            angle += step_rad;
+        }
+        before = reading;
+        unwrapped.push(angle);
+    }
+    Ok(unwrapped)
+}
+
+fn check_length(got: usize) -> Result<(), Error> {
+    if got < 4 {
+        return Err(Error::TooFewSamples { needed: 4, got });
+    }
+    Ok(())
+}
+
+/// Each value replaced by that of the quadratic fitted to it and `half` neighbours on either
+/// side; near the ends, by that of the first or last such quadratic. `y` has 2·`half` + 1 values
+/// or more.
+fn smooth(y: &[f64], half: usize) -> Vec<f64> {
+    if half == 0 {
+        return y.to_vec();
+    }
+    let last = y.len() - 1;
+    let mut smoothed = Vec::with_capacity(y.len());
+    let mut fitted_at = usize::MAX;
+    let mut quadratic = [0.0; 3];
+    for i in 0..y.len() {
+        let centre = i.clamp(half, last - half);
+        if centre != fitted_at {
+            quadratic = fit_quadratic(&y[centre - half..=centre + half]);
+            fitted_at = centre;
+        }
+        let j = i as f64 - centre as f64;
+        let [c0, c1, c2] = quadratic;
+        smoothed.push(c0 + j * (c1 + j * c2));
+    }
+    smoothed
+}
+
+/// Least-squares c₀ + c₁j + c₂j² of an odd number of values at j = −h ..= h.
+fn fit_quadratic(y: &[f64]) -> [f64; 3] {
+    let h = (y.len() / 2) as f64;
+    let n = y.len() as f64;
+    // Σj² and Σj⁴ over −h ..= h.
+    let s2 = h * (h + 1.0) * n / 3.0;
+    let s4 = s2 * (3.0 * h * h + 3.0 * h - 1.0) / 5.0;
+    let [mut y0, mut y1, mut y2] = [0.0; 3];
+    for (i, value) in y.iter().enumerate() {
+        let j = i as f64 - h;
+        // The middle value is taken off: sums of small numbers keep their digits.
+        let value = value - y[y.len() / 2];
+        y0 += value;
+        y1 += j * value;
+        y2 += j * j * value;
+    }
+    let determinant = n * s4 - s2 * s2;
+    [
+        y[y.len() / 2] + (s4 * y0 - s2 * y2) / determinant,
+        y1 / s2,
+        (n * y2 - s2 * y0) / determinant,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// θ(t) of a shaft whose speed fluctuates at order 2, read by a 16-bit encoder.
+    fn shaft(i: usize, samples_per_revolution: f64) -> f64 {
+        let even = TAU * i as f64 / samples_per_revolution + 0.3;
+        even + 0.02 * (2.0 * even).sin()
+    }
+
+    fn encoder(angle: f64) -> f64 {
+        ((angle / ENCODER_STEP).floor() * ENCODER_STEP).rem_euclid(TAU)
+    }
+
+    #[test]
+    fn quantised_angle_is_recovered_at_any_rate() {
+        for samples_per_revolution in [60.3, 1200.0, 40_000.0, 300_000.0] {
+            let n = (2.2 * samples_per_revolution) as usize;
+            let truth: Vec<f64> = (0..n).map(|i| shaft(i, samples_per_revolution)).collect();
+            let readings: Vec<f64> = truth.iter().map(|a| encoder(*a)).collect();
+            let angle = CrankAngle::from_encoder(&readings).unwrap();
+            // The encoder rounds down: half a step is its constant error.
+            let worst = angle.angles().iter().zip(&truth);
+            let worst = worst.fold(0.0, |w: f64, (a, b)| {
+                w.max((a - b + 0.5 * ENCODER_STEP).abs())
+            });
+            assert!(
+                worst < 0.6 * ENCODER_STEP,
+                "{samples_per_revolution}: {worst:e}"
+            );
+            assert!(angle.angles().windows(2).all(|pair| pair[0] < pair[1]));
+        }
+    }
+
+    #[test]
+    fn smoothing_leaves_an_exact_angle_within_a_microradian() {
+        let truth: Vec<f64> = (0..3000).map(|i| shaft(i, 1200.0)).collect();
+        let readings: Vec<f64> = truth.iter().map(|a| a.rem_euclid(TAU)).collect();
+        let angle = CrankAngle::from_encoder(&readings).unwrap();
+        for (a, b) in angle.angles().iter().zip(&truth) {
+            assert!((a - b).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn position_inverts_the_map() {
+        let readings: Vec<f64> = (0..3000)
+            .map(|i| shaft(i, 1200.0).rem_euclid(TAU))
+            .collect();
+        let angle = CrankAngle::from_encoder(&readings).unwrap();
+        for i in [0, 1, 7, 1500, 2998, 2999] {
+            assert!((angle.position(angle.angles()[i]) - i as f64).abs() < 1e-8);
+        }
+        let even = CrankAngle::from_speed(100, 100.0, 60.0).unwrap();
+        assert!((even.position(-0.5 * TAU / 100.0) + 0.5).abs() < 1e-12);
+        assert!((even.position(TAU) - 100.0).abs() < 1e-9);
+        assert!((even.revolutions() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn backward_steps_jumps_and_bad_readings_are_named() {
+        let backwards = unwrap(&[6.2, 0.1, 0.3, 0.2]);
+        assert!(matches!(
+            backwards,
+            Err(Error::AngleNotIncreasing { index: 3, .. })
+        ));
+        let jump = unwrap(&[0.0, 0.1, 3.5, 3.6]);
+        assert!(matches!(
+            jump,
+            Err(Error::AngleNotIncreasing { index: 2, .. })
+        ));
+        assert_eq!(unwrap(&[0.0, f64::NAN]), Err(Error::NotFinite { index: 1 }));
+        assert!(matches!(unwrap(&[0.0, 7.0]), Err(Error::OutOfRange { .. })));
+        let jitter = unwrap(&[1.0, 1.0 - ENCODER_STEP, 1.0 + ENCODER_STEP]).unwrap();
+        assert!((jitter[2] - 1.0 - ENCODER_STEP).abs() < 1e-15);
+        let still = CrankAngle::from_encoder(&[1.0; 50]);
+        assert!(matches!(still, Err(Error::AngleNotIncreasing { .. })));
+        assert!(CrankAngle::from_encoder(&[0.0, 1.0, 2.0]).is_err());
+        assert!(CrankAngle::from_speed(10, 1.0, 31.0).is_err());
+        assert!(CrankAngle::from_speed(10, 1.0, -3.0).is_err());
+    }
+}

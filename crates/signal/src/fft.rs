@@ -1,0 +1,97 @@
+//! Fourier transforms of real samples, with the plans kept per thread.
+
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex64;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Lengths kept per thread. Windows of a sweep come in many lengths; past this number the plans
+/// are dropped, so that memory does not grow with the sweep.
+const KEPT: usize = 64;
+
+/// The plans of one direction by length.
+///
+/// Every length is planned from nothing. A shared planner would build a transform out of the
+/// shorter ones that it happens to hold, and then the last bits of a result would depend on what
+/// the thread had computed before.
+struct Plans<T: ?Sized>(RefCell<BTreeMap<usize, Arc<T>>>);
+
+impl<T: ?Sized> Plans<T> {
+    const fn new() -> Self {
+        Self(RefCell::new(BTreeMap::new()))
+    }
+
+    fn get(&self, length: usize, plan: impl FnOnce(RealFftPlanner<f64>) -> Arc<T>) -> Arc<T> {
+        let mut plans = self.0.borrow_mut();
+        if plans.len() >= KEPT && !plans.contains_key(&length) {
+            plans.clear();
+        }
+        let entry = plans.entry(length);
+        Arc::clone(entry.or_insert_with(|| plan(RealFftPlanner::new())))
+    }
+}
+
+thread_local! {
+    static FORWARD: Plans<dyn RealToComplex<f64>> = const { Plans::new() };
+    static INVERSE: Plans<dyn ComplexToReal<f64>> = const { Plans::new() };
+}
+
+/// X_k = Σ_j x_j e^(−2πi jk/n) for k = 0 ..= n/2. Uses `x` as work space; `x` is not empty.
+pub(crate) fn forward(x: &mut [f64]) -> Vec<Complex64> {
+    let plan = FORWARD.with(|plans| plans.get(x.len(), |mut p| p.plan_fft_forward(x.len())));
+    let mut spectrum = plan.make_output_vec();
+    plan.process(x, &mut spectrum)
+        .expect("the plan was made for this length");
+    spectrum
+}
+
+/// x_j = Σ_k X_k e^(2πi jk/n) over all n bins, of which `spectrum` holds 0 ..= n/2 (no 1/n).
+/// The imaginary parts of bin 0 and of the Nyquist bin are ignored. `n` is not 0.
+pub(crate) fn inverse(mut spectrum: Vec<Complex64>, n: usize) -> Vec<f64> {
+    spectrum[0].im = 0.0;
+    if n.is_multiple_of(2) {
+        spectrum[n / 2].im = 0.0;
+    }
+    let plan = INVERSE.with(|plans| plans.get(n, |mut p| p.plan_fft_inverse(n)));
+    let mut x = plan.make_output_vec();
+    plan.process(&mut spectrum, &mut x)
+        .expect("the plan was made for this length, and bins 0 and n/2 are real");
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn samples(n: usize) -> Vec<f64> {
+        (0..n).map(|i| ((i * i) as f64 * 0.37).sin()).collect()
+    }
+
+    #[test]
+    fn inverse_undoes_forward() {
+        for n in [1, 2, 3, 8, 17, 1200] {
+            let back = inverse(forward(&mut samples(n)), n);
+            for (b, x) in back.iter().zip(samples(n)) {
+                assert!((b / n as f64 - x).abs() < 1e-13, "n = {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn bits_do_not_depend_on_earlier_lengths() {
+        let lengths = [8192, 6144, 4608];
+        let fresh = lengths.map(|n| {
+            std::thread::spawn(move || forward(&mut samples(n)))
+                .join()
+                .unwrap()
+        });
+        let used = std::thread::spawn(move || {
+            for n in (1..400).map(|i| 16 * i) {
+                forward(&mut samples(n));
+            }
+            lengths.map(|n| forward(&mut samples(n)))
+        });
+        assert_eq!(fresh, used.join().unwrap());
+    }
+}

@@ -1,0 +1,95 @@
+//! Values between the samples, by windowed-sinc interpolation.
+
+use crate::kaiser::{self, HALF_WIDTH};
+use std::sync::LazyLock;
+
+const TAPS: usize = 2 * HALF_WIDTH;
+
+/// Rows per sample interval. Weights between two rows are interpolated linearly, which errs by
+/// less than 2e-6 of the largest weight.
+const ROWS: usize = 512;
+
+type Row = [f64; TAPS];
+
+/// Weights of the neighbours for each fraction of a sample interval; each row adds up to 1, so
+/// that a constant passes unchanged.
+static WEIGHTS: LazyLock<Vec<Row>> = LazyLock::new(|| (0..=ROWS).map(row).collect());
+
+fn row(index: usize) -> Row {
+    let fraction = index as f64 / ROWS as f64;
+    let row: Row =
+        std::array::from_fn(|t| kaiser::low_pass(t as f64 + 1.0 - HALF_WIDTH as f64 - fraction));
+    let sum: f64 = row.iter().sum();
+    row.map(|w| w / sum)
+}
+
+/// The value of `x` at a fractional sample index `position`.
+///
+/// Exact within 1e-4 up to 0.8 of the Nyquist frequency. Beyond its ends the record is
+/// continued by reflection through its end point, 2x₀ − x_i, which keeps value and slope;
+/// `position` must stay within one record length of the ends. `x` is not empty.
+pub(crate) fn interpolate(x: &[f64], position: f64) -> f64 {
+    let floor = position.floor();
+    let scaled = (position - floor) * ROWS as f64;
+    let index = (scaled as usize).min(ROWS - 1);
+    let between = scaled - index as f64;
+    let [low, high] = [&WEIGHTS[index], &WEIGHTS[index + 1]];
+
+    let first = floor as isize + 1 - HALF_WIDTH as isize;
+    let inside = usize::try_from(first).ok().and_then(|i| x.get(i..i + TAPS));
+    let reflected: Row;
+    let neighbours = match inside {
+        Some(slice) => slice,
+        None => {
+            reflected = std::array::from_fn(|t| continued(x, first + t as isize));
+            &reflected
+        }
+    };
+    let weights = low.iter().zip(high).map(|(l, h)| l + between * (h - l));
+    neighbours.iter().zip(weights).map(|(x, w)| x * w).sum()
+}
+
+fn continued(x: &[f64], index: isize) -> f64 {
+    let last = x.len() as isize - 1;
+    let at = |i: isize| x[i.clamp(0, last) as usize];
+    if index < 0 {
+        2.0 * at(0) - at(-index)
+    } else if index > last {
+        2.0 * at(last) - at(2 * last - index)
+    } else {
+        at(index)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn sines_of_the_pass_band_are_met_between_samples() {
+        for share in [0.01, 0.3, 0.79] {
+            let wave = |t: f64| (PI * share * t + 0.3).sin();
+            let x: Vec<f64> = (0..200).map(|i| wave(f64::from(i))).collect();
+            for i in 0..500 {
+                let position = 80.0 + 0.0791 * f64::from(i);
+                let error = interpolate(&x, position) - wave(position);
+                assert!(error.abs() < 1e-4, "{share}: {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn samples_constants_and_lines_pass_unchanged() {
+        let x: Vec<f64> = (0..60).map(|i| (f64::from(i * i) * 0.7).sin()).collect();
+        let line: Vec<f64> = (0..60).map(|i| 3.0 - 0.5 * f64::from(i)).collect();
+        for i in 0..60 {
+            assert!((interpolate(&x, f64::from(i)) - x[i as usize]).abs() < 1e-13);
+        }
+        for i in 0..130 {
+            let position = 0.5 * f64::from(i) - 2.25;
+            assert!((interpolate(&[1e5; 60], position) - 1e5).abs() < 1e-9);
+            assert!((interpolate(&line, position) - (3.0 - 0.5 * position)).abs() < 1e-4);
+        }
+    }
+}

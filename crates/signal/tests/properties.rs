@@ -1,0 +1,164 @@
+//! What must hold for any signal.
+
+use proptest::prelude::*;
+use signal::amplitude_spectrum::{amplitude_spectrum, band_mean_squares};
+use signal::angle_resampling::AngleGrid;
+use signal::biquad::Filter;
+use signal::crank_angle::{CrankAngle, unwrap};
+use signal::decimate::Decimator;
+use signal::noise::pink_noise;
+use signal::order_spectrum::order_spectrum;
+use signal::windows::Window;
+use std::f64::consts::{PI, TAU};
+
+fn samples(length: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1e3..1e3, length)
+}
+
+fn any_window() -> impl Strategy<Value = Window> {
+    prop_oneof![
+        Just(Window::Rectangular),
+        Just(Window::Hann),
+        Just(Window::FlatTop)
+    ]
+}
+
+fn variance(x: &[f64]) -> f64 {
+    let mean = x.iter().sum::<f64>() / x.len() as f64;
+    x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64
+}
+
+proptest! {
+    /// Parseval: bands that leave no gap add up to the variance.
+    #[test]
+    fn bands_add_up_to_the_variance(
+        x in samples(2..400),
+        window in any_window(),
+        inner in prop::collection::btree_set(1u32..500, 0..6),
+    ) {
+        let mut edges = vec![0.0];
+        edges.extend(inner.iter().map(|e| f64::from(*e)));
+        edges.push(500.0);
+        let bands = band_mean_squares(&x, 1000.0, window, &edges).unwrap();
+        let total: f64 = bands.iter().sum();
+        prop_assert!((total - variance(&x)).abs() <= 1e-12 * variance(&x));
+    }
+
+    /// Without a window the squares of the amplitudes themselves add up to the mean square.
+    #[test]
+    fn amplitudes_add_up_to_the_mean_square(x in samples(2..400)) {
+        let amplitude = amplitude_spectrum(&x, 1.0, Window::Rectangular).unwrap().amplitude;
+        let sides = |k: usize| if k == 0 || 2 * k == x.len() { 1.0 } else { 0.5 };
+        let total: f64 = amplitude.iter().enumerate().map(|(k, a)| sides(k) * a * a).sum();
+        let mean_square = x.iter().map(|x| x * x).sum::<f64>() / x.len() as f64;
+        prop_assert!((total - mean_square).abs() <= 1e-12 * mean_square);
+    }
+
+    /// Frequencies are shares of the output's Nyquist frequency.
+    #[test]
+    fn decimator_keeps_the_pass_band_and_kills_the_stop_band(
+        factor in 2usize..40,
+        inside in 0.0..0.8,
+        outside in 0.0f64..1.0,
+        phase in 0.0..TAU,
+    ) {
+        let decimator = Decimator::new(factor).unwrap();
+        let centre = decimator.half_length() as f64;
+        let outside = 1.2 + outside * (factor as f64 - 1.2);
+        let wave = |share: f64, i: f64| (PI * share * (i - centre) / factor as f64 + phase).cos();
+        let input = |share: f64| -> Vec<f64> {
+            (0..decimator.input_length(40)).map(|i| wave(share, i as f64)).collect()
+        };
+        let kept = decimator.apply(&input(inside));
+        prop_assert_eq!(kept.len(), 40);
+        for (j, y) in kept.iter().enumerate() {
+            prop_assert!((y - wave(inside, centre + (j * factor) as f64)).abs() < 1e-4);
+        }
+        prop_assert!(decimator.apply(&input(outside)).iter().all(|y| y.abs() < 1e-4));
+    }
+
+    /// Orders, phase included, do not depend on the speed, its fluctuation, the sample rate or
+    /// where the recording starts.
+    #[test]
+    fn orders_are_those_of_the_wave(
+        per_revolution in 150.0..3000.0f64,
+        revolutions in 2.5..6.0f64,
+        start in 0.0..TAU,
+        fluctuation in 0.0..0.02f64,
+        order in 1usize..=20,
+        phase in 0.0..TAU,
+    ) {
+        let n = (per_revolution * revolutions) as usize;
+        let shaft = |i: usize| {
+            let even = TAU * i as f64 / per_revolution + start;
+            even + fluctuation * (2.0 * even).sin()
+        };
+        let readings: Vec<f64> = (0..n).map(|i| shaft(i).rem_euclid(TAU)).collect();
+        let x: Vec<f64> = (0..n).map(|i| 50.0 + (order as f64 * shaft(i) + phase).cos()).collect();
+        let grid = AngleGrid::new(&CrankAngle::from_encoder(&readings).unwrap(), 256).unwrap();
+        let orders = order_spectrum(&grid.resample(&x).unwrap(), 20).unwrap();
+        for (k, (c, rms)) in (1..).zip(orders.of_mean.iter().zip(&orders.rms)) {
+            let (re, im) = if k == order { (phase.cos(), phase.sin()) } else { (0.0, 0.0) };
+            prop_assert!((c.re - re).hypot(c.im - im) < 2e-3, "order {}: {}", k, c);
+            prop_assert!((rms - re.hypot(im)).abs() < 2e-3, "order {}: {}", k, rms);
+        }
+    }
+
+    #[test]
+    fn unwrapping_undoes_wrapping(steps in prop::collection::vec(0.0..3.0, 1..200), start in 0.0..TAU) {
+        let mut angle = start;
+        let mut truth = Vec::new();
+        for step in steps {
+            truth.push(angle);
+            angle += step;
+        }
+        let wrapped: Vec<f64> = truth.iter().map(|a| a.rem_euclid(TAU)).collect();
+        for (a, b) in unwrap(&wrapped).unwrap().iter().zip(&truth) {
+            prop_assert!((a - b).abs() < 1e-10);
+        }
+    }
+
+    /// Arbitrary readings give an angle that increases, or an error: never a panic.
+    #[test]
+    fn any_angle_is_taken_or_refused(
+        readings in prop::collection::vec(prop_oneof![0.0..TAU, Just(0.0), Just(f64::NAN)], 0..40),
+    ) {
+        if let Ok(angle) = CrankAngle::from_encoder(&readings) {
+            prop_assert!(angle.angles().windows(2).all(|pair| pair[0] < pair[1]));
+            if let Ok(grid) = AngleGrid::new(&angle, 64) {
+                let ones = grid.resample(&vec![1.0; readings.len()]).unwrap();
+                prop_assert!(ones.samples().iter().all(|y| (y - 1.0).abs() < 1e-12));
+            }
+        }
+    }
+
+    /// A settled filter answers a step as one at rest does, moved up: filters are linear.
+    #[test]
+    fn filters_are_linear_and_stable(
+        order in 1u32..=8,
+        cutoff in 0.001..0.49,
+        offset in -1e3..1e3,
+        x in samples(1..200),
+    ) {
+        let mut at_rest = Filter::butterworth_low_pass(order, cutoff, 1.0).unwrap();
+        let mut settled = at_rest.clone();
+        settled.settle(offset);
+        for x in x {
+            let difference = settled.run(x + offset) - at_rest.run(x) - offset;
+            prop_assert!(difference.abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn noise_has_no_mean_and_scales(n in 2usize..300, rms in 0.0..10.0, numbers in samples(300..301)) {
+        let noise = |rms: f64| {
+            let mut numbers = numbers.iter().copied();
+            pink_noise(n, rms, || numbers.next().unwrap()).unwrap()
+        };
+        let x = noise(rms);
+        prop_assert!(x.iter().sum::<f64>().abs() < 1e-9 * (1.0 + rms) * n as f64);
+        for (one, many) in noise(1.0).iter().zip(&x) {
+            prop_assert!((one * rms - many).abs() <= 1e-12 * (1.0 + many.abs() + one.abs() * 10.0));
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The recorder's end of the measuring chain: noise, range, resolution.
+
+use crate::record::Record;
+use crate::sensor::{Chain, Measured, Noise, NoiseLevel, Sensor};
+use rand::Rng;
+use rand_distr::{Distribution, StandardNormal};
+use signal::channel::Channel;
+use std::f64::consts::TAU;
+
+/// One measurement of `record`: the channels as recorded. `throws` are the names that prefix the
+/// channels of a machine of several throws. Two measurements with unlike random numbers differ in
+/// noise alone.
+pub fn measure(
+    record: &Record,
+    sensors: &[Sensor],
+    throws: &[&str],
+    random: &mut impl Rng,
+) -> Vec<Channel> {
+    sensors
+        .iter()
+        .zip(&record.series)
+        .map(|(sensor, clean)| {
+            let mut series = clean.clone();
+            if let Some(noise) = sensor.chain.noise {
+                add_noise(&mut series, noise, random);
+            }
+            let digitise = Digitiser::new(sensor);
+            Channel {
+                name: sensor.measured.column(throws),
+                unit: sensor.measured.unit().to_owned(),
+                samples: series.iter().map(|x| digitise.read(*x) as f32).collect(),
+            }
+        })
+        .collect()
+}
+
+fn add_noise(series: &mut [f64], noise: Noise, random: &mut impl Rng) {
+    let rms = match noise.level {
+        NoiseLevel::Absolute(rms) => rms,
+        NoiseLevel::OfSignal(share) => share * scatter(series),
+    };
+    let white = rms * (1.0 - noise.pink_share).max(0.0).sqrt();
+    for x in series.iter_mut() {
+        let normal: f64 = StandardNormal.sample(random);
+        *x += white * normal;
+    }
+    let pink = rms * noise.pink_share.max(0.0).sqrt();
+    let normal = || StandardNormal.sample(random);
+    if let Ok(shaped) = signal::noise::pink_noise(series.len(), pink, normal) {
+        for (x, n) in series.iter_mut().zip(shaped) {
+            *x += n;
+        }
+    }
+}
+
+/// RMS about the mean.
+fn scatter(series: &[f64]) -> f64 {
+    let count = series.len().max(1) as f64;
+    let mean = series.iter().sum::<f64>() / count;
+    let square = series.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+    square.sqrt()
+}
+
+/// Range and resolution of a converter.
+struct Digitiser {
+    limits: [f64; 2],
+    quantum: Option<f64>,
+    wraps: bool,
+}
+
+impl Digitiser {
+    fn new(sensor: &Sensor) -> Self {
+        let Chain { range, bits, .. } = sensor.chain;
+        let angle = sensor.measured == Measured::CrankAngle;
+        let codes = bits.map(|bits| f64::from(bits).exp2());
+        // An encoder divides the revolution, a converter the span of ± its range.
+        let span = if angle {
+            Some(TAU)
+        } else {
+            range.map(|r| 2.0 * r)
+        };
+        let quantum = codes.zip(span).map(|(codes, span)| span / codes);
+        let limits = match range {
+            Some(range) if !angle => [-range, range - quantum.unwrap_or(0.0)],
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        Self {
+            limits,
+            quantum,
+            wraps: angle,
+        }
+    }
+
+    fn read(&self, value: f64) -> f64 {
+        let [low, high] = self.limits;
+        let limited = value.clamp(low, high);
+        let rounded = match self.quantum {
+            Some(quantum) => (limited / quantum).round() * quantum,
+            None => limited,
+        };
+        // A reading that rounds up to a whole revolution is 0. In single precision 2π itself is
+        // above 2π, so the comparison is made there.
+        if self.wraps && rounded as f32 >= TAU as f32 {
+            0.0
+        } else {
+            rounded
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sensor(measured: Measured, range: Option<f64>, bits: Option<u32>) -> Sensor {
+        Sensor {
+            measured,
+            chain: Chain {
+                range,
+                bits,
+                ..Chain::default()
+            },
+        }
+    }
+
+    const ACCELERATION: Measured = Measured::CrossheadAcceleration { throw: 0 };
+
+    #[test]
+    fn range_and_bits_limit_and_round() {
+        let digitiser = Digitiser::new(&sensor(ACCELERATION, Some(100.0), Some(8)));
+        assert_eq!(digitiser.read(1e3), 100.0 - 200.0 / 256.0);
+        assert_eq!(digitiser.read(-1e3), -100.0);
+        assert_eq!(digitiser.read(0.3), 0.0);
+        assert_eq!(digitiser.read(0.4), 200.0 / 256.0);
+    }
+
+    #[test]
+    fn an_encoder_never_reads_a_whole_revolution() {
+        let digitiser = Digitiser::new(&sensor(Measured::CrankAngle, None, Some(16)));
+        assert_eq!(digitiser.read(TAU * 0.999_999_9), 0.0);
+        let plain = Digitiser::new(&sensor(Measured::CrankAngle, None, None));
+        assert_eq!(plain.read(TAU - 1e-12), 0.0);
+        assert!((plain.read(6.0) - 6.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn noise_has_the_level_asked_for() {
+        let record = Record {
+            sample_rate: 1e4,
+            start: 0.0,
+            series: vec![(0..40_000).map(|i| (f64::from(i) * 0.1).sin()).collect()],
+            trace: None,
+            transient: 0,
+            settled: false,
+            energy_residual: 0.0,
+            work: Default::default(),
+        };
+        let mut noisy = sensor(ACCELERATION, None, None);
+        noisy.chain.noise = Some(Noise {
+            level: NoiseLevel::OfSignal(0.03),
+            pink_share: 0.3,
+        });
+        let mut random = scalar::random::stream(1, 2, scalar::random::Purpose::Noise);
+        let channel = measure(&record, &[noisy], &[""], &mut random).remove(0);
+        let noise: Vec<f64> = channel
+            .samples
+            .iter()
+            .zip(&record.series[0])
+            .map(|(a, b)| f64::from(*a) - b)
+            .collect();
+        let expected = 0.03 / 2.0_f64.sqrt();
+        assert!((scatter(&noise) / expected - 1.0).abs() < 0.05);
+    }
+}

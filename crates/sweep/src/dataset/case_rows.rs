@@ -1,0 +1,157 @@
+//! A case becomes rows: it is run, cut into windows and summed up, all on one thread.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use recordings::formats::mcap;
+use recordings::{FailedCase, Value};
+use signal::channel::Channel;
+
+use super::tables::{features_row, labels, signals_row};
+use super::{Failure, Recording, Runner};
+use crate::Plan;
+use crate::plan::Case;
+use crate::split::Split;
+use crate::sweep_file::Format;
+
+/// What a case leaves behind.
+pub(super) struct CaseRows {
+    pub case_id: String,
+    pub split: Split,
+    pub fault: String,
+    /// Rows of `features`, one per window.
+    pub features: Vec<Vec<Value>>,
+    pub signals: Signals,
+}
+
+/// The recordings of a case.
+pub(super) enum Signals {
+    /// Rows of `signals`, one per window.
+    Rows(Vec<Vec<Value>>),
+    /// The bytes of an MCAP file.
+    Mcap(Vec<u8>),
+}
+
+/// Runs case `index` of `plan`. `sweep_yaml` goes into MCAP files.
+pub(super) fn run_case(
+    plan: &Plan,
+    index: u64,
+    runner: &Runner,
+    sweep_yaml: &str,
+) -> Result<CaseRows, FailedCase> {
+    rows(plan, index, runner, sweep_yaml).map_err(|failure| {
+        let case_id = plan.case_id(index);
+        FailedCase {
+            reason: failure.to_string(),
+            command: format!("crosshead simulate sweep.yaml --case {case_id}"),
+            case_id,
+        }
+    })
+}
+
+fn rows(plan: &Plan, index: u64, runner: &Runner, sweep_yaml: &str) -> Result<CaseRows, Failure> {
+    let case = plan.case(index)?;
+    let recording = runner(&case)?;
+    check_channels(plan, &recording)?;
+    let rate = recording.sample_rate_hz;
+    let windows = windows(&case, &recording)?
+        .into_iter()
+        .map(|range| cut(&recording.channels, range))
+        .collect::<Vec<_>>();
+    let row = |make: fn(&Plan, &Case, usize, &[Channel], f64) -> Vec<Value>| {
+        let windows = windows.iter().enumerate();
+        windows
+            .map(|(i, channels)| make(plan, &case, i, channels, rate))
+            .collect()
+    };
+    Ok(CaseRows {
+        features: row(features_row),
+        signals: match plan.format {
+            Format::Parquet => Signals::Rows(row(signals_row)),
+            Format::Mcap => Signals::Mcap(to_mcap(plan, &case, &recording, sweep_yaml)?),
+        },
+        split: case.split,
+        case_id: case.id,
+        fault: case.labels.fault,
+    })
+}
+
+/// Checks that a recording has the channels of the tables, in full.
+fn check_channels(plan: &Plan, recording: &Recording) -> Result<(), Failure> {
+    let expected = plan.channels();
+    let names = expected.iter().map(|(name, _)| name.as_str());
+    if !recording.channels.iter().map(|c| c.name.as_str()).eq(names) {
+        let found: Vec<&str> = recording.channels.iter().map(|c| c.name.as_str()).collect();
+        return Err(format!("the recording has the channels {}", found.join(", ")).into());
+    }
+    let not_finite = |c: &&Channel| !c.samples.iter().all(|x| x.is_finite());
+    match recording.channels.iter().find(not_finite) {
+        None => Ok(()),
+        Some(channel) => Err(format!("{} is not finite throughout", channel.name).into()),
+    }
+}
+
+/// The samples of each window. Windows are as long as their revolutions take at the case's speed.
+fn windows(case: &Case, recording: &Recording) -> Result<Vec<Range<usize>>, Failure> {
+    let recorded = recording
+        .channels
+        .iter()
+        .map(|c| c.samples.len())
+        .min()
+        .unwrap_or(0);
+    let Some(windows) = case.windows else {
+        return Ok(std::iter::once(0..recorded).collect());
+    };
+    let revolutions = f64::from(windows.revolutions.get());
+    let length = revolutions * TAU / case.resolved.speed * recording.sample_rate_hz;
+    // Equal lengths, so that the rows of one speed can be stacked.
+    let samples = length.floor() as usize;
+    let ranges: Vec<Range<usize>> = (0..windows.count.get())
+        .map(|window| (f64::from(window) * length).round() as usize)
+        .map(|start| start..start + samples)
+        .collect();
+    match ranges.last() {
+        Some(last) if last.end > recorded => {
+            Err(format!("{recorded} samples were recorded, {} are needed", last.end).into())
+        }
+        _ => Ok(ranges),
+    }
+}
+
+fn cut(channels: &[Channel], range: Range<usize>) -> Vec<Channel> {
+    let cut = |channel: &Channel| Channel {
+        name: channel.name.clone(),
+        unit: channel.unit.clone(),
+        samples: channel.samples[range.clone()].to_vec(),
+    };
+    channels.iter().map(cut).collect()
+}
+
+fn to_mcap(
+    plan: &Plan,
+    case: &Case,
+    recording: &Recording,
+    sweep_yaml: &str,
+) -> Result<Vec<u8>, Failure> {
+    let channels: Vec<mcap::Channel> = recording
+        .channels
+        .iter()
+        .map(|channel| mcap::Channel {
+            name: &channel.name,
+            unit: &channel.unit,
+            samples: &channel.samples,
+        })
+        .collect();
+    let sample_rate_hz = recording.sample_rate_hz;
+    let mut labels = labels(plan, case);
+    labels.insert("sample_rate_hz".to_owned(), sample_rate_hz.to_string());
+    Ok(mcap::write(
+        Vec::new(),
+        &mcap::Recording {
+            sample_rate_hz,
+            channels: &channels,
+            labels: &labels,
+            sweep_yaml,
+        },
+    )?)
+}

@@ -1,0 +1,124 @@
+//! What says that a shard is finished: `_sweep/commits/K.json`, written once, after its files.
+//!
+//! A shard that is run twice (after a crash, or by two machines at once) writes the same files
+//! under the same names; its second commit finds the first and must agree with it. So no case is
+//! ever there twice, and a difference never passes unseen.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+
+use recordings::{FailedCase, FileEntry};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::output::Output;
+use crate::{Error, Plan};
+
+/// A finished shard.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Commit {
+    /// The plan that it belongs to.
+    pub plan_id: String,
+    /// Its number.
+    pub shard: u64,
+    /// Its first case, and one past its last.
+    pub cases: [u64; 2],
+    /// Its files.
+    pub files: Vec<FileEntry>,
+    /// Rows by split, then by fault.
+    pub rows: BTreeMap<String, BTreeMap<String, u64>>,
+    /// The cases that failed.
+    pub failed: Vec<FailedCase>,
+}
+
+impl Commit {
+    /// Says that the shard is finished.
+    ///
+    /// # Errors
+    /// Where it was finished before with other files, or the record cannot be written.
+    pub(super) fn write(&self, output: &Output) -> Result<(), Error> {
+        let Some(before) = create_only(output, &name(self.shard), self)? else {
+            return Ok(());
+        };
+        let now = text(self)?;
+        if before == now {
+            return Ok(());
+        }
+        Err(Error::NotDeterministic {
+            shard: self.shard,
+            first: checksum(&before),
+            second: checksum(&now),
+        })
+    }
+
+    /// The record of a shard, if it is finished and its files are there in full length.
+    ///
+    /// # Errors
+    /// Where the record is damaged or of another plan.
+    pub(super) fn read(output: &Output, plan: &Plan, shard: u64) -> Result<Option<Self>, Error> {
+        let path = output.path(&name(shard));
+        let damaged = |reason| Error::Damaged {
+            path: path.clone(),
+            reason,
+        };
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(damaged(error.to_string())),
+        };
+        let commit: Self = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
+        if commit.plan_id != plan.id {
+            return Err(damaged("it belongs to another sweep".into()));
+        }
+        let whole = |file: &FileEntry| {
+            let found = fs::metadata(output.path(&file.path));
+            found.is_ok_and(|found| found.len() == file.bytes)
+        };
+        Ok(commit.files.iter().all(whole).then_some(commit))
+    }
+}
+
+fn name(shard: u64) -> String {
+    format!("_sweep/commits/{shard}.json")
+}
+
+/// Writes `record` to `path` unless there is a file already, whose content is then handed back.
+/// Of several processes that try at once one succeeds.
+pub(super) fn create_only(
+    output: &Output,
+    path: &str,
+    record: &impl Serialize,
+) -> Result<Option<String>, Error> {
+    let destination = output.path(path);
+    let io = |source| recordings::Error::Io {
+        action: "create",
+        path: destination.clone(),
+        source,
+    };
+    if !destination.exists() {
+        let staged = format!("_sweep/tmp/{}.staged", path.replace('/', "-"));
+        output.write(&staged, text(record)?.as_bytes())?;
+        let linked = fs::hard_link(output.path(&staged), &destination);
+        fs::remove_file(output.path(&staged)).map_err(io)?;
+        match linked {
+            Ok(()) => return Ok(None),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(io(error).into()),
+        }
+    }
+    Ok(Some(fs::read_to_string(&destination).map_err(io)?))
+}
+
+fn text(record: &impl Serialize) -> Result<String, Error> {
+    let json = serde_json::to_string_pretty(record).map_err(|e| {
+        let message = e.to_string();
+        recordings::Error::Write(std::io::Error::other(message))
+    })?;
+    Ok(json + "\n")
+}
+
+fn checksum(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,168 @@
+//! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
+
+mod case_rows;
+mod commit;
+mod finalize;
+mod output;
+mod shard;
+mod tables;
+
+pub use commit::Commit;
+pub use finalize::finalize;
+pub use output::{Existing, Output};
+pub use tables::Tables;
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use recordings::Manifest;
+use signal::channel::Channel;
+
+use crate::in_order::in_order;
+use crate::plan::MOST_CASES;
+use crate::{Case, Error, Plan};
+use case_rows::run_case;
+use shard::ShardWriter;
+
+/// What a simulated case gives: the channels of the machine's sensors, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// Samples per second.
+    pub sample_rate_hz: f64,
+    /// The channels, named as [`Plan::channels`] has them, from the first recorded revolution on.
+    pub channels: Vec<Channel>,
+}
+
+/// Why a case failed; its text goes into the manifest.
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// Simulates a case. Called on several threads at once; the result must depend on the case alone.
+pub type Runner<'a> = dyn Fn(&Case) -> Result<Recording, Failure> + Sync + 'a;
+
+/// Is told how a sweep gets on. Called on the thread that writes.
+pub trait Progress {
+    /// Cases of the sweep, and how many of them were finished before.
+    fn begins(&mut self, _cases: u64, _finished: u64) {}
+    /// A case is done.
+    fn case_done(&mut self, _case: u64, _failed: bool) {}
+}
+
+/// Nobody is told.
+impl Progress for () {}
+
+/// How a sweep is run.
+pub struct Options<'a> {
+    /// What to do with an output folder that has something in it.
+    pub existing: Existing,
+    /// Threads that simulate; at least one.
+    pub threads: usize,
+    /// Once true, nothing new is started and [`Error::Cancelled`] is handed back.
+    pub cancel: &'a AtomicBool,
+}
+
+/// Runs the sweep and writes its dataset to the folder `root`.
+///
+/// The bytes depend on the plan alone: not on the threads, nor on interruptions.
+///
+/// # Errors
+/// Where the sweep is too large, the folder cannot be used, or the disk is full. Cases that fail
+/// are no error: they stand in the manifest.
+pub fn generate(
+    plan: &Plan,
+    root: &Path,
+    options: &Options,
+    runner: &Runner,
+    progress: &mut dyn Progress,
+) -> Result<Manifest, Error> {
+    plan.check_size()?;
+    let output = Output::open(root, plan, options.existing)?;
+    let mut pending = Vec::new();
+    for shard in 0..plan.shards() {
+        if Commit::read(&output, plan, shard)?.is_none() {
+            pending.push(shard);
+        }
+    }
+    run_shards(plan, &output, &pending, options, runner, progress)?;
+    finalize(&output, plan)
+}
+
+/// Runs the shards `pending` of a sweep, in this order.
+///
+/// # Errors
+/// Where a file cannot be written, or a shard comes out differently than it did before.
+pub fn run_shards(
+    plan: &Plan,
+    output: &Output,
+    pending: &[u64],
+    options: &Options,
+    runner: &Runner,
+    progress: &mut dyn Progress,
+) -> Result<(), Error> {
+    let threads = options.threads.max(1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| Error::Threads {
+        threads,
+        reason: e.to_string(),
+    })?;
+    let tables = Tables::new(plan)?;
+    let sweep_yaml = input::yaml::to_string(plan.sweep())?;
+    let unfinished: u64 = pending
+        .iter()
+        .map(|&shard| plan.shard(shard).count() as u64)
+        .sum();
+    progress.begins(plan.cases(), plan.cases() - unfinished);
+
+    let cancelled = || options.cancel.load(Ordering::Relaxed);
+    let stopped = |done: u64| Error::Cancelled {
+        done,
+        shards: plan.shards(),
+    };
+    let mut done = plan.shards() - pending.len() as u64;
+    let mut writer: Option<ShardWriter> = None;
+    let cases = pending
+        .iter()
+        .flat_map(|&shard| plan.shard(shard).map(move |case| (shard, case)));
+    in_order(
+        &pool,
+        2 * threads,
+        cases.take_while(|_| !cancelled()),
+        |&(_, case)| run_case(plan, case, runner, &sweep_yaml),
+        |(shard, case), rows| {
+            if cancelled() {
+                return Err(stopped(done));
+            }
+            progress.case_done(case, rows.is_err());
+            let mut open = match writer.take() {
+                Some(open) => open,
+                None => ShardWriter::new(output, plan, &tables, shard)?,
+            };
+            open.write(rows)?;
+            if case + 1 == plan.shard(shard).end {
+                open.commit()?;
+                done += 1;
+            } else {
+                writer = Some(open);
+            }
+            Ok(())
+        },
+    )?;
+    // Cancelled before the first case, or between two shards.
+    if done < plan.shards() && cancelled() {
+        return Err(stopped(done));
+    }
+    Ok(())
+}
+
+impl Plan {
+    /// Checks that the sweep is not too large to be run.
+    ///
+    /// # Errors
+    /// Where it is.
+    pub fn check_size(&self) -> Result<(), Error> {
+        let (cases, most) = (self.cases(), MOST_CASES);
+        if cases > most {
+            return Err(Error::TooManyCases { cases, most });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,231 @@
+//! The folder that a dataset is written to.
+//!
+//! Beside what readers see (`signals/`, `features/`, `mcap/`, `README.md`, `sweep.yaml`,
+//! `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
+//! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
+//! process at work. The operating system unlocks it when that process ends, however it ends.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use recordings::{FileRecord, Manifest, WholeFile};
+use serde::{Deserialize, Serialize};
+
+use super::commit::create_only;
+use crate::{Error, Plan};
+
+/// What to do with a folder that has something in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Existing {
+    /// Leave it alone and stop.
+    #[default]
+    Refuse,
+    /// Go on with it, if it was begun with the same plan.
+    Resume,
+    /// Replace it, if it is a dataset of this program.
+    Overwrite,
+}
+
+/// A locked output folder.
+#[derive(Debug)]
+pub struct Output {
+    root: PathBuf,
+    lock: File,
+}
+
+/// Content of `_sweep/plan.json`.
+#[derive(Serialize, Deserialize)]
+struct PlanRecord {
+    plan_id: String,
+    name: String,
+    cases: u64,
+    shards: u64,
+}
+
+/// What a dataset has at its top, apart from `_sweep`.
+const FOLDERS: [&str; 3] = ["signals", "features", "mcap"];
+const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
+
+impl Output {
+    /// Makes the folder ready for the dataset of `plan`, and locks it.
+    ///
+    /// # Errors
+    /// Where the folder has something in it that `existing` does not allow for, another process
+    /// writes to it, or it cannot be written to. It is then as it was.
+    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
+        let (empty, ours) = look(root)?;
+        match existing {
+            _ if empty => {}
+            _ if !ours => return Err(Error::NotOurs(root.to_owned())),
+            Existing::Refuse => return Err(Error::Exists(root.to_owned())),
+            Existing::Resume | Existing::Overwrite => {}
+        }
+        for folder in ["_sweep/commits", "_sweep/tmp"] {
+            make(&root.join(folder))?;
+        }
+        let output = Self {
+            lock: lock(root)?,
+            root: root.to_owned(),
+        };
+        if existing == Existing::Overwrite {
+            output.clear()?;
+        }
+        // What an interrupted process left: nobody else writes here now.
+        remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
+        make(&output.path("_sweep/tmp"))?;
+        output.record(plan)?;
+        let folders: &[&str] = match plan.format {
+            crate::sweep_file::Format::Parquet => &["signals", "features"],
+            crate::sweep_file::Format::Mcap => &["mcap", "features"],
+        };
+        for folder in folders {
+            make(&root.join(folder))?;
+        }
+        Ok(output)
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Where file `path` of the dataset stands.
+    pub fn path(&self, path: &str) -> PathBuf {
+        self.root.join(path)
+    }
+
+    /// Starts a file that will stand at `path` when it is finished.
+    pub(super) fn create(&self, path: &str) -> Result<WholeFile, Error> {
+        let name = path.replace('/', "-");
+        let temporary = format!("_sweep/tmp/{name}.{}.part", std::process::id());
+        Ok(WholeFile::create(&self.path(&temporary), &self.path(path))?)
+    }
+
+    /// Writes a file at once.
+    pub(super) fn write(&self, path: &str, content: &[u8]) -> Result<FileRecord, Error> {
+        let mut file = self.create(path)?;
+        file.write_all(content).map_err(recordings::Error::Write)?;
+        Ok(file.commit()?)
+    }
+
+    /// Removes a dataset, and nothing else.
+    fn clear(&self) -> Result<(), Error> {
+        // The manifest goes first: without it the folder is not a complete dataset.
+        for file in FILES.into_iter().rev().chain(["_sweep/plan.json"]) {
+            remove(&self.path(file), |path| fs::remove_file(path))?;
+        }
+        for folder in FOLDERS.into_iter().chain(["_sweep/commits"]) {
+            remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
+        }
+        make(&self.path("_sweep/commits"))
+    }
+
+    /// Writes which plan the folder is for, or checks it.
+    fn record(&self, plan: &Plan) -> Result<(), Error> {
+        let record = PlanRecord {
+            plan_id: plan.id.clone(),
+            name: plan.name.clone(),
+            cases: plan.cases(),
+            shards: plan.shards(),
+        };
+        let path = self.path("_sweep/plan.json");
+        let Some(before) = create_only(self, "_sweep/plan.json", &record)? else {
+            return Ok(());
+        };
+        let before: PlanRecord = serde_json::from_str(&before).map_err(|e| Error::Damaged {
+            path,
+            reason: e.to_string(),
+        })?;
+        if before.plan_id == plan.id {
+            return Ok(());
+        }
+        Err(Error::OtherPlan {
+            path: self.root.clone(),
+            found: before.plan_id,
+            expected: plan.id.clone(),
+        })
+    }
+}
+
+impl Drop for Output {
+    fn drop(&mut self) {
+        // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
+        let _ = self.lock.set_len(0);
+    }
+}
+
+/// Whether a folder is empty or missing, and whether it is a dataset of ours.
+fn look(root: &Path) -> Result<(bool, bool), Error> {
+    let unwritable = |source| Error::Unwritable {
+        path: root.to_owned(),
+        source,
+    };
+    let empty = match fs::read_dir(root) {
+        Ok(mut entries) => entries.next().is_none(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => true,
+        Err(error) => return Err(unwritable(error)),
+    };
+    let ours = root.join("_sweep/plan.json").is_file()
+        || Manifest::read(&root.join("manifest.json")).is_ok();
+    // A crash between making the folder and writing the plan leaves only work files.
+    let begun = !empty && only_work_files(root).map_err(unwritable)?;
+    Ok((empty || begun, ours))
+}
+
+fn only_work_files(root: &Path) -> io::Result<bool> {
+    for entry in fs::read_dir(root)? {
+        if entry?.file_name() != "_sweep" {
+            return Ok(false);
+        }
+    }
+    Ok(!root.join("_sweep/plan.json").exists())
+}
+
+fn make(folder: &Path) -> Result<(), Error> {
+    fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
+        path: folder.to_owned(),
+        source,
+    })
+}
+
+fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
+    match how(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::Unwritable {
+            path: path.to_owned(),
+            source: error,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
+fn lock(root: &Path) -> Result<File, Error> {
+    let path = root.join("_sweep/lock");
+    let unwritable = |source| Error::Unwritable {
+        path: path.clone(),
+        source,
+    };
+    let mut options = OpenOptions::new();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let mut file = options.open(&path).map_err(unwritable)?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            let mut by = String::new();
+            let _ = file.read_to_string(&mut by);
+            return Err(Error::InUse {
+                path: root.to_owned(),
+                by: if by.is_empty() { "unknown".into() } else { by },
+            });
+        }
+        Err(TryLockError::Error(source)) => return Err(unwritable(source)),
+    }
+    let mut sign = || {
+        file.set_len(0)?;
+        file.seek(SeekFrom::Start(0))?;
+        write!(file, "process {}", std::process::id())
+    };
+    sign().map_err(unwritable)?;
+    Ok(file)
+}

@@ -1,0 +1,142 @@
+//! The files of one shard: a fixed range of cases, one file per table and split.
+
+use std::collections::BTreeMap;
+
+use recordings::formats::parquet::TableWriter;
+use recordings::{FailedCase, FileEntry, Schema, Value, WholeFile};
+
+use super::case_rows::{CaseRows, Signals};
+use super::commit::Commit;
+use super::output::Output;
+use super::tables::Tables;
+use crate::split::Split;
+use crate::sweep_file::Format;
+use crate::{Error, Plan};
+
+/// Samples of one channel and row group, all rows together: 16 MiB.
+const BYTES_PER_GROUP: f64 = 16.0 * 1024.0 * 1024.0;
+
+/// The files of a shard while its cases come in.
+pub(super) struct ShardWriter<'a> {
+    output: &'a Output,
+    signals: BTreeMap<Split, PartFile>,
+    features: BTreeMap<Split, PartFile>,
+    commit: Commit,
+}
+
+/// One file of a table.
+struct PartFile {
+    path: String,
+    table: TableWriter<WholeFile>,
+}
+
+impl<'a> ShardWriter<'a> {
+    /// Starts shard `shard` of `plan`.
+    pub(super) fn new(
+        output: &'a Output,
+        plan: &Plan,
+        tables: &Tables,
+        shard: u64,
+    ) -> Result<Self, Error> {
+        let splits = Split::ALL.into_iter().zip(plan.shares);
+        let splits = || splits.clone().filter(|(_, share)| *share > 0.0);
+        let part = |folder: &str, schema: &Schema, split: Split| {
+            let (name, shards) = (split.name(), plan.shards());
+            let path = format!("{folder}/{name}-{shard:05}-of-{shards:05}.parquet");
+            let table = TableWriter::new(output.create(&path)?, schema, rows_per_group(plan))?;
+            Ok::<_, Error>((split, PartFile { path, table }))
+        };
+        let cases = plan.shard(shard);
+        Ok(Self {
+            output,
+            signals: match plan.format {
+                Format::Parquet => splits()
+                    .map(|(split, _)| part("signals", &tables.signals, split))
+                    .collect::<Result<_, _>>()?,
+                Format::Mcap => BTreeMap::new(),
+            },
+            features: splits()
+                .map(|(split, _)| part("features", &tables.features, split))
+                .collect::<Result<_, _>>()?,
+            commit: Commit {
+                plan_id: plan.id.clone(),
+                shard,
+                cases: [cases.start, cases.end],
+                files: Vec::new(),
+                rows: BTreeMap::new(),
+                failed: Vec::new(),
+            },
+        })
+    }
+
+    /// Appends a case. Cases come in the order of their indices.
+    pub(super) fn write(&mut self, case: Result<CaseRows, FailedCase>) -> Result<(), Error> {
+        let case = match case {
+            Ok(case) => case,
+            Err(failed) => {
+                self.commit.failed.push(failed);
+                return Ok(());
+            }
+        };
+        let faults = self
+            .commit
+            .rows
+            .entry(case.split.name().into())
+            .or_default();
+        *faults.entry(case.fault).or_default() += case.features.len() as u64;
+        match case.signals {
+            Signals::Rows(rows) => write_rows(&mut self.signals, case.split, rows)?,
+            Signals::Mcap(bytes) => {
+                let path = format!("mcap/{}.mcap", case.case_id);
+                let record = self.output.write(&path, &bytes)?;
+                self.commit.files.push(entry(path, record, None));
+            }
+        }
+        write_rows(&mut self.features, case.split, case.features)
+    }
+
+    /// Finishes the files and says so.
+    pub(super) fn commit(self) -> Result<Commit, Error> {
+        let mut commit = self.commit;
+        for part in self
+            .signals
+            .into_values()
+            .chain(self.features.into_values())
+        {
+            let rows = part.table.rows();
+            let record = part.table.finish()?.commit()?;
+            commit.files.push(entry(part.path, record, Some(rows)));
+        }
+        commit.files.sort_by(|a, b| a.path.cmp(&b.path));
+        commit.write(self.output)?;
+        Ok(commit)
+    }
+}
+
+fn entry(path: String, record: recordings::FileRecord, rows: Option<u64>) -> FileEntry {
+    FileEntry {
+        path,
+        bytes: record.bytes,
+        sha256: record.sha256,
+        rows,
+    }
+}
+
+fn write_rows(
+    parts: &mut BTreeMap<Split, PartFile>,
+    split: Split,
+    rows: Vec<Vec<Value>>,
+) -> Result<(), Error> {
+    if let Some(part) = parts.get_mut(&split) {
+        for row in rows {
+            part.table.write(row)?;
+        }
+    }
+    Ok(())
+}
+
+/// Rows of one row group: as many as fit its size at the speed of the machine file.
+fn rows_per_group(plan: &Plan) -> usize {
+    let bytes = plan.samples_per_window() * 4.0 * plan.channels().len() as f64;
+    (BYTES_PER_GROUP / bytes.max(1.0)).clamp(1.0, 4096.0) as usize
+}

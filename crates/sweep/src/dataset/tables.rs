@@ -1,0 +1,199 @@
+//! The tables of a dataset: their columns, and the rows of a case.
+
+use std::collections::BTreeMap;
+
+use features::Definition;
+use input::paths;
+use recordings::{Column, Kind, Schema, Value};
+use signal::channel::Channel;
+
+use crate::Plan;
+use crate::plan::{Case, Parameter};
+use crate::sweep_file::Amount;
+
+/// The columns of both tables.
+#[derive(Clone, Debug)]
+pub struct Tables {
+    /// One row per window: the recorded channels.
+    pub signals: Schema,
+    /// One row per window: its features.
+    pub features: Schema,
+}
+
+impl Tables {
+    /// The columns of the dataset of `plan`.
+    ///
+    /// # Errors
+    /// Where two columns have one name.
+    pub fn new(plan: &Plan) -> Result<Self, recordings::Error> {
+        let channels = plan.channels();
+        let about = about(plan);
+        let mut signals = about.clone();
+        signals.extend(channels.iter().map(|(name, unit)| {
+            Column::new(name, Kind::Samples, "the recorded channel").unit(*unit)
+        }));
+        let rate = Column::new(
+            "sample_rate_hz",
+            Kind::Real,
+            "samples per second of the channels",
+        );
+        signals.push(rate.unit("Hz"));
+        let mut summed_up = about;
+        let names = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
+        summed_up.extend(features::definitions(names).into_iter().map(feature));
+        let metadata = BTreeMap::from([("plan_id".to_owned(), plan.id.clone())]);
+        Ok(Self {
+            signals: Schema::new(signals)?.with_metadata(metadata.clone()),
+            features: Schema::new(summed_up)?.with_metadata(metadata),
+        })
+    }
+}
+
+/// What both tables say about a case before they part: names, labels, operating point, parameters.
+fn about(plan: &Plan) -> Vec<Column> {
+    let text = |name: &str, meaning: &str| Column::new(name, Kind::Text, meaning);
+    let integer = |name: &str, meaning: &str| Column::new(name, Kind::Integer, meaning);
+    let real = |name: String, unit: &str, meaning: String| {
+        Column::new(name, Kind::Real, meaning).unit(unit)
+    };
+    let mut columns = vec![
+        text("case_id", "name of the case"),
+        integer("window", "which window of the case's recording, from 0"),
+        integer(
+            "repeat",
+            "which repeat, from 0; repeats differ in noise alone",
+        ),
+        text(
+            "group",
+            "the same for cases that differ in noise and sensors alone",
+        ),
+        text(
+            "split",
+            "train, validation or test; a group is in one split only",
+        ),
+        text(
+            "fault",
+            "the joints whose clearance exceeds the normal one, joined by +, or none",
+        ),
+        integer("faulty_joints", "how many joints those are"),
+    ];
+    columns.extend(plan.joints.iter().map(|joint| {
+        let meaning = format!("clearance of the joint {}; 0 where it is ideal", joint.name);
+        real(format!("clearance_{}_m", joint.name), "m", meaning)
+    }));
+    columns.push(real("speed_rpm".into(), "rpm", "speed of the crank".into()));
+    for throw in plan.throws() {
+        for side in ["suction", "discharge"] {
+            let name = prefixed(throw, &format!("{side}_pressure_pa"));
+            columns.push(real(name, "Pa", format!("{side} pressure, absolute")));
+        }
+    }
+    columns.extend(plan.parameters.iter().map(|parameter| {
+        let kind = if parameter.is_number {
+            Kind::Real
+        } else {
+            Kind::Text
+        };
+        let meaning = format!("{} of the machine file", parameter.path);
+        let column = Column::new(&parameter.column, kind, meaning).optional();
+        match &parameter.unit {
+            Some(unit) if unit != "%" => column.unit(unit),
+            _ => column,
+        }
+    }));
+    columns
+}
+
+fn feature(definition: Definition) -> Column {
+    let meaning = format!("{}: {}", definition.description, definition.formula);
+    let column = Column::new(definition.name, Kind::Real, meaning).optional();
+    match definition.unit.as_str() {
+        "1" => column,
+        unit => column.unit(unit),
+    }
+}
+
+fn prefixed(throw: &str, name: &str) -> String {
+    match throw {
+        "" => name.to_owned(),
+        throw => format!("{throw}.{name}"),
+    }
+}
+
+/// The values of the columns that both tables begin with, for one window of `case`.
+fn about_row(plan: &Plan, case: &Case, window: usize) -> Vec<Value> {
+    let mut row: Vec<Value> = vec![
+        case.id.as_str().into(),
+        (window as i64).into(),
+        (case.repeat as i64).into(),
+        format!("{:016x}", case.group).into(),
+        case.split.name().into(),
+        case.labels.fault.as_str().into(),
+        (case.labels.faulty_joints as i64).into(),
+    ];
+    row.extend(case.labels.clearances_m.iter().map(|&c| Value::from(c)));
+    row.push(case.operating_point.speed_rpm.into());
+    let pressures = case.operating_point.pressures_pa.iter().flatten();
+    row.extend(pressures.map(|&p| Value::from(p)));
+    row.extend(plan.parameters.iter().map(|p| parameter(p, case)));
+    row
+}
+
+fn parameter(parameter: &Parameter, case: &Case) -> Value {
+    match paths::get(&case.tree, &parameter.path).ok().flatten() {
+        Some(value) if parameter.is_number => Amount::of(value).map(|a| a.si).into(),
+        Some(serde_json::Value::String(text)) => text.as_str().into(),
+        Some(value) => value.to_string().into(),
+        None => Value::Missing,
+    }
+}
+
+/// The row of `signals` for a window with these channels.
+pub(super) fn signals_row(
+    plan: &Plan,
+    case: &Case,
+    window: usize,
+    channels: &[Channel],
+    sample_rate_hz: f64,
+) -> Vec<Value> {
+    let mut row = about_row(plan, case, window);
+    row.extend(channels.iter().map(|c| Value::from(c.samples.clone())));
+    row.push(sample_rate_hz.into());
+    row
+}
+
+/// The row of `features` for a window with these channels.
+pub(super) fn features_row(
+    plan: &Plan,
+    case: &Case,
+    window: usize,
+    channels: &[Channel],
+    sample_rate_hz: f64,
+) -> Vec<Value> {
+    let crank_angle = channels.iter().find(|c| c.name == "crank_angle_rad");
+    let mut row = about_row(plan, case, window);
+    let values = features::features(&features::Window {
+        sample_rate: sample_rate_hz,
+        speed_rpm: case.operating_point.speed_rpm,
+        crank_angle: crank_angle.map(|c| c.samples.as_slice()),
+        channels,
+    });
+    row.extend(values.into_iter().map(|value| Value::from(value.ok())));
+    row
+}
+
+/// What an MCAP file says about its case: the columns before the channels, as text.
+pub(super) fn labels(plan: &Plan, case: &Case) -> BTreeMap<String, String> {
+    let columns = about(plan).into_iter().zip(about_row(plan, case, 0));
+    let text = |value| match value {
+        Value::Text(text) => Some(text),
+        Value::Integer(number) => Some(number.to_string()),
+        Value::Real(number) => Some(number.to_string()),
+        Value::Flag(flag) => Some(flag.to_string()),
+        Value::Samples(_) | Value::Missing => None,
+    };
+    columns
+        .filter(|(column, _)| column.name != "window")
+        .filter_map(|(column, value)| Some((column.name, text(value)?)))
+        .collect()
+}

@@ -1,0 +1,135 @@
+//! What can go wrong with a sweep.
+
+use std::io;
+use std::path::PathBuf;
+
+/// What can go wrong with a sweep. A case that fails is not among it: it stands in the manifest,
+/// and the others go on.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A mistake in a file that a person wrote.
+    #[error(transparent)]
+    Input(#[from] input::Error),
+    /// A sweep that is too large to be run.
+    #[error(
+        "the sweep has {cases} cases, and one dataset can have at most {most}: give fewer values \
+         or a smaller count, or write several sweeps, each with its own seed"
+    )]
+    TooManyCases {
+        /// Cases of the sweep.
+        cases: u64,
+        /// The most that are run.
+        most: u64,
+    },
+    /// The output folder has something in it.
+    #[error(
+        "`{}` is not empty: --resume goes on with it, --overwrite replaces it", .0.display()
+    )]
+    Exists(PathBuf),
+    /// The output folder holds something that this program did not write.
+    #[error(
+        "`{}` is not empty and not a dataset of this program, so it is left alone: choose another \
+         folder", .0.display()
+    )]
+    NotOurs(PathBuf),
+    /// The output folder holds the dataset of another sweep.
+    #[error(
+        "`{}` holds a dataset of another sweep or version (plan {}, not {}): --overwrite replaces \
+         it, or choose another folder", path.display(), short(found), short(expected)
+    )]
+    OtherPlan {
+        /// The folder.
+        path: PathBuf,
+        /// Identifier of the plan that it was begun with.
+        found: String,
+        /// Identifier of this sweep's plan.
+        expected: String,
+    },
+    /// Another process writes to the output folder.
+    #[error("`{}` is being written by another process ({by})", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+        /// What the other one says about itself.
+        by: String,
+    },
+    /// The output folder cannot be made or written to.
+    #[error("cannot write to `{}`: {source}", path.display())]
+    Unwritable {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A file of the dataset could not be read or written.
+    #[error(transparent)]
+    File(#[from] recordings::Error),
+    /// The work files of the dataset are damaged.
+    #[error("`{}` is damaged ({reason}): --overwrite starts afresh", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Two attempts at one shard gave different bytes.
+    #[error(
+        "shard {shard} came out differently than before ({} and {}): the program or the machine \
+         that it runs on is not the same",
+        short(first),
+        short(second)
+    )]
+    NotDeterministic {
+        /// The shard.
+        shard: u64,
+        /// Checksum of the earlier record.
+        first: String,
+        /// Checksum of the new one.
+        second: String,
+    },
+    /// A dataset cannot be completed.
+    #[error("{} of {shards} shards are missing, the first is {}", missing.len(), missing[0])]
+    Incomplete {
+        /// Shards of the sweep.
+        shards: u64,
+        /// Those that are missing; at least one.
+        missing: Vec<u64>,
+    },
+    /// The user wanted it to stop.
+    #[error("stopped; {done} of {shards} shards are finished, and --resume goes on from there")]
+    Cancelled {
+        /// Finished shards.
+        done: u64,
+        /// Shards of the sweep.
+        shards: u64,
+    },
+    /// The operating system gave no threads.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// Threads asked for.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// Whether the input or the arguments are at fault and nothing was written (exit status 2).
+    pub fn is_input(&self) -> bool {
+        matches!(
+            self,
+            Error::Input(_)
+                | Error::TooManyCases { .. }
+                | Error::Exists(_)
+                | Error::NotOurs(_)
+                | Error::OtherPlan { .. }
+                | Error::InUse { .. }
+                | Error::Unwritable { .. }
+        )
+    }
+}
+
+/// The start of a checksum, as people compare it.
+fn short(checksum: &str) -> &str {
+    checksum.get(..12).unwrap_or(checksum)
+}

@@ -1,0 +1,89 @@
+//! One case of a sweep.
+
+use input::Resolved;
+use scalar::random::{Purpose, Stream, stream};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use simulate::Settings;
+
+use crate::labels::Labels;
+use crate::split::Split;
+use crate::sweep_file::Windows;
+
+/// One case: a machine at an operating point, how it is run, and what it is called.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Position in the sweep, from 0.
+    pub index: u64,
+    /// Name that never changes for the same sweep: `case-000042`.
+    pub id: String,
+    /// Which repeat this is, from 0; repeats differ in noise alone.
+    pub repeat: u64,
+    /// The machine file of this case.
+    pub tree: Value,
+    /// The same in SI units: machine, sensors, normal clearances.
+    pub resolved: Resolved,
+    /// How it is run.
+    pub settings: Settings,
+    /// How the recording is cut; one window, all of it, where there is none.
+    pub windows: Option<Windows>,
+    /// Which joints are faulty.
+    pub labels: Labels,
+    /// Speed and pressures.
+    pub operating_point: OperatingPoint,
+    /// The same for all cases of a sweep that differ in noise and sensors alone.
+    pub group: u64,
+    /// The split of this case and its whole group.
+    pub split: Split,
+    /// Seed of the sweep. Noise is drawn from [`Case::noise`].
+    pub seed: u64,
+}
+
+impl Case {
+    /// The stream of random numbers for the noise of this case's sensors.
+    pub fn noise(&self) -> Stream {
+        stream(self.seed, self.index, Purpose::Noise)
+    }
+}
+
+/// Speed and line pressures of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OperatingPoint {
+    /// Speed of the crank, or reference speed of a free one, rev/min.
+    pub speed_rpm: f64,
+    /// Suction and discharge pressure of each throw, absolute, Pa.
+    pub pressures_pa: Vec<[f64; 2]>,
+}
+
+impl OperatingPoint {
+    pub(super) fn of(case: &Resolved) -> Self {
+        let throws = case.machine.throws.iter();
+        Self {
+            speed_rpm: rpm(case.speed),
+            pressures_pa: throws
+                .map(|throw| [throw.cylinder.suction, throw.cylinder.discharge])
+                .collect(),
+        }
+    }
+}
+
+/// A speed in rad/s as rev/min, to twelve digits: the way there and back rounds, and who looks for
+/// the cases at 500 rpm must find them.
+pub(super) fn rpm(speed: f64) -> f64 {
+    let rpm = speed * 30.0 / std::f64::consts::PI;
+    format!("{rpm:.11e}").parse().unwrap_or(rpm)
+}
+
+/// A number that stands for the physics of a case: the machine without sensors and names, and how
+/// it is run.
+///
+/// It is the start of the SHA-256 of the machine's debug text, which holds every number exactly,
+/// names every law, and says nothing about joints that are ideal.
+pub(super) fn group(case: &Resolved, settings: &Settings) -> u64 {
+    let text = format!("{:?} {settings:?}", case.machine);
+    let digest = Sha256::digest(text.as_bytes());
+    digest
+        .iter()
+        .take(8)
+        .fold(0, |group, byte| group << 8 | u64::from(*byte))
+}

@@ -1,0 +1,56 @@
+//! How large a dataset will be.
+
+use std::f64::consts::TAU;
+
+use super::Plan;
+
+/// What a sweep amounts to, judged from a few of its cases.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Cases, repeats included.
+    pub cases: u64,
+    /// Rows of the tables.
+    pub rows: u64,
+    /// Shards.
+    pub shards: u64,
+    /// Revolutions to simulate, without a transient that ends when the motion settles.
+    pub revolutions: f64,
+    /// Bytes of all recordings before compression.
+    pub bytes: f64,
+}
+
+impl Plan {
+    /// The size of the dataset, from up to 16 cases spread over the sweep.
+    pub fn estimate(&self) -> Estimate {
+        let cases = self.cases();
+        let looked_at = cases.min(16);
+        let samples: Vec<f64> = (0..looked_at)
+            .filter_map(|i| {
+                self.case((u128::from(cases) * u128::from(i) / u128::from(looked_at)) as u64)
+                    .ok()
+            })
+            .map(|case| {
+                let seconds = self.recorded_revolutions() * TAU / case.resolved.speed;
+                seconds * self.settings.sample_rate * case.resolved.sensors.len() as f64
+            })
+            .collect();
+        let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
+        let transient = match self.settings.transient {
+            simulate::Transient::Revolutions(n) => f64::from(n),
+            simulate::Transient::Settled { .. } => 0.0,
+        };
+        Estimate {
+            cases,
+            rows: cases.saturating_mul(self.windows.map_or(1, |w| w.count.get().into())),
+            shards: self.shards(),
+            revolutions: cases as f64 * (transient + f64::from(self.settings.revolutions)),
+            bytes: cases as f64 * mean * 4.0,
+        }
+    }
+
+    /// Revolutions of one recording that are kept.
+    fn recorded_revolutions(&self) -> f64 {
+        let windows = self.windows.map(|w| w.count.get() * w.revolutions.get());
+        windows.unwrap_or(self.settings.revolutions).into()
+    }
+}

@@ -1,0 +1,158 @@
+//! A value that is drawn, made ready: a number in (0, 1) in, a value for the machine file out.
+
+use input::Error;
+use input::quantity::{Kind, Speed};
+use input::unit::Dimension;
+use serde_json::Value;
+
+use super::case::rpm;
+use crate::distribution::{Distribution, choose};
+use crate::sweep_file::{Amount, Draw, Spread, Values};
+
+/// Something to draw from.
+#[derive(Clone, Debug)]
+pub(super) enum Sampler {
+    /// One of several values.
+    Choice {
+        values: Vec<Value>,
+        weights: Vec<f64>,
+    },
+    /// A number.
+    Number {
+        distribution: Distribution,
+        dimension: Option<Dimension>,
+    },
+}
+
+impl Sampler {
+    /// What `draw` says; `given` is the machine file's value, which some distributions refer to.
+    pub(super) fn new(draw: &Draw, given: Option<&Value>) -> Result<Self, Error> {
+        match draw {
+            Values::One(value) => equally_likely(std::slice::from_ref(value)),
+            Values::List(values) => equally_likely(values),
+            Values::Rule(spread) => of_spread(spread, given),
+        }
+    }
+
+    /// The value that `unit` in (0, 1) stands for.
+    pub(super) fn draw(&self, unit: f64) -> Value {
+        match self {
+            Sampler::Choice { values, weights } => values[choose(weights, unit)].clone(),
+            Sampler::Number {
+                distribution,
+                dimension,
+            } => {
+                let (si, dimension) = (distribution.quantile(unit), *dimension);
+                Amount { si, dimension }.to_value()
+            }
+        }
+    }
+}
+
+fn equally_likely(values: &[Value]) -> Result<Sampler, Error> {
+    if values.is_empty() {
+        return Err(Error::found("", "an empty list", "at least one value"));
+    }
+    Ok(Sampler::Choice {
+        values: values.to_vec(),
+        weights: vec![1.0; values.len()],
+    })
+}
+
+fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
+    let given = || {
+        let amount = given.and_then(Amount::of);
+        amount.ok_or_else(|| Error::found("", "no number in the machine file", "one to vary about"))
+    };
+    let number = |name: &str, distribution, amounts: &[Amount]| {
+        same_dimension(amounts).map_err(|e| e.under(name))?;
+        Ok(Sampler::Number {
+            distribution,
+            dimension: amounts[0].dimension,
+        })
+    };
+    match spread {
+        Spread::Uniform(ends) => {
+            let [low, high] = ascending(ends).map_err(|e| e.under("uniform"))?;
+            number("uniform", Distribution::Uniform { low, high }, ends)
+        }
+        Spread::LogUniform(ends) => {
+            let [low, high] = ascending(ends).map_err(|e| e.under("log_uniform"))?;
+            positive(&ends[0]).map_err(|e| e.under("log_uniform.0"))?;
+            number("log_uniform", Distribution::LogUniform { low, high }, ends)
+        }
+        Spread::Normal(normal) => {
+            let mean = normal.mean.map_or_else(given, Ok)?;
+            if normal.deviation.si < 0.0 {
+                let found = text(&normal.deviation);
+                return Err(Error::found("normal.deviation", found, "0 or more"));
+            }
+            let distribution = Distribution::Normal {
+                mean: mean.si,
+                deviation: normal.deviation.si,
+            };
+            number("normal", distribution, &[mean, normal.deviation])
+        }
+        Spread::Lognormal(lognormal) => {
+            let median = lognormal.median.map_or_else(given, Ok)?;
+            positive(&median).map_err(|e| e.under("lognormal.median"))?;
+            let distribution = Distribution::LogNormal {
+                median: median.si,
+                factor: lognormal.factor.get(),
+            };
+            number("lognormal", distribution, &[median])
+        }
+        Spread::Choice(choice) => {
+            let weights: Vec<f64> = choice.weights.iter().map(|w| w.get()).collect();
+            if weights.len() != choice.values.len() || weights.iter().sum::<f64>() <= 0.0 {
+                let found = format_args!("{} weights", weights.len());
+                let expected = format_args!("one per value, {}, not all 0", choice.values.len());
+                return Err(Error::found("choice.weights", found, expected));
+            }
+            Ok(Sampler::Choice {
+                values: choice.values.clone(),
+                weights,
+            })
+        }
+    }
+}
+
+fn ascending(ends: &[Amount; 2]) -> Result<[f64; 2], Error> {
+    let [low, high] = ends.map(|end| end.si);
+    if low > high {
+        let expected = format_args!("at least the lower end, {}", text(&ends[0]));
+        return Err(Error::found("1", text(&ends[1]), expected));
+    }
+    Ok([low, high])
+}
+
+fn positive(amount: &Amount) -> Result<(), Error> {
+    if amount.si > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::found("", text(amount), "more than 0"))
+    }
+}
+
+/// Checks that amounts can be compared.
+pub(super) fn same_dimension(amounts: &[Amount]) -> Result<(), Error> {
+    match amounts.iter().find(|a| a.dimension != amounts[0].dimension) {
+        None => Ok(()),
+        Some(other) => {
+            let found = format_args!("{} beside {}", text(other), text(&amounts[0]));
+            Err(Error::found("", found, "values of one kind"))
+        }
+    }
+}
+
+/// An amount as messages show it.
+pub(super) fn text(amount: &Amount) -> String {
+    if amount.dimension == Some(Speed::DIMENSION) {
+        // Nobody writes rad/s.
+        return format!("{} rpm", rpm(amount.si));
+    }
+    match amount.to_value() {
+        Value::String(text) => text,
+        number => number.to_string(),
+    }
+}

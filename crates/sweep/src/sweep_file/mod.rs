@@ -1,0 +1,166 @@
+//! sweep.yaml: which cases to simulate, and what becomes of them.
+//!
+//! ```yaml
+//! name: bearing-faults
+//! machine: ../data/machines/single-stage.yaml
+//! seed: 1
+//! run: {revolutions: 20, transient: 10}
+//! cases:
+//!   - grid:
+//!       joints: [[], [big_end], [small_end], [big_end, small_end]]
+//!       clearance: [0.1 mm, 0.2 mm, 0.3 mm]
+//!       speed: [350 rpm, 500 rpm]
+//! vary:
+//!   joints.big_end.contact.stiffness: {lognormal: {factor: 1.2}}
+//! ```
+
+pub mod axes;
+pub mod values;
+
+use input::choice::{Count, Or};
+use input::quantity::{AboveZero, Frequency, FromZero, Number, Part, Positive, Quantity, Ratio};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+pub use axes::{Axes, Block, Design, Random};
+pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
+
+/// A sweep: cases, how each is run, and how the dataset is divided.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SweepFile {
+    /// Name of the dataset.
+    pub name: String,
+    /// The machine: path of its file, from the folder of this one, or the machine itself.
+    pub machine: Or<String, Map<String, Value>>,
+    /// What all random numbers follow from; 0 where it is left out.
+    #[serde(default)]
+    pub seed: Option<Count<0, { u32::MAX }>>,
+    /// How each case is run.
+    pub run: Run,
+    /// How often each case is recorded, with other noise each time; once where it is left out.
+    #[serde(default)]
+    pub repeats: Option<Count<1, 1_000_000>>,
+    /// How each recording is cut; one window, all of it, where it is left out.
+    #[serde(default)]
+    pub windows: Option<Windows>,
+    /// The cases: blocks, one after the other.
+    pub cases: Vec<Block>,
+    /// Unknowns that vary at random from case to case, by path in the machine file. What a case
+    /// sets itself is not varied.
+    #[serde(default)]
+    pub vary: Axes<Draw>,
+    /// Shares of the splits; 70 %, 15 % and 15 % where they are left out.
+    #[serde(default)]
+    pub splits: Splits,
+    /// Format of the recordings.
+    #[serde(default)]
+    pub format: Format,
+    /// Cases in one shard: what is finished together and not simulated again after an
+    /// interruption. 256 where it is left out.
+    #[serde(default)]
+    pub shard_size: Option<Count<1, 1_000_000>>,
+}
+
+/// The JSON Schema of sweep.yaml, for editors and checks.
+pub fn schema() -> Value {
+    let mut schema = input::schema::of::<SweepFile>();
+    schema["title"] = "sweep.yaml".into();
+    schema
+}
+
+/// How each case is run.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Run {
+    /// Revolutions that are recorded.
+    pub revolutions: Count<1, 1_000_000>,
+    /// What is run before and thrown away: a number of revolutions, or until the motion has
+    /// settled; 10 revolutions where it is left out.
+    #[serde(default)]
+    pub transient: Option<Or<Count<0, 1_000_000>, Settled>>,
+    /// Sample rate of the recordings; 10 kHz where it is left out.
+    #[serde(default)]
+    pub sample_rate: Option<Positive<Frequency>>,
+    /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.
+    #[serde(default)]
+    pub tolerance: Option<Number<AboveZero>>,
+}
+
+/// A transient that ends when the motion repeats itself.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Settled {
+    /// Largest change from one revolution (or two, or four) to the next of an offset over its
+    /// clearance, and of a rate over its scale: 1e-3, for example.
+    pub until_settled: Number<AboveZero>,
+    /// Revolutions after which the recording starts anyway; chaotic motion never settles.
+    pub at_most: Count<1, 1_000_000>,
+}
+
+/// How a recording is cut into rows of the dataset: windows that follow on one another.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Windows {
+    /// How many.
+    pub count: Count<1, 100_000>,
+    /// How long each is, in revolutions.
+    pub revolutions: Count<1, 1_000_000>,
+}
+
+/// Shares of the splits. Together they are 100 %.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Splits {
+    /// To learn from; 0 % where it is left out.
+    #[serde(default)]
+    pub train: Option<Quantity<Ratio, Part>>,
+    /// To choose between models; 0 % where it is left out.
+    #[serde(default)]
+    pub validation: Option<Quantity<Ratio, Part>>,
+    /// To judge the chosen one; 0 % where it is left out.
+    #[serde(default)]
+    pub test: Option<Quantity<Ratio, Part>>,
+}
+
+impl Splits {
+    /// Train, validation, test, each from 0 to 1.
+    pub fn shares(&self) -> [f64; 3] {
+        [self.train, self.validation, self.test].map(|share| share.map_or(0.0, |s| s.si()))
+    }
+}
+
+impl Default for Splits {
+    fn default() -> Self {
+        Self {
+            train: Quantity::new(0.70),
+            validation: Quantity::new(0.15),
+            test: Quantity::new(0.15),
+        }
+    }
+}
+
+/// Format of the recordings. Features are always a Parquet table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Format {
+    /// Parquet tables, one row per window.
+    #[default]
+    Parquet,
+    /// One MCAP file per case, for Foxglove and ROS tools.
+    Mcap,
+}
+
+impl Format {
+    /// Its name in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Parquet => "parquet",
+            Format::Mcap => "mcap",
+        }
+    }
+}
+
+/// A weight of a choice.
+pub type Weight = Number<FromZero>;

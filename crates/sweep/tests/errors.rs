@@ -1,0 +1,263 @@
+//! What bad sweep files get: one message with file, line, key, what was found and what belongs.
+
+use input::yaml::Document;
+use std::path::Path;
+use sweep::{Error, Plan};
+
+const HEAD: &str = "name: test
+machine: single-stage.yaml
+run: {revolutions: 4, transient: 2}
+";
+
+fn plan(text: &str) -> Result<Plan, input::Error> {
+    let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
+    Plan::new(&Document::parse(text, "sweep.yaml")?, &machines)
+}
+
+/// How a file goes on after its first three lines, and the message that this gets.
+const MISTAKES: &[(&str, &str)] = &[
+    (
+        "caes: []",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, seed, run, repeats, windows, cases, vary, splits, format, shard_size; did you mean 'cases'?",
+    ),
+    ("", "sweep.yaml:1:1: cases: missing"),
+    (
+        "cases: []",
+        "sweep.yaml:4:8: cases: found no case at all, expected at least one",
+    ),
+    (
+        "cases:\n  - grid: {speed: []}",
+        "sweep.yaml:5:3: cases: found no case at all, expected at least one",
+    ),
+    (
+        "cases:\n  - grid: {joints: [], clearance: 0.1 mm}",
+        "sweep.yaml:5:3: cases: found no case at all, expected at least one",
+    ),
+    (
+        "cases:\n  - grid: {joints: [[big_edn]], clearance: 0.1 mm}",
+        "sweep.yaml:5:22: cases.0.grid.joints.0.0: found 'big_edn', expected one of main, big_end, small_end, guide; did you mean 'big_end'?",
+    ),
+    (
+        "cases:\n  - grid: {joints: [big_end], clearance: 0.1 mm}",
+        "sweep.yaml:5:21: cases.0.grid.joints.0: found \"big_end\", expected a list of joints, e.g. [big_end]",
+    ),
+    (
+        "cases:\n  - grid: {joints: [[big_end]]}",
+        "sweep.yaml:5:20: cases.0.grid.joints: found joints without clearance, expected an axis clearance, or joints.big_end.clearance, beside it",
+    ),
+    (
+        "cases:\n  - grid: {clearance: 0.1 mm}",
+        "sweep.yaml:5:23: cases.0.grid.clearance: found a clearance without joints, expected an axis joints beside it, e.g. 'joints: [[], [big_end]]'",
+    ),
+    (
+        "cases:\n  - grid:\n      joints: [[big_end]]\n      clearance: [0.1 mm, 80 mm]",
+        "sweep.yaml:7:27: cases.0.grid.clearance.1: found '80 mm', expected a length below journal_radius, 0.05 m",
+    ),
+    (
+        "cases:\n  - grid:\n      joints: [[], [big_end]]\n      clearance: [0.1 mm, 0.2]",
+        "sweep.yaml:7:27: cases.0.grid.clearance.1: found 0.2, expected a length of at least 0 with its unit, e.g. '0.1 mm', or 'ideal'",
+    ),
+    (
+        "cases:\n  - grid:\n      speed: [500 rpm, 8 kg]",
+        "sweep.yaml:6:24: cases.0.grid.speed.1: found '8 kg' (a mass), expected a rotational speed greater than 0 with its unit, e.g. '500 rpm'",
+    ),
+    (
+        "cases:\n  - grid:\n      speed: 500",
+        "sweep.yaml:6:14: cases.0.grid.speed: found 500, expected a rotational speed greater than 0 with its unit, e.g. '500 rpm'",
+    ),
+    (
+        "cases:\n  - grid:\n      sped: [500 rpm]",
+        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, effects; did you mean 'speed'?",
+    ),
+    (
+        "cases:\n  - grid:\n      joints.big_ned.contact.damping: [2e4 N s/m]",
+        "sweep.yaml:6:7: cases.0.grid.joints.big_ned.contact.damping: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?",
+    ),
+    (
+        "cases:\n  - grid:\n      joints.big_end.contact.dampign: [2e4 N s/m]",
+        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, restitution, slowest_approach; did you mean 'damping'?",
+    ),
+    (
+        "cases:\n  - grid:\n      crank.radius: [120 mm, 700 mm]",
+        "sweep.yaml:5:5: cases.0: case 1 of this block: rod.length: found '600 mm', expected a length above the crank radius, 0.7 m",
+    ),
+    (
+        "cases:\n  - grid:\n      load: [{suction: 0.1 MPa, dischrge: 0.4 MPa}]",
+        "sweep.yaml:6:33: cases.0.grid.load.0.dischrge: unknown key; expected one of suction, discharge; did you mean 'discharge'?",
+    ),
+    (
+        "cases:\n  - grid:\n      load: [0.4 MPa]",
+        "sweep.yaml:6:14: cases.0.grid.load.0: found \"0.4 MPa\", expected '{suction: 0.1 MPa, discharge: 0.4 MPa}'",
+    ),
+    (
+        "cases:\n  - grid:\n      load: [{suction: 0.5 MPa, discharge: 0.4 MPa}]",
+        "sweep.yaml:6:13: cases.0.grid.load: found '0.4 MPa', expected a pressure of at least suction, 500000 Pa",
+    ),
+    (
+        "cases:\n  - gird: {speed: 500 rpm}",
+        "sweep.yaml:5:5: cases.0: found 'gird', expected one of grid, zip, random; did you mean 'grid'?",
+    ),
+    (
+        "cases:\n  - zip: {speed: [400 rpm, 500 rpm], load: [{suction: 0.1 MPa}, {suction: 0.2 MPa}, {suction: 0.3 MPa}]}",
+        "sweep.yaml:5:44: cases.0.zip.load: found 3 values, expected 2 values, as cases.0.zip.speed has, or one",
+    ),
+    (
+        "cases:\n  - random: {count: 0, axes: {}}",
+        "sweep.yaml:5:21: cases.0.random.count: found 0, expected a whole number from 1 to 4294967295",
+    ),
+    (
+        "cases:\n  - random: {count: 4, design: sobl, axes: {}}",
+        "sweep.yaml:5:32: cases.0.random.design: found 'sobl', expected one of sobol, latin_hypercube, random; did you mean 'sobol'?",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {unifrom: [400 rpm, 500 rpm]}",
+        "sweep.yaml:8:16: cases.0.random.axes.speed: found 'unifrom', expected one of uniform, log_uniform, normal, lognormal, choice; did you mean 'uniform'?",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [500 rpm, 400 rpm]}",
+        "sweep.yaml:8:36: cases.0.random.axes.speed.uniform.1: found 400 rpm, expected at least the lower end, 500 rpm",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [500 rpm, 400 Pa]}",
+        "sweep.yaml:8:26: cases.0.random.axes.speed.uniform: found 400 Pa beside 500 rpm, expected values of one kind",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [400, 500]}",
+        "sweep.yaml:8:16: cases.0.random.axes.speed: found 415.6143796269467, expected a rotational speed greater than 0 with its unit, e.g. '500 rpm'",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {log_uniform: [0 rpm, 500 rpm]}",
+        "sweep.yaml:8:31: cases.0.random.axes.speed.log_uniform.0: found 0 rpm, expected more than 0",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {lognormal: {factor: 0.5}}",
+        "sweep.yaml:8:37: cases.0.random.axes.speed.lognormal.factor: found 0.5, expected a plain number of at least 1",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [400 rpm, 500 rpm], normal: {deviation: 5 rpm}}",
+        "sweep.yaml:8:16: cases.0.random.axes.speed: 'normal' is one rule too many: give one alone",
+    ),
+    (
+        "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {choice: {values: [400 rpm], weights: [1, 2]}}",
+        "sweep.yaml:8:54: cases.0.random.axes.speed.choice.weights: found 2 weights, expected one per value, 1, not all 0",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.big_end.contact.damping: {lognormal: {fctor: 1.2}}",
+        "sweep.yaml:7:48: vary.joints.big_end.contact.damping.lognormal.fctor: unknown key; expected one of median, factor; did you mean 'factor'?",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.bigend.contact.damping: {lognormal: {factor: 1.2}}",
+        "sweep.yaml:7:3: vary.joints.bigend.contact.damping: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.big_end.contact.law: {lognormal: {factor: 1.2}}",
+        "sweep.yaml:7:31: vary.joints.big_end.contact.law: found no number in the machine file, expected one to vary about",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nsplits: {train: 80 %, test: 30 %}",
+        "sweep.yaml:6:9: splits: found 110 % together, expected shares that add up to 100 %",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nsplits: {train: 0.8, test: 0.2}",
+        "sweep.yaml:6:17: splits.train: found 0.8, expected a percentage from 0 to 100 % with its unit, e.g. '5 %'",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nwindows: {count: 3, revolutions: 2}",
+        "sweep.yaml:6:10: windows: found 3 windows of 2 revolutions, expected no more than run.revolutions, 4",
+    ),
+    (
+        "cases:\n  - grid: {speed: {from: 400 rpm, to: 500 rpm, count: 1}}",
+        "sweep.yaml:5:55: cases.0.grid.speed.count: found 1, expected a whole number from 2 to 1000000",
+    ),
+    (
+        "cases:\n  - grid: {speed: {from: 400 rpm, to: 500 Pa, count: 3}}",
+        "sweep.yaml:5:19: cases.0.grid.speed: found 500 Pa beside 400 rpm, expected values of one kind",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nseed: -1",
+        "sweep.yaml:6:7: seed: found -1, expected a whole number from 0 to 4294967295",
+    ),
+    (
+        "cases:\n  - grid: {speed: 500 rpm}\nformat: csv",
+        "sweep.yaml:6:9: format: found 'csv', expected one of parquet, mcap",
+    ),
+    (
+        "cases:\n  - grid:\n      sensors: [[{measure: crank_angle}]]",
+        "sweep.yaml:6:16: cases.0.grid.sensors: found sensors that measure something else, expected those of the machine file",
+    ),
+];
+
+#[test]
+fn every_mistake_gets_its_message() {
+    for (rest, expected) in MISTAKES {
+        let found = plan(&format!("{HEAD}{rest}")).map(|plan| plan.cases());
+        assert_eq!(found.unwrap_err().to_string(), *expected, "{rest}");
+    }
+}
+
+#[test]
+fn a_mistake_in_the_machine_is_told_where_it_is() {
+    // In a file of its own: that file's name and line.
+    let missing = plan("name: test\nmachine: none.yaml\nrun: {revolutions: 4}\ncases: []");
+    let text = missing.unwrap_err().to_string();
+    assert!(
+        text.ends_with("none.yaml: cannot be read: there is no such file"),
+        "{text}"
+    );
+    // In the sweep: the sweep's line, below `machine`.
+    let inline = plan(
+        "name: test\nmachine:\n  name: a\n  speed: 500 rpm\n  crank: {radius: 120}\n\
+         run: {revolutions: 4}\ncases: []",
+    );
+    let text = inline.unwrap_err().to_string();
+    let expected = "sweep.yaml:5:19: machine.crank.radius: found 120, expected a length";
+    assert!(text.starts_with(expected), "{text}");
+}
+
+#[test]
+fn a_billion_cases_are_planned_but_not_run() {
+    let head = "repeats: 1000\n";
+    let random =
+        "cases:\n  - random: {count: 1000000, axes: {speed: {uniform: [400 rpm, 500 rpm]}}}\n";
+    let steps = "{from: 300 rpm, to: 600 rpm, count: 1000000}";
+    let grid = format!("cases:\n  - grid: {{speed: {steps}}}\n");
+    for cases in [random, &grid] {
+        let start = std::time::Instant::now();
+        let plan = plan(&format!("{HEAD}{head}{cases}")).unwrap();
+        assert_eq!(plan.cases(), 1_000_000_000);
+        let estimate = plan.estimate();
+        assert_eq!((estimate.rows, estimate.shards), (1_000_000_000, 3_906_250));
+        // 4 revolutions of about 0.13 s, 10 kHz, 4 channels of 4 bytes.
+        assert!(
+            (7e13..1.1e14).contains(&estimate.bytes),
+            "{:e}",
+            estimate.bytes
+        );
+        let last = plan.case(999_999_999).unwrap();
+        assert_eq!((last.id.as_str(), last.repeat), ("case-999999999", 999));
+        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+
+        let error = plan.check_size().unwrap_err();
+        assert!(matches!(
+            error,
+            Error::TooManyCases {
+                cases: 1_000_000_000,
+                ..
+            }
+        ));
+        assert!(error.is_input());
+        let text = error.to_string();
+        assert!(
+            text.contains("at most 100000000") && text.contains("several sweeps"),
+            "{text}"
+        );
+    }
+    let huge = "{from: 300 rpm, to: 600 rpm, count: 1000000}";
+    let axes = format!("speed: {huge}, rod.mass: {{from: 1 kg, to: 2 kg, count: 1000000}}");
+    let axes = format!("{axes}, crosshead.mass: {{from: 1 kg, to: 2 kg, count: 1000000}}");
+    let axes = format!("{axes}, cylinder.suction: {{from: 1 kPa, to: 2 kPa, count: 1000000}}");
+    let text = plan(&format!("{HEAD}cases:\n  - grid: {{{axes}}}\n"))
+        .unwrap_err()
+        .to_string();
+    assert!(text.contains("more than 2^64 combinations"), "{text}");
+}

@@ -1,0 +1,322 @@
+//! Sweep files become cases.
+
+use input::yaml::Document;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use rand::Rng;
+use serde_json::json;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use sweep::{Case, Plan};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn shipped(name: &str) -> Plan {
+    Plan::read(&root().join("pipelines").join(name)).unwrap()
+}
+
+/// A plan of the single-stage machine with these `cases` and what else the file says.
+fn plan(rest: &str) -> Result<Plan, input::Error> {
+    let text = format!(
+        "name: test\nmachine: single-stage.yaml\nrun: {{revolutions: 4, transient: 2}}\n{rest}"
+    );
+    let document = Document::parse(&text, "sweep.yaml")?;
+    Plan::new(&document, &root().join("data/machines"))
+}
+
+#[test]
+fn the_papers_runs() {
+    let plan = shipped("paper2.yaml");
+    let labels: Vec<String> = (0..plan.cases())
+        .map(|i| {
+            let labels = plan.case(i).unwrap().labels;
+            let [main, big, small, guide] = labels.clearances_m[..] else {
+                panic!("four joints");
+            };
+            assert_eq!([main, guide], [0.0; 2]);
+            format!("{} {} {big} {small}", labels.fault, labels.faulty_joints)
+        })
+        .collect();
+    let expected = [
+        "none 0 0 0",
+        "big_end 1 0.0001 0",
+        "big_end 1 0.0002 0",
+        "big_end 1 0.0003 0",
+        "small_end 1 0 0.0001",
+        "small_end 1 0 0.0002",
+        "small_end 1 0 0.0003",
+        "big_end+small_end 2 0.0001 0.0001",
+        "big_end+small_end 2 0.0002 0.0002",
+        "big_end+small_end 2 0.0003 0.0003",
+    ];
+    assert_eq!(labels, expected);
+    assert_eq!(plan.case_id(3), "case-000003");
+}
+
+#[test]
+fn bearing_faults_stay_in_their_ranges() {
+    let plan = shipped("bearing-faults.yaml");
+    assert_eq!(plan.cases(), 2048);
+    let mut faults = BTreeMap::new();
+    for i in 0..256 {
+        let case = plan.case(i).unwrap();
+        *faults.entry(case.labels.fault.clone()).or_insert(0) += 1;
+        for (&clearance, joint) in case.labels.clearances_m[1..3].iter().zip(["big", "small"]) {
+            let range = if case.labels.fault.contains(joint) {
+                1e-4..=4e-4
+            } else {
+                1e-5..=3e-5
+            };
+            assert!(range.contains(&clearance), "{}: {clearance}", case.id);
+        }
+        let point = &case.operating_point;
+        assert!((350.0..=650.0).contains(&point.speed_rpm));
+        assert!((0.30e6..=0.45e6).contains(&point.pressures_pa[0][1]));
+        assert_eq!(point.pressures_pa[0][0], 0.105e6);
+    }
+    // Sobol's points with four equally likely choices: exactly a quarter each.
+    assert_eq!(faults.into_values().collect::<Vec<i32>>(), [64; 4]);
+    let case = plan.case(9).unwrap();
+    let columns: Vec<&str> = plan.parameters.iter().map(|p| p.column.as_str()).collect();
+    assert!(
+        columns.contains(&"joints.big_end.contact.stiffness_n_m15"),
+        "{columns:?}"
+    );
+    assert!(columns.contains(&"joints.small_end.contact.damping_n_s_m"));
+    assert!(columns.contains(&"joints.small_end.friction.coefficient"));
+    assert!(columns.contains(&"crosshead.mass_kg"));
+    assert_eq!(case.resolved.sensors.len(), 4);
+}
+
+/// What `read` says of every case, in order.
+fn all<T>(plan: &Plan, read: impl Fn(Case) -> T) -> Vec<T> {
+    (0..plan.cases())
+        .map(|i| read(plan.case(i).unwrap()))
+        .collect()
+}
+
+/// Clearances of big and small end in units of 0.1 mm.
+fn tenths(case: &Case) -> [f64; 2] {
+    let c = &case.labels.clearances_m;
+    [c[1], c[2]].map(|c| (c * 1e10).round() / 1e6)
+}
+
+#[test]
+fn a_clearance_axis_counts_only_where_a_joint_has_it() {
+    let grid = plan(
+        "cases:
+  - grid:
+      joints: [[], [big_end], [small_end, big_end]]
+      clearance: [0.1 mm, 0.2 mm]
+      joints.small_end.clearance: [0.3 mm, 0.4 mm]
+",
+    );
+    let expected = [
+        [0., 0.],
+        [1., 0.],
+        [2., 0.],
+        [1., 3.],
+        [1., 4.],
+        [2., 3.],
+        [2., 4.],
+    ];
+    assert_eq!(all(&grid.unwrap(), |case| tenths(&case)), expected);
+    // Without an axis of joints a clearance is a path like any other.
+    let direct = plan("cases:\n  - grid: {joints.small_end.clearance: [0 mm, 0.4 mm]}\n").unwrap();
+    assert_eq!(all(&direct, |case| tenths(&case)), [[0., 0.], [0., 4.]]);
+}
+
+#[test]
+fn lists_go_side_by_side_and_ranges_have_equal_steps() {
+    let zip = plan(
+        "cases:
+  - zip:
+      joints: [[big_end]]
+      clearance: {from: 0.1 mm, to: 0.4 mm, count: 3, spacing: log}
+      speed: {from: 400 rpm, to: 600 rpm, count: 3}
+      load: [{suction: 0.1 MPa, discharge: 0.3 MPa}, {discharge: 0.4 MPa}, {suction: 0.2 MPa}]
+",
+    );
+    let found = all(&zip.unwrap(), |case| {
+        let [suction, discharge] = case.operating_point.pressures_pa[0];
+        let rpm = case.operating_point.speed_rpm;
+        (tenths(&case)[0], rpm, suction, discharge)
+    });
+    let expected = [
+        (1., 400., 0.1e6, 0.3e6),
+        (2., 500., 0.105e6, 0.4e6),
+        (4., 600., 0.2e6, 0.393e6),
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn faults_of_one_case_draw_their_clearances_separately() {
+    let random = plan(
+        "cases:
+  - random:
+      design: latin_hypercube
+      count: 100
+      axes:
+        joints: {choice: {values: [[], [big_end, small_end]], weights: [1, 3]}}
+        clearance: {uniform: [0.1 mm, 0.3 mm]}
+",
+    );
+    let found = all(&random.unwrap(), |case| tenths(&case));
+    let faulty: Vec<_> = found.into_iter().filter(|c| *c != [0., 0.]).collect();
+    // Exactly three of four, because each draw of a Latin hypercube is stratified.
+    assert_eq!(faulty.len(), 75);
+    assert!(faulty.iter().all(|[big, small]| big != small));
+    // 75 pairs of independent uniform numbers: standard error of the correlation 0.115.
+    let mean = |f: &dyn Fn(&[f64; 2]) -> f64| faulty.iter().map(f).sum::<f64>() / 75.0;
+    let correlation = mean(&|[a, b]| (a - 2.0) * (b - 2.0)) * 3.0;
+    assert!(correlation.abs() < 0.46, "{correlation}");
+}
+
+#[test]
+fn what_a_case_sets_is_not_varied() {
+    let plan = plan(
+        "cases:
+  - grid:
+      joints: [[], [big_end]]
+      clearance: 0.2 mm
+vary:
+  joints.big_end.clearance: {uniform: [0.01 mm, 0.02 mm]}
+  joints.big_end.contact.damping: {lognormal: {factor: 1.5}}
+",
+    )
+    .unwrap();
+    let [healthy, faulty] = [0, 1].map(|i| plan.case(i).unwrap());
+    assert!((1e-5..2e-5).contains(&healthy.labels.clearances_m[1]));
+    assert_eq!(
+        (healthy.labels.fault.as_str(), healthy.labels.faulty_joints),
+        ("none", 0)
+    );
+    assert_eq!(faulty.labels.clearances_m[1], 2e-4);
+    let damping = |case: &Case| format!("{:?}", case.resolved.machine.throws[0].big_end);
+    assert_ne!(damping(&healthy), damping(&faulty));
+}
+
+#[test]
+fn twins_that_differ_in_noise_and_sensors_share_a_group() {
+    let plan = plan(
+        "repeats: 3
+cases:
+  - grid:
+      speed: [400 rpm, 500 rpm]
+      sensors.cylinder_pressure.noise.rms: [1 kPa, 2 kPa]
+  # The same machine in other words; at an ideal joint nothing touches, so its damping is nothing.
+  - grid: {speed: 52.35987755982988 rad/s, joints.big_end.contact.damping: [1e3 N s/m, 1e4 N s/m]}
+",
+    )
+    .unwrap();
+    let groups = all(&plan, |case| case.group);
+    assert!(groups[..6].iter().all(|g| *g == groups[0]));
+    assert!(groups[6..].iter().all(|g| *g == groups[6]));
+    assert_ne!(groups[0], groups[6]);
+    let noise = all(&plan, |case| Rng::next_u64(&mut case.noise()));
+    let different: BTreeSet<u64> = noise.into_iter().collect();
+    assert_eq!(different.len(), 18);
+}
+
+#[test]
+fn joints_of_several_throws_carry_the_throws_name() {
+    let single = std::fs::read_to_string(root().join("data/machines/single-stage.yaml")).unwrap();
+    let tree = Document::parse(&single, "machine").unwrap().tree;
+    let section = |key: &str| tree[key].clone();
+    let throw = |name: &str, angle: &str| {
+        let mut joints = section("joints");
+        joints.as_object_mut().unwrap().remove("main");
+        json!({
+            "name": name, "crank_pin_angle": angle, "joints": joints, "rod": section("rod"),
+            "crosshead": section("crosshead"), "cylinder": section("cylinder"),
+        })
+    };
+    let machine = json!({
+        "name": "two throws", "speed": "500 rpm", "crank": section("crank"),
+        "joints": {"main": section("joints")["main"].clone()},
+        "throws": [throw("throw1", "0 deg"), throw("throw2", "180 deg")],
+        "sensors": [{"measure": "crosshead_acceleration", "throw": "throw2"}],
+    });
+    let sweep = json!({
+        "name": "two", "machine": machine, "run": {"revolutions": 4},
+        "cases": [{"grid": {
+            "joints": [[], ["throw2.big_end", "main"], ["throw1.small_end"]],
+            "clearance": "0.2 mm",
+            "load": [{"throw1": {"discharge": "0.3 MPa"}, "throw2": {"discharge": "0.5 MPa"}}],
+            "throws.throw1.rod.mass": ["12 kg"],
+        }}],
+    });
+    let plan = Plan::new(&Document::from_tree(sweep), Path::new("")).unwrap();
+    let faults = all(&plan, |case| case.labels.fault);
+    assert_eq!(faults, ["none", "main+throw2.big_end", "throw1.small_end"]);
+    let joints: Vec<&str> = plan.joints.iter().map(|j| j.name.as_str()).collect();
+    let expected = [
+        "main",
+        "throw1.big_end",
+        "throw1.small_end",
+        "throw1.guide",
+        "throw2.big_end",
+        "throw2.small_end",
+        "throw2.guide",
+    ];
+    assert_eq!(joints, expected);
+    let pressures = plan.case(0).unwrap().operating_point.pressures_pa;
+    assert_eq!(pressures, [[0.105e6, 0.3e6], [0.105e6, 0.5e6]]);
+    assert_eq!(plan.channels()[0].0, "throw2.crosshead_acceleration_m_s2");
+    let columns = sweep::dataset::Tables::new(&plan).unwrap().signals;
+    let columns: Vec<&str> = columns.columns().iter().map(|c| c.name.as_str()).collect();
+    for name in ["clearance_throw2.big_end_m", "throw2.discharge_pressure_pa"] {
+        assert!(columns.contains(&name), "{columns:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever the sweep: no group is in two splits, a case does not depend on the others, and
+    /// cases that differ in noise or sensors alone are together.
+    #[test]
+    fn splits_are_disjoint_by_group(
+        seed in 0_u32..1000,
+        repeats in 1_u32..4,
+        speeds in vec(0_usize..3, 1..4),
+        count in 1_u32..20,
+        levels in 1_usize..4,
+        train in 1_u32..99,
+    ) {
+        let speeds: Vec<String> = speeds.iter().map(|s| format!("{} rpm", 400 + 50 * s)).collect();
+        let clearances = &["0.1 mm", "0.2 mm", "0.1 mm"][..levels];
+        let text = format!(
+            "seed: {seed}
+repeats: {repeats}
+cases:
+  - grid:
+      joints: [[], [big_end], []]
+      clearance: {clearances:?}
+      speed: {speeds:?}
+      sensors.crosshead_acceleration.noise.rms: [1 %, 2 %]
+  - random:
+      count: {count}
+      axes:
+        speed: [400 rpm, 450 rpm]
+        sensors.cylinder_pressure.range: {{uniform: [1 MPa, 2 MPa]}}
+splits: {{train: {train} %, test: {} %}}
+", 100 - train);
+        let plan = plan(&text).unwrap();
+        let mut split_of = BTreeMap::new();
+        let mut group_of = BTreeMap::new();
+        for case in all(&plan, |case| case) {
+            let before = split_of.insert(case.group, case.split);
+            prop_assert!(before.is_none_or(|split| split == case.split));
+            let physics = (tenths(&case).map(f64::to_bits), case.resolved.speed.to_bits());
+            let before = group_of.insert(physics, case.group);
+            prop_assert!(before.is_none_or(|group| group == case.group));
+        }
+        prop_assert_eq!(split_of.len(), group_of.len());
+        let shorter = text.replace("repeats:", "shard_size: 3\nrepeats:");
+        prop_assert_eq!(Plan::shards(&self::plan(&shorter).unwrap()), plan.cases().div_ceil(3));
+    }
+}
