@@ -40,4 +40,10 @@ impl<S: scalar::Scalar> Drive<S> {
             Drive::Free(motor) => motor.reference_speed,
         }
     }
+
+    /// The sense of rotation: 1 counter-clockwise, −1 clockwise (a negative speed).
+    pub(crate) fn sense(&self) -> S {
+        let clockwise = self.reference_speed().lt(S::zero());
+        S::select(clockwise, -S::one(), S::one())
+    }
 }

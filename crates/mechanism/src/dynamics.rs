@@ -136,12 +136,13 @@ impl<S: Scalar> Dynamics<S> {
 
     fn set_outward(&mut self, t: S, y: &[S]) {
         let (angle, _) = self.crank(t, y);
+        let sense = self.machine.drive.sense();
         for (throw, mode) in self.machine.throws.iter().zip(&mut self.mode.throws) {
             let (sine, cosine) = throw.local_angle(angle).sin_cos();
             // At a dead centre the sine is rounding; there the new phase counts.
             let tiny = S::constant(1e-12);
             let at_centre = sine.abs().lt(tiny);
-            let by_sine = S::select(sine.lt(S::zero()), S::zero(), S::one());
+            let by_sine = S::select((sine * sense).lt(S::zero()), S::zero(), S::one());
             let by_cosine = S::select(cosine.lt(S::zero()), S::zero(), S::one());
             mode.outward = S::select(at_centre, by_cosine, by_sine);
         }

@@ -22,7 +22,7 @@ pub struct ThrowMode<S> {
     pub small_end: ContactMode<S>,
     /// Contact at the guide's corners: upper rear, upper front, lower rear, lower front.
     pub guide: [ContactMode<S>; 4],
-    /// 1 while the piston moves away from the head (0 ≤ α mod 2π < π).
+    /// 1 while the piston moves away from the head (0 ≤ α mod 2π < π, turning counter-clockwise).
     pub outward: S,
     /// Gas at the head end.
     pub head_end: ChamberMode<S>,

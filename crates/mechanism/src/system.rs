@@ -47,7 +47,7 @@ pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S>
     set(layout.frame, [S::constant(FRAME); 2]);
     if let (Some(i), Drive::Free(motor)) = (layout.crank, &machine.drive) {
         scales[i] = S::constant(ANGLE);
-        scales[i + 1] = motor.reference_speed * ANGLE;
+        scales[i + 1] = motor.reference_speed.abs() * ANGLE;
     }
     scales
 }
@@ -143,7 +143,7 @@ impl<S: Scalar> Dynamics<S> {
                 }
             }
             let gas = &mut guards[6 * CONTACT_GUARDS..];
-            let sine = at.motion.angle_sin_cos.0;
+            let sine = at.motion.angle_sin_cos.0 * machine.drive.sense();
             gas[0] = flagged(mode.outward, sine, -sine);
             gas[1..3].copy_from_slice(&at.gas.head_end.guards(&mode.head_end));
             if throw.cylinder.crank_end.is_some() {
