@@ -3,7 +3,7 @@
 use crate::drive::Drive;
 use crate::effects::Effect;
 use crate::energy::{self, Energy};
-use crate::gas::{Chamber, GasState};
+use crate::gas::{Gas, gas};
 use crate::joints::guide::{Guide, GuideState};
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::{Direction, Machine, Throw};
@@ -12,7 +12,7 @@ use crate::plane::{Vec2, moment, origin, turned};
 use crate::shaft::{Shaft, ShaftMotion};
 use crate::state::{Layout, ThrowLayout};
 use crate::system;
-use crate::throw::{Accelerations, Gas, Joints, Loads, Motion, Response, following_target};
+use crate::throw::{Accelerations, Joints, Loads, Motion, Response, following_target};
 use scalar::Scalar;
 
 /// A machine in motion: parameters, mode, and what the last evaluation found.
@@ -55,7 +55,7 @@ pub struct ThrowEvaluation<S> {
     pub gas: Gas<S>,
     /// Accelerations and rigid joints' forces.
     pub accelerations: Accelerations<S>,
-    loads: Loads<S>,
+    pub(crate) loads: Loads<S>,
 }
 
 impl<S: Scalar> Dynamics<S> {
@@ -182,6 +182,10 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
+    pub(crate) fn evaluation_mut(&mut self) -> &mut Evaluation<S> {
+        &mut self.evaluation
+    }
+
     /// What the last evaluation found.
     pub fn evaluation(&self) -> &Evaluation<S> {
         &self.evaluation
@@ -282,7 +286,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Joins throws and shaft and finds all accelerations from the loads stored in the evaluation.
-    fn couple(&mut self, shaft: &mut Shaft<S>, torque: Option<S>, target: S) {
+    pub(crate) fn couple(&mut self, shaft: &mut Shaft<S>, torque: Option<S>, target: S) {
         // With a given speed and an ideal main bearing the crank pins' accelerations are known.
         let moving = torque.is_some() || self.machine.main.clear().is_some();
         let evaluation = &mut self.evaluation;
@@ -353,64 +357,6 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
-    /// Lets the journal at `place` hit its bearing without rebound: the rates in `y` jump, so that
-    /// it no longer approaches. The energy lost is entered as damping.
-    ///
-    /// An impulse obeys the same equations as a force, with rates in place of their derivatives
-    /// and nothing but the impulse at work.
-    pub(crate) fn catch(&mut self, place: Place, t: S, y: &mut [S]) {
-        self.evaluate_forces(t, y);
-        let before = self.energy().total();
-        let wanted = -self.joint(place).1.penetration_rate;
-        for at in &mut self.evaluation.throws {
-            at.loads = Loads::none();
-        }
-        match place {
-            Place::Main => {}
-            Place::BigEnd(i) => self.evaluation.throws[i].loads.big_target = wanted,
-            Place::SmallEnd(i) => self.evaluation.throws[i].loads.small_target = wanted,
-        }
-        self.evaluation.main.force = origin();
-        let main_target = match place {
-            Place::Main => wanted,
-            _ => S::zero(),
-        };
-        let (sine, cosine) = self.evaluation.angle.sin_cos();
-        let direction = Vec2::new(cosine, sine);
-        let mut shaft = Shaft::new(&self.machine, direction, S::zero(), origin());
-        let torque = match &self.machine.drive {
-            Drive::Given(_) => None,
-            Drive::Free(_) => Some(S::zero()),
-        };
-        self.couple(&mut shaft, torque, main_target);
-        self.add_jumps(y);
-
-        self.evaluate_forces(t, y);
-        if let Some(i) = self.layout.ledger {
-            y[i + 3] += before - self.energy().total();
-        }
-    }
-
-    /// Adds the "accelerations" of an impulse to the rates.
-    fn add_jumps(&self, y: &mut [S]) {
-        let mut add = |at: Option<usize>, jump: Vec2<S>| {
-            if let Some(i) = at {
-                y[i + 2] += jump.x;
-                y[i + 3] += jump.y;
-            }
-        };
-        let at = &self.evaluation;
-        add(self.layout.main, at.shaft.centre);
-        for (layout, throw) in self.layout.throws.iter().zip(&at.throws) {
-            add(layout.big_end, throw.accelerations.big_end);
-            add(layout.small_end, throw.accelerations.small_end);
-            add(layout.guide, throw.accelerations.guide);
-        }
-        if let Some(i) = self.layout.crank {
-            y[i + 1] += at.shaft.angular;
-        }
-    }
-
     /// Kinetic, potential and elastic energy at the last evaluation, J.
     pub fn energy(&self) -> Energy<S> {
         energy::of(&self.machine, &self.evaluation)
@@ -477,57 +423,6 @@ impl<S: Scalar> ThrowEvaluation<S> {
                 rod: S::zero(),
             },
         }
-    }
-}
-
-/// The gas of a throw (MODEL.md, sections 3 and 6), and the effects on the piston.
-fn gas<S: Scalar>(
-    throw: &Throw<S>,
-    effects: &[Effect<S>],
-    motion: &Motion<S>,
-    speed: S,
-    mode: &ThrowMode<S>,
-) -> Gas<S> {
-    let cylinder = &throw.cylinder;
-    let lines = [cylinder.suction, cylinder.discharge];
-    let piston = motion.crosshead_rate / (throw.crank_radius * speed);
-    let open = effects
-        .iter()
-        .fold(lines, |open, effect| effect.line_pressures(open, piston));
-    let chamber = |dead: S| Chamber {
-        dead,
-        stroke: throw.crank_radius * 2.0,
-        lines,
-        exponent: cylinder.exponent,
-    };
-    let area = |radius: S| radius * radius * std::f64::consts::PI;
-    let face = area(cylinder.piston_radius);
-
-    let reach = throw.crank_radius + throw.rod.length;
-    let to_head = cylinder.head_clearance + reach - motion.crosshead;
-    let head_end =
-        chamber(cylinder.head_clearance).state(to_head, mode.outward, open, &mode.head_end);
-    let (crank_end, force) = match &cylinder.crank_end {
-        None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
-        Some(end) => {
-            let to_cover =
-                end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
-            let inward = S::one() - mode.outward;
-            let gas = chamber(end.clearance).state(to_cover, inward, open, &mode.crank_end);
-            let rod = area(end.rod_radius);
-            let force =
-                gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
-            (gas, force)
-        }
-    };
-    let effects = effects.iter().fold(S::zero(), |sum, effect| {
-        sum + effect.piston_force(motion.crosshead_rate, head_end.pressure)
-    });
-    Gas {
-        head_end,
-        crank_end,
-        force,
-        effects,
     }
 }
 

@@ -1,7 +1,10 @@
 //! Gas force with ideal valves, single or double acting (MODEL.md, sections 3 and 6).
 
+use crate::effects::Effect;
 use crate::lift::parameters;
-use crate::mode::{ChamberMode, flagged};
+use crate::machine::Throw;
+use crate::mode::{ChamberMode, ThrowMode, flagged};
+use crate::throw::Motion;
 use scalar::Scalar;
 
 parameters! {
@@ -123,5 +126,69 @@ impl<S: Scalar> Chamber<S> {
             closed,
             open,
         }
+    }
+}
+
+/// The gas of one throw at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Gas<S> {
+    /// Head end.
+    pub head_end: GasState<S>,
+    /// Crank end; pressure 0 in a single-acting cylinder.
+    pub crank_end: GasState<S>,
+    /// Force of the gas on the crosshead body along x, N.
+    pub force: S,
+    /// Force of the effects on the crosshead body along x, N.
+    pub effects: S,
+}
+
+/// The gas of a throw (MODEL.md, sections 3 and 6), and the effects on the piston.
+pub(crate) fn gas<S: Scalar>(
+    throw: &Throw<S>,
+    effects: &[Effect<S>],
+    motion: &Motion<S>,
+    speed: S,
+    mode: &ThrowMode<S>,
+) -> Gas<S> {
+    let cylinder = &throw.cylinder;
+    let lines = [cylinder.suction, cylinder.discharge];
+    let piston = motion.crosshead_rate / (throw.crank_radius * speed);
+    let open = effects
+        .iter()
+        .fold(lines, |open, effect| effect.line_pressures(open, piston));
+    let chamber = |dead: S| Chamber {
+        dead,
+        stroke: throw.crank_radius * 2.0,
+        lines,
+        exponent: cylinder.exponent,
+    };
+    let area = |radius: S| radius * radius * std::f64::consts::PI;
+    let face = area(cylinder.piston_radius);
+
+    let reach = throw.crank_radius + throw.rod.length;
+    let to_head = cylinder.head_clearance + reach - motion.crosshead;
+    let head_end =
+        chamber(cylinder.head_clearance).state(to_head, mode.outward, open, &mode.head_end);
+    let (crank_end, force) = match &cylinder.crank_end {
+        None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
+        Some(end) => {
+            let to_cover =
+                end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
+            let inward = S::one() - mode.outward;
+            let gas = chamber(end.clearance).state(to_cover, inward, open, &mode.crank_end);
+            let rod = area(end.rod_radius);
+            let force =
+                gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
+            (gas, force)
+        }
+    };
+    let effects = effects.iter().fold(S::zero(), |sum, effect| {
+        sum + effect.piston_force(motion.crosshead_rate, head_end.pressure)
+    });
+    Gas {
+        head_end,
+        crank_end,
+        force,
+        effects,
     }
 }

@@ -14,6 +14,7 @@ pub mod effects;
 pub mod energy;
 pub mod frame;
 pub mod gas;
+mod impact;
 pub mod joints;
 pub mod lift;
 pub mod machine;

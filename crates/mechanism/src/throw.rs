@@ -8,7 +8,7 @@
 //!    acceleration, by eliminating the small end, then the big end. A joint with clearance has no
 //!    unknown force, so with both ends clear nothing is solved at all.
 
-use crate::gas::GasState;
+use crate::gas::Gas;
 use crate::joints::guide::GuideState;
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Throw;
@@ -238,19 +238,6 @@ pub struct Joints<S> {
     pub small_end: JointState<S>,
     /// Crosshead in its guide.
     pub guide: GuideState<S>,
-}
-
-/// The gas of one throw at an instant.
-#[derive(Clone, Copy, Debug)]
-pub struct Gas<S> {
-    /// Head end.
-    pub head_end: GasState<S>,
-    /// Crank end; pressure 0 in a single-acting cylinder.
-    pub crank_end: GasState<S>,
-    /// Force of the gas on the crosshead body along x, N.
-    pub force: S,
-    /// Force of the effects on the crosshead body along x, N.
-    pub effects: S,
 }
 
 impl<S: Scalar> Loads<S> {
