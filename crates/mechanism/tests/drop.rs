@@ -196,12 +196,14 @@ fn delivered(chi: f64) -> f64 {
     low
 }
 
+type ImpactRow = (f64, f64, f64, [(f64, f64); 3]);
+
 /// Clearance, C, d, and at 0.05, 0.15 and 0.50 m/s the restitution and the contact time in µs of
 /// 10 kg; from literature.md, C1.
 ///
 /// There K stands as 3.8e11 and 2.2e11, and its digits are those of 3.783e11 and 2.176e11: the
 /// conformal stiffness of steel (C2) in a 25 mm bearing with these clearances, not yet rounded.
-const IMPACT: [(f64, f64, f64, [(f64, f64); 3]); 6] = [
+const IMPACT: [ImpactRow; 6] = [
     (
         0.1e-3,
         1e4,

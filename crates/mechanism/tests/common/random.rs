@@ -12,7 +12,6 @@ use mechanism::joints::revolute::{Clearance, JointModel, Revolute};
 use mechanism::{Direction, Dynamics, Machine, Throw};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use std::f64::consts::TAU;
 
 /// Every model of a joint.
 pub const MODELS: &[JointModel] = &[
@@ -127,7 +126,7 @@ pub fn guide() -> impl Strategy<Value = Guide> {
 fn throw(models: &'static [JointModel]) -> impl Strategy<Value = Throw> {
     let bodies = (6.0..20.0, 0.15..0.35, 0.3..1.0, 12.0..30.0, 0.08..0.3);
     let gas = (0.0..2e5, any::<bool>(), 0.015..0.05);
-    let place = (any::<bool>(), 0.0..TAU);
+    let place = (any::<bool>(), 0.0..std::f64::consts::TAU);
     (bodies, joint(models), joint(models), guide(), gas, place).prop_map(
         |(bodies, big_end, small_end, guide, gas, place)| {
             let mut throw = single_stage().throws.remove(0);
@@ -177,7 +176,7 @@ pub fn machine(models: &'static [JointModel]) -> impl Strategy<Value = Machine> 
         joint(models),
         shaft,
         any::<bool>(),
-        0.0..TAU,
+        0.0..std::f64::consts::TAU,
         effects(),
     )
         .prop_map(|(throws, main, shaft, free, down, effects)| {
