@@ -44,7 +44,11 @@ fn the_commands_of_the_readme_work() {
             continue;
         }
         let large = command.ends_with("pipelines/bearing-faults.yaml");
-        let command = if large { format!("{command} --dry-run") } else { command };
+        let command = if large {
+            format!("{command} --dry-run")
+        } else {
+            command
+        };
         let line = command
             .replace(
                 "cargo run --release --bin gen-dataset --",
@@ -72,7 +76,10 @@ fn the_commands_of_the_readme_work() {
         let mut python = Command::new(venv::python());
         venv::run(python.args(["-c", &code]).current_dir(clone.path()));
     }
-    for file in ["datasets/paper2/report.html", "single-stage-run/picture.svg"] {
+    for file in [
+        "datasets/paper2/report.html",
+        "single-stage-run/picture.svg",
+    ] {
         assert!(clone.path().join(file).exists(), "{file}");
     }
 }
