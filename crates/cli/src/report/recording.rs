@@ -116,16 +116,30 @@ impl Recording {
         phase + TAU * ((wanted - phase) / TAU).round()
     }
 
-    /// Amplitude over frequency, through a Hann window.
+    /// Amplitude over frequency: rms over stretches of two revolutions, each overlapping the next
+    /// by a half, through Hann windows (Welch 1967). So short a stretch cannot tell neighbouring
+    /// orders apart and shows what lies over them all: resonances, noise.
     ///
     /// # Errors
-    /// Too few samples.
+    /// None in practice: a recording has a revolution.
     pub(super) fn spectrum(&self) -> Result<Spectrum, Failure> {
-        let spectrum = amplitude_spectrum(&self.acceleration, self.sample_rate_hz, Window::Hann)
-            .map_err(Failure::work)?;
+        let revolution = self.angle.samples_per_revolution().round() as usize;
+        let length = (2 * revolution).min(self.acceleration.len());
+        let mut squares = vec![0.0; length / 2 + 1];
+        let mut at = Vec::new();
+        let stretches = self.acceleration.windows(length).step_by(revolution.max(1));
+        let count = stretches.len() as f64;
+        for stretch in stretches {
+            let spectrum = amplitude_spectrum(stretch, self.sample_rate_hz, Window::Hann)
+                .map_err(Failure::work)?;
+            at = spectrum.frequencies().collect();
+            for (square, amplitude) in squares.iter_mut().zip(&spectrum.amplitude) {
+                *square += amplitude * amplitude / count;
+            }
+        }
         Ok(Spectrum {
-            at: spectrum.frequencies().collect(),
-            amplitude_m_s2: spectrum.amplitude,
+            at,
+            amplitude_m_s2: squares.into_iter().map(f64::sqrt).collect(),
         })
     }
 

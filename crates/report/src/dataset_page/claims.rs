@@ -102,9 +102,9 @@ pub(super) fn level_cells(level: &CaseLevel) -> [String; 6] {
         } else {
             text::clearance(level.clearance_m)
         },
-        text::number(level.peak_m_s2, 4),
-        text::number(level.rms_m_s2, 4),
-        text::number(level.high_rms_m_s2, 3),
+        text::decimal(level.peak_m_s2, 1),
+        text::decimal(level.rms_m_s2, 1),
+        text::decimal(level.high_rms_m_s2, 1),
         format!("{}\u{a0}%", text::decimal(100.0 * level.high_share, 2)),
     ]
 }
@@ -187,7 +187,7 @@ fn compared(claim: &str, measure: &Measure, pairs: &[Pair]) -> Claim {
         .take(MOST_EXCEPTIONS)
         .map(|(low, high)| {
             let [low_level, high_level] =
-                [low, high].map(|level| text::number((measure.of)(level), 4));
+                [low, high].map(|level| text::decimal((measure.of)(level), 1));
             format!(
                 "{} {low_level} but {} {high_level}",
                 named(low),
@@ -311,7 +311,7 @@ mod tests {
         let said = claims(&grid);
         assert_eq!(
             said[0].evidence.replace('\u{a0}', " "),
-            "peak: higher in 2 of 3 comparisons; a + b 0.1 mm 400 but a + b 0.2 mm 340"
+            "peak: higher in 2 of 3 comparisons; a + b 0.1 mm 400.0 but a + b 0.2 mm 340.0"
         );
         assert!(said[2].evidence.contains("3 of 4"));
         assert_eq!(
@@ -339,7 +339,10 @@ mod tests {
             .map(str::to_owned)
             .collect();
         assert_eq!(lines.len(), 2 + 2 + 1 + 2 + 5);
-        assert_eq!(lines[3], "| a + b | 0.1 mm | 200 | 200 | 10 | 1.00 % |");
+        assert_eq!(
+            lines[3],
+            "| a + b | 0.1 mm | 200.0 | 200.0 | 10.0 | 1.00 % |"
+        );
         assert_eq!(lines[4], "");
     }
 }

@@ -125,9 +125,9 @@ pub struct ClassExample {
     pub operating_point: String,
     /// Its signal.
     pub response: Response,
-    /// Amplitude over frequency in Hz.
+    /// Amplitude over frequency in Hz, rms over stretches of two revolutions.
     pub spectrum: Spectrum,
-    /// Amplitude over order of the crank's speed.
+    /// Amplitude over order of the crank's speed, rms over the revolutions.
     pub order_spectrum: Spectrum,
 }
 

@@ -235,7 +235,7 @@ fn made(fault: usize, clearance_m: f64, revolutions: usize) -> Recording {
 
 fn response(made: &Recording, case: usize) -> Response {
     Response {
-        case_id: case.to_string(),
+        case_id: format!("case-{case}"),
         file: "signals/train-00000-of-00001.parquet".to_owned(),
         crank_angle_rad: made.crank_angle_rad.clone(),
         acceleration_m_s2: made.acceleration_m_s2.clone(),
