@@ -7,7 +7,7 @@
 
 pub mod failure;
 pub mod gen_dataset;
-
+pub mod report;
 pub mod schema;
 pub mod simulate;
 

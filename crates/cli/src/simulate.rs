@@ -1,12 +1,12 @@
 //! `crosshead simulate`: one run of a machine, its signals and a picture.
 
 use crate::Failure;
+use ::report::case_picture::{CasePicture, ClearJoint};
 use clap::{Args, ValueEnum};
 use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
 use recordings::formats::{csv, parquet};
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
-use report::case_picture::{CasePicture, ClearJoint};
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;

@@ -87,6 +87,19 @@ impl Revolutions {
     }
 }
 
+/// Where the last `turns` revolutions of the crank begin, or the recording if it has fewer.
+pub(crate) fn last_turns(crank_angle_rad: &[f64], turns: usize) -> usize {
+    let mut left = turns as f64 * TAU * (1.0 + 1e-9);
+    let steps = crank_angle_rad.windows(2).rev().take_while(|pair| {
+        // At every revolution the angle may start again.
+        let step = pair[1] - pair[0];
+        left -= if step < 0.0 { step + TAU } else { step };
+        left >= 0.0
+    });
+    let counted = steps.count() + 1;
+    crank_angle_rad.len().saturating_sub(counted)
+}
+
 /// The value of the curve at the angle: linear between its points, constant beyond its ends.
 fn value_at(curve: &[[f64; 2]], angle: f64) -> f64 {
     let after = curve.partition_point(|point| point[0] < angle);
@@ -121,6 +134,19 @@ mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn the_last_turns_are_counted_from_the_end() {
+        // A hundred steps a turn.
+        let running: Vec<f64> = (0..=350).map(|i| f64::from(i) * TAU / 100.0).collect();
+        let restarting: Vec<f64> = running.iter().map(|a| a % TAU).collect();
+        for angles in [running, restarting] {
+            assert_eq!(last_turns(&angles, 2), 150);
+            assert_eq!(last_turns(&angles, 4), 0);
+        }
+        assert_eq!(last_turns(&[], 4), 0);
+        assert_eq!(last_turns(&[f64::NAN; 3], 1), 2);
     }
 
     #[test]

@@ -86,6 +86,22 @@ pub fn readable_unit(largest: f64, unit: &str) -> (f64, &str) {
     }
 }
 
+/// A unit of the data with its powers raised: `m/s^2` is «m/s²». Fractional powers stay.
+pub fn unit(unit: &str) -> String {
+    let mut parts = unit.split('^');
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !c.is_ascii_digit() && c != '.');
+        let (power, rest) = part.split_at(end.unwrap_or(part.len()));
+        match power.parse() {
+            Ok(power) => out += &superscript(power),
+            Err(_) => out = format!("{out}^{power}"),
+        }
+        out += rest;
+    }
+    out
+}
+
 /// A radial clearance given in metres, in millimetres as the field writes it: «0.1 mm».
 pub fn clearance(metres: f64) -> String {
     quantity(metres * 1e3, "mm")
@@ -223,6 +239,9 @@ mod tests {
 
     #[test]
     fn labels_become_words() {
+        assert_eq!(unit("m^2/s^4"), "m²/s⁴");
+        assert_eq!(unit("N/m^1.5"), "N/m^1.5");
+        assert_eq!(unit("rpm"), "rpm");
         assert_eq!(words("throw1.big_end+main"), "throw1.big end + main");
         assert_eq!(capitalised("big end"), "Big end");
         assert_eq!(shortened("Crosshead", 6), "Cross…");

@@ -17,6 +17,8 @@ enum Verb {
     GenDataset(cli::gen_dataset::Arguments),
     /// Simulate one run of a machine: signals and a picture
     Simulate(cli::simulate::Arguments),
+    /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
+    Report(cli::report::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
     Schema(cli::schema::Arguments),
 }
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
+        Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })
 }

@@ -68,7 +68,7 @@ pub(super) fn ends(named: &[(String, f64)], unit: &str) -> String {
     )
 }
 
-/// Where the data of the responses are: «case 3 in signals/…, case 4 in …».
+/// Where the data of the responses are: «case-3 in signals/…; case-4 in …».
 pub(super) fn places<'a>(responses: impl IntoIterator<Item = &'a Response>) -> String {
     let mut files: Vec<(&str, Vec<&str>)> = Vec::new();
     for response in responses {
@@ -77,10 +77,9 @@ pub(super) fn places<'a>(responses: impl IntoIterator<Item = &'a Response>) -> S
             None => files.push((&response.file, vec![&response.case_id])),
         }
     }
-    let each = files.iter().map(|(file, cases)| {
-        let noun = if cases.len() == 1 { "case" } else { "cases" };
-        format!("{noun} {} in {file}", cases.join(", "))
-    });
+    let each = files
+        .iter()
+        .map(|(file, cases)| format!("{} in {file}", cases.join(", ")));
     each.collect::<Vec<_>>().join("; ")
 }
 
@@ -126,8 +125,8 @@ mod tests {
             file: file.to_owned(),
             ..Response::default()
         };
-        let responses = [at("1", "a"), at("2", "b"), at("3", "a")];
-        assert_eq!(places(&responses), "cases 1, 3 in a; case 2 in b");
+        let responses = [at("case-1", "a"), at("case-2", "b"), at("case-3", "a")];
+        assert_eq!(places(&responses), "case-1, case-3 in a; case-2 in b");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! reciprocating compressor with clearance joints, section 3 and 4).
 
 use super::captions::{self, Level};
-use super::examples::portrait;
+use super::examples::{PORTRAIT_REVOLUTIONS, portrait};
 use super::page::{Plate, class_colour};
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
@@ -227,7 +227,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
     Plate {
         heading: "Portraits by clearance".to_owned(),
         caption: format!(
-            "Acceleration against velocity over all revolutions, {}: a row for each set of joints, the clearance rising from \
+            "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, {}: a row for each set of joints, the clearance rising from \
              left to right. A closed curve is a motion that repeats with the crank; a band or a cloud is one that does not. \
              Axes are the same in all panels. Data: {}.",
             grid.operating_point,
@@ -245,7 +245,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
     Plate {
         heading: format!("Portraits at {}", text::clearance(clearance)),
         caption: format!(
-            "Acceleration against velocity over all revolutions with a clearance of {} in different joints, {}. Axes are the \
+            "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer with a clearance of {} in different joints, {}. Axes are the \
              same in all panels. Data: {}.",
             text::clearance(clearance),
             grid.operating_point,

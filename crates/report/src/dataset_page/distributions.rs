@@ -6,7 +6,7 @@ use super::{DatasetPage, Histogram, RandomSweep, Scatter};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::text;
 
-const BINS: usize = 30;
+const MOST_BINS: usize = 30;
 /// At most this many of each kind of figure.
 const MOST_HISTOGRAMS: usize = 24;
 const MOST_SCATTERS: usize = 12;
@@ -30,6 +30,7 @@ pub(super) fn plates(page: &DatasetPage, sweep: &RandomSweep) -> Vec<Plate> {
 }
 
 fn histograms(all: &[Histogram]) -> Plate {
+    let cases = all.first().map_or(0, |histogram| histogram.values.len());
     let panels = all.iter().map(|histogram| {
         let (factor, unit) = readable(histogram.values.iter().copied(), &histogram.unit);
         let values: Vec<f64> = histogram
@@ -53,7 +54,8 @@ fn histograms(all: &[Histogram]) -> Plate {
     Plate {
         heading: "Parameters".to_owned(),
         caption: format!(
-            "How often each value was drawn, in {BINS} bins of equal width between the lowest and the highest value."
+            "How often values were drawn, of {}, in bins of equal width between the lowest and the highest.",
+            text::counted(cases, "case")
         ),
         svg: Figure {
             rows: figure::in_rows(panels.collect(), 3),
@@ -72,7 +74,8 @@ fn readable(values: impl Iterator<Item = f64>, unit: &str) -> (f64, &str) {
     text::readable_unit(largest, unit)
 }
 
-/// Edges and counts of equal bins over the finite values; none where there are no values.
+/// Edges and counts of equal bins over the finite values; none where there are no values. There
+/// are 2∛n bins for n values (D. Lane's rule of Rice University), and not too many.
 fn binned(values: &[f64]) -> (Vec<f64>, Vec<usize>) {
     let finite = || values.iter().copied().filter(|v| v.is_finite());
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
@@ -81,16 +84,18 @@ fn binned(values: &[f64]) -> (Vec<f64>, Vec<usize>) {
     if low > high {
         return (Vec::new(), Vec::new());
     }
+    let bins = (2.0 * (finite().count() as f64).cbrt()).ceil() as usize;
+    let bins = bins.min(MOST_BINS);
     let (low, width) = if high > low {
-        (low, (high - low) / BINS as f64)
+        (low, (high - low) / bins as f64)
     } else {
-        (low - 0.5, 1.0 / BINS as f64)
+        (low - 0.5, 1.0 / bins as f64)
     };
-    let mut counts = vec![0; BINS];
+    let mut counts = vec![0; bins];
     for value in finite() {
-        counts[(((value - low) / width) as usize).min(BINS - 1)] += 1;
+        counts[(((value - low) / width) as usize).min(bins - 1)] += 1;
     }
-    ((0..=BINS).map(|i| low + width * i as f64).collect(), counts)
+    ((0..=bins).map(|i| low + width * i as f64).collect(), counts)
 }
 
 fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
@@ -166,7 +171,7 @@ mod tests {
             .chain([f64::NAN])
             .collect();
         let (edges, counts) = binned(&values);
-        assert_eq!((edges[0], edges[BINS]), (0.0, 30.0));
+        assert_eq!((edges[0], edges[edges.len() - 1].round()), (0.0, 30.0));
         assert_eq!(counts.iter().sum::<usize>(), 301);
         assert_eq!(binned(&[2.0, 2.0]).1.iter().sum::<usize>(), 2);
         assert!(binned(&[f64::INFINITY]).1.is_empty());

@@ -3,11 +3,14 @@
 use super::page::{Plate, class_colour};
 use super::{ClassExample, DatasetPage, Spectrum, captions};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
-use crate::revolutions::Revolutions;
+use crate::revolutions::{Revolutions, last_turns};
 use crate::text;
 
 /// At most this many classes have an example on the page.
 pub(super) const MOST_EXAMPLES: usize = 16;
+/// A portrait shows at most this many revolutions: with more, the lines of one that repeats itself
+/// only get thicker, and those of one that does not cannot be told apart.
+pub(super) const PORTRAIT_REVOLUTIONS: usize = 10;
 
 /// The figures of the first classes, all with the same axes.
 pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
@@ -43,8 +46,9 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
     Plate {
         heading: text::capitalised(&fault_words(&example.fault)),
         caption: format!(
-            "{}: one revolution, the velocity-acceleration portrait of all revolutions, amplitude spectrum and order \
-             spectrum.{level} Axes are the same for all classes. Data: {}.",
+            "{}: one revolution, the velocity-acceleration portrait of the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, the \
+             amplitude spectrum (rms over stretches of two revolutions) and the order spectrum (rms over the \
+             revolutions).{level} Axes are the same for all classes. Data: {}.",
             text::capitalised(&example.operating_point),
             captions::places([&example.response])
         ),
@@ -105,12 +109,13 @@ fn panels(example: &ClassExample, colour: Colour) -> [Panel; 4] {
     ]
 }
 
-/// Acceleration against velocity.
+/// Acceleration against velocity over the last revolutions.
 pub(super) fn portrait(title: &str, response: &super::Response, colour: Colour) -> Panel {
     let points = response
         .velocity_m_s
         .iter()
         .zip(&response.acceleration_m_s2)
+        .skip(last_turns(&response.crank_angle_rad, PORTRAIT_REVOLUTIONS))
         .map(|(&v, &a)| [v, a]);
     Panel {
         title: title.to_owned(),

@@ -6,10 +6,13 @@
 //! out.
 
 mod captions;
+mod claims;
 mod comparison;
 mod distributions;
 mod examples;
 mod page;
+
+pub use claims::CaseLevel;
 
 /// All that the page tells. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
@@ -24,8 +27,10 @@ pub struct DatasetPage {
     pub seed: u64,
     /// Rate of the channels in Hz.
     pub sample_rate_hz: f64,
-    /// Samples in one window.
-    pub samples_per_window: usize,
+    /// Revolutions of the crank in one window.
+    pub revolutions_per_window: u32,
+    /// Fewest and most samples in one window; they differ where the speed does.
+    pub samples_per_window: (usize, usize),
     /// The channels, by name.
     pub channels: Vec<String>,
     /// Names of the splits, in the order of the counts below.
@@ -38,6 +43,8 @@ pub struct DatasetPage {
     pub failed: Vec<FailedCase>,
     /// One example per fault.
     pub examples: Vec<ClassExample>,
+    /// Why there is no example; empty where there are some.
+    pub no_examples: String,
     /// What is compared: depends on the design of the sweep.
     pub design: Design,
     /// The features of the table.
@@ -118,9 +125,9 @@ pub struct ClassExample {
     pub operating_point: String,
     /// Its signal.
     pub response: Response,
-    /// Amplitude over frequency in Hz.
+    /// Amplitude over frequency in Hz, rms over stretches of two revolutions.
     pub spectrum: Spectrum,
-    /// Amplitude over order of the crank's speed.
+    /// Amplitude over order of the crank's speed, rms over the revolutions.
     pub order_spectrum: Spectrum,
 }
 
@@ -140,8 +147,12 @@ pub struct ClearanceGrid {
     pub operating_point: String,
     /// The machine without clearance, if the sweep has it.
     pub ideal: Option<Response>,
-    /// The sets of joints.
+    /// The sets of joints; none where the recordings are not at hand.
     pub joint_sets: Vec<JointSet>,
+    /// Frequency above which the motion without clearance has hardly anything.
+    pub high_from_hz: f64,
+    /// The levels of all cases, the ideal machine first.
+    pub levels: Vec<CaseLevel>,
 }
 
 /// The responses with clearance in the same joints.

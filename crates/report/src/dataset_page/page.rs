@@ -1,9 +1,10 @@
 //! The page itself: figures and tables in the order of reading.
 
+use super::claims::{self, Claim};
 use super::examples::{self, MOST_EXAMPLES, fault_words};
 use super::{
-    Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow, ParameterRange, comparison,
-    distributions,
+    CaseLevel, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow,
+    ParameterRange, comparison, distributions,
 };
 use crate::figure::Colour;
 use crate::{Error, text};
@@ -22,12 +23,14 @@ pub(super) struct Plate {
 }
 
 /// A part of the page that holds figures.
-struct Gallery {
+struct Gallery<'a> {
     id: &'static str,
     heading: &'static str,
     introduction: &'static str,
     /// What is shown of how much; empty where all is shown.
     left_out: String,
+    /// Why there is no figure.
+    nothing: &'a str,
     /// Number of its first figure.
     first: usize,
     plates: Vec<Plate>,
@@ -38,7 +41,7 @@ struct Gallery {
 struct View<'a> {
     page: &'a DatasetPage,
     facts: Vec<(&'static str, String)>,
-    galleries: Vec<Gallery>,
+    galleries: Vec<Gallery<'a>>,
 }
 
 impl DatasetPage {
@@ -64,7 +67,7 @@ pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
         .map_or(Colour::Ink, Colour::Class)
 }
 
-fn galleries(page: &DatasetPage) -> Vec<Gallery> {
+fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
     let examples = examples::plates(page);
     let (id, heading, introduction, plates) = match &page.design {
         Design::Grid(grid) => (
@@ -95,6 +98,7 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery> {
             heading: "An example of each class",
             introduction: "One recording from each class of fault, as the sensors give it.",
             left_out,
+            nothing: &page.no_examples,
             first: 1,
             plates: examples,
         },
@@ -103,6 +107,7 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery> {
             heading,
             introduction,
             left_out: String::new(),
+            nothing: &page.no_examples,
             first: 1 + page.examples.len().min(MOST_EXAMPLES),
             plates,
         },
@@ -112,21 +117,22 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery> {
 fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
     let cases: usize = page.faults.iter().flat_map(|count| &count.cases).sum();
     let windows: usize = page.faults.iter().map(|count| count.windows).sum();
-    let seconds = page.samples_per_window as f64 / page.sample_rate_hz;
-    let window = if seconds.is_finite() {
-        format!(
-            "{} ({})",
-            text::counted(page.samples_per_window, "sample"),
-            text::quantity(seconds, "s")
-        )
+    let (fewest, most) = page.samples_per_window;
+    let samples = if fewest == most {
+        text::counted(most, "sample")
     } else {
-        text::counted(page.samples_per_window, "sample")
+        format!(
+            "{} to {}",
+            text::count(fewest),
+            text::counted(most, "sample")
+        )
     };
+    let revolutions = text::counted(page.revolutions_per_window as usize, "revolution");
     vec![
         ("Cases", text::count(cases)),
         ("Classes", text::count(page.faults.len())),
         ("Windows", text::count(windows)),
-        ("Samples in a window", window),
+        ("In a window", format!("{revolutions}, {samples}")),
         (
             "Sample rate",
             format!("{}\u{a0}Hz", text::number(page.sample_rate_hz, 6)),
@@ -142,6 +148,22 @@ fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
 impl View<'_> {
     fn faults(&self) -> &[FaultCount] {
         &self.page.faults[..self.page.faults.len().min(MOST_FAULTS)]
+    }
+
+    /// The grid, if the design is one whose levels are known.
+    fn levels(&self) -> Option<&ClearanceGrid> {
+        match &self.page.design {
+            Design::Grid(grid) if !grid.levels.is_empty() => Some(grid),
+            _ => None,
+        }
+    }
+
+    fn level_cells(level: &CaseLevel) -> [String; 6] {
+        claims::level_cells(level)
+    }
+
+    fn claims(grid: &ClearanceGrid) -> Vec<Claim> {
+        claims::claims(grid)
     }
 
     fn failed(&self) -> &[FailedCase] {

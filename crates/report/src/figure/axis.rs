@@ -189,7 +189,7 @@ impl Ruler {
             self.high.log10().ceil() as i32,
         );
         let stride = (f64::from(last - first) / count).ceil().max(1.0) as i32;
-        let between: &[f64] = if 3.0 * f64::from(last - first) <= count.max(6.0) {
+        let between: &[f64] = if 3.0 * (self.high / self.low).log10() <= count.max(6.0) {
             &[1.0, 2.0, 5.0]
         } else {
             &[1.0]
@@ -214,10 +214,10 @@ impl Ruler {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is at least `least`.
+/// The least of 1, 2, 2.5, 5 times a power of ten that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
-    [1.0, 2.0, 5.0]
+    [1.0, 2.0, 2.5, 5.0]
         .into_iter()
         .map(|m| m * power)
         .find(|step| *step >= least * (1.0 - 1e-9))

@@ -44,6 +44,15 @@ pub(super) struct Placed<'a> {
     pub(super) y_room: f64,
 }
 
+impl Placed<'_> {
+    /// Makes the axes as long as the frame.
+    fn set_rulers(&mut self) {
+        let (width, height) = (self.frame.width, self.frame.height);
+        self.x = Ruler::new(&self.panel.x, self.ranges[0], width, X_TICKS);
+        self.y = Ruler::new(&self.panel.y, self.ranges[1], height, Y_TICKS);
+    }
+}
+
 /// All panels in place below `top`, and the height of the image.
 pub(super) fn place(figure: &Figure, top: f64) -> (Vec<Placed<'_>>, f64) {
     let mut rows: Vec<Vec<Placed<'_>>> = figure
@@ -62,10 +71,17 @@ pub(super) fn place(figure: &Figure, top: f64) -> (Vec<Placed<'_>>, f64) {
         .collect();
     align_columns(&mut rows);
     let mut top = top;
-    for row in &mut rows {
+    for at in 0..rows.len() {
+        let (before, rest) = rows.split_at_mut(at);
+        let row = &mut rest[0];
         let titled = row.iter().any(|cell| !cell.panel.title.is_empty());
         top += if titled { LINE + 4.0 } else { 4.0 };
-        top += spread(row, top, figure);
+        top += match before.first() {
+            Some(first) if at + 1 == figure.rows.len() && row.len() < first.len() => {
+                stand_below(row, first, top, figure)
+            }
+            _ => spread(row, top, figure),
+        };
         top += if row.iter().any(|cell| cell.x_shown) {
             2.0 * LINE + 8.0
         } else {
@@ -128,8 +144,19 @@ fn align_columns(rows: &mut [Vec<Placed<'_>>]) {
     }
 }
 
-/// Spreads the cells of a row, the last row of a grid like a full one, across the image; returns
-/// the height of the row.
+/// Gives the cells of a last, shorter row the columns of the first row; returns the height of the
+/// row.
+fn stand_below(row: &mut [Placed<'_>], first: &[Placed<'_>], top: f64, figure: &Figure) -> f64 {
+    for (cell, above) in row.iter_mut().zip(first) {
+        cell.frame = Frame { top, ..above.frame };
+        cell.set_rulers();
+    }
+    first
+        .first()
+        .map_or(figure.row_height, |cell| cell.frame.height)
+}
+
+/// Spreads the cells of a row across the image; returns the height of the row.
 ///
 /// Panels with equal axes are squares. The others divide what is left.
 fn spread(row: &mut [Placed<'_>], top: f64, figure: &Figure) -> f64 {
@@ -153,8 +180,7 @@ fn spread(row: &mut [Placed<'_>], top: f64, figure: &Figure) -> f64 {
             width,
             height,
         };
-        cell.x = Ruler::new(&cell.panel.x, cell.ranges[0], width, X_TICKS);
-        cell.y = Ruler::new(&cell.panel.y, cell.ranges[1], height, Y_TICKS);
+        cell.set_rulers();
         left += width + GAP;
     }
     height

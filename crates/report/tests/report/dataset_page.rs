@@ -73,7 +73,7 @@ fn a_grid_has_the_figures_of_the_study_and_says_what_they_show() {
     ] {
         assert!(html.contains(&format!("<h3>{heading}</h3>")), "{heading}");
     }
-    assert!(html.contains("cases 1, 2, 3 in signals/train-00000-of-00001.parquet"));
+    assert!(html.contains("case-1, case-2, case-3 in signals/train-00000-of-00001.parquet"));
     assert_eq!(html.matches("<figcaption>").count(), 4 + 3 + 3);
 }
 

@@ -112,7 +112,11 @@ impl Output {
     /// Removes a dataset, and nothing else.
     fn clear(&self) -> Result<(), Error> {
         // The manifest goes first: without it the folder is not a complete dataset.
-        for file in FILES.into_iter().rev().chain(["_sweep/plan.json"]) {
+        for file in FILES
+            .into_iter()
+            .rev()
+            .chain(["_sweep/plan.json", "report.html"])
+        {
             remove(&self.path(file), |path| fs::remove_file(path))?;
         }
         for folder in FOLDERS.into_iter().chain(["_sweep/commits"]) {

@@ -2,8 +2,9 @@
 
 use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
 use report::dataset_page::{
-    ClassExample, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount, Feature,
-    FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep, Response, Scatter, Spectrum,
+    CaseLevel, ClassExample, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount,
+    Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep, Response, Scatter,
+    Spectrum,
 };
 
 const FAULTS: [(&str, &[&str]); 4] = [
@@ -32,6 +33,8 @@ pub fn grid() -> DatasetPage {
         operating_point: "500 rpm".to_owned(),
         ideal: Some(response(&made(0, 0.0, 8), 0)),
         joint_sets: (1..4).map(set).collect(),
+        high_from_hz: 160.0,
+        levels: levels(),
     };
     DatasetPage {
         name: "paper2".to_owned(),
@@ -46,6 +49,19 @@ pub fn grid() -> DatasetPage {
         ],
         ..page(Design::Grid(grid))
     }
+}
+
+fn levels() -> Vec<CaseLevel> {
+    let level = |fault: usize, clearance_m: f64| CaseLevel {
+        joints: FAULTS[fault].0.to_owned(),
+        clearance_m,
+        rms_m_s2: 230.0,
+        peak_m_s2: 400.0 + 1e6 * clearance_m * fault as f64,
+        high_rms_m_s2: 2.0 + 5e5 * clearance_m * fault as f64,
+        high_share: 0.05 * fault as f64,
+    };
+    let clear = (1..4).flat_map(|fault| [1e-4, 2e-4, 3e-4].map(|c| level(fault, c)));
+    std::iter::once(level(0, 0.0)).chain(clear).collect()
 }
 
 /// Like a sweep of random cases, one of which failed.
@@ -121,7 +137,8 @@ fn page(design: Design) -> DatasetPage {
         version: "0.1.0".to_owned(),
         seed: 42,
         sample_rate_hz: SAMPLE_RATE_HZ,
-        samples_per_window: 9600,
+        revolutions_per_window: 8,
+        samples_per_window: (9600, 9600),
         channels: [
             "crank_angle_rad",
             "acceleration_m_s2",
@@ -135,6 +152,7 @@ fn page(design: Design) -> DatasetPage {
         ranges: Vec::new(),
         failed: Vec::new(),
         examples: (0..4).map(example).collect(),
+        no_examples: String::new(),
         design,
         features: vec![
             feature("rms", "m/s²"),
@@ -217,7 +235,7 @@ fn made(fault: usize, clearance_m: f64, revolutions: usize) -> Recording {
 
 fn response(made: &Recording, case: usize) -> Response {
     Response {
-        case_id: case.to_string(),
+        case_id: format!("case-{case}"),
         file: "signals/train-00000-of-00001.parquet".to_owned(),
         crank_angle_rad: made.crank_angle_rad.clone(),
         acceleration_m_s2: made.acceleration_m_s2.clone(),

@@ -1,0 +1,72 @@
+//! The columns of the tables, features named once for all channels and orders.
+
+use super::dataset::Dataset;
+use crate::Failure;
+use ::report::dataset_page::Column;
+use ::report::text;
+
+/// The columns of a file of either table. Of features there are hundreds: those of the first
+/// channel stand for all, and a numbered row of them is one line.
+///
+/// # Errors
+/// A table that cannot be read.
+pub(super) fn columns(dataset: &Dataset) -> Result<Vec<Column>, Failure> {
+    let signals = of_table(dataset, "signals")?;
+    let mut features = of_table(dataset, "features")?;
+    let labels: Vec<String> = signals.iter().map(|column| column.name.clone()).collect();
+    let first = dataset.plan.channels().into_iter().next();
+    let channel = match (&dataset.acceleration, first) {
+        (Some(channel), _) => channel.clone(),
+        (None, Some((name, _))) => name,
+        (None, None) => String::new(),
+    };
+    let shown = |name: &str| name.starts_with(&format!("{channel}.")) || !is_feature(dataset, name);
+    features.retain(|column| !labels.contains(&column.name) && shown(&column.name));
+    Ok(signals.into_iter().chain(numbered(features)).collect())
+}
+
+/// Whether the column is a feature of some channel.
+fn is_feature(dataset: &Dataset, column: &str) -> bool {
+    let channels = dataset.plan.channels();
+    let definitions =
+        features::definitions(channels.iter().map(|(name, unit)| (name.as_str(), *unit)));
+    definitions
+        .iter()
+        .any(|definition| definition.name == column)
+}
+
+fn of_table(dataset: &Dataset, table: &str) -> Result<Vec<Column>, Failure> {
+    let Some(path) = dataset.files(table).into_iter().next() else {
+        return Ok(Vec::new());
+    };
+    let file = dataset.table(&path)?;
+    let columns = file.schema().columns().iter();
+    Ok(columns
+        .map(|column| Column {
+            table: table.to_owned(),
+            name: column.name.clone(),
+            kind: column.kind.to_string(),
+            unit: text::unit(column.unit.as_deref().unwrap_or_default()),
+            meaning: column.description.clone(),
+        })
+        .collect())
+}
+
+/// The columns with every run of `order_01`, `order_02`, … as one.
+fn numbered(columns: Vec<Column>) -> Vec<Column> {
+    let mut kept: Vec<Column> = Vec::new();
+    let mut last = String::new();
+    for column in columns {
+        let pattern: String = column.name.replace(|c: char| c.is_ascii_digit(), "#");
+        let is_order = pattern.contains("order_##");
+        match kept.last_mut() {
+            Some(before) if is_order && pattern == last => {
+                let first = before.name.split(" … ").next().unwrap_or_default();
+                before.name = format!("{first} … {}", column.name);
+            }
+            _ => kept.push(column),
+        }
+        last = pattern;
+    }
+    kept
+}

@@ -1,0 +1,161 @@
+//! The folder of a dataset: what it says about itself, and its tables.
+
+use super::labels::{self, Label};
+use crate::Failure;
+use recordings::Manifest;
+use recordings::formats::parquet::ParquetFile;
+use std::path::{Path, PathBuf};
+use sweep::Plan;
+
+/// The channel that the page shows.
+const ACCELERATION: &str = "crosshead_acceleration";
+
+/// A whole dataset.
+pub(super) struct Dataset {
+    pub(super) folder: PathBuf,
+    pub(super) manifest: Manifest,
+    pub(super) plan: Plan,
+    /// The numbers that both tables say about a case.
+    pub(super) labels: Vec<Label>,
+    /// The first crosshead's acceleration, as features are named after it:
+    /// `throw1.crosshead_acceleration`. None where no sensor measures it.
+    pub(super) acceleration: Option<String>,
+}
+
+impl Dataset {
+    /// # Errors
+    /// A folder without a manifest, or one whose manifest or sweep cannot be read.
+    pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
+        let manifest = folder.join("manifest.json");
+        if !manifest.is_file() {
+            return Err(Failure::input(no_manifest(folder)));
+        }
+        let manifest = Manifest::read(&manifest).map_err(Failure::input)?;
+        let plan = Plan::read(&folder.join("sweep.yaml")).map_err(Failure::input)?;
+        let channels = plan.channels();
+        let acceleration = channels
+            .iter()
+            .filter_map(|(name, _)| name.strip_suffix("_m_s2"))
+            .find(|name| name.ends_with(ACCELERATION));
+        Ok(Self {
+            folder: folder.to_owned(),
+            manifest,
+            labels: labels::of(&plan),
+            acceleration: acceleration.map(str::to_owned),
+            plan,
+        })
+    }
+
+    /// The files of a subset, `signals` or `features`, from the dataset's folder.
+    pub(super) fn files(&self, subset: &str) -> Vec<String> {
+        let prefix = format!("{subset}/");
+        let listed = self.manifest.files.iter().map(|file| &file.path);
+        listed
+            .filter(|path| path.starts_with(&prefix) && path.ends_with(".parquet"))
+            .cloned()
+            .collect()
+    }
+
+    /// Opens a table that the manifest lists.
+    ///
+    /// # Errors
+    /// A file that is not there, is damaged, or is not as long as the manifest says.
+    pub(super) fn table(&self, path: &str) -> Result<ParquetFile, Failure> {
+        let place = self.folder.join(path);
+        let listed = self.manifest.files.iter().find(|file| file.path == path);
+        if let (Some(entry), Ok(found)) = (listed, place.metadata())
+            && entry.bytes != found.len()
+        {
+            return Err(Failure::input(format!(
+                "{}: {} bytes where the manifest has {}: the file is damaged",
+                place.display(),
+                found.len(),
+                entry.bytes
+            )));
+        }
+        ParquetFile::open(&place).map_err(Failure::input)
+    }
+
+    /// The message of `error`, which table `path` gave.
+    pub(super) fn unreadable(&self, path: &str, error: recordings::Error) -> Failure {
+        let place = self.folder.join(path);
+        Failure::input(match error {
+            recordings::Error::NoColumn { name, .. } => format!(
+                "{}: no column `{name}`, which every dataset of this sweep has",
+                place.display()
+            ),
+            recordings::Error::ColumnKind { .. } => format!("{}: {error}", place.display()),
+            other => other.to_string(),
+        })
+    }
+
+    /// Whether the recordings stand in tables that can be read.
+    pub(super) fn has_signals(&self) -> bool {
+        self.acceleration.is_some() && !self.files("signals").is_empty()
+    }
+
+    /// Why the page shows no recording; empty where it does.
+    pub(super) fn why_no_recordings(&self) -> String {
+        if self.has_signals() {
+            return String::new();
+        }
+        let in_mcap = self
+            .manifest
+            .files
+            .iter()
+            .any(|file| file.path.starts_with("mcap/"));
+        match (&self.acceleration, in_mcap) {
+            (None, _) => "No sensor of this dataset measures the crosshead's acceleration.",
+            (_, true) => {
+                "The recordings of this dataset are MCAP files, one per case, for Foxglove and the like; this page is made \
+                 from the features alone."
+            }
+            _ => "No case has a recording.",
+        }
+        .to_owned()
+    }
+
+    /// Names of the splits that have rows, in the order of use.
+    pub(super) fn splits(&self) -> Vec<String> {
+        let names = ["train", "validation", "test"].into_iter();
+        names
+            .filter(|name| self.manifest.counts.rows.contains_key(*name))
+            .map(str::to_owned)
+            .collect()
+    }
+
+    pub(super) fn revolutions_per_window(&self) -> u32 {
+        let windows = self.plan.windows.map(|windows| windows.revolutions.get());
+        windows.unwrap_or(self.plan.settings.revolutions)
+    }
+
+    /// What the dataset is, in a sentence or two.
+    pub(super) fn about(&self) -> String {
+        let machine = &self.plan.base.name;
+        let mut about = format!(
+            "Simulated recordings of the {machine}, labelled with the clearance of its joints: {}, {} of the crank each.",
+            ::report::text::counted(self.manifest.counts.cases as usize, "case"),
+            ::report::text::counted(self.plan.settings.revolutions as usize, "revolution"),
+        );
+        if let (Some(channel), true) = (&self.acceleration, self.has_signals()) {
+            about += &format!(" Figures show the channel {channel}_m_s2, as the sensor reads it.");
+        } else {
+            about += &format!(" {}", self.why_no_recordings());
+        }
+        about
+    }
+}
+
+/// What is wrong with a folder that has no manifest.
+fn no_manifest(folder: &Path) -> String {
+    let shown = folder.display();
+    if !folder.is_dir() {
+        format!("{shown}: no such folder")
+    } else if folder.join("_sweep").is_dir() {
+        format!(
+            "{shown}: the dataset is not finished (no manifest.json): gen-dataset SWEEP.yaml --out {shown} --resume finishes it"
+        )
+    } else {
+        format!("{shown}: no dataset (no manifest.json)")
+    }
+}

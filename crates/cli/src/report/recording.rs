@@ -1,0 +1,212 @@
+//! The recording of one window, and what is analysed in it.
+
+use super::dataset::Dataset;
+use super::windows::Windows;
+use crate::Failure;
+use ::report::dataset_page::{Response, Spectrum};
+use signal::amplitude_spectrum::amplitude_spectrum;
+use signal::angle_resampling::{AngleGrid, Revolutions};
+use signal::crank_angle::CrankAngle;
+use signal::order_spectrum::order_spectrum;
+use signal::phase_portrait::PhasePortrait;
+use signal::windows::Window;
+use std::f64::consts::TAU;
+
+/// Highest order of the crank's speed in order spectra.
+const HIGHEST_ORDER: usize = 100;
+
+/// One channel of one window, over the crank angle.
+pub(super) struct Recording {
+    case_id: String,
+    file: String,
+    sample_rate_hz: f64,
+    acceleration: Vec<f64>,
+    angle: CrankAngle,
+    grid: AngleGrid,
+    revolutions: Revolutions,
+}
+
+impl Recording {
+    /// Reads the acceleration and the crank angle of a window. A dataset without crank angle is
+    /// taken to run at its mean speed, from angle 0.
+    ///
+    /// # Errors
+    /// A table that is damaged, lacks the channel, or holds samples that are no motion of a crank.
+    pub(super) fn read(
+        dataset: &Dataset,
+        windows: &Windows,
+        window: usize,
+    ) -> Result<Self, Failure> {
+        let (file, row) = windows.place[window];
+        let path = windows.files[file].replacen("features/", "signals/", 1);
+        let read = Row::read(dataset, &path, row).map_err(|error| match error {
+            Unreadable::Open(failure) => failure,
+            Unreadable::Read(error) => dataset.unreadable(&path, error),
+        })?;
+        let place = || format!("{}: row {row}", dataset.folder.join(&path).display());
+        if read.case_id != windows.case_id[window] {
+            return Err(Failure::input(format!(
+                "{} is of {}, that of the features of {}: they are not of one dataset",
+                place(),
+                read.case_id,
+                windows.case_id[window]
+            )));
+        }
+        let case_id = read.case_id.clone();
+        Self::analyse(read, path.clone())
+            .map_err(|error| Failure::input(format!("{}, {case_id}: {error}", place())))
+    }
+
+    fn analyse(row: Row, file: String) -> Result<Self, signal::Error> {
+        let angle = match &row.crank_angle {
+            Some(readings) => CrankAngle::from_encoder(readings)?,
+            None => {
+                CrankAngle::from_speed(row.acceleration.len(), row.sample_rate_hz, row.speed_rpm)?
+            }
+        };
+        let points = (angle.samples_per_revolution() / 1.01).ceil() as usize;
+        let grid = AngleGrid::new(&angle, points.clamp(64, 1 << 16).next_power_of_two())?;
+        let revolutions = grid.resample(&row.acceleration)?;
+        Ok(Self {
+            case_id: row.case_id,
+            file,
+            sample_rate_hz: row.sample_rate_hz,
+            acceleration: row.acceleration,
+            angle,
+            grid,
+            revolutions,
+        })
+    }
+
+    /// Acceleration and velocity at the samples.
+    ///
+    /// # Errors
+    /// None in practice: the parts belong together.
+    pub(super) fn response(&self) -> Result<Response, Failure> {
+        let portrait = PhasePortrait::new(&self.revolutions, &self.grid, self.sample_rate_hz)
+            .map_err(Failure::work)?;
+        let start = self.start();
+        let step = TAU / self.revolutions.points_per_revolution() as f64;
+        let velocity = portrait.velocity();
+        // The integral has the period of the recording, so that both ends continue in the other.
+        let at = |angle: &f64| {
+            let position = (angle - start) / step;
+            let (before, fraction) = (position.floor(), position - position.floor());
+            let index = |i: f64| i.rem_euclid(velocity.len() as f64) as usize % velocity.len();
+            let (a, b) = (velocity[index(before)], velocity[index(before + 1.0)]);
+            a + (b - a) * fraction
+        };
+        Ok(Response {
+            case_id: self.case_id.clone(),
+            file: self.file.clone(),
+            crank_angle_rad: self.angle.angles().to_vec(),
+            acceleration_m_s2: self.acceleration.clone(),
+            velocity_m_s: self.angle.angles().iter().map(at).collect(),
+        })
+    }
+
+    /// The unwrapped angle of the first point of the grid: the one of its crank angles that is
+    /// nearest to where revolutions from the middle of the recording begin.
+    fn start(&self) -> f64 {
+        let angles = self.angle.angles();
+        let length = TAU * self.revolutions.count() as f64;
+        let middle = 0.5 * (angles[0] + angles[angles.len() - 1]);
+        let wanted = middle - 0.5 * length;
+        let phase = self.revolutions.start_angle();
+        phase + TAU * ((wanted - phase) / TAU).round()
+    }
+
+    /// Amplitude over frequency: rms over stretches of two revolutions, each overlapping the next
+    /// by a half, through Hann windows (Welch 1967). So short a stretch cannot tell neighbouring
+    /// orders apart and shows what lies over them all: resonances, noise.
+    ///
+    /// # Errors
+    /// None in practice: a recording has a revolution.
+    pub(super) fn spectrum(&self) -> Result<Spectrum, Failure> {
+        let revolution = self.angle.samples_per_revolution().round() as usize;
+        let length = (2 * revolution).min(self.acceleration.len());
+        let mut squares = vec![0.0; length / 2 + 1];
+        let mut at = Vec::new();
+        let stretches = self.acceleration.windows(length).step_by(revolution.max(1));
+        let count = stretches.len() as f64;
+        for stretch in stretches {
+            let spectrum = amplitude_spectrum(stretch, self.sample_rate_hz, Window::Hann)
+                .map_err(Failure::work)?;
+            at = spectrum.frequencies().collect();
+            for (square, amplitude) in squares.iter_mut().zip(&spectrum.amplitude) {
+                *square += amplitude * amplitude / count;
+            }
+        }
+        Ok(Spectrum {
+            at,
+            amplitude_m_s2: squares.into_iter().map(f64::sqrt).collect(),
+        })
+    }
+
+    /// Amplitude of each order, rms over the revolutions.
+    ///
+    /// # Errors
+    /// None in practice: no order is asked for that the grid does not have.
+    pub(super) fn order_spectrum(&self) -> Result<Spectrum, Failure> {
+        let highest = self.grid.highest_order().min(HIGHEST_ORDER);
+        let spectrum = order_spectrum(&self.revolutions, highest).map_err(Failure::work)?;
+        Ok(Spectrum {
+            at: (1..=highest).map(|order| order as f64).collect(),
+            amplitude_m_s2: spectrum.rms,
+        })
+    }
+}
+
+/// What a row of the table of signals holds for the page.
+struct Row {
+    case_id: String,
+    speed_rpm: f64,
+    sample_rate_hz: f64,
+    acceleration: Vec<f64>,
+    crank_angle: Option<Vec<f64>>,
+}
+
+enum Unreadable {
+    Open(Failure),
+    Read(recordings::Error),
+}
+
+impl Row {
+    fn read(dataset: &Dataset, path: &str, row: usize) -> Result<Self, Unreadable> {
+        const ANGLE: &str = "crank_angle_rad";
+        let file = dataset.table(path).map_err(Unreadable::Open)?;
+        let prefix = dataset.acceleration.as_deref().unwrap_or_default();
+        let acceleration = format!("{prefix}_m_s2");
+        let mut names = vec!["case_id", "speed_rpm", "sample_rate_hz", &acceleration];
+        let has_angle = dataset
+            .plan
+            .channels()
+            .iter()
+            .any(|(name, _)| name == ANGLE);
+        if has_angle {
+            names.push(ANGLE);
+        }
+        let table = file.read(&names, row..row + 1).map_err(Unreadable::Read)?;
+        let real = |name: &str| {
+            let value = table.values::<f64>(name).map(|values| values[0]);
+            value
+                .map(Option::unwrap_or_default)
+                .map_err(Unreadable::Read)
+        };
+        let samples = |name: &str| -> Result<Vec<f64>, Unreadable> {
+            let values = table.values::<Vec<f32>>(name).map_err(Unreadable::Read)?;
+            Ok(values[0].iter().flatten().map(|x| f64::from(*x)).collect())
+        };
+        Ok(Self {
+            case_id: table
+                .values::<String>("case_id")
+                .map_err(Unreadable::Read)?[0]
+                .clone()
+                .unwrap_or_default(),
+            speed_rpm: real("speed_rpm")?,
+            sample_rate_hz: real("sample_rate_hz")?,
+            acceleration: samples(&acceleration)?,
+            crank_angle: has_angle.then(|| samples(ANGLE)).transpose()?,
+        })
+    }
+}
