@@ -6,6 +6,9 @@ use crate::system::{Real, System};
 /// Shares of the step at which the guards are looked at, beside its beginning and end.
 const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
+/// Share of the step over which a guard's slope is taken.
+const NEARBY: f64 = 1e-3;
+
 /// Looks at ever smaller shares before a guard counts as overdue: the last is at 4^−13.
 const EARLY_LOOKS: usize = 12;
 
@@ -121,6 +124,23 @@ impl<S: Real> Finder<S> {
             (later, beyond) = (share, value);
         }
         0.0
+    }
+
+    /// How the time of the crossing at the step's end varies with what dual numbers vary: as the
+    /// guard stays zero there, by −δg/ġ. A number of value 0.
+    pub fn delay(&mut self, system: &mut impl System<S>, step: &Step<S>, guard: usize) -> S {
+        let at = self.look(system, step, 1.0)[guard];
+        if !at.varies() {
+            return S::zero();
+        }
+        let [before, after] =
+            [1.0 - NEARBY, 1.0 + NEARBY].map(|share| self.look(system, step, share)[guard].value());
+        let slope = (after - before) / (2.0 * NEARBY * step.length.value());
+        // A guard that only grazes zero has no such derivative.
+        if slope == 0.0 {
+            return S::zero();
+        }
+        (S::constant(at.value()) - at) / slope
     }
 
     /// The guards at `share` of the step.

@@ -183,7 +183,9 @@ impl<S: Real> Integrator<S> {
         if length <= 16.0 * f64::EPSILON * time.abs().max(1e-3) && !limited {
             return Err(Error::StepTooSmall { time, step: length });
         }
-        self.step.take(system, S::constant(length));
+        // After a switch whose time varies, the step brings the time back to a plain number.
+        let back = S::constant(time) - self.step.start;
+        self.step.take(system, back + length);
         let error = self.error(system.scales());
         // error^(1/8) by square roots, which round the same on every machine.
         let root = error.sqrt().sqrt().sqrt();
@@ -260,6 +262,11 @@ impl<S: Real> Integrator<S> {
             }
             self.length = next;
             self.step.extend(system);
+            let later = self.finder.delay(system, &self.step, crossing.guard);
+            if later.varies() {
+                self.step.take(system, self.step.length + later);
+                self.step.extend(system);
+            }
             let reached = (self.step.start + self.step.length).value();
             self.last_switch = (crossing.guard, reached, 1);
         }

@@ -6,17 +6,25 @@ use scalar::{Dual, Scalar};
 pub trait Real: Scalar {
     /// The plain value.
     fn value(self) -> f64;
+    /// True where the number carries a derivative other than 0.
+    fn varies(self) -> bool;
 }
 
 impl Real for f64 {
     fn value(self) -> f64 {
         self
     }
+    fn varies(self) -> bool {
+        false
+    }
 }
 
 impl<const N: usize> Real for Dual<f64, N> {
     fn value(self) -> f64 {
         self.value
+    }
+    fn varies(self) -> bool {
+        self.tangent.iter().any(|t| *t != 0.0)
     }
 }
 

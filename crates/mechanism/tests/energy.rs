@@ -3,13 +3,13 @@
 
 mod common;
 
-use common::random::{cases, machine};
+use common::random::{MODELS, cases, machine};
 use common::{REVOLUTION, Run, joint, single_stage, with_clearance};
 use mechanism::drive::{Drive, MotorLine};
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use mechanism::joints::friction::{Adams, Ambrosio, FrictionLaw};
 use mechanism::joints::guide::{Guide, GuideClearance};
-use mechanism::joints::revolute::{JointModel, Revolute};
+use mechanism::joints::revolute::Revolute;
 use mechanism::{Direction, Machine};
 use proptest::prelude::*;
 
@@ -203,7 +203,7 @@ proptest! {
     #![proptest_config(cases(40))]
 
     #[test]
-    fn any_machine(machine in machine(&[JointModel::ThreeMode])) {
+    fn any_machine(machine in machine(MODELS)) {
         let worst = imbalance(machine, 3);
         prop_assert!(worst < 1e-7, "{worst:e}");
     }
