@@ -45,23 +45,27 @@ struct Dataset {
 impl Dataset {
     fn of(sweep: &str, format: Format) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let machine =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
+        let machine = single_stage();
         let text = format!(
             "name: small\nmachine: {}\nseed: 5{sweep}",
             machine.display()
         );
-        let path = folder.path().join("small.yaml");
-        fs::write(&path, text).unwrap();
-        let plan = Plan::read(&path).unwrap().with_format(format);
+        fs::write(folder.path().join("small.yaml"), text).unwrap();
+        let dataset = Self { folder };
+        dataset.generate(format, Existing::Refuse);
+        dataset
+    }
+
+    /// Simulates the sweep of the folder.
+    fn generate(&self, format: Format, existing: Existing) {
+        let plan = Plan::read(&self.folder.path().join("small.yaml")).unwrap();
         let options = Options {
-            existing: Existing::Refuse,
+            existing,
             threads: 2,
             cancel: &AtomicBool::new(false),
         };
-        let dataset = Self { folder };
-        generate(&plan, &dataset.path(), &options, &simulate_case, &mut ()).unwrap();
-        dataset
+        let plan = plan.with_format(format);
+        generate(&plan, &self.path(), &options, &simulate_case, &mut ()).unwrap();
     }
 
     fn path(&self) -> PathBuf {
@@ -80,6 +84,10 @@ impl Dataset {
     fn refusal(&self, more: &[&str]) -> (i32, String) {
         refusal(self.folder.path(), &self.report(more))
     }
+}
+
+fn single_stage() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml")
 }
 
 fn report(folder: &Path, more: &[&str]) -> Output {
@@ -227,6 +235,45 @@ fn the_page_is_the_same_each_time_and_takes_the_place_of_the_last() {
     assert!(dataset.report(&[]).status.success());
     assert_eq!(dataset.html(), first);
     assert!(!dataset.path().join("report.part").exists());
+}
+
+/// A page of cases that are no longer there would mislead.
+#[test]
+fn a_dataset_that_replaces_another_takes_its_page_away() {
+    let dataset = Dataset::of(GRID, Format::Parquet);
+    assert!(dataset.report(&[]).status.success());
+    dataset.generate(Format::Parquet, Existing::Overwrite);
+    assert!(!dataset.path().join("report.html").exists());
+}
+
+/// The page shows the first throw's crosshead and says so.
+#[test]
+fn of_several_throws_the_first_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = fs::read_to_string(single_stage()).unwrap();
+    let (head, _) = machine.split_once("\nsensors:").unwrap();
+    let head = head.replace(
+        "\njoints:",
+        "\nthrows: [{name: front}, {name: rear}]\njoints:",
+    );
+    let sensors = "
+sensors:
+  - {measure: crosshead_acceleration, throw: front}
+  - {measure: crosshead_acceleration, throw: rear}
+";
+    fs::write(folder.path().join("machine.yaml"), head + sensors).unwrap();
+    let sweep = GRID
+        .replace("big_end", "front.big_end")
+        .replace("small_end", "front.small_end");
+    let text = format!("name: small\nmachine: machine.yaml\nseed: 5{sweep}");
+    fs::write(folder.path().join("small.yaml"), text).unwrap();
+    let dataset = Dataset { folder };
+    dataset.generate(Format::Parquet, Existing::Refuse);
+    assert!(dataset.report(&[]).status.success());
+    let html = dataset.html();
+    assert!(html.contains("Figures show the channel front.crosshead_acceleration_m_s2"));
+    assert!(html.contains("<h3>Clearance in front.big end</h3>"));
+    assert!(html.contains("No sensor reads the crank angle"));
 }
 
 #[test]
