@@ -52,15 +52,18 @@ fn of_table(dataset: &Dataset, table: &str) -> Result<Vec<Column>, Failure> {
         .collect())
 }
 
-/// The columns with every run of `order_01`, `order_02`, … as one.
+/// The columns with every run of names that differ in digits alone (`order_01`, `order_02`, …) as
+/// one.
 fn numbered(columns: Vec<Column>) -> Vec<Column> {
     let mut kept: Vec<Column> = Vec::new();
     let mut last = String::new();
     for column in columns {
         let pattern: String = column.name.replace(|c: char| c.is_ascii_digit(), "#");
-        let is_order = pattern.contains("order_##");
         match kept.last_mut() {
-            Some(before) if is_order && pattern == last => {
+            Some(before) if pattern == last => {
+                if !before.name.contains(" … ") {
+                    before.meaning += "; and so on";
+                }
                 let first = before.name.split(" … ").next().unwrap_or_default();
                 before.name = format!("{first} … {}", column.name);
             }
@@ -69,4 +72,31 @@ fn numbered(columns: Vec<Column>) -> Vec<Column> {
         last = pattern;
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbered_columns_are_one_line() {
+        let column = |name: &str| Column {
+            table: "features".to_owned(),
+            name: name.to_owned(),
+            kind: String::new(),
+            unit: String::new(),
+            meaning: format!("that is {name}"),
+        };
+        let names = [
+            "x.rms_m_s2",
+            "x.order_01_m_s2",
+            "x.order_02_m_s2",
+            "x.order_03_m_s2",
+        ];
+        let lines = numbered(names.map(column).into());
+        assert_eq!(lines.len(), 2);
+        assert_eq!(lines[0].meaning, "that is x.rms_m_s2");
+        assert_eq!(lines[1].name, "x.order_01_m_s2 … x.order_03_m_s2");
+        assert_eq!(lines[1].meaning, "that is x.order_01_m_s2; and so on");
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::labels::{self, Label};
 use crate::Failure;
+use ::report::text;
 use recordings::Manifest;
 use recordings::formats::parquet::ParquetFile;
 use std::path::{Path, PathBuf};
@@ -9,6 +10,9 @@ use sweep::Plan;
 
 /// The channel that the page shows.
 const ACCELERATION: &str = "crosshead_acceleration";
+
+/// The channel of the crank angle.
+pub(super) const CRANK_ANGLE: &str = "crank_angle_rad";
 
 /// A whole dataset.
 pub(super) struct Dataset {
@@ -94,6 +98,12 @@ impl Dataset {
         self.acceleration.is_some() && !self.files("signals").is_empty()
     }
 
+    /// Whether a sensor reads the crank angle.
+    pub(super) fn has_crank_angle(&self) -> bool {
+        let channels = self.plan.channels();
+        channels.iter().any(|(name, _)| name == CRANK_ANGLE)
+    }
+
     /// Why the page shows no recording; empty where it does.
     pub(super) fn why_no_recordings(&self) -> String {
         if self.has_signals() {
@@ -131,14 +141,22 @@ impl Dataset {
 
     /// What the dataset is, in a sentence or two.
     pub(super) fn about(&self) -> String {
-        let machine = &self.plan.base.name;
+        let (machine, counts) = (&self.plan.base.name, &self.manifest.counts);
+        let failed = match counts.failed {
+            0 => String::new(),
+            n => format!(" ({n} failed)"),
+        };
         let mut about = format!(
-            "Simulated recordings of the {machine}, labelled with the clearance of its joints: {}, {} of the crank each.",
-            ::report::text::counted(self.manifest.counts.cases as usize, "case"),
-            ::report::text::counted(self.plan.settings.revolutions as usize, "revolution"),
+            "Simulated recordings of the {machine}, labelled with the clearance of its joints: {}{failed}, {} of the crank \
+             each.",
+            text::counted(counts.cases as usize, "case"),
+            text::counted(self.plan.settings.revolutions as usize, "revolution"),
         );
         if let (Some(channel), true) = (&self.acceleration, self.has_signals()) {
             about += &format!(" Figures show the channel {channel}_m_s2, as the sensor reads it.");
+            if !self.has_crank_angle() {
+                about += " No sensor reads the crank angle: it is counted from the start of each window.";
+            }
         } else {
             about += &format!(" {}", self.why_no_recordings());
         }

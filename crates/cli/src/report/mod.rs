@@ -50,7 +50,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .unwrap_or_else(|| arguments.dir.join("report.html"));
     write(&out, &html)?;
     println!("{}", out.display());
-    if let Design::Grid(grid) = &page.design {
+    if let Design::Grid(grid) = &page.design
+        && !grid.levels.is_empty()
+    {
         print!("\n{}", grid.claims_markdown());
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! The recording of one window, and what is analysed in it.
 
-use super::dataset::Dataset;
+use super::dataset::{CRANK_ANGLE, Dataset};
 use super::windows::Windows;
 use crate::Failure;
 use ::report::dataset_page::{Response, Spectrum};
@@ -173,18 +173,13 @@ enum Unreadable {
 
 impl Row {
     fn read(dataset: &Dataset, path: &str, row: usize) -> Result<Self, Unreadable> {
-        const ANGLE: &str = "crank_angle_rad";
         let file = dataset.table(path).map_err(Unreadable::Open)?;
         let prefix = dataset.acceleration.as_deref().unwrap_or_default();
         let acceleration = format!("{prefix}_m_s2");
         let mut names = vec!["case_id", "speed_rpm", "sample_rate_hz", &acceleration];
-        let has_angle = dataset
-            .plan
-            .channels()
-            .iter()
-            .any(|(name, _)| name == ANGLE);
+        let has_angle = dataset.has_crank_angle();
         if has_angle {
-            names.push(ANGLE);
+            names.push(CRANK_ANGLE);
         }
         let table = file.read(&names, row..row + 1).map_err(Unreadable::Read)?;
         let real = |name: &str| {
@@ -206,7 +201,7 @@ impl Row {
             speed_rpm: real("speed_rpm")?,
             sample_rate_hz: real("sample_rate_hz")?,
             acceleration: samples(&acceleration)?,
-            crank_angle: has_angle.then(|| samples(ANGLE)).transpose()?,
+            crank_angle: has_angle.then(|| samples(CRANK_ANGLE)).transpose()?,
         })
     }
 }

@@ -136,7 +136,7 @@ impl Ruler {
             match axis.scale {
                 Scale::Degrees => ruler.steps(degree_step((high - low) / count)),
                 Scale::Log if high >= 5.0 * low => ruler.powers(count),
-                Scale::Linear | Scale::Log => ruler.steps(round_step((high - low) / count)),
+                Scale::Linear | Scale::Log => ruler.steps(linear_step(high - low, count)),
             }
         }
         ruler
@@ -214,10 +214,21 @@ impl Ruler {
     }
 }
 
-/// The least of 1, 2, 2.5, 5 times a power of ten that is at least `least`.
+/// A round step that cuts the range into at most `count` parts, or into a few more where that is
+/// too rough: 250 in place of 500, but not 2.5 in place of 5, which would be odd for counts.
+fn linear_step(range: f64, count: f64) -> f64 {
+    let step = round_step(range / count);
+    let is_five = round_step(0.4 * step) < 0.5 * step;
+    if is_five && step > 10.0 && range < 3.0 * step {
+        return 0.5 * step;
+    }
+    step
+}
+
+/// The least of 1, 2, 5 times a power of ten that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
-    [1.0, 2.0, 2.5, 5.0]
+    [1.0, 2.0, 5.0]
         .into_iter()
         .map(|m| m * power)
         .find(|step| *step >= least * (1.0 - 1e-9))
@@ -273,6 +284,15 @@ mod tests {
             labels(&Axis::log("y"), (2e-4, 2e3), 200.0, 25.0),
             ["10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²", "10³"]
         );
+    }
+
+    #[test]
+    fn steps_of_five_are_halved_where_few_fit() {
+        assert_eq!(linear_step(1200.0, 4.0), 250.0);
+        assert_eq!(linear_step(1600.0, 4.0), 500.0);
+        assert_eq!(linear_step(700.0, 4.0), 200.0);
+        assert_eq!(linear_step(9.0, 4.0), 5.0);
+        assert_eq!(linear_step(120.0, 7.0), 20.0);
     }
 
     #[test]

@@ -1,0 +1,395 @@
+//! `crosshead report` on small datasets that are simulated here.
+
+use report::dataset_page::Design;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::atomic::AtomicBool;
+use sweep::dataset::{Existing, Options, generate};
+use sweep::sweep_file::Format;
+use sweep::{Plan, simulate_case};
+use tempfile::TempDir;
+
+/// Two sets of joints at two clearances, and the ideal machine.
+const GRID: &str = "
+run: {revolutions: 3, transient: 1, tolerance: 1e-7}
+splits: {train: 100 %}
+cases:
+  - grid:
+      joints: [[], [big_end], [big_end, small_end]]
+      clearance: [0.1 mm, 0.3 mm]
+      speed: [500 rpm]
+";
+
+/// Eight cases, two windows each.
+const RANDOM: &str = "
+run: {revolutions: 4, transient: 1, tolerance: 1e-7}
+windows: {count: 2, revolutions: 2}
+splits: {train: 50 %, test: 50 %}
+cases:
+  - random:
+      count: 8
+      axes:
+        joints: [[], [big_end]]
+        clearance: {uniform: [0.1 mm, 0.3 mm]}
+        speed: {uniform: [450 rpm, 550 rpm]}
+vary:
+  crosshead.mass: {lognormal: {factor: 1.02}}
+";
+
+/// A dataset in a folder that goes with it.
+struct Dataset {
+    folder: TempDir,
+}
+
+impl Dataset {
+    fn of(sweep: &str, format: Format) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let machine = single_stage();
+        let text = format!(
+            "name: small\nmachine: {}\nseed: 5{sweep}",
+            machine.display()
+        );
+        fs::write(folder.path().join("small.yaml"), text).unwrap();
+        let dataset = Self { folder };
+        dataset.generate(format, Existing::Refuse);
+        dataset
+    }
+
+    /// Simulates the sweep of the folder.
+    fn generate(&self, format: Format, existing: Existing) {
+        let plan = Plan::read(&self.folder.path().join("small.yaml")).unwrap();
+        let options = Options {
+            existing,
+            threads: 2,
+            cancel: &AtomicBool::new(false),
+        };
+        let plan = plan.with_format(format);
+        generate(&plan, &self.path(), &options, &simulate_case, &mut ()).unwrap();
+    }
+
+    fn path(&self) -> PathBuf {
+        self.folder.path().join("dataset")
+    }
+
+    fn report(&self, more: &[&str]) -> Output {
+        report(&self.path(), more)
+    }
+
+    fn html(&self) -> String {
+        fs::read_to_string(self.path().join("report.html")).unwrap()
+    }
+
+    /// Status and message of the verb, the folder of the test being `T`.
+    fn refusal(&self, more: &[&str]) -> (i32, String) {
+        refusal(self.folder.path(), &self.report(more))
+    }
+}
+
+fn single_stage() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml")
+}
+
+fn report(folder: &Path, more: &[&str]) -> Output {
+    let verb = Command::new(env!("CARGO_BIN_EXE_crosshead"))
+        .arg("report")
+        .arg(folder)
+        .args(more)
+        .output();
+    verb.unwrap()
+}
+
+fn refusal(root: &Path, output: &Output) -> (i32, String) {
+    let message = String::from_utf8(output.stderr.clone()).unwrap();
+    assert!(output.stdout.is_empty());
+    (
+        output.status.code().unwrap(),
+        message
+            .replace(root.to_str().unwrap(), "T")
+            .trim()
+            .to_owned(),
+    )
+}
+
+fn stands_alone(html: &str) {
+    assert!(html.len() < 5_000_000, "{} bytes", html.len());
+    let places = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    for outside in [
+        "http:", "https:", "src=", "url(", "<script", "<link", "<img",
+    ] {
+        assert!(!places.contains(outside), "{outside}");
+    }
+}
+
+#[test]
+fn a_grid_is_compared_and_its_claims_are_printed() {
+    let dataset = Dataset::of(GRID, Format::Parquet);
+    let output = dataset.report(&[]);
+    assert!(output.status.success());
+    let html = dataset.html();
+    stands_alone(&html);
+    // An example of each of three classes; by clearance for two sets, across sets, two portraits.
+    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 + 1 + 2);
+    for said in [
+        "<h3>Healthy</h3>",
+        "<h3>Clearance in big end + small end</h3>",
+        "<h3>Sets of joints at 0.3\u{a0}mm</h3>",
+        "500\u{a0}rpm, discharge pressure 393\u{a0}kPa",
+        "case-000000 in signals/train-00000-of-00001.parquet",
+        "3\u{a0}revolutions, 3600\u{a0}samples",
+    ] {
+        assert!(html.contains(said), "{said}");
+    }
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = printed.lines().collect();
+    assert!(lines[0].ends_with("report.html"));
+    // The table of the five cases, then that of the five claims.
+    assert_eq!(lines.len(), 1 + 1 + (2 + 5) + 1 + (2 + 5));
+    assert!(
+        lines[6].starts_with("| big end | 0.3 mm | "),
+        "{}",
+        lines[6]
+    );
+    assert!(lines[12].starts_with("| The larger the clearance, the higher the amplitude | holds"));
+}
+
+/// The levels of the page are those of the samples themselves.
+#[test]
+fn levels_are_those_of_the_recordings() {
+    let dataset = Dataset::of(GRID, Format::Parquet);
+    let page = cli::report::page(&dataset.path()).unwrap();
+    let Design::Grid(grid) = &page.design else {
+        panic!("a grid")
+    };
+    assert_eq!(grid.levels.len(), 5);
+    let ideal = grid.ideal.as_ref().unwrap();
+    let responses = grid.joint_sets.iter().flat_map(|set| &set.responses);
+    let responses = std::iter::once(ideal).chain(responses.map(|(_, response)| response));
+    for (level, response) in grid.levels.iter().zip(responses) {
+        let samples = &response.acceleration_m_s2;
+        let count = samples.len() as f64;
+        let rms = (samples.iter().map(|a| a * a).sum::<f64>() / count).sqrt();
+        let peak = samples.iter().fold(0.0_f64, |peak, a| peak.max(a.abs()));
+        assert!((level.rms_m_s2 / rms - 1.0).abs() < 1e-9);
+        assert!((level.peak_m_s2 / peak - 1.0).abs() < 1e-9);
+        assert!(level.high_rms_m_s2 < level.rms_m_s2 && level.high_share < 0.5);
+    }
+    // v = −r ω (sin θ + λ/2 sin 2θ) of the ideal machine, but for terms in λ³ = 1/125.
+    let speed = 500.0 * std::f64::consts::PI / 30.0;
+    for (angle, velocity) in ideal.crank_angle_rad.iter().zip(&ideal.velocity_m_s) {
+        let nominal = -0.12 * speed * (angle.sin() + 0.1 * (2.0 * angle).sin());
+        assert!(
+            (velocity - nominal).abs() < 0.05,
+            "{angle}: {velocity}, {nominal}"
+        );
+    }
+}
+
+#[test]
+fn random_cases_have_distributions() {
+    let dataset = Dataset::of(RANDOM, Format::Parquet);
+    let out = dataset.folder.path().join("page.html");
+    let output = dataset.report(&["--out", out.to_str().unwrap()]);
+    assert_eq!(
+        String::from_utf8(output.stdout).unwrap(),
+        format!("{}\n", out.display())
+    );
+    assert!(!dataset.path().join("report.html").exists());
+    let html = fs::read_to_string(out).unwrap();
+    stands_alone(&html);
+    for said in [
+        "clearance of big end (mm)",
+        "crosshead mass (kg)",
+        "<h3>Kurtosis against largest clearance</h3>",
+        "against largest clearance for 16\u{a0}windows",
+        "No clearance, ",
+    ] {
+        assert!(html.contains(said), "{said}");
+    }
+    // Two examples, the histograms, four scatters.
+    assert_eq!(html.matches("<figcaption>").count(), 2 + 1 + 4);
+    let page = cli::report::page(&dataset.path()).unwrap();
+    let counts = page
+        .faults
+        .iter()
+        .map(|count| (count.fault.as_str(), count.windows));
+    assert_eq!(counts.collect::<Vec<_>>(), [("none", 8), ("big_end", 8)]);
+}
+
+#[test]
+fn a_dataset_of_mcap_files_has_a_page_without_recordings() {
+    let dataset = Dataset::of(GRID, Format::Mcap);
+    assert!(dataset.report(&[]).status.success());
+    let html = dataset.html();
+    assert!(html.contains("The recordings of this dataset are MCAP files"));
+    assert!(html.contains("The larger the clearance, the higher the amplitude"));
+    assert_eq!(html.matches("<figcaption>").count(), 0);
+}
+
+#[test]
+fn the_page_is_the_same_each_time_and_takes_the_place_of_the_last() {
+    let dataset = Dataset::of(RANDOM, Format::Parquet);
+    fs::write(dataset.path().join("report.html"), "the last").unwrap();
+    assert!(dataset.report(&[]).status.success());
+    let first = dataset.html();
+    assert!(dataset.report(&[]).status.success());
+    assert_eq!(dataset.html(), first);
+    assert!(!dataset.path().join("report.part").exists());
+}
+
+/// A page of cases that are no longer there would mislead.
+#[test]
+fn a_dataset_that_replaces_another_takes_its_page_away() {
+    let dataset = Dataset::of(GRID, Format::Parquet);
+    assert!(dataset.report(&[]).status.success());
+    dataset.generate(Format::Parquet, Existing::Overwrite);
+    assert!(!dataset.path().join("report.html").exists());
+}
+
+/// The page shows the first throw's crosshead and says so.
+#[test]
+fn of_several_throws_the_first_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = fs::read_to_string(single_stage()).unwrap();
+    let (head, _) = machine.split_once("\nsensors:").unwrap();
+    let head = head.replace(
+        "\njoints:",
+        "\nthrows: [{name: front}, {name: rear}]\njoints:",
+    );
+    let sensors = "
+sensors:
+  - {measure: crosshead_acceleration, throw: front}
+  - {measure: crosshead_acceleration, throw: rear}
+";
+    fs::write(folder.path().join("machine.yaml"), head + sensors).unwrap();
+    let sweep = GRID
+        .replace("big_end", "front.big_end")
+        .replace("small_end", "front.small_end");
+    let text = format!("name: small\nmachine: machine.yaml\nseed: 5{sweep}");
+    fs::write(folder.path().join("small.yaml"), text).unwrap();
+    let dataset = Dataset { folder };
+    dataset.generate(Format::Parquet, Existing::Refuse);
+    assert!(dataset.report(&[]).status.success());
+    let html = dataset.html();
+    assert!(html.contains("Figures show the channel front.crosshead_acceleration_m_s2"));
+    assert!(html.contains("<h3>Clearance in front.big end</h3>"));
+    assert!(html.contains("No sensor reads the crank angle"));
+}
+
+#[test]
+fn what_is_no_dataset_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let said = |folder: &str| refusal(root.path(), &report(&root.path().join(folder), &[]));
+    assert_eq!(said("gone"), (2, "error: T/gone: no such folder".into()));
+    fs::create_dir_all(root.path().join("half/_sweep")).unwrap();
+    assert_eq!(
+        said("half"),
+        (
+            2,
+            "error: T/half: the dataset is not finished (no manifest.json): gen-dataset SWEEP.yaml --out T/half --resume \
+             finishes it"
+                .into()
+        )
+    );
+    fs::create_dir(root.path().join("other")).unwrap();
+    assert_eq!(
+        said("other"),
+        (2, "error: T/other: no dataset (no manifest.json)".into())
+    );
+    fs::write(root.path().join("other/manifest.json"), "{").unwrap();
+    assert_eq!(
+        said("other"),
+        (
+            2,
+            "error: cannot read `T/other/manifest.json` as a manifest: EOF while parsing an object at line 1 column 1"
+                .into()
+        )
+    );
+}
+
+#[test]
+fn a_damaged_dataset_is_refused_and_the_last_page_left() {
+    let dataset = Dataset::of(RANDOM, Format::Parquet);
+    fs::write(dataset.path().join("report.html"), "the last").unwrap();
+    let signals = dataset.path().join("signals/train-00000-of-00001.parquet");
+    let features = dataset.path().join("features/train-00000-of-00001.parquet");
+    let whole = fs::read(&features).unwrap();
+
+    fs::write(&features, &whole[..whole.len() / 2]).unwrap();
+    let (status, message) = dataset.refusal(&[]);
+    assert_eq!(status, 2);
+    assert_eq!(
+        message,
+        format!(
+            "error: T/dataset/features/train-00000-of-00001.parquet: {} bytes where the manifest has {}: the file is damaged",
+            whole.len() / 2,
+            whole.len()
+        )
+    );
+
+    fs::write(&features, vec![0; whole.len()]).unwrap();
+    let (status, message) = dataset.refusal(&[]);
+    assert_eq!(status, 2);
+    assert!(
+        message.starts_with(
+            "error: cannot read `T/dataset/features/train-00000-of-00001.parquet` as Parquet: "
+        ),
+        "{message}"
+    );
+
+    fs::remove_file(&features).unwrap();
+    let (status, message) = dataset.refusal(&[]);
+    assert_eq!(status, 2);
+    assert!(
+        message.starts_with("error: cannot open `T/dataset/features/train-00000-of-00001.parquet`"),
+        "{message}"
+    );
+
+    fs::write(&features, &whole).unwrap();
+    fs::remove_file(&signals).unwrap();
+    let (status, message) = dataset.refusal(&[]);
+    assert_eq!(status, 2);
+    assert!(
+        message.contains("signals/train-00000-of-00001.parquet"),
+        "{message}"
+    );
+
+    fs::remove_file(dataset.path().join("sweep.yaml")).unwrap();
+    let (status, message) = dataset.refusal(&[]);
+    assert_eq!(status, 2);
+    assert!(message.contains("T/dataset/sweep.yaml"), "{message}");
+    assert_eq!(dataset.html(), "the last");
+}
+
+/// The table of another sweep, with the manifest to match, lacks a column that this one has.
+#[test]
+fn a_missing_column_is_named() {
+    let (random, grid) = (
+        Dataset::of(RANDOM, Format::Parquet),
+        Dataset::of(GRID, Format::Parquet),
+    );
+    for file in ["manifest.json", "features/train-00000-of-00001.parquet"] {
+        fs::copy(grid.path().join(file), random.path().join(file)).unwrap();
+    }
+    assert_eq!(
+        random.refusal(&[]),
+        (
+            2,
+            "error: T/dataset/features/train-00000-of-00001.parquet: no column `crosshead.mass_kg`, which every dataset of \
+             this sweep has"
+                .into()
+        )
+    );
+}
+
+#[test]
+fn a_page_that_cannot_be_written_is_failed_work() {
+    let dataset = Dataset::of(RANDOM, Format::Parquet);
+    let out = dataset.folder.path().join("gone/page.html");
+    let (status, message) = dataset.refusal(&["--out", out.to_str().unwrap()]);
+    assert_eq!(status, 1);
+    assert!(
+        message.starts_with("error: cannot create `T/gone/page.part`"),
+        "{message}"
+    );
+}
