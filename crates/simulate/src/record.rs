@@ -82,20 +82,20 @@ pub fn simulate(
         .clamp(LEAST_FACTOR, MOST_FACTOR)
         .ceil();
     let inner_rate = settings.sample_rate * factor;
-    let mut chains = Chains::new(machine, sensors, inner_rate, factor as usize)?;
-
     let length = run.revolution * f64::from(settings.revolutions);
     // A sample that falls on the end of the last revolution belongs to the next.
     let samples = (length * settings.sample_rate - 1e-9).ceil().max(1.0) as usize;
-    let mut trace = traced.then(|| Trace::new(machine, factor as usize));
+    let factor = factor as usize;
+    let trace = traced.then(|| Trace::new(machine, factor));
+    let mut recorder = Recorder::new(machine, sensors, inner_rate, factor, samples, trace)?;
     let before = run.ledger();
-    run.sample(start, inner_rate, samples, &mut chains, trace.as_mut())?;
+    run.sample(start, inner_rate, &mut recorder)?;
     let energy_residual = run.residual(&before);
     Ok(Record {
         sample_rate: settings.sample_rate,
         start,
-        series: chains.decimated(samples),
-        trace,
+        trace: recorder.trace.take(),
+        series: recorder.decimated(),
         transient,
         settled,
         energy_residual,
@@ -176,52 +176,33 @@ impl Run {
         Err(Error::NotFinite { time: end })
     }
 
-    /// Samples the sensors at `rate` from before `start` to after the last of `samples` recorded
-    /// samples.
-    fn sample(
-        &mut self,
-        start: f64,
-        rate: f64,
-        samples: usize,
-        chains: &mut Chains<'_>,
-        mut trace: Option<&mut Trace>,
-    ) -> Result<(), Error> {
-        let total = chains.decimator.input_length(samples);
-        let lead = chains.decimator.half_length();
-        let mut next = 0;
-        // The decimator looks a little to either side of the record. Where the machine had not
-        // started yet, the first value holds.
+    /// Shows the recorder all the instants it needs, at `rate` from a little before `start` to a
+    /// little after the last recorded sample.
+    fn sample(&mut self, start: f64, rate: f64, recorder: &mut Recorder<'_>) -> Result<(), Error> {
+        let total = recorder.decimator.input_length(recorder.samples);
+        let lead = recorder.decimator.half_length();
         let time = |i: usize| start + (i as f64 - lead as f64) / rate;
+        // Where the machine had not started yet, the first value holds.
         let now = self.integrator.time();
         let first = self.dynamics.evaluate(now, self.integrator.state());
-        while next < total && time(next) <= now {
-            chains.push(first);
-            next += 1;
+        while recorder.seen < total && time(recorder.seen) <= now {
+            recorder.push(first);
         }
         let end = time(total.saturating_sub(1));
         let state = &mut self.state;
-        let recorded = lead..lead + samples * chains.factor;
         let observe = |dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
             let stop = step.start + step.length;
-            while next < total && time(next) <= stop {
-                let t = time(next);
+            while recorder.seen < total && time(recorder.seen) <= stop {
+                let t = time(recorder.seen);
                 step.interpolate((t - step.start) / step.length, state);
-                let at = dynamics.evaluate(t, state);
-                chains.push(at);
-                if let Some(trace) = trace.as_deref_mut()
-                    && recorded.contains(&next)
-                {
-                    trace.push(at);
-                }
-                next += 1;
+                recorder.push(dynamics.evaluate(t, state));
             }
         };
         self.integrator.advance(&mut self.dynamics, end, observe)?;
         // Rounding may leave the very last instant beyond the last step.
-        while next < total {
-            let at = self.dynamics.evaluate(end, self.integrator.state());
-            chains.push(at);
-            next += 1;
+        let last = self.dynamics.evaluate(end, self.integrator.state());
+        while recorder.seen < total {
+            recorder.push(last);
         }
         if self.integrator.state().iter().all(|y| y.is_finite()) {
             return Ok(());
@@ -253,22 +234,27 @@ impl Run {
     }
 }
 
-/// The measuring chains up to the recorder: filters at the inner rate, then decimation.
-struct Chains<'a> {
+/// The measuring chains: filters at the inner rate, then decimation; and the trace beside them.
+struct Recorder<'a> {
     sensors: &'a [Sensor],
     filters: Vec<Vec<Filter>>,
     inner: Vec<Vec<f64>>,
     decimator: Decimator,
     factor: usize,
-    started: bool,
+    samples: usize,
+    trace: Option<Trace>,
+    /// Instants shown so far.
+    seen: usize,
 }
 
-impl<'a> Chains<'a> {
+impl<'a> Recorder<'a> {
     fn new(
         machine: &Machine,
         sensors: &'a [Sensor],
         rate: f64,
         factor: usize,
+        samples: usize,
+        trace: Option<Trace>,
     ) -> Result<Self, Error> {
         let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
         let filters = sensors
@@ -290,29 +276,34 @@ impl<'a> Chains<'a> {
             inner: vec![Vec::new(); sensors.len()],
             decimator,
             factor,
-            started: false,
+            samples,
+            trace,
+            seen: 0,
         })
     }
 
     fn push(&mut self, at: &Evaluation<f64>) {
-        for ((sensor, filters), inner) in self
-            .sensors
-            .iter()
-            .zip(&mut self.filters)
-            .zip(&mut self.inner)
-        {
+        let chains = self.filters.iter_mut().zip(&mut self.inner);
+        for (sensor, (filters, inner)) in self.sensors.iter().zip(chains) {
             let value = sensor.measured.value(at) * sensor.chain.gain;
-            if !self.started {
+            if self.seen == 0 {
                 for filter in filters.iter_mut() {
                     filter.settle(value);
                 }
             }
             inner.push(filters.iter_mut().fold(value, |x, filter| filter.run(x)));
         }
-        self.started = true;
+        let lead = self.decimator.half_length();
+        let recorded = lead..lead + self.samples * self.factor;
+        if let Some(trace) = &mut self.trace
+            && recorded.contains(&self.seen)
+        {
+            trace.push(at);
+        }
+        self.seen += 1;
     }
 
-    fn decimated(self, samples: usize) -> Vec<Vec<f64>> {
+    fn decimated(self) -> Vec<Vec<f64>> {
         let lead = self.decimator.half_length();
         let sensors = self.sensors.iter();
         sensors
@@ -322,7 +313,7 @@ impl<'a> Chains<'a> {
                 Measured::CrankAngle => inner[lead..]
                     .iter()
                     .step_by(self.factor)
-                    .take(samples)
+                    .take(self.samples)
                     .copied()
                     .collect(),
                 _ => self.decimator.apply(&inner),

@@ -60,6 +60,44 @@ fn a_record_has_its_samples_and_the_crank_angle_of_their_times() {
 }
 
 #[test]
+fn a_trace_from_the_very_start_is_the_reference_trajectory() {
+    let machine = machine("0.2 mm");
+    let settings = Settings {
+        transient: Transient::Revolutions(0),
+        revolutions: 2,
+        tolerance: 1e-12,
+        ..Settings::default()
+    };
+    let trace = record(&machine, &settings).trace.unwrap();
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/reference/trajectories/both_02mm.csv"
+    );
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = names.iter().position(|n| *n == "as").unwrap();
+    // One row every 0.4 ms, at 80 kHz every 32nd entry; the last row is the end of the record.
+    let expected = lines.map(|line| line.split(',').nth(column).unwrap().parse::<f64>().unwrap());
+    let ours = trace.throws[0]
+        .acceleration
+        .iter()
+        .step_by(4 * trace.stride);
+    let mut rows = 0;
+    for (i, (ours, expected)) in ours.zip(expected).enumerate() {
+        // At the dead centres, every 150 rows, the gas may be on either side of its change.
+        if i % 150 != 0 {
+            assert!(
+                (ours - expected).abs() < 1e-6 * 1e3,
+                "row {i}: {ours} {expected}"
+            );
+            rows += 1;
+        }
+    }
+    assert!(rows > 590, "{rows}");
+}
+
+#[test]
 fn the_ledger_closes_to_a_ten_millionth() {
     for clearance in ["0.1 mm", "0.3 mm"] {
         let record = record(&machine(clearance), &settings());
