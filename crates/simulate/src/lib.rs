@@ -5,12 +5,14 @@
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
 
+pub mod lyapunov;
 pub mod measure;
 pub mod record;
 pub mod sensor;
 pub mod settings;
 pub mod trace;
 
+pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
 pub use measure::measure;
 pub use record::{Error, Record, simulate};
 pub use sensor::{

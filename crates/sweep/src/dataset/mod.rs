@@ -17,6 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use recordings::Manifest;
 use signal::channel::Channel;
+use simulate::Exponent;
 
 use crate::in_order::in_order;
 use crate::plan::MOST_CASES;
@@ -31,6 +32,8 @@ pub struct Recording {
     pub sample_rate_hz: f64,
     /// The channels, named as [`Plan::channels`] has them, from the first recorded revolution on.
     pub channels: Vec<Channel>,
+    /// The largest Lyapunov exponent from the equations, where the case asks for it and has one.
+    pub exponent: Option<Exponent>,
 }
 
 /// Why a case failed; its text goes into the manifest.

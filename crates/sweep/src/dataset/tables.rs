@@ -49,6 +49,19 @@ impl Tables {
     }
 }
 
+/// The columns of the exponent from the equations, where the sweep asks for it.
+const EXPONENT: [(&str, &str); 2] = [
+    (
+        "lyapunov_true_per_s",
+        "largest Lyapunov exponent of the case, from the equations of motion; none where nothing \
+         moves freely",
+    ),
+    (
+        "lyapunov_true_standard_error_per_s",
+        "standard error of lyapunov_true_per_s, from batches of revolutions",
+    ),
+];
+
 /// What both tables say about a case before they part: names, labels, operating point, parameters.
 fn about(plan: &Plan) -> Vec<Column> {
     let text = |name: &str, meaning: &str| Column::new(name, Kind::Text, meaning);
@@ -101,6 +114,13 @@ fn about(plan: &Plan) -> Vec<Column> {
             _ => column,
         }
     }));
+    if plan.exponent.is_some() {
+        columns.extend(EXPONENT.map(|(name, meaning)| {
+            Column::new(name, Kind::Real, meaning)
+                .unit("1/s")
+                .optional()
+        }));
+    }
     columns
 }
 
@@ -136,6 +156,11 @@ fn about_row(plan: &Plan, case: &Case, window: usize) -> Vec<Value> {
     let pressures = case.operating_point.pressures_pa.iter().flatten();
     row.extend(pressures.map(|&p| Value::from(p)));
     row.extend(plan.parameters.iter().map(|p| parameter(p, case)));
+    if plan.exponent.is_some() {
+        let exponent = case.lyapunov_true.as_ref();
+        row.push(exponent.map(|e| e.per_second).into());
+        row.push(exponent.map(|e| e.standard_error).into());
+    }
     row
 }
 

@@ -4,7 +4,7 @@ use input::Resolved;
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use simulate::Settings;
+use simulate::{Exponent, ExponentSettings, Settings};
 
 use crate::labels::Labels;
 use crate::split::Split;
@@ -25,6 +25,10 @@ pub struct Case {
     pub resolved: Resolved,
     /// How it is run.
     pub settings: Settings,
+    /// How its Lyapunov exponent is computed, where the sweep asks for it.
+    pub exponent: Option<ExponentSettings>,
+    /// That exponent, once the case has been simulated; none where nothing moves freely.
+    pub lyapunov_true: Option<Exponent>,
     /// How the recording is cut; one window, all of it, where there is none.
     pub windows: Option<Windows>,
     /// Which joints are faulty.

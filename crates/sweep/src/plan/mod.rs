@@ -23,7 +23,7 @@ use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use simulate::{Settings, Transient};
+use simulate::{ExponentSettings, Settings, Transient};
 
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
@@ -50,6 +50,8 @@ pub struct Plan {
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
+    /// How the Lyapunov exponent of each case is computed, where it is asked for.
+    pub exponent: Option<ExponentSettings>,
     /// How recordings are cut.
     pub windows: Option<Windows>,
     /// Shares of train, validation and test.
@@ -138,6 +140,7 @@ impl Plan {
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
+            exponent: exponent(&file.run)?,
             windows: file.windows,
             shares: shares(file)?,
             format: file.format,
@@ -255,6 +258,8 @@ impl Plan {
             id: self.case_id(index),
             repeat,
             settings: self.settings,
+            exponent: self.exponent,
+            lyapunov_true: None,
             windows: self.windows,
             labels: labels(&self.joints, &resolved),
             operating_point: OperatingPoint::of(&resolved),
@@ -430,6 +435,18 @@ fn settings(run: &Run) -> Result<Settings, Error> {
             .map_or(default.sample_rate, |rate| rate.si()),
         tolerance,
     })
+}
+
+fn exponent(run: &Run) -> Result<Option<ExponentSettings>, Error> {
+    let Some(asked) = run.lyapunov else {
+        return Ok(None);
+    };
+    let default = ExponentSettings::default();
+    Ok(Some(ExponentSettings {
+        transient: asked.transient.map_or(default.transient, |n| n.get()),
+        revolutions: asked.revolutions.get(),
+        tolerance: settings(run)?.tolerance,
+    }))
 }
 
 fn shares(file: &SweepFile) -> Result<[f64; 3], Error> {

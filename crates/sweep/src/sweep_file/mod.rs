@@ -86,6 +86,22 @@ pub struct Run {
     /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
+    /// The largest Lyapunov exponent of each case, from the equations of motion: column
+    /// `lyapunov_true_per_s`. Not computed where this is left out; it takes about twice as long per
+    /// revolution as the recording.
+    #[serde(default)]
+    pub lyapunov: Option<Lyapunov>,
+}
+
+/// How the exponent of each case is computed.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lyapunov {
+    /// Revolutions that are averaged over; a chaotic motion needs some hundred.
+    pub revolutions: Count<20, 1_000_000>,
+    /// Revolutions before; 50 where it is left out.
+    #[serde(default)]
+    pub transient: Option<Count<0, 1_000_000>>,
 }
 
 /// A transient that ends when the motion repeats itself.
