@@ -1,0 +1,46 @@
+//! The exponent from the equations as a column of a real dataset.
+
+use input::yaml::Document;
+use recordings::formats::parquet::read_table;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use sweep::{Existing, Options, Plan, generate, simulate_case};
+
+const SWEEP: &str = "
+name: exponents
+machine: MACHINE
+run: {revolutions: 1, transient: 1, tolerance: 1e-7, lyapunov: {revolutions: 20, transient: 10}}
+splits: {train: 100 %}
+cases:
+  - grid: {joints: [[], [big_end, small_end]], clearance: [0.1 mm]}
+";
+
+#[test]
+fn a_sweep_that_asks_for_exponents_has_them() {
+    let machine = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/machines/single-stage.yaml"
+    );
+    let text = SWEEP.replace("MACHINE", machine);
+    let document = Document::parse(&text, "sweep.yaml").unwrap();
+    let plan = Plan::new(&document, Path::new("")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let options = Options {
+        existing: Existing::Refuse,
+        threads: 2,
+        cancel: &AtomicBool::new(false),
+    };
+    generate(&plan, folder.path(), &options, &simulate_case, &mut ()).unwrap();
+    for name in ["signals", "features"] {
+        let path = folder
+            .path()
+            .join(format!("{name}/train-00000-of-00001.parquet"));
+        let table = read_table(&path).unwrap();
+        let exponents: &[Option<f64>] = table.values("lyapunov_true_per_s").unwrap();
+        // The ideal machine cannot be perturbed; both ends at 0.1 mm contract by 7.234 a
+        // revolution of 0.12 s (the independent reference).
+        assert_eq!(exponents[0], None);
+        let worn = exponents[1].unwrap();
+        assert!((worn * 0.12 / -7.2342 - 1.0).abs() < 1e-3, "{worn}");
+    }
+}
