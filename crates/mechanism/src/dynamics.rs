@@ -23,6 +23,8 @@ pub struct Dynamics<S> {
     mode: Mode<S>,
     scales: Vec<S>,
     evaluation: Evaluation<S>,
+    /// Room for the throws' eliminated joints, so that an evaluation allocates nothing.
+    responses: Vec<Response<S>>,
 }
 
 /// Everything that one evaluation of the equations of motion finds.
@@ -100,6 +102,7 @@ impl<S: Scalar> Dynamics<S> {
             layout,
             mode,
             evaluation,
+            responses: Vec::with_capacity(throws),
         };
         dynamics.start();
         dynamics
@@ -290,7 +293,7 @@ impl<S: Scalar> Dynamics<S> {
         // With a given speed and an ideal main bearing the crank pins' accelerations are known.
         let moving = torque.is_some() || self.machine.main.clear().is_some();
         let evaluation = &mut self.evaluation;
-        let mut responses: Vec<Response<S>> = Vec::with_capacity(self.machine.throws.len());
+        self.responses.clear();
         for ((throw, at), mode) in self
             .machine
             .throws
@@ -310,7 +313,7 @@ impl<S: Scalar> Dynamics<S> {
                     throw.local(at.loads.pin_bias),
                 );
             }
-            responses.push(response);
+            self.responses.push(response);
         }
         evaluation.shaft = shaft.solve(
             &self.machine.main,
@@ -324,7 +327,7 @@ impl<S: Scalar> Dynamics<S> {
             .throws
             .iter()
             .zip(&mut evaluation.throws)
-            .zip(&responses)
+            .zip(&self.responses)
         {
             let mut pin = at.loads.pin_bias;
             if moving {
