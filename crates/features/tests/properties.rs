@@ -65,7 +65,7 @@ proptest! {
         let values = features(&window(&one, 400.0));
         for ((definition, a), b) in defined(&one).iter().zip(values).zip(features(&window(&scaled, 400.0))) {
             let factor = match definition.unit.as_str() {
-                "1" => 1.0,
+                "1" | "Hz" => 1.0,
                 "m/s^2" | "m/s" => scale,
                 "m^2/s^4" | "m^2/s^3" => scale * scale,
                 unit => panic!("{unit}"),
@@ -95,6 +95,13 @@ proptest! {
         let ((a, definitions), (b, _)) = (row(0), row(start));
         let rms = a[1].clone().unwrap();
         for ((definition, a), b) in definitions.iter().zip(a).zip(b) {
+            // Nothing is left of a motion that repeats itself, and in which band its impacts
+            // stand out most may hang on the ends of the record. Segments of a spectrum see where
+            // they start.
+            let others = ["residual_kurtosis", "envelope", "spectral"];
+            if others.iter().any(|other| definition.name.contains(other)) {
+                continue;
+            }
             let (a, b) = (a.unwrap(), b.unwrap());
             // Sums of all samples agree to rounding. At the ends of the record resampling sees
             // its reflection, which the start of the window moves.

@@ -26,18 +26,18 @@ pub fn real_cepstrum(x: &[f64]) -> Result<Vec<f64>, Error> {
     let mean = x.iter().sum::<f64>() / n as f64;
     let mut work: Vec<f64> = x.iter().map(|x| x - mean).collect();
     let spectrum = fft::forward(&mut work);
-    let largest = spectrum.iter().fold(0.0, |m: f64, c| m.max(c.norm()));
+    let largest = spectrum.iter().fold(0.0, |m: f64, c| m.max(c.norm_sqr()));
     if largest <= 0.0 {
         return Err(Error::NoFluctuation);
     }
-    let logarithm = |magnitude: f64| (magnitude / largest).max(FLOOR).ln();
-    let logarithms = spectrum.iter().map(|c| logarithm(c.norm()).into());
+    let logarithm = |square: f64| 0.5 * (square / largest).max(FLOOR * FLOOR).ln();
+    let logarithms = spectrum.iter().map(|c| logarithm(c.norm_sqr()).into());
     let mut cepstrum = fft::inverse(logarithms.collect(), n);
     cepstrum.truncate(n / 2 + 1);
     for c in &mut cepstrum {
         *c /= n as f64;
     }
-    cepstrum[0] += largest.ln();
+    cepstrum[0] += 0.5 * largest.ln();
     Ok(cepstrum)
 }
 

@@ -47,7 +47,7 @@ pub fn envelope(x: &[f64], sample_rate: f64, band: Band) -> Result<Vec<f64>, Err
     }
     let bins = x.len() as f64 / sample_rate;
     let complex = spectrum.complex_envelope(band.centre * bins, band.width * bins, x.len());
-    Ok(complex.iter().map(|c| c.norm()).collect())
+    Ok(complex.iter().map(|c| c.norm_sqr().sqrt()).collect())
 }
 
 /// The amplitude spectrum of the [`envelope`](envelope()) about its mean, through a Hann window.
@@ -111,10 +111,12 @@ impl Spectrum {
         let mut pointer = Complex64::cis(PI * (first as f64 - centre) / width);
         let turn = Complex64::cis(PI / width);
         let mut envelope = vec![Complex64::ZERO; points];
-        for k in first..end {
+        let mut place = (first + points - origin % points) % points;
+        for (k, c) in self.bins.iter().enumerate().take(end).skip(first) {
             let weight = 0.5 * (1.0 + pointer.re) * sides(k, n) / n as f64;
-            envelope[(k + points - origin % points) % points] += self.bins[k] * weight;
+            envelope[place] += c * weight;
             pointer *= turn;
+            place = if place + 1 == points { 0 } else { place + 1 };
         }
         fft::inverse_complex(&mut envelope);
         envelope
