@@ -8,8 +8,8 @@ use signal::kurtogram::kurtogram;
 use signal::order_spectrum::order_spectrum;
 
 /// Width of the narrowest band in orders of the shaft: the sidebands of the highest order of the
-/// envelope then pass with 0.85 of their amplitude.
-const NARROWEST_ORDERS: f64 = 4.0 * HIGHEST_ENVELOPE_ORDER as f64;
+/// envelope then pass with 0.96 of their amplitude.
+const NARROWEST_ORDERS: f64 = 8.0 * HIGHEST_ENVELOPE_ORDER as f64;
 
 /// The envelope in the most impulsive band.
 pub(crate) struct Envelope {

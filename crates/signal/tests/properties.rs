@@ -165,7 +165,8 @@ proptest! {
         let x = noise(rms);
         prop_assert!(x.iter().sum::<f64>().abs() < 1e-9 * (1.0 + rms) * n as f64);
         for (one, many) in noise(1.0).iter().zip(&x) {
-            prop_assert!((one * rms - many).abs() <= 1e-12 * (1.0 + many.abs() + one.abs() * 10.0));
+            // Up to 300 terms of up to 1e3 cancel in a sample.
+            prop_assert!((one * rms - many).abs() <= 1e-12 * (1.0 + rms) * 1e3);
         }
     }
 

@@ -78,7 +78,7 @@ fn envelope() -> [Line; 3] {
         line(
             "envelope_centre",
             Unit::Of("Hz"),
-            "Centre of the most impulsive frequency band, 20 orders wide or wider",
+            "Centre of the most impulsive frequency band, 40 orders wide or wider",
             "f_c of the largest ⟨|c|⁴⟩/⟨|c|²⟩² − 2 over the bands, c the complex envelope",
             ANTONI,
             Value::Envelope(|e| e.centre()),
