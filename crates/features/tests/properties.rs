@@ -188,6 +188,29 @@ fn features_without_a_value_say_why() {
         reason(ramp.clone(), 300.0, "portrait_scatter"),
         Reason::Signal(signal::Error::TooFewRevolutions { needed: 2, .. })
     ));
+    for name in ["residual_rms", "cepstrum_revolution"] {
+        assert!(matches!(
+            reason(ramp.clone(), 300.0, name),
+            Reason::Signal(signal::Error::TooFewRevolutions { needed: 2, .. })
+        ));
+    }
+    // Less than two samples per 40 orders; too few samples for a kurtogram.
+    assert!(matches!(
+        reason(ramp.clone(), 70.5, "envelope_order_1"),
+        Reason::Signal(signal::Error::OutOfRange { .. })
+    ));
+    assert!(matches!(
+        reason(ramp[..120].to_vec(), 100.0, "envelope_centre"),
+        Reason::Signal(signal::Error::TooFewSamples { needed: 128, .. })
+    ));
+    assert_eq!(reason(vec![2.5; 400], 100.0, "sector_01"), Reason::Constant);
+    let repeating: Vec<f32> = (0..4096)
+        .map(|i| (TAU * f64::from(i % 1024) / 1024.0).sin() as f32)
+        .collect();
+    assert_eq!(
+        reason(repeating, 1024.0, "residual_kurtosis"),
+        signal::Error::NoFluctuation.into()
+    );
     let high = Reason::OrderTooHigh {
         order: 17,
         highest: 16,
