@@ -9,10 +9,11 @@
 //! |---|---|
 //! | all but the crank angle | statistics of the samples |
 //! | accelerations (m/s^2), pressures (Pa) | orders 1 to 20 of the shaft |
-//! | accelerations | frequency bands, velocity-acceleration portrait |
+//! | accelerations | frequency bands, velocity-acceleration portrait, spectral shape, envelope, synchronous residual, crank-angle sectors, cepstrum |
 //!
 //! A new feature is a function where its signal processing lives, and a line in the table.
 
+mod envelope;
 mod reason;
 mod spectral;
 mod statistics;
@@ -20,8 +21,10 @@ mod table;
 
 pub use reason::Reason;
 
+use envelope::Envelope;
 use signal::channel::Channel;
 use signal::phase_portrait::PhasePortrait;
+use signal::synchronous_average::SynchronousAverage;
 use statistics::Statistics;
 use std::cell::LazyCell;
 use table::{Line, Unit, Value};
@@ -86,6 +89,10 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
             let (revolutions, grid) = (held(&revolutions)?, held(&grid)?);
             Ok(PhasePortrait::new(revolutions, grid, window.sample_rate)?)
         });
+        let shape = LazyCell::new(|| spectral::shape(&x, window.sample_rate));
+        let envelope = LazyCell::new(|| Envelope::new(&x, window.sample_rate, held(&grid)?));
+        let synchronous = LazyCell::new(|| Ok(SynchronousAverage::new(held(&revolutions)?)?));
+        let sectors = LazyCell::new(|| spectral::sectors(held(&revolutions)?));
         row.extend(lines.map(|line| match line.value {
             Value::Statistic(value) => value(&statistics),
             // What is left of a constant after filtering is rounding.
@@ -94,6 +101,12 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
             Value::Order(order) => held(&orders)?.of_mean(order),
             Value::OrderRms(order) => held(&orders)?.rms(order),
             Value::Portrait(value) => Ok(value(held(&portrait)?)?),
+            Value::Shape(value) => Ok(value(held(&shape)?)),
+            Value::Envelope(value) => Ok(value(held(&envelope)?)),
+            Value::EnvelopeOrder(order) => Ok(held(&envelope)?.order(order)),
+            Value::Synchronous(value) => Ok(value(held(&synchronous)?)?),
+            Value::Sector(index) => Ok(held(&sectors)?[index]),
+            Value::Cepstrum => spectral::cepstrum_at_revolution(held(&revolutions)?),
         }));
     }
     row
@@ -152,7 +165,7 @@ mod tests {
             ("Kanal 3", "V"),
         ];
         let definitions = definitions(channels);
-        assert_eq!(definitions.len(), 63 + 50 + 10 + 10);
+        assert_eq!(definitions.len(), 90 + 50 + 10 + 10);
         let unit_of = |name: &str| {
             let found = definitions.iter().find(|d| d.name == name);
             found
@@ -178,6 +191,19 @@ mod tests {
             unit_of("throw1.crosshead_acceleration.portrait_area_m2_s3"),
             "m^2/s^3"
         );
+        for (name, unit) in [
+            ("envelope_centre_hz", "Hz"),
+            ("envelope_order_5_m_s2", "m/s^2"),
+            ("spectral_entropy", "1"),
+            ("residual_rms_m_s2", "m/s^2"),
+            ("sector_12_rms_m_s2", "m/s^2"),
+            ("cepstrum_revolution", "1"),
+        ] {
+            assert_eq!(
+                unit_of(&format!("throw1.crosshead_acceleration.{name}")),
+                unit
+            );
+        }
         assert_eq!(unit_of("cylinder_pressure.mean_pa"), "Pa");
         assert_eq!(unit_of("cylinder_pressure.order_20_rms_pa"), "Pa");
         assert_eq!(unit_of("torque.peak_n_m"), "N m");

@@ -1,11 +1,15 @@
-//! What the signals hold at frequencies and at orders of the shaft.
+//! What the signals hold at frequencies, at orders of the shaft and in its revolutions.
 
 use crate::Window;
 use crate::reason::Reason;
 use signal::amplitude_spectrum::band_mean_squares;
 use signal::angle_resampling::{AngleGrid, Revolutions};
+use signal::cepstrum::real_cepstrum;
 use signal::crank_angle::CrankAngle;
+use signal::crank_waterfall::crank_waterfall;
 use signal::order_spectrum::{OrderSpectrum, order_spectrum};
+use signal::spectral_shape::{SpectralShape, spectral_shape};
+use signal::welch::welch;
 use signal::windows;
 
 /// Edges of the frequency bands, Hz: octaves, the first reaching down to 0 and the last up to
@@ -26,6 +30,15 @@ pub(crate) const BAND_EDGES_HZ: [f64; 10] = [
 
 /// Orders 1 to this have a feature each.
 pub(crate) const HIGHEST_ORDER: usize = 20;
+
+/// Orders 1 to this of the envelope have a feature each.
+pub(crate) const HIGHEST_ENVELOPE_ORDER: usize = 5;
+
+/// Sectors of the crank angle, 30° each.
+pub(crate) const SECTORS: usize = 12;
+
+/// Longest segment of the spectrum whose shape is told, in samples.
+const LONGEST_SEGMENT: usize = 2048;
 
 /// Mean squares in the bands. A Hann window keeps the strong low orders from leaking into the
 /// high bands.
@@ -96,4 +109,30 @@ impl Orders {
         }
         Ok(())
     }
+}
+
+/// The shape of the Welch spectrum over segments of a power of two, a quarter of the record or
+/// less, so that seven segments or more are averaged.
+pub(crate) fn shape(x: &[f64], sample_rate: f64) -> Result<SpectralShape, Reason> {
+    let quarter = (x.len() / 4).clamp(2, LONGEST_SEGMENT);
+    let segment = 1 << quarter.ilog2();
+    let spectrum = welch(x, sample_rate, windows::Window::Hann, segment)?;
+    Ok(spectral_shape(&spectrum)?)
+}
+
+/// RMS per sector of the crank angle over all revolutions.
+pub(crate) fn sectors(x: &Revolutions) -> Result<Vec<f64>, Reason> {
+    Ok(crank_waterfall(x, SECTORS)?.sector_rms())
+}
+
+/// The cepstrum over the crank angle at the quefrency of one revolution.
+pub(crate) fn cepstrum_at_revolution(x: &Revolutions) -> Result<f64, Reason> {
+    if x.count() < 2 {
+        return Err(signal::Error::TooFewRevolutions {
+            needed: 2,
+            got: x.count() as f64,
+        }
+        .into());
+    }
+    Ok(real_cepstrum(x.samples())?[x.points_per_revolution()])
 }

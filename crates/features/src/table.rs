@@ -1,9 +1,14 @@
 //! The one list of features: names, units and documentation, and where each value comes from.
 
+mod condition;
+
+use crate::envelope::Envelope;
 use crate::reason::Reason;
 use crate::spectral::{BAND_EDGES_HZ, HIGHEST_ORDER};
 use crate::statistics::Statistics;
 use signal::phase_portrait::PhasePortrait;
+use signal::spectral_shape::SpectralShape;
+use signal::synchronous_average::SynchronousAverage;
 use std::sync::LazyLock;
 
 /// A feature, of every channel that has it.
@@ -38,17 +43,25 @@ pub(crate) enum Value {
     /// RMS over the revolutions of the amplitude of this order.
     OrderRms(usize),
     Portrait(fn(&PhasePortrait) -> Result<f64, signal::Error>),
+    Shape(fn(&SpectralShape) -> f64),
+    Envelope(fn(&Envelope) -> f64),
+    /// Amplitude of this order in the synchronous mean of the envelope.
+    EnvelopeOrder(usize),
+    Synchronous(fn(&SynchronousAverage) -> Result<f64, signal::Error>),
+    /// RMS in the crank-angle sector of this index.
+    Sector(usize),
+    Cepstrum,
 }
 
 /// The features of a channel of this unit, in the order of their columns: statistics of every
-/// channel, orders of accelerations and pressures, bands and portrait of accelerations.
+/// channel, orders of accelerations and pressures, all others of accelerations.
 pub(crate) fn lines(unit: &str) -> impl Iterator<Item = &'static Line> + use<> {
     let acceleration = unit == "m/s^2";
     let pressure = unit == "Pa";
     TABLE.iter().filter(move |line| match line.value {
         Value::Statistic(_) => true,
         Value::Order(_) | Value::OrderRms(_) => acceleration || pressure,
-        Value::Band(_) | Value::Portrait(_) => acceleration,
+        _ => acceleration,
     })
 }
 
@@ -58,7 +71,7 @@ static TABLE: LazyLock<Vec<Line>> = LazyLock::new(|| {
     let orders_rms = (1..=HIGHEST_ORDER).map(order_rms);
     let spectra = bands.chain(orders).chain(orders_rms);
     let chained = statistics().into_iter().chain(spectra).chain(portrait());
-    chained.collect()
+    chained.chain(condition::lines()).collect()
 });
 
 const LEI: &str =

@@ -65,7 +65,7 @@ proptest! {
         let values = features(&window(&one, 400.0));
         for ((definition, a), b) in defined(&one).iter().zip(values).zip(features(&window(&scaled, 400.0))) {
             let factor = match definition.unit.as_str() {
-                "1" => 1.0,
+                "1" | "Hz" => 1.0,
                 "m/s^2" | "m/s" => scale,
                 "m^2/s^4" | "m^2/s^3" => scale * scale,
                 unit => panic!("{unit}"),
@@ -95,6 +95,13 @@ proptest! {
         let ((a, definitions), (b, _)) = (row(0), row(start));
         let rms = a[1].clone().unwrap();
         for ((definition, a), b) in definitions.iter().zip(a).zip(b) {
+            // Nothing is left of a motion that repeats itself, and in which band its impacts
+            // stand out most may hang on the ends of the record. Segments of a spectrum see where
+            // they start.
+            let others = ["residual_kurtosis", "envelope", "spectral"];
+            if others.iter().any(|other| definition.name.contains(other)) {
+                continue;
+            }
             let (a, b) = (a.unwrap(), b.unwrap());
             // Sums of all samples agree to rounding. At the ends of the record resampling sees
             // its reflection, which the start of the window moves.
@@ -181,6 +188,29 @@ fn features_without_a_value_say_why() {
         reason(ramp.clone(), 300.0, "portrait_scatter"),
         Reason::Signal(signal::Error::TooFewRevolutions { needed: 2, .. })
     ));
+    for name in ["residual_rms", "cepstrum_revolution"] {
+        assert!(matches!(
+            reason(ramp.clone(), 300.0, name),
+            Reason::Signal(signal::Error::TooFewRevolutions { needed: 2, .. })
+        ));
+    }
+    // Less than two samples per 40 orders; too few samples for a kurtogram.
+    assert!(matches!(
+        reason(ramp.clone(), 70.5, "envelope_order_1"),
+        Reason::Signal(signal::Error::OutOfRange { .. })
+    ));
+    assert!(matches!(
+        reason(ramp[..120].to_vec(), 100.0, "envelope_centre"),
+        Reason::Signal(signal::Error::TooFewSamples { needed: 128, .. })
+    ));
+    assert_eq!(reason(vec![2.5; 400], 100.0, "sector_01"), Reason::Constant);
+    let repeating: Vec<f32> = (0..4096)
+        .map(|i| (TAU * f64::from(i % 1024) / 1024.0).sin() as f32)
+        .collect();
+    assert_eq!(
+        reason(repeating, 1024.0, "residual_kurtosis"),
+        signal::Error::NoFluctuation.into()
+    );
     let high = Reason::OrderTooHigh {
         order: 17,
         highest: 16,

@@ -98,7 +98,8 @@ pub fn band_mean_squares(
     Ok(bands)
 }
 
-fn check(x: &[f64], sample_rate: f64) -> Result<(), Error> {
+/// Checks that there are two samples at least, all finite, at a rate above zero.
+pub(crate) fn check(x: &[f64], sample_rate: f64) -> Result<(), Error> {
     positive("sample rate, Hz", sample_rate)?;
     if x.len() < 2 {
         return Err(Error::TooFewSamples {
@@ -113,7 +114,7 @@ fn check(x: &[f64], sample_rate: f64) -> Result<(), Error> {
 }
 
 /// How many sides of the two-sided spectrum bin `k` of `n` samples stands for.
-fn sides(k: usize, n: usize) -> f64 {
+pub(crate) fn sides(k: usize, n: usize) -> f64 {
     if k == 0 || 2 * k == n { 1.0 } else { 2.0 }
 }
 

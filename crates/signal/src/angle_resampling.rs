@@ -91,6 +91,11 @@ impl AngleGrid {
         (PASS_BAND * 0.5 * fewest) as usize
     }
 
+    /// Samples of the recording per revolution, on average.
+    pub fn samples_per_revolution(&self) -> f64 {
+        self.samples_per_revolution
+    }
+
     /// Resamples a channel of the recording, by windowed-sinc interpolation.
     ///
     /// # Errors
@@ -177,6 +182,11 @@ impl Revolutions {
     /// Crank angle at which every revolution starts, rad in [0, 2π).
     pub fn start_angle(&self) -> f64 {
         TAU * self.first_point as f64 / self.points_per_revolution as f64
+    }
+
+    /// Multiple of 2π/points at which every revolution starts.
+    pub(crate) fn first_point(&self) -> usize {
+        self.first_point
     }
 
     /// e^(−ikθ₀), which turns the phase of order `k` back to crank angle 0.

@@ -37,6 +37,9 @@ pub enum Error {
         /// The range in words.
         allowed: &'static str,
     },
+    /// There is no fluctuation whose shape could be told.
+    #[error("the signal does not fluctuate")]
+    NoFluctuation,
     /// The crank angle runs backwards or stands still.
     #[error("the crank angle does not increase at sample {index}: it changes by {step_rad} rad")]
     AngleNotIncreasing {

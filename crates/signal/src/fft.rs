@@ -1,7 +1,8 @@
-//! Fourier transforms of real samples, with the plans kept per thread.
+//! Fourier transforms, with the plans kept per thread.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,24 +23,26 @@ impl<T: ?Sized> Plans<T> {
         Self(RefCell::new(BTreeMap::new()))
     }
 
-    fn get(&self, length: usize, plan: impl FnOnce(RealFftPlanner<f64>) -> Arc<T>) -> Arc<T> {
+    fn get(&self, length: usize, plan: impl FnOnce() -> Arc<T>) -> Arc<T> {
         let mut plans = self.0.borrow_mut();
         if plans.len() >= KEPT && !plans.contains_key(&length) {
             plans.clear();
         }
         let entry = plans.entry(length);
-        Arc::clone(entry.or_insert_with(|| plan(RealFftPlanner::new())))
+        Arc::clone(entry.or_insert_with(plan))
     }
 }
 
 thread_local! {
     static FORWARD: Plans<dyn RealToComplex<f64>> = const { Plans::new() };
     static INVERSE: Plans<dyn ComplexToReal<f64>> = const { Plans::new() };
+    static COMPLEX_INVERSE: Plans<dyn Fft<f64>> = const { Plans::new() };
 }
 
 /// X_k = Σ_j x_j e^(−2πi jk/n) for k = 0 ..= n/2. Uses `x` as work space; `x` is not empty.
 pub(crate) fn forward(x: &mut [f64]) -> Vec<Complex64> {
-    let plan = FORWARD.with(|plans| plans.get(x.len(), |mut p| p.plan_fft_forward(x.len())));
+    let n = x.len();
+    let plan = FORWARD.with(|plans| plans.get(n, || RealFftPlanner::new().plan_fft_forward(n)));
     let mut spectrum = plan.make_output_vec();
     plan.process(x, &mut spectrum)
         .expect("the plan was made for this length");
@@ -53,11 +56,18 @@ pub(crate) fn inverse(mut spectrum: Vec<Complex64>, n: usize) -> Vec<f64> {
     if n.is_multiple_of(2) {
         spectrum[n / 2].im = 0.0;
     }
-    let plan = INVERSE.with(|plans| plans.get(n, |mut p| p.plan_fft_inverse(n)));
+    let plan = INVERSE.with(|plans| plans.get(n, || RealFftPlanner::new().plan_fft_inverse(n)));
     let mut x = plan.make_output_vec();
     plan.process(&mut spectrum, &mut x)
         .expect("the plan was made for this length, and bins 0 and n/2 are real");
     x
+}
+
+/// x_j = Σ_k X_k e^(2πi jk/n) of complex values, in place (no 1/n). `x` is not empty.
+pub(crate) fn inverse_complex(x: &mut [Complex64]) {
+    let n = x.len();
+    let plan = COMPLEX_INVERSE.with(|p| p.get(n, || FftPlanner::new().plan_fft_inverse(n)));
+    plan.process(x);
 }
 
 #[cfg(test)]
@@ -74,6 +84,20 @@ mod tests {
             let back = inverse(forward(&mut samples(n)), n);
             for (b, x) in back.iter().zip(samples(n)) {
                 assert!((b / n as f64 - x).abs() < 1e-13, "n = {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn complex_inverse_agrees_with_the_real_one() {
+        for n in [2, 16, 45] {
+            let half = forward(&mut samples(n));
+            let mut whole: Vec<Complex64> = (0..n)
+                .map(|k| half.get(k).copied().unwrap_or_else(|| half[n - k].conj()))
+                .collect();
+            inverse_complex(&mut whole);
+            for (c, x) in whole.iter().zip(inverse(half, n)) {
+                assert!((c - x).norm() < 1e-12, "n = {n}");
             }
         }
     }

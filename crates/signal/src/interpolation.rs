@@ -5,6 +5,9 @@ use std::sync::LazyLock;
 
 const TAPS: usize = 2 * HALF_WIDTH;
 
+/// Sums that are added up side by side; divides the taps.
+const LANES: usize = 6;
+
 /// Rows per sample interval. Weights between two rows are interpolated linearly, which errs by
 /// less than 2e-6 of the largest weight.
 const ROWS: usize = 512;
@@ -36,17 +39,25 @@ pub(crate) fn interpolate(x: &[f64], position: f64) -> f64 {
     let [low, high] = [&WEIGHTS[index], &WEIGHTS[index + 1]];
 
     let first = floor as isize + 1 - HALF_WIDTH as isize;
-    let inside = usize::try_from(first).ok().and_then(|i| x.get(i..i + TAPS));
+    let inside = usize::try_from(first).ok();
+    let inside = inside.and_then(|i| x.get(i..)?.first_chunk());
     let reflected: Row;
-    let neighbours = match inside {
-        Some(slice) => slice,
+    let neighbours: &Row = match inside {
+        Some(row) => row,
         None => {
             reflected = std::array::from_fn(|t| continued(x, first + t as isize));
             &reflected
         }
     };
-    let weights = low.iter().zip(high).map(|(l, h)| l + between * (h - l));
-    neighbours.iter().zip(weights).map(|(x, w)| x * w).sum()
+    // A few sums side by side: one alone would wait for each addition.
+    let mut sums = [0.0; LANES];
+    for t in (0..TAPS).step_by(LANES) {
+        for (lane, sum) in sums.iter_mut().enumerate() {
+            let (l, h) = (low[t + lane], high[t + lane]);
+            *sum += neighbours[t + lane] * (l + between * (h - l));
+        }
+    }
+    sums.iter().sum()
 }
 
 fn continued(x: &[f64], index: isize) -> f64 {

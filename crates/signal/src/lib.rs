@@ -5,24 +5,33 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | how much at which frequency? | [`amplitude_spectrum`](mod@amplitude_spectrum), [`windows`] |
+//! | how much at which frequency? | [`amplitude_spectrum`](mod@amplitude_spectrum), [`welch`](mod@welch), [`spectral_shape`](mod@spectral_shape), [`windows`] |
+//! | where are the impacts, and how often? | [`spectral_kurtosis`](mod@spectral_kurtosis), [`kurtogram`](mod@kurtogram), [`envelope`](mod@envelope), [`cepstrum`] |
 //! | how much at which multiple of the speed? | [`crank_angle`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
-//! | how do the revolutions differ? | [`phase_portrait`] |
+//! | how do the revolutions differ? | [`synchronous_average`], [`crank_waterfall`](mod@crank_waterfall), [`phase_portrait`] |
 //! | what does a measuring chain do? | [`biquad`], [`decimate`], [`noise`] |
 
 pub mod amplitude_spectrum;
 pub mod angle_resampling;
 pub mod biquad;
+pub mod cepstrum;
 pub mod channel;
 pub mod crank_angle;
+pub mod crank_waterfall;
 pub mod decimate;
+pub mod envelope;
 pub mod error;
 mod fft;
 mod interpolation;
 mod kaiser;
+pub mod kurtogram;
 pub mod noise;
 pub mod order_spectrum;
 pub mod phase_portrait;
+pub mod spectral_kurtosis;
+pub mod spectral_shape;
+pub mod synchronous_average;
+pub mod welch;
 pub mod windows;
 
 pub use error::Error;

@@ -36,12 +36,14 @@ impl Window {
 
     /// The `n` weights.
     pub fn weights(self, n: usize) -> Vec<f64> {
+        let (constant, waves) = self.coefficients().split_at(1);
         let weight = |i: usize| {
             let phase = TAU * i as f64 / n as f64;
-            let terms = self.coefficients().iter().enumerate();
-            terms
-                .map(|(m, a)| if m % 2 == 0 { *a } else { -a } * (m as f64 * phase).cos())
-                .sum()
+            let terms = waves.iter().zip(1..);
+            terms.fold(constant[0], |sum, (a, m)| {
+                let signed = if m % 2 == 0 { *a } else { -a };
+                sum + signed * (f64::from(m) * phase).cos()
+            })
         };
         (0..n).map(weight).collect()
     }

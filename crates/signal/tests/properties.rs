@@ -4,10 +4,17 @@ use proptest::prelude::*;
 use signal::amplitude_spectrum::{amplitude_spectrum, band_mean_squares};
 use signal::angle_resampling::AngleGrid;
 use signal::biquad::Filter;
+use signal::cepstrum::real_cepstrum;
 use signal::crank_angle::{CrankAngle, unwrap};
+use signal::crank_waterfall::crank_waterfall;
 use signal::decimate::Decimator;
+use signal::envelope::{Band, envelope};
+use signal::kurtogram::kurtogram;
 use signal::noise::pink_noise;
 use signal::order_spectrum::order_spectrum;
+use signal::spectral_shape::spectral_shape;
+use signal::synchronous_average::SynchronousAverage;
+use signal::welch::welch;
 use signal::windows::Window;
 use std::f64::consts::{PI, TAU};
 
@@ -158,7 +165,92 @@ proptest! {
         let x = noise(rms);
         prop_assert!(x.iter().sum::<f64>().abs() < 1e-9 * (1.0 + rms) * n as f64);
         for (one, many) in noise(1.0).iter().zip(&x) {
-            prop_assert!((one * rms - many).abs() <= 1e-12 * (1.0 + many.abs() + one.abs() * 10.0));
+            // Up to 300 terms of up to 1e3 cancel in a sample.
+            prop_assert!((one * rms - many).abs() <= 1e-12 * (1.0 + rms) * 1e3);
         }
+    }
+
+    /// A single segment without a taper: Parseval for the density, too.
+    #[test]
+    fn density_adds_up_to_the_variance(x in samples(2..400)) {
+        let psd = welch(&x, 250.0, Window::Rectangular, x.len()).unwrap();
+        let total: f64 = psd.density.iter().map(|d| d * psd.resolution).sum();
+        prop_assert!((total - variance(&x)).abs() <= 1e-12 * variance(&x));
+    }
+
+    /// Centroid and spread stay on the axis, entropy between a line's and white noise's.
+    #[test]
+    fn spectral_shape_stays_in_range(x in samples(64..400), window in any_window()) {
+        let shape = spectral_shape(&welch(&x, 100.0, window, 64).unwrap()).unwrap();
+        prop_assert!((0.0..=50.0).contains(&shape.centroid));
+        prop_assert!((0.0..=25.0).contains(&shape.spread));
+        prop_assert!(shape.entropy >= 0.0 && shape.entropy <= 1.0 + 1e-12);
+    }
+
+    /// exp of the log spectrum: the cepstrum is even, so its cosine sum gives back ln|X|.
+    #[test]
+    fn cepstrum_gives_back_the_logarithms(x in samples(8..100), bin in 1usize..4) {
+        let n = x.len();
+        let c = real_cepstrum(&x).unwrap();
+        let turn = |k: usize, q: usize| (TAU * (k * q % n) as f64 / n as f64).cos();
+        let sides = |q: usize| if q == 0 || 2 * q == n { 1.0 } else { 2.0 };
+        let logarithm: f64 = c.iter().enumerate().map(|(q, c)| sides(q) * c * turn(bin, q)).sum();
+        let spectrum = amplitude_spectrum(&x, 1.0, Window::Rectangular).unwrap().amplitude;
+        // Amplitudes are 2|X|/n inside, |X|/n at the Nyquist frequency.
+        let magnitude = |k: usize| spectrum[k] * n as f64 / sides(k);
+        let floor = (1..=n / 2).map(magnitude).fold(0.0, f64::max) * 1e-4;
+        prop_assert!((logarithm - magnitude(bin).max(floor).ln()).abs() < 1e-9);
+    }
+
+    /// Kurtosis and the best band do not depend on the size of the signal; the envelope grows
+    /// with it. A complex envelope cannot have less than −1.
+    #[test]
+    fn kurtogram_has_no_scale(x in samples(256..600), power in -20i32..20) {
+        let factor = 2f64.powi(power);
+        let scaled: Vec<f64> = x.iter().map(|x| factor * x).collect();
+        let one = kurtogram(&x, 1000.0, 1.0).unwrap();
+        prop_assert_eq!(&one, &kurtogram(&scaled, 1000.0, 1.0).unwrap());
+        prop_assert!(one.cells.iter().all(|c| c.kurtosis.unwrap() >= -1.0 - 1e-12));
+        let (band, _) = one.most_impulsive().unwrap();
+        let envelopes = envelope(&x, 1000.0, band).unwrap().into_iter();
+        for (a, b) in envelopes.zip(envelope(&scaled, 1000.0, band).unwrap()) {
+            prop_assert!(a >= 0.0 && (a * factor - b).abs() <= 1e-12 * b);
+        }
+    }
+
+    /// Any band and any samples: an envelope of the same length, or an error.
+    #[test]
+    fn any_band_is_taken_or_refused(
+        x in prop::collection::vec(prop_oneof![9 => -1e3..1e3, 1 => Just(f64::NAN)], 0..40),
+        centre in prop_oneof![-1.0..60.0, Just(f64::NAN)],
+        width in prop_oneof![-1.0..60.0, Just(f64::INFINITY)],
+    ) {
+        if let Ok(y) = envelope(&x, 100.0, Band { centre, width }) {
+            prop_assert_eq!(y.len(), x.len());
+            prop_assert!(y.iter().all(|y| y.is_finite()));
+        }
+    }
+
+    /// Average and residual share the variance; sectors share the mean square.
+    #[test]
+    fn revolutions_are_split_without_loss(x in samples(260..700), sectors in 1usize..16) {
+        let angle = CrankAngle::from_speed(x.len(), 128.0, 60.0).unwrap();
+        let revolutions = AngleGrid::new(&angle, 128).unwrap().resample(&x).unwrap();
+        let split = SynchronousAverage::new(&revolutions).unwrap();
+        let total = variance(revolutions.samples());
+        let sum = variance(split.average()) + split.residual_rms().powi(2);
+        prop_assert!((sum - total).abs() <= 1e-12 * total);
+        let share = split.synchronous_share().unwrap();
+        prop_assert!((share * total - variance(split.average())).abs() <= 1e-12 * total);
+
+        let waterfall = crank_waterfall(&revolutions, sectors).unwrap();
+        prop_assert_eq!(waterfall.rms.len(), sectors * revolutions.count());
+        let edge = |s: usize| (s * 128).div_ceil(sectors);
+        let of_sector = |s: usize| (edge(s + 1) - edge(s)) as f64;
+        let squares = waterfall.sector_rms().into_iter().enumerate();
+        let mean_square = squares.map(|(s, r)| r * r * of_sector(s)).sum::<f64>() / 128.0;
+        let whole = revolutions.samples().iter().map(|x| x * x).sum::<f64>();
+        let whole = whole / revolutions.samples().len() as f64;
+        prop_assert!((mean_square - whole).abs() <= 1e-12 * whole);
     }
 }

@@ -3,9 +3,15 @@
 use signal::amplitude_spectrum::amplitude_spectrum;
 use signal::angle_resampling::AngleGrid;
 use signal::biquad::Filter;
+use signal::cepstrum::real_cepstrum;
 use signal::crank_angle::CrankAngle;
 use signal::decimate::Decimator;
+use signal::envelope::{Band, envelope, envelope_spectrum};
+use signal::kurtogram::kurtogram;
 use signal::order_spectrum::order_spectrum;
+use signal::spectral_kurtosis::spectral_kurtosis;
+use signal::spectral_shape::spectral_shape;
+use signal::welch::welch;
 use signal::windows::Window;
 use std::f64::consts::TAU;
 
@@ -105,4 +111,49 @@ fn orders() {
     assert!(difference(&re, "orders_re") < 1e-6);
     assert!(difference(&im, "orders_im") < 1e-6);
     assert!(difference(&orders.rms, "orders_rms") < 1e-6);
+}
+
+#[test]
+fn averaged_spectra() {
+    let x = reference("input");
+    for (window, name) in [(Window::Hann, "hann"), (Window::FlatTop, "flattop")] {
+        let psd = welch(&x, 50.0, window, 64).unwrap();
+        assert!(difference(&psd.density, &format!("welch_{name}")) < 1e-13);
+    }
+    let shape = spectral_shape(&welch(&x, 50.0, Window::Hann, 64).unwrap()).unwrap();
+    let shape = [shape.centroid, shape.spread, shape.entropy];
+    assert!(difference(&shape, "spectral_shape") < 1e-13);
+    let sk = spectral_kurtosis(&x, 1.0, Window::Hann, 16).unwrap();
+    let sk: Vec<f64> = sk.kurtosis.into_iter().map(Option::unwrap).collect();
+    assert!(difference(&sk, "spectral_kurtosis") < 1e-12);
+}
+
+#[test]
+fn cepstrum() {
+    let cepstrum = real_cepstrum(&reference("input")).unwrap();
+    assert!(difference(&cepstrum, "cepstrum") < 1e-13);
+}
+
+#[test]
+fn envelopes() {
+    let x = reference("input");
+    let band = Band {
+        centre: 30.0,
+        width: 20.0,
+    };
+    assert!(difference(&envelope(&x, 100.0, band).unwrap(), "envelope") < 1e-13);
+    let spectrum = envelope_spectrum(&x, 100.0, band).unwrap();
+    assert!(difference(&spectrum.amplitude, "envelope_spectrum") < 1e-13);
+}
+
+#[test]
+fn kurtogram_cells() {
+    let x = reference("input");
+    let mut long = x.clone();
+    long.extend(x.iter().rev());
+    long.extend(&x);
+    long.extend(x.iter().map(|x| -x));
+    let cells = kurtogram(&long, 1.0, 1e-3).unwrap().cells;
+    let kurtosis: Vec<f64> = cells.iter().map(|c| c.kurtosis.unwrap()).collect();
+    assert!(difference(&kurtosis, "kurtogram") < 1e-11);
 }

@@ -66,6 +66,65 @@ rows["orders_re"] = orders.mean(axis=0).real
 rows["orders_im"] = orders.mean(axis=0).imag
 rows["orders_rms"] = np.sqrt((np.abs(orders) ** 2).mean(axis=0))
 
+# Segments of 64 that overlap by half.
+for window in ("hann", "flattop"):
+    rows[f"welch_{window}"] = signal.welch(x, 50.0, window, 64, scaling="density")[1]
+frequency, density = signal.welch(x, 50.0, "hann", 64)
+share = density / density.sum()
+centroid = (frequency * share).sum()
+spread = np.sqrt(((frequency - centroid) ** 2 * share).sum())
+rows["spectral_shape"] = [centroid, spread, stats.entropy(density) / np.log(len(density))]
+
+power = np.abs(signal.stft(x, window="hann", nperseg=16, detrend="constant", boundary=None, padded=False)[2]) ** 2
+rows["spectral_kurtosis"] = (power**2).mean(axis=1) / power.mean(axis=1) ** 2 - 2
+
+magnitude = np.abs(np.fft.fft(x - x.mean()))
+rows["cepstrum"] = np.fft.ifft(np.log(np.maximum(magnitude, 1e-4 * magnitude.max()))).real[:121]
+
+# Bands of the kurtogram at a sample rate of 100: the analytic signal without the line through
+# its ends, filtered and brought to the centre of the band at every sample.
+line = x[0] + (x[-1] - x[0]) * i / (len(x) - 1)
+analytic = np.fft.fft(signal.hilbert(x - line))
+analytic[0] = 0
+bins = np.fft.fftfreq(len(x), 0.01)
+
+
+def complex_envelope(centre, width):
+    distance = np.abs(bins - centre) / width
+    weight = np.where((distance < 1) & (bins >= 0), np.cos(np.pi / 2 * distance) ** 2, 0)
+    # The Nyquist bin counts as positive, fftfreq calls it negative.
+    weight[120] = np.cos(np.pi / 2 * abs(50 - centre) / width) ** 2 if 50 - centre < width else 0
+    return np.fft.ifft(analytic * weight)
+
+
+rows["envelope"] = np.abs(complex_envelope(30.0, 20.0))
+rows["envelope_spectrum"] = np.sqrt(
+    2 * signal.periodogram(rows["envelope"], 100.0, "hann", scaling="spectrum")[1]
+)
+rows["envelope_spectrum"][[0, -1]] /= np.sqrt(2)
+
+# The cells of the kurtogram over four times the input, one after the other, each with as many
+# points as the next power of two above twice its bins.
+long = np.concatenate([x, x[::-1], x, -x])
+long = long - np.linspace(long[0], long[-1], len(long))
+transform = np.fft.fft(long)
+cells = []
+for count in (1, 2, 3, 4, 6):
+    width = len(long) / 2 / count
+    points = 2 ** int(np.ceil(np.log2(np.ceil(2 * width))))
+    margin = int(np.ceil(2 * points / width))
+    for band in range(count):
+        centre = (band + 0.5) * width
+        k = np.arange(1, len(long) // 2 + 1)
+        k = k[np.abs(k - centre) < width]
+        # Values at equal steps over the record, by the sum that the inverse transform is.
+        time = np.arange(margin, points - margin) / points
+        weight = np.cos(np.pi / 2 * (k - centre) / width) ** 2 * np.where(k == len(long) // 2, 1, 2)
+        c = np.exp(2j * np.pi * np.outer(time, k - int(centre))) @ (transform[k] * weight)
+        power = np.abs(c) ** 2
+        cells.append((power**2).mean() / power.mean() ** 2 - 2)
+rows["kurtogram"] = cells
+
 absolute = np.abs(x)
 rms = np.sqrt((x**2).mean())
 rows["statistics"] = [

@@ -1,0 +1,118 @@
+//! Power spectral density, averaged over segments of the record.
+
+use crate::amplitude_spectrum::{check, sides};
+use crate::error::Error;
+use crate::fft;
+use crate::windows::Window;
+use rustfft::num_complex::Complex64;
+
+/// A single-sided power spectral density.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PowerSpectralDensity {
+    /// Distance of two bins, Hz.
+    pub resolution: f64,
+    /// Density at `resolution` times the index, in the square of the samples' unit per Hz. Times
+    /// the resolution, the bins add up to the mean square about the mean, on average.
+    pub density: Vec<f64>,
+}
+
+/// The power spectral density (2/(f_s Σw²)) ⟨|Σ w_i (x_i − x̄) e^(−2πi ik/m)|²⟩, without the 2 at
+/// 0 Hz and at the Nyquist frequency: the mean over segments of m = `segment` samples that overlap
+/// by half, each with its own mean taken off. What is left after the last whole segment is not
+/// used. `sample_rate` in Hz.
+///
+/// Source: Welch 1967, "The use of fast Fourier transform for the estimation of power spectra",
+/// IEEE Trans. Audio Electroacoustics 15(2).
+///
+/// # Errors
+/// A segment of fewer than two samples or longer than the record, a sample that is not finite, or
+/// a sample rate that is not positive.
+pub fn welch(
+    x: &[f64],
+    sample_rate: f64,
+    window: Window,
+    segment: usize,
+) -> Result<PowerSpectralDensity, Error> {
+    let mut sums = vec![0.0; segment / 2 + 1];
+    let count = for_each_segment(x, sample_rate, window, segment, |spectrum| {
+        for (sum, c) in sums.iter_mut().zip(spectrum) {
+            *sum += c.norm_sqr();
+        }
+    })?;
+    let squares: f64 = window.weights(segment).iter().map(|w| w * w).sum();
+    let scale = 1.0 / (sample_rate * squares * count as f64);
+    let density = sums.iter().enumerate();
+    Ok(PowerSpectralDensity {
+        resolution: sample_rate / segment as f64,
+        density: density
+            .map(|(k, sum)| sides(k, segment) * scale * sum)
+            .collect(),
+    })
+}
+
+/// Hands the transform of each windowed segment to `take` and returns how many there are.
+pub(crate) fn for_each_segment(
+    x: &[f64],
+    sample_rate: f64,
+    window: Window,
+    segment: usize,
+    mut take: impl FnMut(&[Complex64]),
+) -> Result<usize, Error> {
+    check(x, sample_rate)?;
+    if segment < 2 {
+        return Err(Error::OutOfRange {
+            what: "samples per segment",
+            value: segment as f64,
+            allowed: "2 or more",
+        });
+    }
+    if x.len() < segment {
+        return Err(Error::TooFewSamples {
+            needed: segment,
+            got: x.len(),
+        });
+    }
+    let weights = window.weights(segment);
+    let step = segment - segment / 2;
+    let mut work = vec![0.0; segment];
+    let mut count = 0;
+    for samples in x.windows(segment).step_by(step) {
+        let mean = samples.iter().sum::<f64>() / segment as f64;
+        for ((y, x), w) in work.iter_mut().zip(samples).zip(&weights) {
+            *y = (x - mean) * w;
+        }
+        take(&fft::forward(&mut work));
+        count += 1;
+    }
+    Ok(count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// A sine on a bin: A²/2 in all, of which a Hann window puts 2/3 into the bin and 1/6 into
+    /// either neighbour.
+    #[test]
+    fn sine_keeps_its_power() {
+        let x: Vec<f64> = (0..1000)
+            .map(|i| 7.0 + 3.0 * (TAU * 16.0 * f64::from(i) / 128.0).sin())
+            .collect();
+        let psd = welch(&x, 1280.0, Window::Hann, 128).unwrap();
+        assert_eq!((psd.resolution, psd.density.len()), (10.0, 65));
+        for (k, share) in [(15, 1.0 / 6.0), (16, 2.0 / 3.0), (17, 1.0 / 6.0), (18, 0.0)] {
+            assert!((psd.density[k] * psd.resolution - 4.5 * share).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn bad_input_is_named() {
+        let few = welch(&[1.0; 7], 1.0, Window::Hann, 8);
+        assert_eq!(few, Err(Error::TooFewSamples { needed: 8, got: 7 }));
+        assert!(welch(&[1.0; 7], 1.0, Window::Hann, 1).is_err());
+        assert!(welch(&[1.0; 7], f64::NAN, Window::Hann, 4).is_err());
+        let nan = welch(&[1.0, 2.0, f64::NAN], 1.0, Window::Hann, 2);
+        assert_eq!(nan, Err(Error::NotFinite { index: 2 }));
+    }
+}
