@@ -6,6 +6,8 @@ pub mod autocorrelation;
 pub mod delay;
 pub mod dimension;
 pub mod error;
+pub mod jacobian;
+pub mod local_map;
 pub mod neighbours;
 pub mod surrogates;
 pub mod test_systems;
