@@ -6,10 +6,11 @@
 //! of the largest exponent. The size and order of the local maps are those that best predict
 //! samples left out, so a noisy signal gets larger neighbourhoods by itself.
 
-use crate::delay::Times;
+use crate::delay::{self, Times};
 use crate::error::{Error, checked};
 use crate::local_map::{LocalMap, Model, local_map};
 use crate::neighbours::{Delays, Neighbours};
+use crate::noise_reduction::noise_reduced;
 
 /// Largest dimension of local maps, and of those with products.
 const LARGEST: usize = 7;
@@ -22,6 +23,12 @@ const MOST_NEIGHBOURS: usize = 500;
 const STEPS: usize = 10_000;
 /// Models whose exponents are compared.
 const COMPARED: usize = 3;
+/// Error of prediction, as a share of the standard deviation, below which it counts as exact.
+const EXACT: f64 = 0.01;
+/// Error of prediction, as a share of the standard deviation, from which noise is reduced, and the
+/// windows averaged then.
+const NOISY: f64 = 0.04;
+const AVERAGED: usize = 10;
 /// Blocks for the standard error, and the two-sided 95 % quantile of Student's t for them.
 const BLOCKS: usize = 20;
 const QUANTILE: f64 = 2.093;
@@ -41,8 +48,24 @@ pub struct Exponent {
     pub prediction_error: f64,
 }
 
-/// The largest exponent of a signal from local maps.
+/// The largest exponent of a signal from local maps. A signal that is badly predicted is taken as
+/// noisy: its noise is reduced first, and the interval widened by half of what that changes.
 pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
+    let raw = estimate(signal, times)?;
+    if raw.prediction_error < NOISY {
+        return Ok(raw);
+    }
+    let reduced = noise_reduced(signal, times, AVERAGED)?;
+    let found = estimate(&reduced, &delay::times(&reduced)?)?;
+    let half = ((found.high - found.low) / 2.0).hypot((found.value - raw.value) / 2.0);
+    Ok(Exponent {
+        low: found.value - half,
+        high: found.value + half,
+        ..found
+    })
+}
+
+fn estimate(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let (_, deviation) = checked(signal)?;
     let needed = (LARGEST + 2 * BLOCKS) * times.delay + 2 * times.theiler + 100;
     if signal.len() < needed {
@@ -51,8 +74,13 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
             needed,
         });
     }
-    let ranked = ranked_models(signal, times);
-    let least = ranked[0].1;
+    let ranked = without_spurious(ranked_models(signal, times), deviation);
+    let Some(&(model, least)) = ranked.first() else {
+        return Err(Error::TooShort {
+            found: signal.len(),
+            needed,
+        });
+    };
     let estimates: Vec<Growth> = ranked
         .iter()
         .take_while(|(_, error)| *error <= 1.1 * least)
@@ -71,7 +99,7 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
         value: value * per_sample,
         low: (value - half) * per_sample,
         high: (value + half) * per_sample,
-        model: ranked[0].0,
+        model,
         prediction_error: least / deviation,
     })
 }
@@ -105,6 +133,19 @@ fn ranked_models(signal: &[f64], times: &Times) -> Vec<(Model, f64)> {
         ranked.extend(models.into_iter().zip(errors));
     }
     ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+    ranked
+}
+
+/// Keeps, where the signal is predicted exactly, the models of the smallest dimension that does it
+/// nearly as well as the best: without noise, a further coordinate only adds spurious exponents,
+/// which can be the largest (Abarbanel, Brown, Sidorowich and Tsimring 1993).
+fn without_spurious(mut ranked: Vec<(Model, f64)>, deviation: f64) -> Vec<(Model, f64)> {
+    let least = ranked.first().map_or(f64::INFINITY, |(_, error)| *error);
+    if least < EXACT * deviation {
+        let good = ranked.iter().filter(|(_, e)| *e <= 2.0 * least);
+        let smallest = good.map(|(m, _)| m.dimension).min();
+        ranked.retain(|(m, _)| Some(m.dimension) == smallest);
+    }
     ranked
 }
 

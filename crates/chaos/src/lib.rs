@@ -12,6 +12,7 @@ pub mod error;
 pub mod jacobian;
 pub mod local_map;
 pub mod neighbours;
+pub mod noise_reduction;
 pub mod recurrence;
 pub mod regime;
 pub mod scaling_region;
