@@ -39,7 +39,7 @@ pub fn permutation_entropy(signal: &[f64], order: usize, delay: usize) -> Result
             high: 8,
         });
     }
-    let span = (order - 1) * delay;
+    let span = (order - 1).saturating_mul(delay);
     if signal.len() <= span {
         return Err(Error::TooShort {
             found: signal.len(),

@@ -23,7 +23,7 @@ pub struct Delays<'a> {
 impl Delays<'_> {
     /// Samples from the first to the last coordinate.
     pub fn span(&self) -> usize {
-        (self.dimension - 1) * self.delay
+        self.dimension.saturating_sub(1).saturating_mul(self.delay)
     }
 
     /// Number of vectors.

@@ -22,6 +22,9 @@ pub fn noise_reduced(signal: &[f64], times: &Times, neighbours: usize) -> Result
         found: signal.len(),
         needed: delays.span() + 2 * times.theiler + neighbours + 1,
     };
+    if signal.len() < delays.span() + 2 * times.theiler + neighbours + 1 {
+        return Err(too_short);
+    }
     let search = Neighbours::new(&delays, count, times.theiler).ok_or(too_short)?;
     let middle = WINDOW / 2;
     let mut reduced = signal.to_vec();
