@@ -1,0 +1,117 @@
+//! Correlation dimension (Grassberger and Procaccia 1983).
+
+use crate::error::{Error, checked};
+use crate::neighbours::Delays;
+
+/// The dimension with a measure of how straight the fit is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CorrelationDimension {
+    /// Slope of the logarithm of the correlation sum against that of the radius.
+    pub value: f64,
+    /// Standard deviation of the local slopes over the fit.
+    pub scatter: f64,
+}
+
+/// Vectors that distances are counted from.
+const REFERENCES: usize = 500;
+/// Correlation sums between which the slope is taken, and the points there.
+const LOW: f64 = 5e-4;
+const HIGH: f64 = 2e-2;
+const POINTS: usize = 9;
+
+/// The correlation dimension of the delay vectors, from pairs more than `theiler` samples apart.
+pub fn correlation_dimension(
+    delays: &Delays,
+    theiler: usize,
+) -> Result<CorrelationDimension, Error> {
+    checked(delays.signal)?;
+    let count = delays.count();
+    let needed = delays.span() + 2 * theiler + 100;
+    if delays.signal.len() < needed {
+        return Err(Error::TooShort {
+            found: delays.signal.len(),
+            needed,
+        });
+    }
+    let mut squares: Vec<f64> = Vec::new();
+    for a in (0..count).step_by(count.div_ceil(REFERENCES)) {
+        squares.extend(
+            (0..count)
+                .filter(|b| a.abs_diff(*b) > theiler)
+                .map(|b| delays.squared_distance(a, b)),
+        );
+    }
+    squares.sort_by(f64::total_cmp);
+    // Points (ln r, ln C) at correlation sums in even ratios.
+    let points: Vec<(f64, f64)> = (0..POINTS)
+        .map(|i| LOW * (HIGH / LOW).powf(i as f64 / (POINTS - 1) as f64))
+        .map(|sum| {
+            (
+                0.5 * squares[(sum * squares.len() as f64) as usize].ln(),
+                sum.ln(),
+            )
+        })
+        .collect();
+    let slopes: Vec<f64> = points
+        .windows(2)
+        .map(|p| (p[1].1 - p[0].1) / (p[1].0 - p[0].0))
+        .collect();
+    if slopes.iter().any(|s| !s.is_finite()) {
+        return Err(Error::NoScalingRegion {
+            reason: "many vectors coincide",
+        });
+    }
+    let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
+    let square = slopes.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / slopes.len() as f64;
+    let rise = points[POINTS - 1].1 - points[0].1;
+    let value = rise / (points[POINTS - 1].0 - points[0].0);
+    Ok(CorrelationDimension {
+        value,
+        scatter: square.sqrt(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_systems::{Noise, System};
+
+    #[test]
+    fn dimensions_of_known_sets() {
+        // Grassberger and Procaccia 1983, table 1: Hénon 1.21, Lorenz 2.05. A sine is a circle;
+        // white noise fills the three dimensions that it is given.
+        let sine: Vec<f64> = (0..6000).map(|i| (f64::from(i) * 0.1).sin()).collect();
+        let cases = [
+            (System::Henon.samples(6000, 1), 2, 1, 1.21, 0.08),
+            (System::Lorenz.samples(6000, 1), 3, 4, 2.05, 0.15),
+            (sine, 3, 15, 1.0, 0.05),
+            (Noise::White.samples(6000, 1), 3, 1, 3.0, 0.3),
+        ];
+        for (signal, dimension, delay, expected, tolerance) in cases {
+            let delays = Delays {
+                signal: &signal,
+                dimension,
+                delay,
+            };
+            let found = correlation_dimension(&delays, 20 * delay).unwrap();
+            assert!(
+                (found.value - expected).abs() < tolerance,
+                "{expected} {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn coinciding_vectors_are_refused() {
+        let signal: Vec<f64> = (0..500).map(|i| f64::from(i % 5)).collect();
+        let delays = Delays {
+            signal: &signal,
+            dimension: 2,
+            delay: 1,
+        };
+        assert!(matches!(
+            correlation_dimension(&delays, 2),
+            Err(Error::NoScalingRegion { .. })
+        ));
+    }
+}

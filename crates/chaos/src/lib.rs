@@ -1,0 +1,23 @@
+//! Chaos from a sampled signal, as anyone with a sensor must find it.
+//!
+//! Everything is a pure function of the samples: the same signal gives the same numbers.
+
+pub mod autocorrelation;
+pub mod correlation_dimension;
+pub mod delay;
+pub mod dimension;
+pub mod divergence;
+pub mod entropy;
+pub mod error;
+pub mod jacobian;
+pub mod local_map;
+pub mod neighbours;
+pub mod noise_reduction;
+pub mod recurrence;
+pub mod regime;
+pub mod scaling_region;
+pub mod surrogates;
+pub mod test_systems;
+pub mod zero_one;
+
+pub use error::Error;

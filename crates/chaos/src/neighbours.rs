@@ -1,0 +1,206 @@
+//! Nearest neighbours among delay vectors, with temporally close ones left out.
+//!
+//! The k-d tree is the crate `kiddo`'s, whose dimension is a constant of the type; everything
+//! else asks for a dimension at run time, so this file chooses among the types.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use std::num::NonZero;
+
+/// Largest dimension that can be searched.
+pub const LARGEST_DIMENSION: usize = 10;
+
+/// Delay vectors `(x[i], x[i + delay], ..., x[i + (dimension - 1) delay])` (Takens 1981).
+#[derive(Clone, Copy, Debug)]
+pub struct Delays<'a> {
+    /// The signal.
+    pub signal: &'a [f64],
+    /// Coordinates of a vector, 1 to [`LARGEST_DIMENSION`].
+    pub dimension: usize,
+    /// Samples between coordinates, at least 1.
+    pub delay: usize,
+}
+
+impl Delays<'_> {
+    /// Samples from the first to the last coordinate.
+    pub fn span(&self) -> usize {
+        self.dimension.saturating_sub(1).saturating_mul(self.delay)
+    }
+
+    /// Number of vectors.
+    pub fn count(&self) -> usize {
+        self.signal.len().saturating_sub(self.span())
+    }
+
+    /// Coordinate `axis` of vector `index`.
+    pub fn at(&self, index: usize, axis: usize) -> f64 {
+        self.signal[index + axis * self.delay]
+    }
+
+    /// Squared Euclidean distance of two vectors.
+    pub fn squared_distance(&self, a: usize, b: usize) -> f64 {
+        (0..self.dimension)
+            .map(|axis| (self.at(a, axis) - self.at(b, axis)).powi(2))
+            .sum()
+    }
+}
+
+/// A neighbour of a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbour {
+    /// Index of the neighbouring vector.
+    pub index: usize,
+    /// Euclidean distance.
+    pub distance: f64,
+}
+
+/// A search tree over the first vectors of an embedding.
+pub struct Neighbours {
+    tree: Box<dyn Search + Send + Sync>,
+    count: usize,
+    theiler: usize,
+}
+
+impl Neighbours {
+    /// A tree over the first `count` vectors. Vectors `theiler` or fewer samples apart are no
+    /// neighbours of each other (Theiler 1986). `None` for a dimension or count out of range.
+    pub fn new(delays: &Delays, count: usize, theiler: usize) -> Option<Self> {
+        let tree = match delays.dimension {
+            1 => tree::<1>(delays, count),
+            2 => tree::<2>(delays, count),
+            3 => tree::<3>(delays, count),
+            4 => tree::<4>(delays, count),
+            5 => tree::<5>(delays, count),
+            6 => tree::<6>(delays, count),
+            7 => tree::<7>(delays, count),
+            8 => tree::<8>(delays, count),
+            9 => tree::<9>(delays, count),
+            10 => tree::<10>(delays, count),
+            _ => None,
+        }?;
+        Some(Self {
+            tree,
+            count,
+            theiler,
+        })
+    }
+
+    /// The `wanted` nearest vectors of vector `index` in order of distance; fewer where there
+    /// are not so many.
+    pub fn nearest(&self, index: usize, wanted: usize) -> Vec<Neighbour> {
+        // The window hides at most so many; mostly far fewer, so a small search comes first.
+        let most = (wanted + 2 * self.theiler + 1).min(self.count);
+        let mut asked = (wanted + 4).min(most);
+        loop {
+            let mut found = self.tree.nearest(index, asked);
+            found.retain(|n| n.index.abs_diff(index) > self.theiler);
+            found.truncate(wanted);
+            if found.len() == wanted || asked == most {
+                return found;
+            }
+            asked = (asked * 2).min(most);
+        }
+    }
+}
+
+trait Search {
+    fn nearest(&self, index: usize, count: usize) -> Vec<Neighbour>;
+}
+
+struct Tree<const K: usize> {
+    tree: ImmutableKdTree<f64, K>,
+    points: Vec<[f64; K]>,
+}
+
+fn tree<const K: usize>(delays: &Delays, count: usize) -> Option<Box<dyn Search + Send + Sync>> {
+    let points: Vec<[f64; K]> = (0..count.min(delays.count()))
+        .map(|i| std::array::from_fn(|axis| delays.at(i, axis)))
+        .collect();
+    let tree = ImmutableKdTree::new_from_slice(&points).ok()?;
+    Some(Box::new(Tree { tree, points }))
+}
+
+impl<const K: usize> Search for Tree<K> {
+    fn nearest(&self, index: usize, count: usize) -> Vec<Neighbour> {
+        let Some(count) = NonZero::new(count) else {
+            return Vec::new();
+        };
+        let found = self
+            .tree
+            .query(&self.points[index])
+            .nearest_n::<SquaredEuclidean<f64>>(count)
+            .execute();
+        found
+            .into_iter()
+            .map(|n| Neighbour {
+                index: n.item as usize,
+                distance: n.distance.sqrt(),
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_systems::{Noise, Regular, System};
+
+    fn brute_force(delays: &Delays, index: usize, wanted: usize, theiler: usize) -> Vec<f64> {
+        let mut distances: Vec<f64> = (0..delays.count())
+            .filter(|j| j.abs_diff(index) > theiler)
+            .map(|j| delays.squared_distance(index, j).sqrt())
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        distances.truncate(wanted);
+        distances
+    }
+
+    #[test]
+    fn neighbours_are_those_of_brute_force_in_every_dimension() {
+        let repeated: Vec<f64> = (0..700).map(|i| f64::from(i % 7)).collect();
+        for signal in [
+            System::Lorenz.samples(700, 1),
+            Noise::White.samples(700, 1),
+            Regular::KnockTrain.samples(700, 1),
+            repeated,
+        ] {
+            for dimension in 1..=LARGEST_DIMENSION {
+                let delays = Delays {
+                    signal: &signal,
+                    dimension,
+                    delay: 3,
+                };
+                let found = Neighbours::new(&delays, delays.count(), 12).unwrap();
+                for index in (0..delays.count()).step_by(97) {
+                    let near = found.nearest(index, 9);
+                    assert!(near.iter().all(|n| n.index.abs_diff(index) > 12));
+                    let expected = brute_force(&delays, index, 9, 12);
+                    assert_eq!(near.len(), expected.len());
+                    for (n, e) in near.iter().zip(expected) {
+                        assert!((n.distance - e).abs() <= 1e-12 * e.max(1.0), "{n:?} {e}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_window_as_long_as_the_signal_leaves_nobody() {
+        let signal = Noise::White.samples(200, 1);
+        let delays = Delays {
+            signal: &signal,
+            dimension: 2,
+            delay: 1,
+        };
+        assert!(
+            Neighbours::new(&delays, 199, 200)
+                .unwrap()
+                .nearest(50, 3)
+                .is_empty()
+        );
+        let wide = Delays {
+            dimension: 11,
+            ..delays
+        };
+        assert!(Neighbours::new(&wide, 100, 0).is_none());
+    }
+}
