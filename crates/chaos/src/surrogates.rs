@@ -7,8 +7,12 @@ use scalar::random::Stream;
 use std::f64::consts::TAU;
 
 /// The signal with the phase of every Fourier component drawn anew (Theiler et al. 1992): a
-/// stationary linear Gaussian signal with the same spectrum.
+/// stationary linear Gaussian signal with the same spectrum. Fewer than two samples, or samples that
+/// are not finite, come back as they are.
 pub fn phase_randomised(signal: &[f64], generator: &mut Stream) -> Vec<f64> {
+    if !usable(signal) {
+        return signal.to_vec();
+    }
     let mut spectrum = forward(signal);
     let amplitudes: Vec<f64> = spectrum.iter().map(|c| c.norm()).collect();
     for (bin, amplitude) in spectrum.iter_mut().zip(amplitudes).skip(1) {
@@ -17,10 +21,18 @@ pub fn phase_randomised(signal: &[f64], generator: &mut Stream) -> Vec<f64> {
     backward(spectrum, signal.len())
 }
 
+fn usable(signal: &[f64]) -> bool {
+    signal.len() >= 2 && signal.iter().all(|x| x.is_finite())
+}
+
 /// The signal with its values and, nearly, its spectrum, in another order: iterated
 /// amplitude-adjusted surrogate (Schreiber and Schmitz 1996). Stops when the order settles, at the
-/// latest after `iterations`.
+/// latest after `iterations`. Fewer than two samples, or samples that are not finite, come back as
+/// they are.
 pub fn iaaft(signal: &[f64], iterations: usize, generator: &mut Stream) -> Vec<f64> {
+    if !usable(signal) {
+        return signal.to_vec();
+    }
     let amplitudes: Vec<f64> = forward(signal).iter().map(|c| c.norm()).collect();
     let mut sorted = signal.to_vec();
     sorted.sort_by(f64::total_cmp);
