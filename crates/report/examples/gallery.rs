@@ -3,7 +3,6 @@
 #[path = "../tests/report/synthetic/mod.rs"]
 mod synthetic;
 
-use report::case_picture::{CasePicture, ClearJoint};
 use report::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use std::{fs, io, path::Path};
 use synthetic::Recording;
@@ -13,17 +12,17 @@ fn main() -> io::Result<()> {
     fs::create_dir_all(out)?;
     fs::write(
         out.join("case-ideal.svg"),
-        case("Ideal machine, 500 rpm", &synthetic::recording(&[], 8, 1)),
+        synthetic::recording(&[], 8, 1).picture("Ideal machine, 500 rpm"),
     )?;
     let one = synthetic::recording(&[("big_end", 1e-4)], 8, 2);
     fs::write(
         out.join("case-big-end.svg"),
-        case("Single-stage compressor, 500 rpm, big end 0.1 mm", &one),
+        one.picture("Single-stage compressor, 500 rpm, big end 0.1 mm"),
     )?;
     let two = synthetic::recording(&[("big_end", 3e-4), ("small_end", 2e-4)], 12, 3);
     fs::write(
         out.join("case-two-joints.svg"),
-        case("Single-stage compressor, 500 rpm, two joints", &two),
+        two.picture("Single-stage compressor, 500 rpm, two joints"),
     )?;
     fs::write(out.join("spectrum.svg"), spectrum(&two))?;
     for (name, page) in [
@@ -33,27 +32,6 @@ fn main() -> io::Result<()> {
         fs::write(out.join(name), page.html().map_err(io::Error::other)?)?;
     }
     Ok(())
-}
-
-fn case(title: &str, recording: &Recording) -> String {
-    CasePicture {
-        title,
-        crank_angle_rad: &recording.crank_angle_rad,
-        acceleration_m_s2: &recording.acceleration_m_s2,
-        velocity_m_s: &recording.velocity_m_s,
-        joints: recording
-            .joints
-            .iter()
-            .map(|joint| ClearJoint {
-                name: joint.name,
-                clearance_m: joint.clearance_m,
-                x_m: &joint.x_m,
-                y_m: &joint.y_m,
-                contact_force_n: &joint.contact_force_n,
-            })
-            .collect(),
-    }
-    .svg()
 }
 
 fn spectrum(recording: &Recording) -> String {

@@ -7,27 +7,6 @@ use roxmltree::Document;
 
 const HOSTILE: &str = "</text><script>alert('&')</script>\u{0}\"";
 
-fn picture(recording: &synthetic::Recording, title: &str) -> String {
-    CasePicture {
-        title,
-        crank_angle_rad: &recording.crank_angle_rad,
-        acceleration_m_s2: &recording.acceleration_m_s2,
-        velocity_m_s: &recording.velocity_m_s,
-        joints: recording
-            .joints
-            .iter()
-            .map(|joint| ClearJoint {
-                name: joint.name,
-                clearance_m: joint.clearance_m,
-                x_m: &joint.x_m,
-                y_m: &joint.y_m,
-                contact_force_n: &joint.contact_force_n,
-            })
-            .collect(),
-    }
-    .svg()
-}
-
 fn texts(svg: &str) -> Vec<String> {
     let document = Document::parse(svg).unwrap();
     let texts = document
@@ -41,7 +20,7 @@ fn texts(svg: &str) -> Vec<String> {
 #[test]
 fn the_picture_of_a_case_has_an_orbit_for_every_joint() {
     let recording = synthetic::recording(&[("big_end", 3e-4), ("small_end", 2e-4)], 6, 3);
-    let svg = picture(&recording, "Two joints");
+    let svg = recording.picture("Two joints");
     let texts = texts(&svg);
     for expected in [
         "Two joints",
@@ -62,12 +41,12 @@ fn the_picture_of_a_case_has_an_orbit_for_every_joint() {
         2
     );
     assert!(svg.len() < 200_000, "{} bytes", svg.len());
-    assert_eq!(svg, picture(&recording, "Two joints"));
+    assert_eq!(svg, recording.picture("Two joints"));
 }
 
 #[test]
 fn the_picture_of_an_ideal_machine_says_that_it_has_no_orbit() {
-    let svg = picture(&synthetic::recording(&[], 3, 1), "Ideal");
+    let svg = synthetic::recording(&[], 3, 1).picture("Ideal");
     assert!(texts(&svg).contains(&"ideal joints: no orbit".to_owned()));
 }
 

@@ -3,6 +3,7 @@
 
 pub mod datasets;
 
+use report::case_picture::{CasePicture, ClearJoint};
 use std::f64::consts::{PI, TAU};
 
 pub const SAMPLE_RATE_HZ: f64 = 10_000.0;
@@ -32,6 +33,20 @@ pub struct Recording {
     pub joints: Vec<Joint>,
 }
 
+impl Recording {
+    /// The picture of the case.
+    pub fn picture(&self, title: &str) -> String {
+        CasePicture {
+            title,
+            crank_angle_rad: &self.crank_angle_rad,
+            acceleration_m_s2: &self.acceleration_m_s2,
+            velocity_m_s: &self.velocity_m_s,
+            joints: self.joints.iter().map(Joint::view).collect(),
+        }
+        .svg()
+    }
+}
+
 /// One made-up joint.
 pub struct Joint {
     pub name: &'static str,
@@ -39,6 +54,18 @@ pub struct Joint {
     pub x_m: Vec<f64>,
     pub y_m: Vec<f64>,
     pub contact_force_n: Vec<f64>,
+}
+
+impl Joint {
+    fn view(&self) -> ClearJoint<'_> {
+        ClearJoint {
+            name: self.name,
+            clearance_m: self.clearance_m,
+            x_m: &self.x_m,
+            y_m: &self.y_m,
+            contact_force_n: &self.contact_force_n,
+        }
+    }
 }
 
 /// Crank angles in degrees at which the joint's load changes sides.
