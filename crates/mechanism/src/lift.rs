@@ -67,9 +67,15 @@ pub fn lanes<const W: usize, T: Lift<Lanes<W>>>(machines: [&T; W]) -> T::Lifted 
 /// `plain` with its derivative along the line to `moved`: the tangent of every number is how much
 /// it differs between the two.
 pub fn directional<T: Lift<Dual<f64, 1>>>(plain: &T, moved: &T) -> T::Lifted {
-    T::lift(&[plain, moved], &mut |x| Dual {
+    gradient(plain, [moved])
+}
+
+/// `plain` with its derivatives along the lines to each of `moved`.
+pub fn gradient<const N: usize, T: Lift<Dual<f64, N>>>(plain: &T, moved: [&T; N]) -> T::Lifted {
+    let all: Vec<&T> = std::iter::once(plain).chain(moved).collect();
+    T::lift(&all, &mut |x| Dual {
         value: x[0],
-        tangent: [x[1] - x[0]],
+        tangent: std::array::from_fn(|i| x[i + 1] - x[0]),
     })
 }
 

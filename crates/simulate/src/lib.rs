@@ -5,9 +5,12 @@
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
 
+mod chain;
 pub mod lyapunov;
 pub mod measure;
 pub mod record;
+mod run;
+pub mod sensitivity;
 pub mod sensor;
 pub mod settings;
 pub mod trace;
@@ -15,6 +18,7 @@ pub mod trace;
 pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
 pub use measure::measure;
 pub use record::{Error, Record, simulate};
+pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };

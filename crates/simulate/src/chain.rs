@@ -1,0 +1,137 @@
+//! The measuring chain up to the recorder: filters at the inner rate, then decimation.
+
+use crate::record::Error;
+use crate::sensor::{Axis, ChamberEnd, Measured, Sensor};
+use integrate::Real;
+use mechanism::{Evaluation, Machine};
+use signal::biquad::Filter;
+use signal::decimate::Decimator;
+use std::f64::consts::TAU;
+
+use crate::run::Instants;
+
+/// Lowest rate at which the motion is sampled before decimation, Hz: contacts ring at a few kHz,
+/// and what lies above half of this rate is weak enough to fold down unnoticed.
+const INNER_RATE: f64 = 80_000.0;
+/// Fewest inner samples per recorded one.
+const LEAST_FACTOR: f64 = 4.0;
+/// Most inner samples per recorded one: a slow recording still sees the contacts.
+const MOST_FACTOR: f64 = 4096.0;
+
+/// How a record is sampled: more finely first, then decimated.
+pub(crate) struct Sampling {
+    decimator: Decimator,
+    /// Inner samples per recorded one.
+    pub factor: usize,
+    /// Samples per second before decimation.
+    pub inner_rate: f64,
+    /// Recorded samples.
+    pub samples: usize,
+}
+
+impl Sampling {
+    /// `length` seconds at `rate`, Hz.
+    pub(crate) fn new(rate: f64, length: f64) -> Result<Self, Error> {
+        let factor = (INNER_RATE / rate).clamp(LEAST_FACTOR, MOST_FACTOR).ceil();
+        let decimator = Decimator::new(factor as usize).map_err(|source| Error::Sensor {
+            column: "all".into(),
+            source,
+        })?;
+        Ok(Self {
+            decimator,
+            factor: factor as usize,
+            inner_rate: rate * factor,
+            // A sample that falls on the end of the last revolution belongs to the next.
+            samples: (length * rate - 1e-9).ceil().max(1.0) as usize,
+        })
+    }
+
+    /// Inner samples before the first recorded one.
+    pub(crate) fn lead(&self) -> usize {
+        self.decimator.half_length()
+    }
+
+    /// The inner samples of a record that begins at `start`, s.
+    pub(crate) fn instants(&self, start: f64) -> Instants {
+        Instants {
+            first: start - self.lead() as f64 / self.inner_rate,
+            rate: self.inner_rate,
+            count: self.decimator.input_length(self.samples),
+        }
+    }
+
+    /// What `sensor` makes of the inner samples of its quantity: filtered, amplified, decimated.
+    pub(crate) fn record(
+        &self,
+        sensor: &Sensor,
+        machine: &Machine,
+        inner: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        // An angle has a jump a revolution, which no filter must touch.
+        if sensor.measured == Measured::CrankAngle {
+            let recorded = inner[self.lead()..].iter().step_by(self.factor);
+            return Ok(recorded.take(self.samples).copied().collect());
+        }
+        let mut filters = filters(sensor, self.inner_rate).map_err(|source| {
+            let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
+            Error::Sensor {
+                column: sensor.measured.column(&names),
+                source,
+            }
+        })?;
+        let gain = sensor.chain.gain;
+        if let Some(first) = inner.first() {
+            filters.iter_mut().for_each(|f| f.settle(first * gain));
+        }
+        let filtered: Vec<f64> = inner
+            .iter()
+            .map(|x| filters.iter_mut().fold(x * gain, |x, f| f.run(x)))
+            .collect();
+        Ok(self.decimator.apply(&filtered))
+    }
+}
+
+fn filters(sensor: &Sensor, rate: f64) -> Result<Vec<Filter>, signal::Error> {
+    let chain = &sensor.chain;
+    let mut filters = Vec::new();
+    if let Some(mounting) = chain.mounting {
+        filters.push(Filter::resonance(
+            mounting.frequency,
+            mounting.damping_ratio,
+            rate,
+        )?);
+    }
+    if let Some(low_pass) = chain.low_pass {
+        filters.push(Filter::butterworth_low_pass(
+            low_pass.order,
+            low_pass.cutoff,
+            rate,
+        )?);
+    }
+    Ok(filters)
+}
+
+impl Measured {
+    /// The quantity at an instant, SI.
+    pub fn value<S: Real>(&self, at: &Evaluation<S>) -> S {
+        match *self {
+            Measured::CrossheadAcceleration { throw } => at.throws[throw].accelerations.crosshead,
+            Measured::CrossheadLateralAcceleration { throw } => {
+                at.throws[throw].accelerations.guide.x
+            }
+            Measured::FrameAcceleration { axis: Axis::X } => at.frame.x,
+            Measured::FrameAcceleration { axis: Axis::Y } => at.frame.y,
+            Measured::CylinderPressure { throw, end } => {
+                let gas = &at.throws[throw].gas;
+                match end {
+                    ChamberEnd::Head => gas.head_end.pressure,
+                    ChamberEnd::Crank => gas.crank_end.pressure,
+                }
+            }
+            Measured::CrankAngle => {
+                let turns = (at.angle.value() / TAU).floor();
+                at.angle - TAU * turns
+            }
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! A machine on its way through time, over plain or dual numbers.
+
+use crate::record::Error;
+use crate::settings::Transient;
+use integrate::{Integrator, Real, Step, System, Work};
+use mechanism::{Dynamics, Evaluation, Machine};
+use std::f64::consts::TAU;
+
+/// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
+const LONGEST_STEP: f64 = 0.05;
+/// Periods, in revolutions, that count as settled.
+const PERIODS: [usize; 3] = [1, 2, 4];
+
+/// A machine on its way.
+pub(crate) struct Run<S> {
+    dynamics: Dynamics<S>,
+    integrator: Integrator<S>,
+    revolution: f64,
+    state: Vec<S>,
+}
+
+/// Equally spaced instants at which a run is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instants {
+    /// The first, s.
+    pub first: f64,
+    /// How many a second.
+    pub rate: f64,
+    /// How many in all.
+    pub count: usize,
+}
+
+impl Instants {
+    fn at(&self, index: usize) -> f64 {
+        self.first + index as f64 / self.rate
+    }
+}
+
+/// Energy and works at an instant, J.
+pub(crate) struct Ledger {
+    energy: f64,
+    works: [f64; 4],
+}
+
+impl<S: Real> Run<S> {
+    /// At rest relative to the ideal mechanism; with `ledger` the works are integrated along.
+    pub(crate) fn start(machine: Machine<S>, tolerance: f64, ledger: bool) -> Self {
+        let revolution = TAU / machine.drive.reference_speed().value();
+        let mut dynamics = Dynamics::new(machine, ledger);
+        let state = dynamics.initial_state();
+        let longest = LONGEST_STEP * revolution;
+        let integrator = Integrator::new(&mut dynamics, 0.0, &state, tolerance, longest);
+        Self {
+            dynamics,
+            integrator,
+            revolution,
+            state,
+        }
+    }
+
+    /// Length of a revolution at the reference speed, s.
+    pub(crate) fn revolution(&self) -> f64 {
+        self.revolution
+    }
+
+    /// What the integration took so far.
+    pub(crate) fn work(&self) -> Work {
+        self.integrator.work()
+    }
+
+    /// Leaves the start behind, but for the last revolution, which leads into the record. Tells how
+    /// many revolutions the transient takes, and whether the motion had settled.
+    pub(crate) fn leave_transient(&mut self, transient: Transient) -> Result<(u32, bool), Error> {
+        let (change, at_most) = match transient {
+            Transient::Revolutions(count) => (0.0, count),
+            Transient::Settled { change, at_most } => (change, at_most),
+        };
+        let mut strobes = vec![self.integrator.state().to_vec()];
+        for revolution in 1..at_most {
+            self.advance(f64::from(revolution) * self.revolution)?;
+            let now = self.integrator.state().to_vec();
+            let repeats = |period: &usize| {
+                let earlier = strobes.len().checked_sub(*period);
+                earlier.is_some_and(|i| self.distance(&now, &strobes[i]) < change)
+            };
+            // Not before the start has had a revolution to pass.
+            if revolution > 1 && PERIODS.iter().any(repeats) {
+                return Ok((revolution + 1, true));
+            }
+            strobes.push(now);
+            let keep = strobes.len().saturating_sub(PERIODS[PERIODS.len() - 1]);
+            strobes.drain(..keep);
+        }
+        Ok((at_most, false))
+    }
+
+    /// Largest difference of two states, each component over its scale.
+    fn distance(&self, a: &[S], b: &[S]) -> f64 {
+        let scales = self.dynamics.scales();
+        let parts = a.iter().zip(b).zip(scales);
+        parts
+            .map(|((a, b), scale)| ((a.value() - b.value()) / scale.value()).abs())
+            .fold(0.0, f64::max)
+    }
+
+    fn advance(&mut self, end: f64) -> Result<(), Error> {
+        self.integrator
+            .advance(&mut self.dynamics, end, |_, _| ())?;
+        self.check(end)
+    }
+
+    fn check(&self, time: f64) -> Result<(), Error> {
+        if self
+            .integrator
+            .state()
+            .iter()
+            .all(|y| y.value().is_finite())
+        {
+            return Ok(());
+        }
+        Err(Error::NotFinite { time })
+    }
+
+    /// Goes on to the last of the instants and shows each.
+    pub(crate) fn show(
+        &mut self,
+        instants: Instants,
+        mut look: impl FnMut(&Evaluation<S>),
+    ) -> Result<(), Error> {
+        let Instants { count, .. } = instants;
+        let mut seen = 0;
+        // Where the machine had not started yet, the first value holds.
+        let now = self.integrator.time();
+        let first = self
+            .dynamics
+            .evaluate(S::constant(now), self.integrator.state());
+        while seen < count && instants.at(seen) <= now {
+            look(first);
+            seen += 1;
+        }
+        let end = instants.at(count.saturating_sub(1));
+        let state = &mut self.state;
+        let observe = |dynamics: &mut Dynamics<S>, step: &Step<S>| {
+            let stop = step.start.value() + step.length.value();
+            while seen < count && instants.at(seen) <= stop {
+                let t = S::constant(instants.at(seen));
+                step.interpolate((t - step.start) / step.length, state);
+                look(dynamics.evaluate(t, state));
+                seen += 1;
+            }
+        };
+        self.integrator.advance(&mut self.dynamics, end, observe)?;
+        // Rounding may leave the very last instant beyond the last step.
+        let last = self
+            .dynamics
+            .evaluate(S::constant(end), self.integrator.state());
+        for _ in seen..count {
+            look(last);
+        }
+        self.check(end)
+    }
+}
+
+impl Run<f64> {
+    /// Where energy and works stand.
+    pub(crate) fn ledger(&mut self) -> Ledger {
+        let y = self.integrator.state().to_vec();
+        self.dynamics.evaluate(self.integrator.time(), &y);
+        let mut works = [0.0; 4];
+        if let Some(i) = self.dynamics.layout().ledger {
+            works.copy_from_slice(&y[i..i + 4]);
+        }
+        Ledger {
+            energy: self.dynamics.energy().total(),
+            works,
+        }
+    }
+
+    /// What the ledger misses since `before`, over the larger of the works.
+    pub(crate) fn residual(&mut self, before: &Ledger) -> f64 {
+        let now = self.ledger();
+        let [gas, drive, friction, damping] =
+            std::array::from_fn(|i| now.works[i] - before.works[i]);
+        let missing = now.energy - before.energy - (gas + drive - friction - damping);
+        let turned = gas.abs() + drive.abs() + friction.abs() + damping.abs();
+        if turned > 0.0 { missing / turned } else { 0.0 }
+    }
+}

@@ -1,0 +1,101 @@
+//! Derivatives of a record against differences of records.
+
+use input::{MachineFile, Resolved};
+use serde_json::Value;
+use simulate::{Moved, Settings, Transient, sensitivities, simulate};
+
+/// The shipped machine with 0.1 mm at both ends: a periodic motion.
+fn tree() -> Value {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/machines/single-stage.yaml"
+    );
+    let file = input::machine_file::read(std::path::Path::new(path)).unwrap();
+    let mut tree = file.to_tree().clone();
+    for (path, value) in [
+        ("joints.big_end.clearance", "0.1 mm"),
+        ("joints.small_end.clearance", "0.1 mm"),
+        ("sensors.crosshead_acceleration.mounting", ""),
+    ] {
+        let value = match value {
+            "" => serde_json::json!({"frequency": "3 kHz", "damping_ratio": "5 %"}),
+            text => text.into(),
+        };
+        input::paths::set(&mut tree, path, value).unwrap();
+    }
+    tree
+}
+
+fn with(path: &str, value: &str) -> Resolved {
+    let mut tree = tree();
+    let value = value.parse::<f64>().map_or(value.into(), Value::from);
+    input::paths::set(&mut tree, path, value).unwrap();
+    MachineFile::from_tree(&tree).unwrap().resolve().unwrap()
+}
+
+/// A path, its value a little below and above, and the step in the middle.
+const STEPS: [(&str, &str, &str); 9] = [
+    (
+        "joints.big_end.contact.stiffness",
+        "23.99 GN/m^1.5",
+        "24.01 GN/m^1.5",
+    ),
+    (
+        "joints.small_end.contact.damping",
+        "1.999e4 N s/m",
+        "2.001e4 N s/m",
+    ),
+    ("joints.big_end.friction.coefficient", "0.04995", "0.05005"),
+    ("joints.small_end.clearance", "0.09999 mm", "0.10001 mm"),
+    ("cylinder.exponent", "1.3999", "1.4001"),
+    ("cylinder.head_clearance", "23.999 mm", "24.001 mm"),
+    ("crosshead.mass", "17.999 kg", "18.001 kg"),
+    ("sensors.crosshead_acceleration.gain", "0.9999", "1.0001"),
+    (
+        "sensors.crosshead_acceleration.mounting.frequency",
+        "2999.9 Hz",
+        "3000.1 Hz",
+    ),
+];
+
+#[test]
+fn derivatives_equal_differences_of_records() {
+    let settings = Settings {
+        transient: Transient::Revolutions(25),
+        revolutions: 1,
+        tolerance: 1e-11,
+        ..Settings::default()
+    };
+    let centre = MachineFile::from_tree(&tree()).unwrap().resolve().unwrap();
+    let moved: Vec<Moved> = STEPS
+        .iter()
+        .map(|(path, _, above)| with(path, above))
+        .map(|m| Moved {
+            machine: m.machine,
+            sensors: m.sensors,
+        })
+        .collect();
+    let found = sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap();
+    let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
+    assert_eq!(found.series, plain.series);
+    for ((path, below, above), derivative) in STEPS.iter().zip(&found.derivatives) {
+        let [below, above] = [below, above].map(|value| {
+            let machine = with(path, value);
+            simulate(&machine.machine, &machine.sensors, &settings, false).unwrap()
+        });
+        // The acceleration of the crosshead.
+        let differences = above.series[0].iter().zip(&below.series[0]);
+        let expected: Vec<f64> = differences.map(|(a, b)| (a - b) / 2.0).collect();
+        let size = expected.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let apart = derivative[0].iter().zip(&expected);
+        let apart = apart.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        println!("{path}: {:.1e}", apart / size);
+        // A filter is moved by a difference, everything else by exact derivatives.
+        let bound = if path.ends_with("frequency") {
+            2e-3
+        } else {
+            2e-5
+        };
+        assert!(apart < bound * size, "{path}: {:.1e}", apart / size);
+    }
+}
