@@ -26,6 +26,7 @@ mod interpolation;
 mod kaiser;
 pub mod kurtogram;
 pub mod noise;
+pub mod order_lines;
 pub mod order_spectrum;
 pub mod phase_portrait;
 pub mod spectral_kurtosis;

@@ -6,7 +6,7 @@
 //! chaotic one it grows without bound, and statistics have to be compared by differences instead.
 
 use crate::chain::Sampling;
-use crate::record::Error;
+use crate::record::{Error, simulate};
 use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::settings::Settings;
@@ -46,9 +46,17 @@ pub fn sensitivities(
     moved: &[Moved],
     settings: &Settings,
 ) -> Result<Sensitivities, Error> {
+    if moved.is_empty() {
+        let record = simulate(machine, sensors, settings, false)?;
+        return Ok(Sensitivities {
+            series: record.series,
+            derivatives: Vec::new(),
+            settled: record.settled,
+        });
+    }
     // Eight tangents at a time; the last tangents of an incomplete chunk are 0.
     let part = |chunk: &[Moved]| match chunk.len() {
-        0 | 1 => tangents::<1>(machine, sensors, chunk, settings),
+        1 => tangents::<1>(machine, sensors, chunk, settings),
         2 => tangents::<2>(machine, sensors, chunk, settings),
         3 | 4 => tangents::<4>(machine, sensors, chunk, settings),
         _ => tangents::<8>(machine, sensors, chunk, settings),

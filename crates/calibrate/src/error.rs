@@ -1,0 +1,89 @@
+//! Why a calibration cannot be made.
+
+/// Why a calibration cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The machine file, a path or a value of a run.
+    #[error(transparent)]
+    Input(#[from] input::Error),
+    /// A channel cannot be analysed.
+    #[error("run {run}: channel {channel}: {source}")]
+    Signal {
+        /// The run.
+        run: String,
+        /// The channel.
+        channel: String,
+        /// What is wrong with it.
+        source: signal::Error,
+    },
+    /// A run holds nothing that the model predicts.
+    #[error(
+        "run {run} has no channel that the model predicts; its channels are {found}, and those that can be used are {known}"
+    )]
+    NoChannel {
+        /// The run.
+        run: String,
+        /// What it has.
+        found: String,
+        /// What the machine's sensors could give.
+        known: String,
+    },
+    /// A channel that is noise alone.
+    #[error(
+        "run {run}: channel {channel} does not repeat with the crank: no order stands out of its noise"
+    )]
+    OnlyNoise {
+        /// The run.
+        run: String,
+        /// The channel.
+        channel: String,
+    },
+    /// A channel that was cut off by its range.
+    #[error(
+        "run {run}: channel {channel} is clipped: {count} samples in a row stand at its greatest value {value}"
+    )]
+    Clipped {
+        /// The run.
+        run: String,
+        /// The channel.
+        channel: String,
+        /// Longest stretch at the limit, samples.
+        count: usize,
+        /// The limit, SI.
+        value: f64,
+    },
+    /// The recorded crank angle and the stated speed contradict each other.
+    #[error(
+        "run {run}: the speed is stated as {stated:.1} rpm, but the crank angle turns at {measured:.1} rpm"
+    )]
+    Speed {
+        /// The run.
+        run: String,
+        /// What the bundle says, rpm.
+        stated: f64,
+        /// What the crank angle says, rpm.
+        measured: f64,
+    },
+    /// A parameter whose value cannot be fitted.
+    #[error("{path} cannot be fitted: {reason}")]
+    Parameter {
+        /// Its path in the machine file.
+        path: String,
+        /// Why.
+        reason: String,
+    },
+    /// The machine cannot be simulated anywhere near its nominal parameters.
+    #[error("run {run} cannot be simulated with the nominal parameters: {source}")]
+    Simulation {
+        /// The run.
+        run: String,
+        /// What happened.
+        source: simulate::Error,
+    },
+    /// The optimiser cannot start: bounds that contradict each other.
+    #[error("the search cannot go on: {0}")]
+    Optimiser(String),
+    /// Nothing to fit, or nothing to fit it to.
+    #[error("{0}")]
+    Nothing(&'static str),
+}

@@ -1,0 +1,239 @@
+//! From a problem to a calibrated machine.
+
+use crate::error::Error;
+use crate::identifiability::{Information, information};
+use crate::likelihood::{Likelihood, misfit};
+use crate::optimiser::{self, Genetic, LeastSquares, Progress};
+use crate::parameter::Parameter;
+use crate::problem::Problem;
+use nalgebra::DMatrix;
+use std::ops::ControlFlow;
+
+/// How a calibration is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitSettings {
+    /// The optimiser.
+    pub optimiser: Optimiser,
+    /// Seed of a random search.
+    pub seed: u64,
+    /// Most evaluations of the model, all runs being one.
+    pub evaluations: u64,
+    /// Runs that are not fitted to, but predicted.
+    pub held_out: Vec<String>,
+}
+
+/// How the best fit is searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Optimiser {
+    /// Levenberg and Marquardt from the nominal values; where that leaves more than noise, CMA-ES
+    /// and Levenberg and Marquardt again from where it ends.
+    #[default]
+    Default,
+    /// CMA-ES alone.
+    CmaEs,
+    /// The genetic algorithm alone.
+    Genetic(Genetic),
+    /// Levenberg and Marquardt alone.
+    LevenbergMarquardt,
+}
+
+impl Optimiser {
+    /// Its name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Default => "levenberg-marquardt, cma-es",
+            Self::CmaEs => "cma-es",
+            Self::Genetic(_) => "genetic",
+            Self::LevenbergMarquardt => "levenberg-marquardt",
+        }
+    }
+}
+
+/// A misfit below this is taken for noise, and no better fit is looked for.
+const NOISE: f64 = 1.15;
+
+/// A calibrated machine.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// Each parameter with what was found.
+    pub estimates: Vec<Estimate>,
+    /// Correlation between each pair of estimates; 0 beside a parameter that is not told.
+    pub correlations: DMatrix<f64>,
+    /// Each run's misfit.
+    pub runs: Vec<RunFit>,
+    /// Evaluations of the model.
+    pub evaluations: u64,
+    /// False where it was stopped before it had ended.
+    pub complete: bool,
+}
+
+/// What was found of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its value, SI; the nominal one where the recordings do not tell it.
+    pub value: f64,
+    /// Its 95 % interval, SI; none where the recordings do not tell it.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// How far a run is from its prediction, in units of its noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunFit {
+    /// The run.
+    pub id: String,
+    /// True where it was not fitted to.
+    pub held_out: bool,
+    /// With the nominal parameters.
+    pub nominal: f64,
+    /// With the calibrated ones.
+    pub calibrated: f64,
+}
+
+/// Fits the problem's parameters to its runs; `watch` is told the best so far, and may stop it.
+///
+/// # Errors
+/// Nothing to fit, or a machine that cannot be simulated with its nominal parameters.
+pub fn calibrate(
+    problem: &Problem,
+    settings: &FitSettings,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Fit, Error> {
+    let held_out = |id: &str| settings.held_out.iter().any(|held| held == id);
+    let fitted = problem.with_runs(|run| !held_out(&run.id));
+    if fitted.runs.is_empty() {
+        return Err(Error::Nothing(
+            "every run is held out: there is none to fit to",
+        ));
+    }
+    if problem.parameters.is_empty() {
+        return Err(Error::Nothing("no parameter is given to be fitted"));
+    }
+    let nominal = vec![0.0; problem.parameters.len()];
+    let before = Likelihood::new(problem).by_run(&nominal)?;
+    let mut free: Vec<usize> = (0..nominal.len()).collect();
+    let mut start = nominal.clone();
+    let mut evaluations = 0;
+    let mut complete = true;
+    let (x, told) = loop {
+        let part = fitted.with_parameters(&free);
+        let likelihood = Likelihood::new(&part);
+        let mut watch = |progress: &Progress| {
+            let mut x = nominal.clone();
+            for (i, value) in free.iter().zip(&progress.x) {
+                x[*i] = *value;
+            }
+            let answer = watch(&Progress {
+                x,
+                evaluations: evaluations + progress.evaluations,
+                ..progress.clone()
+            });
+            complete &= answer.is_continue();
+            answer
+        };
+        let found = search(&likelihood, &start, settings, &mut watch)?;
+        evaluations += found.evaluations;
+        let information = information(&likelihood, &found.x);
+        evaluations += 1 + optimiser::DERIVATIVES + 2 * free.len() as u64;
+        match information.untold {
+            // What the recordings do not tell keeps its nominal value, and the rest is fitted again.
+            Some(untold) if complete => {
+                start = found.x;
+                start.remove(untold);
+                free.remove(untold);
+                if free.is_empty() {
+                    break (Vec::new(), None);
+                }
+            }
+            _ => break (found.x, Some(information)),
+        }
+    };
+    let mut all = nominal.clone();
+    for (i, value) in free.iter().zip(&x) {
+        all[*i] = *value;
+    }
+    let after = Likelihood::new(problem).by_run(&all)?;
+    let runs = problem.runs.iter().zip(before.iter().zip(&after));
+    Ok(Fit {
+        runs: runs
+            .map(|(run, (before, after))| RunFit {
+                id: run.id.clone(),
+                held_out: held_out(&run.id),
+                nominal: misfit(before),
+                calibrated: misfit(after),
+            })
+            .collect(),
+        estimates: estimates(problem, &free, &all, told.as_ref()),
+        correlations: correlations(nominal.len(), &free, told.as_ref()),
+        evaluations,
+        complete,
+    })
+}
+
+/// The best fit by the optimiser of the settings, from `start`.
+fn search(
+    likelihood: &Likelihood,
+    start: &[f64],
+    settings: &FitSettings,
+    watch: optimiser::Watch,
+) -> Result<Progress, Error> {
+    let most = settings.evaluations;
+    let (seed, count) = (settings.seed, likelihood.count() as f64);
+    match settings.optimiser {
+        Optimiser::LevenbergMarquardt => {
+            optimiser::levenberg_marquardt(likelihood, start, most, watch)
+        }
+        Optimiser::CmaEs => optimiser::cma_es(likelihood, start, seed, most, watch),
+        Optimiser::Genetic(genetic) => optimiser::genetic(likelihood, &genetic, seed, most, watch),
+        Optimiser::Default => {
+            let near = optimiser::levenberg_marquardt(likelihood, start, most, watch)?;
+            if (2.0 * near.cost / count).sqrt() < NOISE || near.evaluations >= most {
+                return Ok(near);
+            }
+            let mut spent = near.evaluations;
+            let far = optimiser::cma_es(likelihood, &near.x, seed, most - spent, watch)?;
+            spent += far.evaluations;
+            let left = most.saturating_sub(spent).max(1);
+            let polished = optimiser::levenberg_marquardt(likelihood, &far.x, left, watch)?;
+            spent += polished.evaluations;
+            let best = [near, far, polished].into_iter();
+            let best = best.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            Ok(Progress {
+                evaluations: spent,
+                ..best.unwrap_or(Progress {
+                    x: start.to_vec(),
+                    cost: f64::INFINITY,
+                    evaluations: 0,
+                })
+            })
+        }
+    }
+}
+
+fn estimates(
+    problem: &Problem,
+    free: &[usize],
+    x: &[f64],
+    told: Option<&Information>,
+) -> Vec<Estimate> {
+    let of = |(i, parameter): (usize, &Parameter)| {
+        let place = free.iter().position(|f| *f == i);
+        let interval = place.zip(told).map(|(place, told)| told.intervals[place]);
+        Estimate {
+            value: parameter.value(x[i]),
+            interval: interval.map(|interval| interval.map(|x| parameter.value(x))),
+            parameter: parameter.clone(),
+        }
+    };
+    problem.parameters.iter().enumerate().map(of).collect()
+}
+
+fn correlations(count: usize, free: &[usize], told: Option<&Information>) -> DMatrix<f64> {
+    let place = |i: usize| free.iter().position(|f| *f == i);
+    DMatrix::from_fn(count, count, |i, j| match (place(i), place(j), told) {
+        (Some(i), Some(j), Some(told)) => told.correlations[(i, j)],
+        _ if i == j => 1.0,
+        _ => 0.0,
+    })
+}

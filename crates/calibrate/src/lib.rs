@@ -1,0 +1,29 @@
+//! Fits a machine's parameters to recordings of it.
+//!
+//! ```text
+//! recordings ──observation──> lines of the orders, with their noise ─┐
+//!                                                                    ├─likelihood─> residuals
+//! machine(θ) ──prediction───> the same lines, with derivatives ──────┘        │
+//!                                                                             v
+//!                                  optimiser ──> θ ──identifiability──> bounds, what is not told
+//! ```
+//!
+//! What is compared are the complex amplitudes of the shaft's orders: the crank-angle synchronous
+//! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
+//! Weights come from that noise alone.
+
+pub mod error;
+pub mod fit;
+pub mod identifiability;
+pub mod likelihood;
+pub mod observation;
+pub mod optimiser;
+pub mod parameter;
+pub mod prediction;
+pub mod problem;
+
+pub use error::Error;
+pub use fit::{Fit, FitSettings, calibrate};
+pub use observation::{Channel, Observation, Run};
+pub use parameter::Parameter;
+pub use problem::Problem;

@@ -1,0 +1,166 @@
+//! How far a prediction is from an observation, in units of the noise.
+
+use crate::error::Error;
+use crate::observation::{Observation, Observed};
+use crate::optimiser::LeastSquares;
+use crate::prediction::{Prediction, predict, predict_with_derivatives};
+use crate::problem::Problem;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+use signal::order_lines::OrderLines;
+
+/// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
+/// are never trusted beyond it.
+const ACCURACY: f64 = 2e-5;
+/// Residual that stands in for every one of a run that cannot be simulated.
+const FAILED: f64 = 1e3;
+
+/// The residuals of a problem: differences of amplitudes over their standard deviations.
+///
+/// The real and the imaginary part of a line are one residual each, its noise being divided evenly
+/// between the two. Where the model is right, every residual has variance 1, and half the sum of
+/// their squares is the negative logarithm of the likelihood.
+pub struct Likelihood<'a> {
+    problem: &'a Problem,
+}
+
+impl<'a> Likelihood<'a> {
+    /// Of this problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        Self { problem }
+    }
+
+    /// How many residuals there are.
+    pub fn count(&self) -> usize {
+        self.problem.runs.iter().map(residual_count).sum()
+    }
+
+    /// The predictions of all runs.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub fn predictions(&self, x: &[f64]) -> Result<Vec<Prediction>, Error> {
+        let runs = self.problem.runs.par_iter();
+        runs.map(|run| predict(self.problem, run, x)).collect()
+    }
+
+    /// The residuals of each run.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub fn by_run(&self, x: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
+        let predictions = self.predictions(x)?;
+        let runs = self.problem.runs.iter().zip(&predictions);
+        Ok(runs.map(|(run, p)| residuals(run, p)).collect())
+    }
+}
+
+impl LeastSquares for Likelihood<'_> {
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.problem
+            .parameters
+            .iter()
+            .map(|p| p.box_bounds())
+            .collect()
+    }
+
+    fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        let runs = self.problem.runs.par_iter();
+        let parts: Vec<Vec<f64>> = runs
+            .map(|run| match predict(self.problem, run, x) {
+                Ok(prediction) => residuals(run, &prediction),
+                Err(_) => vec![FAILED; residual_count(run)],
+            })
+            .collect();
+        parts.concat()
+    }
+
+    fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+        let runs = self.problem.runs.par_iter();
+        let parts: Vec<DMatrix<f64>> = runs
+            .map(|run| match predict_with_derivatives(self.problem, run, x) {
+                Ok(prediction) => derivatives(run, &prediction, x.len()),
+                Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+            })
+            .collect();
+        let mut whole = DMatrix::zeros(self.count(), x.len());
+        let mut row = 0;
+        for part in &parts {
+            whole.rows_mut(row, part.nrows()).copy_from(part);
+            row += part.nrows();
+        }
+        whole
+    }
+}
+
+/// Root mean square of residuals: 1 where noise is all that is left.
+pub fn misfit(residuals: &[f64]) -> f64 {
+    let squares: f64 = residuals.iter().map(|r| r * r).sum();
+    (squares / residuals.len().max(1) as f64).sqrt()
+}
+
+fn residual_count(run: &Observation) -> usize {
+    let channels = run.channels.iter();
+    channels.map(|channel| channel.orders.len() * 2).sum()
+}
+
+fn residuals(run: &Observation, prediction: &Prediction) -> Vec<f64> {
+    let mut all = Vec::with_capacity(residual_count(run));
+    for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
+        let weights = weights(observed, predicted);
+        for (k, weight) in observed.orders.iter().zip(weights) {
+            let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
+            push(&mut all, apart * weight, *k);
+        }
+    }
+    all
+}
+
+fn derivatives(run: &Observation, prediction: &Prediction, count: usize) -> DMatrix<f64> {
+    let mut whole = DMatrix::zeros(residual_count(run), count);
+    // A motion that does not repeat itself has none.
+    for (column, of_parameter) in prediction.derivatives.iter().enumerate() {
+        let mut all = Vec::with_capacity(residual_count(run));
+        let channels = run.channels.iter().zip(&prediction.lines).zip(of_parameter);
+        for ((observed, predicted), derivative) in channels {
+            let weights = weights(observed, predicted);
+            for (k, weight) in observed.orders.iter().zip(weights) {
+                let slope = derivative.get(*k).copied().unwrap_or_default();
+                push(&mut all, slope * weight, *k);
+            }
+        }
+        whole.column_mut(column).copy_from_slice(&all);
+    }
+    whole
+}
+
+/// The mean of an acceleration belongs to the sensor; that of a pressure has no imaginary part.
+fn push(all: &mut Vec<f64>, value: Complex64, order: usize) {
+    all.push(value.re);
+    all.push(if order == 0 { 0.0 } else { value.im });
+}
+
+fn amplitude(lines: &OrderLines, order: usize) -> Complex64 {
+    lines.amplitude.get(order).copied().unwrap_or_default()
+}
+
+/// One over the standard deviation of the real part of each compared line.
+fn weights(observed: &Observed, predicted: &OrderLines) -> Vec<f64> {
+    let greatest = observed
+        .lines
+        .amplitude
+        .iter()
+        .map(|c| c.norm())
+        .fold(0.0, f64::max);
+    let accuracy = (ACCURACY * greatest).powi(2);
+    let of = |lines: &OrderLines, k: usize| lines.variance.get(k).copied().unwrap_or(0.0);
+    observed
+        .orders
+        .iter()
+        .map(|k| {
+            let variance = of(&observed.lines, *k) + of(predicted, *k) + accuracy;
+            (2.0 / variance).sqrt()
+        })
+        .collect()
+}

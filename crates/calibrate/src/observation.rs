@@ -1,0 +1,195 @@
+//! A run as measured: its channels over the crank angle, and what in them repeats.
+
+use crate::error::Error;
+use serde_json::Value;
+use signal::angle_resampling::AngleGrid;
+use signal::crank_angle::CrankAngle;
+use signal::order_lines::{OrderLines, order_lines};
+use std::f64::consts::TAU;
+
+/// Points per revolution over which orders are found.
+pub const POINTS: usize = 1024;
+/// A recording that stands at its greatest value for this many samples is clipped.
+const CLIPPED: usize = 4;
+/// Relative difference between stated and recorded speed that is a contradiction.
+const SPEED: f64 = 0.02;
+/// Orders that always count; higher ones do where they stand out of the noise.
+const LOW_ORDERS: usize = 20;
+/// Power over noise from which an order stands out.
+const STANDS_OUT: f64 = 4.0;
+
+/// A run of the machine, as a bundle of recordings has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its name.
+    pub id: String,
+    /// Paths of the machine file and the values that they have in this run.
+    pub settings: Vec<(String, Value)>,
+    /// Mean speed, rpm.
+    pub speed_rpm: f64,
+    /// Samples per second.
+    pub sample_rate: f64,
+    /// Crank angle of every sample in [0, 2π), rad.
+    pub crank_angle: Option<Vec<f64>>,
+    /// What was measured.
+    pub channels: Vec<Channel>,
+}
+
+/// A measured channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Name of its column, which tells what it is: `crosshead_acceleration_m_s2`.
+    pub column: String,
+    /// The samples, SI.
+    pub samples: Vec<f64>,
+}
+
+/// What a run shows of what the model predicts.
+#[derive(Clone, Debug)]
+pub struct Observation {
+    /// The run's name.
+    pub id: String,
+    /// Its settings.
+    pub settings: Vec<(String, Value)>,
+    /// The observed channels.
+    pub channels: Vec<Observed>,
+}
+
+/// The lines of one channel.
+#[derive(Clone, Debug)]
+pub struct Observed {
+    /// Name of its column.
+    pub column: String,
+    /// Amplitudes and their noise.
+    pub lines: OrderLines,
+    /// The orders that are compared.
+    pub orders: Vec<usize>,
+}
+
+impl Observation {
+    /// Looks at a run's channels of the given columns.
+    ///
+    /// # Errors
+    /// No such channel, a channel that is clipped or noise alone, an angle that contradicts the
+    /// speed.
+    pub fn of(run: &Run, columns: &[String]) -> Result<Self, Error> {
+        let chosen: Vec<&Channel> = run
+            .channels
+            .iter()
+            .filter(|channel| columns.contains(&channel.column))
+            .collect();
+        let Some(first) = chosen.first() else {
+            let names: Vec<&str> = run.channels.iter().map(|c| c.column.as_str()).collect();
+            return Err(Error::NoChannel {
+                run: run.id.clone(),
+                found: names.join(", "),
+                known: columns.join(", "),
+            });
+        };
+        let angle = angle(run, first)?;
+        let grid = AngleGrid::new(&angle, POINTS);
+        let channels = chosen
+            .into_iter()
+            .map(|channel| {
+                not_clipped(run, channel)?;
+                let lines = grid
+                    .clone()
+                    .and_then(|grid| lines(&grid, &channel.samples))
+                    .map_err(|source| signal_error(run, channel, source))?;
+                let orders = orders(&lines);
+                if orders.len() <= LOW_ORDERS && !stands_out(&lines) {
+                    return Err(Error::OnlyNoise {
+                        run: run.id.clone(),
+                        channel: channel.column.clone(),
+                    });
+                }
+                Ok(Observed {
+                    column: channel.column.clone(),
+                    lines,
+                    orders,
+                })
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            id: run.id.clone(),
+            settings: run.settings.clone(),
+            channels,
+        })
+    }
+}
+
+/// The lines of samples on a grid of crank angles.
+pub(crate) fn lines(grid: &AngleGrid, samples: &[f64]) -> Result<OrderLines, signal::Error> {
+    let highest = grid.highest_order().min(POINTS / 2 - 1);
+    order_lines(&grid.resample(samples)?, highest)
+}
+
+fn signal_error(run: &Run, channel: &Channel, source: signal::Error) -> Error {
+    Error::Signal {
+        run: run.id.clone(),
+        channel: channel.column.clone(),
+        source,
+    }
+}
+
+fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
+    let error = |source| Error::Signal {
+        run: run.id.clone(),
+        channel: "crank_angle_rad".into(),
+        source,
+    };
+    let Some(recorded) = &run.crank_angle else {
+        let samples = first.samples.len();
+        return CrankAngle::from_speed(samples, run.sample_rate, run.speed_rpm).map_err(error);
+    };
+    let angle = CrankAngle::from_encoder(recorded).map_err(error)?;
+    let turns = TAU / angle.samples_per_revolution() * run.sample_rate;
+    let measured = turns * 60.0 / TAU;
+    if (measured / run.speed_rpm - 1.0).abs() > SPEED {
+        return Err(Error::Speed {
+            run: run.id.clone(),
+            stated: run.speed_rpm,
+            measured,
+        });
+    }
+    Ok(angle)
+}
+
+/// A pressure may stay at its greatest value while a valve is open; an acceleration never does.
+fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
+    if !channel.column.contains("acceleration") {
+        return Ok(());
+    }
+    for limit in [f64::max, f64::min] {
+        let value = channel.samples.iter().copied().reduce(limit).unwrap_or(0.0);
+        let (mut longest, mut count) = (0, 0);
+        for x in &channel.samples {
+            count = if *x == value { count + 1 } else { 0 };
+            longest = longest.max(count);
+        }
+        if longest >= CLIPPED {
+            return Err(Error::Clipped {
+                run: run.id.clone(),
+                channel: channel.column.clone(),
+                count: longest,
+                value,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn stands(lines: &OrderLines, order: usize) -> bool {
+    lines.amplitude[order].norm_sqr() > STANDS_OUT * lines.variance[order]
+}
+
+fn stands_out(lines: &OrderLines) -> bool {
+    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1)).any(|k| stands(lines, k))
+}
+
+/// The mean of an acceleration is its sensor's, not the machine's; pressures have an order 0.
+fn orders(lines: &OrderLines) -> Vec<usize> {
+    (0..lines.amplitude.len())
+        .filter(|&k| k <= LOW_ORDERS || stands(lines, k))
+        .collect()
+}

@@ -1,0 +1,298 @@
+//! The optimisers, from the crate `basin`: Levenberg and Marquardt's method, CMA-ES, a genetic
+//! algorithm.
+
+use crate::error::Error;
+use basin::{
+    BoundedCmaEs, BoundedLevenbergMarquardt, BoxBounds, ConstraintSet, Constraints, CostFunction,
+    DenseMatrix, Executor, Jacobian, PointState, PopulationProgress, Residual, Ssga, State,
+    StepOutcome,
+};
+use nalgebra::DMatrix;
+use std::cell::Cell;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+
+/// A sum of squares to be made small within bounds.
+pub trait LeastSquares {
+    /// Least and greatest value of each coordinate.
+    fn bounds(&self) -> Vec<[f64; 2]>;
+    /// The residuals at `x`; always as many.
+    fn residuals(&self, x: &[f64]) -> Vec<f64>;
+    /// Their derivatives, one row per residual.
+    fn jacobian(&self, x: &[f64]) -> DMatrix<f64>;
+}
+
+/// Where an optimiser stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// The best point so far.
+    pub x: Vec<f64>,
+    /// Half the sum of squares there.
+    pub cost: f64,
+    /// Evaluations of the model so far; one with derivatives counts as [`DERIVATIVES`].
+    pub evaluations: u64,
+}
+
+/// What an evaluation with derivatives counts for, whatever the number of parameters: the tangents
+/// of up to eight cost about four times the plain run.
+pub const DERIVATIVES: u64 = 4;
+
+/// Told after each step; stops where it says so.
+pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
+
+/// An optimisation problem as the crate sees it, counting its evaluations.
+struct Counted<'a, T> {
+    inner: &'a T,
+    low: Vec<f64>,
+    high: Vec<f64>,
+    evaluations: &'a Cell<u64>,
+}
+
+impl<'a, T: LeastSquares> Counted<'a, T> {
+    fn new(inner: &'a T, evaluations: &'a Cell<u64>) -> Self {
+        let (low, high) = inner.bounds().iter().map(|b| (b[0], b[1])).unzip();
+        Self {
+            inner,
+            low,
+            high,
+            evaluations,
+        }
+    }
+
+    fn count(&self, how_many: u64) {
+        self.evaluations.set(self.evaluations.get() + how_many);
+    }
+}
+
+impl<T: LeastSquares> Constraints for Counted<'_, T> {
+    type Set = ConstraintSet<BoxBounds<Vec<f64>>>;
+    fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
+        ConstraintSet::new().with_bounds(BoxBounds::new(Some(&self.low), Some(&self.high)))
+    }
+}
+
+impl<T: LeastSquares> CostFunction for Counted<'_, T> {
+    type Param = Vec<f64>;
+    type Output = f64;
+    type Error = Infallible;
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, Infallible> {
+        self.count(1);
+        Ok(half_square(&self.inner.residuals(x)))
+    }
+}
+
+impl<T: LeastSquares> Residual for Counted<'_, T> {
+    type Param = Vec<f64>;
+    type Output = Vec<f64>;
+    type Error = Infallible;
+    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
+        self.count(1);
+        Ok(self.inner.residuals(x))
+    }
+}
+
+impl<T: LeastSquares> Jacobian for Counted<'_, T> {
+    type Jacobian = DenseMatrix;
+    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
+        self.count(DERIVATIVES);
+        let jacobian = self.inner.jacobian(x);
+        Ok(DenseMatrix::from_fn(
+            jacobian.nrows(),
+            jacobian.ncols(),
+            |i, j| jacobian[(i, j)],
+        ))
+    }
+}
+
+fn failed(error: impl std::fmt::Display) -> Error {
+    Error::Optimiser(error.to_string())
+}
+
+fn half_square(residuals: &[f64]) -> f64 {
+    0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
+}
+
+/// The steps of an executor until it stops, `watch` says so, or `most` evaluations are made.
+macro_rules! run {
+    ($executor:expr, $evaluations:expr, $most:expr, $watch:expr) => {{
+        let mut stepper = $executor.into_stepper().map_err(failed)?;
+        loop {
+            let state = stepper.state();
+            let progress = Progress {
+                x: state.best_param().clone(),
+                cost: state.best_cost(),
+                evaluations: $evaluations.get(),
+            };
+            if $watch(&progress).is_break() || progress.evaluations >= $most {
+                break Ok(progress);
+            }
+            if let StepOutcome::Stopped(_) = stepper.step().map_err(failed)? {
+                let state = stepper.state();
+                break Ok(Progress {
+                    x: state.best_param().clone(),
+                    cost: state.best_cost(),
+                    evaluations: $evaluations.get(),
+                });
+            }
+        }
+    }};
+}
+
+/// Levenberg and Marquardt's method within bounds (Levenberg 1944, Marquardt 1963; bounds after
+/// Branch, Coleman and Li 1999), from `start`. Ends where a step no longer changes the sum of
+/// squares by a millionth.
+pub fn levenberg_marquardt(
+    problem: &impl LeastSquares,
+    start: &[f64],
+    most: u64,
+    watch: Watch,
+) -> Result<Progress, Error> {
+    let evaluations = Cell::new(0);
+    let solver = BoundedLevenbergMarquardt::<Vec<f64>, DenseMatrix>::new()
+        .with_relative_cost_change_tolerance(1e-6);
+    let executor = Executor::new(
+        Counted::new(problem, &evaluations),
+        solver,
+        PointState::new(start.to_vec()),
+    );
+    run!(executor, evaluations, most, watch)
+}
+
+/// CMA-ES within bounds (Hansen 2016), from `start`, with an initial standard deviation of a
+/// quarter of the widths of the bounds.
+pub fn cma_es(
+    problem: &impl LeastSquares,
+    start: &[f64],
+    seed: u64,
+    most: u64,
+    watch: Watch,
+) -> Result<Progress, Error> {
+    let evaluations = Cell::new(0);
+    let widths = problem
+        .bounds()
+        .iter()
+        .map(|b| b[1] - b[0])
+        .collect::<Vec<_>>();
+    let solver = BoundedCmaEs::<Vec<f64>, DenseMatrix>::new(seed, 0.25)
+        .with_stds(widths)
+        .with_absolute_distribution_size_tolerance(1e-4);
+    let executor = Executor::new(
+        Counted::new(problem, &evaluations),
+        solver,
+        PopulationProgress::from_point(start.to_vec()),
+    );
+    run!(executor, evaluations, most, watch)
+}
+
+/// A genetic algorithm, the reference method (Paper 1): a steady-state one with real genes, blend
+/// crossover and bounded mutation (Molina, Lozano, García-Martínez and Herrera 2010, section 4.4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Genetic {
+    /// Individuals.
+    pub population: usize,
+    /// How far a child may lie outside its parents (BLX-α).
+    pub crossover: f64,
+    /// Probability that a gene mutates.
+    pub mutation: f64,
+}
+
+impl Default for Genetic {
+    fn default() -> Self {
+        Self {
+            population: 60,
+            crossover: 0.5,
+            mutation: 0.125,
+        }
+    }
+}
+
+/// The genetic algorithm within bounds.
+pub fn genetic(
+    problem: &impl LeastSquares,
+    settings: &Genetic,
+    seed: u64,
+    most: u64,
+    watch: Watch,
+) -> Result<Progress, Error> {
+    let evaluations = Cell::new(0);
+    let solver = Ssga::new(seed)
+        .with_pop_size(settings.population)
+        .with_blx_alpha(settings.crossover)
+        .with_mutation_prob(settings.mutation);
+    let executor = Executor::new(
+        Counted::new(problem, &evaluations),
+        solver,
+        PopulationProgress::empty(),
+    );
+    run!(executor, evaluations, most, watch)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rosenbrock's valley as a sum of squares.
+    struct Valley;
+
+    impl LeastSquares for Valley {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-2.0, 3.0]; 2]
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]
+        }
+        fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+            DMatrix::from_row_slice(2, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0])
+        }
+    }
+
+    fn go(_: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn at_the_bottom(found: &Progress, within: f64) {
+        for x in &found.x {
+            assert!((x - 1.0).abs() < within, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn each_finds_the_bottom_of_the_valley() {
+        let found = levenberg_marquardt(&Valley, &[-1.2, 1.0], 1000, &mut go).unwrap();
+        at_the_bottom(&found, 1e-4);
+        assert!(found.evaluations < 300, "{found:?}");
+        at_the_bottom(
+            &cma_es(&Valley, &[-1.2, 1.0], 1, 5000, &mut go).unwrap(),
+            1e-2,
+        );
+        at_the_bottom(
+            &genetic(&Valley, &Genetic::default(), 1, 20_000, &mut go),
+            5e-2,
+        );
+    }
+
+    #[test]
+    fn a_watch_stops_and_a_seed_repeats() {
+        let mut told = 0;
+        let found = cma_es(&Valley, &[0.0, 0.0], 7, 5000, &mut |_| {
+            told += 1;
+            if told < 5 {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        })
+        .unwrap();
+        assert_eq!(told, 5);
+        let run = |seed| cma_es(&Valley, &[0.0, 0.0], seed, 300, &mut go).unwrap();
+        assert_eq!(run(3), run(3));
+        assert_ne!(run(3), run(4));
+        assert!(found.cost.is_finite());
+    }
+
+    #[test]
+    fn no_more_is_evaluated_than_allowed() {
+        let found = genetic(&Valley, &Genetic::default(), 1, 200, &mut go).unwrap();
+        assert!(found.evaluations <= 202, "{found:?}");
+    }
+}

@@ -1,0 +1,146 @@
+//! What a machine shows in place of a recording: the same lines, and their derivatives.
+
+use crate::error::Error;
+use crate::observation::{self, Observation, POINTS};
+use crate::problem::Problem;
+use rustfft::num_complex::Complex64;
+use signal::angle_resampling::AngleGrid;
+use signal::crank_angle::CrankAngle;
+use signal::order_lines::OrderLines;
+use simulate::{Settings, Transient, sensitivities};
+
+/// Relative local error of the integration; far below the noise of any sensor.
+const TOLERANCE: f64 = 1e-7;
+/// Change from revolution to revolution at which a motion counts as settled, and revolutions that
+/// it is given.
+const SETTLED: f64 = 1e-5;
+const AT_MOST: u32 = 30;
+/// Revolutions recorded: those of a motion of period 1, 2 or 4, and of one that never repeats.
+const PERIODIC: u32 = 4;
+const CHAOTIC: u32 = 24;
+
+/// The lines of a run as the model has them.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    /// One per channel of the observation.
+    pub lines: Vec<OrderLines>,
+    /// For each parameter and channel the derivative of the amplitudes by the coordinate.
+    pub derivatives: Vec<Vec<Vec<Complex64>>>,
+    /// True where the motion repeats itself.
+    pub periodic: bool,
+}
+
+/// The lines of a run with the parameters at these coordinates.
+///
+/// # Errors
+/// A machine that is none, or that cannot be integrated.
+pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
+    prediction(problem, run, x, false)
+}
+
+/// The same with the derivatives by the coordinates. On a motion that does not repeat itself they
+/// do not exist, and are left empty.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_with_derivatives(
+    problem: &Problem,
+    run: &Observation,
+    x: &[f64],
+) -> Result<Prediction, Error> {
+    prediction(problem, run, x, true)
+}
+
+fn prediction(
+    problem: &Problem,
+    run: &Observation,
+    x: &[f64],
+    derivatives: bool,
+) -> Result<Prediction, Error> {
+    let machine = problem.machine(run, x)?;
+    let speed = machine.speed.abs();
+    // With the speed given, samples then stand at the grid's angles themselves.
+    let sample_rate = POINTS as f64 * speed / std::f64::consts::TAU;
+    let failed = |source| Error::Simulation {
+        run: run.id.clone(),
+        source,
+    };
+    let mut settings = Settings {
+        transient: Transient::Settled {
+            change: SETTLED,
+            at_most: AT_MOST,
+        },
+        revolutions: PERIODIC,
+        sample_rate,
+        tolerance: TOLERANCE,
+    };
+    let moved = if derivatives {
+        problem.moved(run, x)?
+    } else {
+        Vec::new()
+    };
+    let mut record =
+        sensitivities(&machine.machine, &machine.sensors, &moved, &settings).map_err(failed)?;
+    let periodic = record.settled;
+    if !periodic {
+        settings.transient = Transient::Revolutions(AT_MOST / 3);
+        settings.revolutions = CHAOTIC;
+        record =
+            sensitivities(&machine.machine, &machine.sensors, &[], &settings).map_err(failed)?;
+    }
+    let analysis = |source| Error::Signal {
+        run: run.id.clone(),
+        channel: "simulated".into(),
+        source,
+    };
+    let (angle, series) = record
+        .series
+        .split_last()
+        .ok_or(Error::Nothing("a run without channels cannot be predicted"))?;
+    let angle = CrankAngle::from_encoder(angle).map_err(analysis)?;
+    let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
+    let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
+    let lines = series
+        .iter()
+        .map(|s| lines_of(s))
+        .collect::<Result<Vec<_>, _>>()?;
+    let derivatives = record
+        .derivatives
+        .iter()
+        .map(|of_parameter| {
+            let Some((of_angle, of_series)) = of_parameter.split_last() else {
+                return Ok(Vec::new());
+            };
+            let channels = of_series.iter().zip(series);
+            channels
+                .map(|(derivative, x)| {
+                    let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
+                    let lines = lines_of(&at_angle)?;
+                    let per_coordinate = |c: &Complex64| c / problem.step();
+                    Ok(lines.amplitude.iter().map(per_coordinate).collect())
+                })
+                .collect()
+        })
+        .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
+    Ok(Prediction {
+        lines,
+        derivatives,
+        periodic,
+    })
+}
+
+/// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle
+/// itself moves (a free crank), x is seen elsewhere, dx/dp − (dx/dθ)(dθ/dp).
+fn at_equal_angle(derivative: &[f64], x: &[f64], of_angle: &[f64], angle: &[f64]) -> Vec<f64> {
+    let last = x.len() - 1;
+    (0..x.len())
+        .map(|i| {
+            if of_angle[i] == 0.0 {
+                return derivative[i];
+            }
+            let [low, high] = [i.saturating_sub(1), (i + 1).min(last)];
+            let slope = (x[high] - x[low]) / (angle[high] - angle[low]);
+            derivative[i] - slope * of_angle[i]
+        })
+        .collect()
+}

@@ -1,0 +1,153 @@
+//! What is to be fitted to what.
+
+use crate::error::Error;
+use crate::observation::Observation;
+use crate::parameter::Parameter;
+use input::MachineFile;
+use input::Resolved;
+use input::paths;
+use serde_json::Value;
+use simulate::{Chain, ChamberEnd, Measured, Moved, Sensor};
+
+/// A machine file, the values of it that are free, and the runs that they must explain.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The machine file.
+    pub tree: Value,
+    /// What is fitted.
+    pub parameters: Vec<Parameter>,
+    /// The runs.
+    pub runs: Vec<Observation>,
+}
+
+/// Step of a coordinate over which a machine's derivative is taken: what follows from a parameter
+/// in the machine file is smooth, and rounding stays far below the fit's accuracy.
+const STEP: f64 = 1e-6;
+
+impl Problem {
+    /// The machine of a run, with the parameters at these coordinates.
+    ///
+    /// # Errors
+    /// Values that do not go together.
+    pub fn machine(&self, run: &Observation, coordinates: &[f64]) -> Result<Resolved, Error> {
+        let mut tree = self.tree.clone();
+        // What the run says comes first: a fitted clearance overrides a believed one.
+        for (path, value) in &run.settings {
+            paths::set(&mut tree, path, value.clone())?;
+        }
+        for (parameter, x) in self.parameters.iter().zip(coordinates) {
+            parameter.write(&mut tree, parameter.value(*x))?;
+        }
+        let mut machine = MachineFile::from_tree(&tree)?.resolve()?;
+        machine.sensors = sensors(&machine, run);
+        Ok(machine)
+    }
+
+    /// The machine of a run with each parameter moved by [`Problem::step`] in turn.
+    pub(crate) fn moved(&self, run: &Observation, x: &[f64]) -> Result<Vec<Moved>, Error> {
+        (0..x.len())
+            .map(|i| {
+                let mut x = x.to_vec();
+                x[i] += STEP;
+                let moved = self.machine(run, &x)?;
+                Ok(Moved {
+                    machine: moved.machine,
+                    sensors: moved.sensors,
+                })
+            })
+            .collect()
+    }
+
+    /// By how much coordinates are moved for derivatives.
+    pub(crate) fn step(&self) -> f64 {
+        STEP
+    }
+
+    /// The machine file with the parameters at these coordinates.
+    ///
+    /// # Errors
+    /// Where the file does not have a path.
+    pub fn fitted(&self, coordinates: &[f64]) -> Result<Value, Error> {
+        let mut tree = self.tree.clone();
+        for (parameter, x) in self.parameters.iter().zip(coordinates) {
+            parameter.write(&mut tree, parameter.value(*x))?;
+        }
+        Ok(tree)
+    }
+
+    /// The same problem with these runs.
+    pub fn with_runs(&self, keep: impl Fn(&Observation) -> bool) -> Self {
+        Self {
+            runs: self.runs.iter().filter(|run| keep(run)).cloned().collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same problem with only the parameters of these indices free.
+    pub fn with_parameters(&self, keep: &[usize]) -> Self {
+        Self {
+            parameters: keep.iter().map(|i| self.parameters[*i].clone()).collect(),
+            ..self.clone()
+        }
+    }
+}
+
+/// The columns that a machine's runs can be compared in.
+pub fn columns(machine: &Resolved) -> Vec<String> {
+    let names = names(machine);
+    measurable(machine)
+        .iter()
+        .map(|measured| measured.column(&names))
+        .collect()
+}
+
+fn names(machine: &Resolved) -> Vec<&str> {
+    let throws = machine.machine.throws.iter();
+    throws.map(|t| t.name.as_str()).collect()
+}
+
+fn measurable(machine: &Resolved) -> Vec<Measured> {
+    let throws = 0..machine.machine.throws.len();
+    let of_throw = |throw| {
+        [
+            Measured::CrossheadAcceleration { throw },
+            Measured::CylinderPressure {
+                throw,
+                end: ChamberEnd::Head,
+            },
+            Measured::CylinderPressure {
+                throw,
+                end: ChamberEnd::Crank,
+            },
+        ]
+    };
+    let mut all: Vec<Measured> = throws.flat_map(of_throw).collect();
+    for sensor in &machine.sensors {
+        if !all.contains(&sensor.measured) && sensor.measured != Measured::CrankAngle {
+            all.push(sensor.measured);
+        }
+    }
+    all
+}
+
+/// The sensors of a run's channels, in their order, and the crank angle last: those of the machine
+/// file where it has them, perfect ones elsewhere.
+fn sensors(machine: &Resolved, run: &Observation) -> Vec<Sensor> {
+    let names = names(machine);
+    let all = measurable(machine);
+    let of_column = |column: &str| {
+        let measured = *all.iter().find(|m| m.column(&names) == column)?;
+        let given = machine.sensors.iter().find(|s| s.measured == measured);
+        Some(given.cloned().unwrap_or(Sensor {
+            measured,
+            chain: Chain::default(),
+        }))
+    };
+    let channels = run.channels.iter();
+    let mut sensors: Vec<Sensor> = channels.filter_map(|c| of_column(&c.column)).collect();
+    sensors.push(Sensor {
+        measured: Measured::CrankAngle,
+        chain: Chain::default(),
+    });
+    sensors
+}

@@ -1,0 +1,129 @@
+//! Complex amplitudes of the shaft's orders, with the noise that stands around each.
+
+use crate::angle_resampling::Revolutions;
+use crate::error::Error;
+use crate::fft;
+use rustfft::num_complex::Complex64;
+
+/// Bins to either side of an order that its noise is judged from, at most.
+const NEIGHBOURS: usize = 8;
+
+/// The lines of a channel over the crank angle: index `k` holds order `k`, from 0 on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrderLines {
+    /// c_k of the crank-angle synchronous mean, x̄(θ) = Re Σ c_k e^(ikθ); c_0 is the mean.
+    pub amplitude: Vec<Complex64>,
+    /// Variance of |c_k| about its expectation: of real and imaginary part together. Whatever is not
+    /// synchronous with the shaft, noise or chaos, counts.
+    pub variance: Vec<f64>,
+    /// Revolutions that were averaged over.
+    pub revolutions: usize,
+}
+
+/// The lines up to order `highest`.
+///
+/// Over R revolutions the discrete Fourier transform has R − 1 bins between two orders. A signal
+/// that repeats every revolution has nothing there, so the mean power of the bins next to an order
+/// is that of the noise in it, whatever the noise's colour. With fewer than three revolutions
+/// there are no such bins, and the variance is 0.
+///
+/// # Errors
+/// `highest` not below half the points per revolution.
+pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error> {
+    let n = x.points_per_revolution();
+    if 2 * highest >= n {
+        return Err(Error::OutOfRange {
+            what: "highest order",
+            value: highest as f64,
+            allowed: "below half the points per revolution",
+        });
+    }
+    let count = x.count();
+    let mut work = x.samples().to_vec();
+    let scale = 2.0 / work.len() as f64;
+    let spectrum = fft::forward(&mut work);
+    let reach = NEIGHBOURS.min((count - 1) / 2);
+    let noise = |bin: usize| {
+        let power = |offset: usize| {
+            // Below order 0 the spectrum is its own mirror image.
+            let below = spectrum[bin.abs_diff(offset)].norm_sqr();
+            below + spectrum[bin + offset].norm_sqr()
+        };
+        let powers = (1..=reach).map(power);
+        powers.sum::<f64>() / (2 * reach).max(1) as f64
+    };
+    let of_order = |k: usize| {
+        let scale = if k == 0 { 0.5 * scale } else { scale };
+        let amplitude = spectrum[k * count] * x.phase(k) * scale;
+        (amplitude, noise(k * count) * scale * scale)
+    };
+    let (amplitude, variance) = (0..=highest).map(of_order).unzip();
+    Ok(OrderLines {
+        amplitude,
+        variance,
+        revolutions: count,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::angle_resampling::AngleGrid;
+    use crate::crank_angle::CrankAngle;
+    use std::f64::consts::TAU;
+
+    const PER_REVOLUTION: usize = 256;
+
+    fn lines(revolutions: usize, wave: impl FnMut(usize) -> f64) -> OrderLines {
+        let samples = revolutions * PER_REVOLUTION;
+        let angle: Vec<f64> = (0..samples)
+            .map(|i| (TAU * i as f64 / PER_REVOLUTION as f64).rem_euclid(TAU))
+            .collect();
+        let grid = AngleGrid::new(&CrankAngle::from_encoder(&angle).unwrap(), PER_REVOLUTION);
+        let x: Vec<f64> = (0..samples).map(wave).collect();
+        order_lines(&grid.unwrap().resample(&x).unwrap(), 60).unwrap()
+    }
+
+    #[test]
+    fn amplitudes_and_phases_come_back_and_leave_no_noise() {
+        let lines = lines(12, |i| {
+            let angle = TAU * i as f64 / PER_REVOLUTION as f64;
+            1.5 + 3.0 * (angle + 0.4).cos() + 0.2 * (17.0 * angle).sin()
+        });
+        assert_eq!(lines.revolutions, 12);
+        for (k, c) in lines.amplitude.iter().enumerate() {
+            let expected = match k {
+                0 => Complex64::new(1.5, 0.0),
+                1 => Complex64::from_polar(3.0, 0.4),
+                17 => Complex64::new(0.0, -0.2),
+                _ => Complex64::ZERO,
+            };
+            assert!((c - expected).norm() < 1e-6, "order {k}: {c}");
+        }
+        assert!(lines.variance.iter().all(|v| *v < 1e-12));
+    }
+
+    /// White noise of variance s² leaves an amplitude of variance 4 s²/N.
+    #[test]
+    fn the_variance_is_that_of_the_noise() {
+        let mut state = 1_u64;
+        let lines = lines(40, |_| {
+            // A linear congruential generator (Knuth's MMIX): uniform from −1/2 to 1/2.
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        });
+        let expected = 4.0 / 12.0 / (40 * PER_REVOLUTION) as f64;
+        let mean = lines.variance[1..].iter().sum::<f64>() / 60.0;
+        assert!((mean / expected - 1.0).abs() < 0.1, "{mean} {expected}");
+        let powers = lines.amplitude[1..].iter().map(|c| c.norm_sqr());
+        let found = powers.sum::<f64>() / 60.0;
+        assert!((found / expected - 1.0).abs() < 0.5, "{found} {expected}");
+    }
+
+    #[test]
+    fn one_revolution_has_lines_without_noise() {
+        let lines = lines(1, |i| (TAU * i as f64 / PER_REVOLUTION as f64).cos());
+        assert!((lines.amplitude[1].re - 1.0).abs() < 0.05);
+        assert!(lines.variance.iter().all(|v| *v == 0.0));
+    }
+}
