@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::identifiability::{Information, information};
 use crate::likelihood::{Likelihood, misfit};
-use crate::optimiser::{self, Genetic, LeastSquares, Progress};
+use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 use nalgebra::DMatrix;

@@ -42,7 +42,7 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
     let intervals: Vec<[f64; 2]> = (0..count)
         .map(|i| {
             let direction = covariance.column(i) / deviation(i);
-            let mut reach = |sign: f64| {
+            let reach = |sign: f64| {
                 let step = &direction * (sign * QUANTILE);
                 let moved: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
                 let inside = moved

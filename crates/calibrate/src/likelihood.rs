@@ -23,12 +23,23 @@ const FAILED: f64 = 1e3;
 /// their squares is the negative logarithm of the likelihood.
 pub struct Likelihood<'a> {
     problem: &'a Problem,
+    /// Share of a channel's greatest line beyond which lines are not trusted.
+    accuracy: f64,
 }
 
 impl<'a> Likelihood<'a> {
     /// Of this problem.
     pub fn new(problem: &'a Problem) -> Self {
-        Self { problem }
+        Self {
+            problem,
+            accuracy: ACCURACY,
+        }
+    }
+
+    /// The same with lines that are trusted to a share of their channel's greatest only: a smoother
+    /// landscape, in which the large and slow features of a signal count most.
+    pub fn coarse(problem: &'a Problem, accuracy: f64) -> Self {
+        Self { problem, accuracy }
     }
 
     /// How many residuals there are.
@@ -52,7 +63,7 @@ impl<'a> Likelihood<'a> {
     pub fn by_run(&self, x: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let predictions = self.predictions(x)?;
         let runs = self.problem.runs.iter().zip(&predictions);
-        Ok(runs.map(|(run, p)| residuals(run, p)).collect())
+        Ok(runs.map(|(run, p)| residuals(run, p, self.accuracy)).collect())
     }
 }
 
@@ -69,7 +80,7 @@ impl LeastSquares for Likelihood<'_> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<Vec<f64>> = runs
             .map(|run| match predict(self.problem, run, x) {
-                Ok(prediction) => residuals(run, &prediction),
+                Ok(prediction) => residuals(run, &prediction, self.accuracy),
                 Err(_) => vec![FAILED; residual_count(run)],
             })
             .collect();
@@ -80,7 +91,7 @@ impl LeastSquares for Likelihood<'_> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<DMatrix<f64>> = runs
             .map(|run| match predict_with_derivatives(self.problem, run, x) {
-                Ok(prediction) => derivatives(run, &prediction, x.len()),
+                Ok(prediction) => derivatives(run, &prediction, x.len(), self.accuracy),
                 Err(_) => DMatrix::zeros(residual_count(run), x.len()),
             })
             .collect();
@@ -105,10 +116,10 @@ fn residual_count(run: &Observation) -> usize {
     channels.map(|channel| channel.orders.len() * 2).sum()
 }
 
-fn residuals(run: &Observation, prediction: &Prediction) -> Vec<f64> {
+fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
     let mut all = Vec::with_capacity(residual_count(run));
     for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
-        let weights = weights(observed, predicted);
+        let weights = weights(observed, predicted, accuracy);
         for (k, weight) in observed.orders.iter().zip(weights) {
             let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
             push(&mut all, apart * weight, *k);
@@ -117,14 +128,14 @@ fn residuals(run: &Observation, prediction: &Prediction) -> Vec<f64> {
     all
 }
 
-fn derivatives(run: &Observation, prediction: &Prediction, count: usize) -> DMatrix<f64> {
+fn derivatives(run: &Observation, prediction: &Prediction, count: usize, accuracy: f64) -> DMatrix<f64> {
     let mut whole = DMatrix::zeros(residual_count(run), count);
     // A motion that does not repeat itself has none.
     for (column, of_parameter) in prediction.derivatives.iter().enumerate() {
         let mut all = Vec::with_capacity(residual_count(run));
         let channels = run.channels.iter().zip(&prediction.lines).zip(of_parameter);
         for ((observed, predicted), derivative) in channels {
-            let weights = weights(observed, predicted);
+            let weights = weights(observed, predicted, accuracy);
             for (k, weight) in observed.orders.iter().zip(weights) {
                 let slope = derivative.get(*k).copied().unwrap_or_default();
                 push(&mut all, slope * weight, *k);
@@ -146,14 +157,14 @@ fn amplitude(lines: &OrderLines, order: usize) -> Complex64 {
 }
 
 /// One over the standard deviation of the real part of each compared line.
-fn weights(observed: &Observed, predicted: &OrderLines) -> Vec<f64> {
+fn weights(observed: &Observed, predicted: &OrderLines, accuracy: f64) -> Vec<f64> {
     let greatest = observed
         .lines
         .amplitude
         .iter()
         .map(|c| c.norm())
         .fold(0.0, f64::max);
-    let accuracy = (ACCURACY * greatest).powi(2);
+    let accuracy = (accuracy * greatest).powi(2);
     let of = |lines: &OrderLines, k: usize| lines.variance.get(k).copied().unwrap_or(0.0);
     observed
         .orders

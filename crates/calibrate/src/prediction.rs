@@ -15,7 +15,8 @@ const TOLERANCE: f64 = 1e-7;
 /// it is given.
 const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
-/// Revolutions recorded: those of a motion of period 1, 2 or 4, and of one that never repeats.
+/// Revolutions recorded: those of a motion of period 1, 2 or 4, with one to spare for a free crank
+/// that turns more slowly than its reference speed; and of a motion that never repeats.
 const PERIODIC: u32 = 4;
 const CHAOTIC: u32 = 24;
 
@@ -59,6 +60,7 @@ fn prediction(
 ) -> Result<Prediction, Error> {
     let machine = problem.machine(run, x)?;
     let speed = machine.speed.abs();
+    let free = matches!(machine.machine.drive, mechanism::drive::Drive::Free(_));
     // With the speed given, samples then stand at the grid's angles themselves.
     let sample_rate = POINTS as f64 * speed / std::f64::consts::TAU;
     let failed = |source| Error::Simulation {
@@ -70,7 +72,7 @@ fn prediction(
             change: SETTLED,
             at_most: AT_MOST,
         },
-        revolutions: PERIODIC,
+        revolutions: PERIODIC + u32::from(free),
         sample_rate,
         tolerance: TOLERANCE,
     };

@@ -75,10 +75,10 @@ impl<S: Real> Run<S> {
             Transient::Revolutions(count) => (0.0, count),
             Transient::Settled { change, at_most } => (change, at_most),
         };
-        let mut strobes = vec![self.integrator.state().to_vec()];
+        let mut strobes = vec![self.strobe()];
         for revolution in 1..at_most {
-            self.advance(f64::from(revolution) * self.revolution)?;
-            let now = self.integrator.state().to_vec();
+            self.revolve(revolution)?;
+            let now = self.strobe();
             let repeats = |period: &usize| {
                 let earlier = strobes.len().checked_sub(*period);
                 earlier.is_some_and(|i| self.distance(&now, &strobes[i]) < change)
@@ -94,12 +94,55 @@ impl<S: Real> Run<S> {
         Ok((at_most, false))
     }
 
+    /// Goes on to the end of a revolution. A free crank does not keep to the reference speed: the
+    /// time of its next revolution follows from the speed and the angle that it has now.
+    fn revolve(&mut self, revolution: u32) -> Result<(), Error> {
+        let end = f64::from(revolution) * self.revolution;
+        let Some((angle, speed)) = self.free_crank() else {
+            return self.advance(end);
+        };
+        let ahead = TAU * f64::from(revolution) - angle;
+        self.advance(self.integrator.time() + ahead / speed)
+    }
+
+    /// Angle and mean speed of a crank that is free, rad and rad/s.
+    fn free_crank(&self) -> Option<(f64, f64)> {
+        let at = self.dynamics.layout().crank?;
+        let reference = TAU / self.revolution;
+        let (y, time) = (self.integrator.state(), self.integrator.time());
+        let angle = reference * time + y[at].value();
+        let mean = if time > 0.0 { angle / time } else { reference };
+        Some((angle, mean))
+    }
+
+    /// The state where the crank stands at a whole number of revolutions, without its angle: what
+    /// is left of a revolution is made up to first order.
+    fn strobe(&mut self) -> Vec<f64> {
+        let mut state: Vec<f64> = self.integrator.state().iter().map(|y| y.value()).collect();
+        let Some((angle, _)) = self.free_crank() else {
+            return state;
+        };
+        let y = self.integrator.state().to_vec();
+        let mut rates = vec![S::zero(); y.len()];
+        let time = S::constant(self.integrator.time());
+        self.dynamics.derivative(time, &y, &mut rates);
+        let short = TAU * (angle / TAU).round() - angle;
+        if let Some(at) = self.dynamics.layout().crank {
+            let delay = short / (TAU / self.revolution + y[at + 1].value());
+            for (y, rate) in state.iter_mut().zip(&rates) {
+                *y += rate.value() * delay;
+            }
+            state[at] = 0.0;
+        }
+        state
+    }
+
     /// Largest difference of two states, each component over its scale.
-    fn distance(&self, a: &[S], b: &[S]) -> f64 {
+    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let scales = self.dynamics.scales();
         let parts = a.iter().zip(b).zip(scales);
         parts
-            .map(|((a, b), scale)| ((a.value() - b.value()) / scale.value()).abs())
+            .map(|((a, b), scale)| ((a - b) / scale.value()).abs())
             .fold(0.0, f64::max)
     }
 
