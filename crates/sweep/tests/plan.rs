@@ -56,6 +56,28 @@ fn the_papers_runs() {
 }
 
 #[test]
+fn every_choice_of_the_two_stage_machines_four_joints() {
+    let plan = shipped("two-stage.yaml");
+    let cases = all(&plan, |case| (case.labels, case.id));
+    assert_eq!(cases.len(), 1 + 15 * 3);
+    let faults: BTreeSet<&str> = cases.iter().map(|(l, _)| l.fault.as_str()).collect();
+    assert_eq!(faults.len(), 16);
+    for fault in ["none", "throw2.small_end", "throw1.big_end+throw2.big_end"] {
+        assert!(faults.contains(fault), "{fault}");
+    }
+    for (labels, id) in cases {
+        let [main, big1, small1, guide1, big2, small2, guide2] = labels.clearances_m[..] else {
+            panic!("seven joints");
+        };
+        assert_eq!([main, guide1, guide2], [0.0; 3]);
+        let normal = [1e-4, 8e-5, 1e-4, 8e-5];
+        let worn = [big1, small1, big2, small2];
+        let worn = worn.iter().zip(normal).filter(|(c, normal)| **c != *normal);
+        assert_eq!(worn.count(), labels.faulty_joints, "{id}");
+    }
+}
+
+#[test]
 fn bearing_faults_stay_in_their_ranges() {
     let plan = shipped("bearing-faults.yaml");
     assert_eq!(plan.cases(), 2048);
