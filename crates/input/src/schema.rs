@@ -132,7 +132,7 @@ impl Node<'static> {
 
 impl<'a> Node<'a> {
     fn expand(root: &'a Value, schemas: impl IntoIterator<Item = &'a Value>) -> Self {
-        let mut alternatives = Vec::new();
+        let mut alternatives: Vec<&Value> = Vec::new();
         let mut open: Vec<&Value> = schemas.into_iter().collect();
         open.reverse();
         while let Some(schema) = open.pop() {
@@ -140,7 +140,9 @@ impl<'a> Node<'a> {
             open.extend(target.and_then(|target| root.pointer(target)));
             let branches = ["anyOf", "oneOf"].map(|k| schema[k].as_array());
             open.extend(branches.into_iter().flatten().flatten().rev());
-            if schema.get("type").is_some() || schema.get("const").is_some() {
+            let says = schema.get("type").is_some() || schema.get("const").is_some();
+            // Several alternatives may lead to one definition.
+            if says && !alternatives.iter().any(|a| std::ptr::eq(*a, schema)) {
                 alternatives.push(schema);
             }
         }

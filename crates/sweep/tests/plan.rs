@@ -151,6 +151,30 @@ fn a_clearance_axis_counts_only_where_a_joint_has_it() {
 }
 
 #[test]
+fn contact_parameters_follow_the_clearance_of_a_case() {
+    let plan = plan(
+        "cases:
+  - grid:
+      joints: [[], [big_end]]
+      clearance: [0.1 mm, 0.3 mm]
+      joints.big_end.contact.relation: conformal
+      joints.big_end.contact.at_clearance: 0.1 mm
+",
+    );
+    let stiffness = all(&plan.unwrap(), |case| {
+        let joint = case.resolved.machine.throws[0].big_end.clear().cloned();
+        joint.map(|clear| clear.contact.spring().0)
+    });
+    // R₁R₂/(R₂ - R₁) with R₁ = 50 mm, R₂ = 50.1 and 50.3 mm.
+    let wide = 24e9 * ((2515.0 / 0.3) / (2505.0 / 0.1_f64)).sqrt();
+    let [None, Some(narrow), Some(found)] = stiffness[..] else {
+        panic!("{stiffness:?}")
+    };
+    assert_eq!(narrow, 24e9);
+    assert!((found / wide - 1.0).abs() < 1e-9, "{found} {wide}");
+}
+
+#[test]
 fn lists_go_side_by_side_and_ranges_have_equal_steps() {
     let zip = plan(
         "cases:

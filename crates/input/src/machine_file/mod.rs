@@ -7,6 +7,7 @@
 mod contact;
 mod effects;
 mod joints;
+mod relation;
 mod sections;
 mod sensors;
 mod shared;
