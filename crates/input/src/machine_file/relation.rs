@@ -19,12 +19,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// A relation by its name, or by its exponents.
-pub(super) type RelationSection = Or<RelationName, Exponents>;
+pub(crate) type RelationSection = Or<RelationName, Exponents>;
 
 /// A relation between the parameters of a contact at different clearances.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum RelationName {
+pub(crate) enum RelationName {
     /// The stiffness follows Eq. (5) of the papers: R₁R₂/(R₁ + R₂). Damping and depth keep the
     /// restitution.
     Eq5,
@@ -38,7 +38,7 @@ pub(super) enum RelationName {
 /// Powers of the clearance that the parameters follow.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Exponents {
+pub(crate) struct Exponents {
     /// Exponent of the stiffness; 0 where it is left out.
     #[serde(default)]
     stiffness: Option<Number<Any>>,
