@@ -9,7 +9,7 @@
 //! - `{big_end: .., small_end: ..}` in place of one value wherever the two ends share a value.
 //!
 //! An end without a journal radius is ideal, as main bearing and guide always are. Clearances,
-//! speed and pressures are those of a run: see [`run_settings`](crate::run_settings).
+//! speed and pressures are those of a run: see [`run_settings`](crate::run_settings()).
 
 mod throw_values;
 
