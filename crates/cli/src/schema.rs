@@ -17,6 +17,8 @@ enum File {
     Machine,
     /// sweep.yaml: the cases of a dataset
     Sweep,
+    /// recordings.yaml: a bundle of measured runs
+    Bundle,
 }
 
 /// Prints the schema.
@@ -27,6 +29,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let schema = match arguments.file {
         File::Machine => input::schema::machine_schema(),
         File::Sweep => sweep::sweep_file::schema(),
+        File::Bundle => input::schema::bundle_schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");

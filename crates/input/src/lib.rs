@@ -9,15 +9,19 @@
 //!
 //! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected.
 
+pub mod bundle_machine;
 pub mod choice;
 pub mod error;
 pub mod machine_file;
 pub mod paths;
 pub mod quantity;
 mod reader;
+pub mod run_settings;
 pub mod schema;
 pub mod unit;
 pub mod yaml;
 
+pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
 pub use machine_file::{MachineFile, NormalClearance, Resolved, ThrowNormalClearance};
+pub use run_settings::run_settings;

@@ -5,6 +5,7 @@ use crate::unit::{self, Dimension, Measure, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::{Serialize, Serializer};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
@@ -251,6 +252,15 @@ impl<K: Kind, B: Bound> JsonSchema for Quantity<K, B> {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         text_schema(&Self::expected(), B::holds(-1.0), &[K::EXAMPLE])
     }
+}
+
+/// The text for a number of SI units of kind `K`, as files have it.
+pub(crate) fn text<K: Kind>(si: Number<impl Bound>) -> Value {
+    let measure = Measure {
+        si: si.get(),
+        dimension: K::DIMENSION,
+    };
+    measure.to_string().into()
 }
 
 /// Schema of a text with a number and a unit.

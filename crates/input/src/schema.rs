@@ -1,6 +1,8 @@
 //! JSON Schema of the machine file, for editors; and walking it, for messages and sweeps.
 
+use crate::bundle_machine;
 use crate::machine_file::Sections;
+use crate::run_settings::{Joints, Load};
 use schemars::generate::SchemaSettings;
 use schemars::transform::RecursiveTransform;
 use schemars::{JsonSchema, Schema};
@@ -73,6 +75,93 @@ pub fn machine_schema() -> Value {
     schema
 }
 
+/// The schema of a bundle's recordings.yaml.
+pub fn bundle_schema() -> Value {
+    let mut machine = bundle_machine::machine_schema();
+    let by_throw = |part: Value| {
+        json!({
+            "description": "In a machine with several throws a section of these, by throw.",
+            "anyOf": [part, {"type": "object", "additionalProperties": part}],
+        })
+    };
+    let mut defs = machine["$defs"].take();
+    let mut part = |mut part: Value| {
+        if let (Value::Object(defs), Value::Object(own)) = (&mut defs, part["$defs"].take()) {
+            defs.extend(own);
+        }
+        without_heading(part)
+    };
+    let load = by_throw(part(of::<Load>()));
+    let joints = by_throw(part(of::<Joints>()));
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "recordings.yaml",
+        "description": "Measured runs of one machine. Values are SI; the unit ends the key.",
+        "type": "object",
+        "properties": {
+            "format": text_of("What the file is: `clearance recordings 1`."),
+            "machine": without_heading(machine),
+            "runs": {
+                "description": "The runs.",
+                "type": "array",
+                "minItems": 1,
+                "items": {
+                    "type": "object",
+                    "properties": {
+                        "id": text_of("Name of the run."),
+                        "file": text_of("Its recording, a path from the folder on."),
+                        "speed_rpm": above_zero("Measured mean speed."),
+                        "speed_reference_rpm": above_zero(
+                            "Speed at which the motor of a free crank gives its mean torque."),
+                        "load": load,
+                        "joints": joints,
+                        "sample_rate_hz": above_zero("Samples per second."),
+                        "samples": above_zero("Samples of every channel."),
+                        "revolutions": above_zero("Revolutions that the recording covers."),
+                        "channels": channels(),
+                    },
+                    "required": ["id", "file", "channels"],
+                },
+            },
+        },
+        "required": ["runs"],
+        "$defs": defs,
+    })
+}
+
+fn channels() -> Value {
+    json!({
+        "description": "The channels.",
+        "type": "array",
+        "minItems": 1,
+        "items": {
+            "type": "object",
+            "properties": {
+                "name": text_of("What it is, in words."),
+                "column": text_of("Its column in the file."),
+                "unit": text_of("Its unit, e.g. `m/s2`."),
+            },
+            "required": ["column", "unit"],
+        },
+    })
+}
+
+fn text_of(description: &str) -> Value {
+    json!({"description": description, "type": "string"})
+}
+
+fn above_zero(description: &str) -> Value {
+    json!({"description": description, "type": "number", "exclusiveMinimum": 0})
+}
+
+/// A schema as a part of another.
+fn without_heading(mut schema: Value) -> Value {
+    if let Value::Object(keywords) = &mut schema {
+        keywords.retain(|keyword, _| !["$schema", "title", "$defs"].contains(&keyword.as_str()));
+    }
+    schema
+}
+
 /// `schema` without required keys at any depth. Definitions that change are copied to `parts`.
 fn loosen(schema: &Value, defs: &Value, parts: &mut Map<String, Value>) -> Value {
     match schema {
@@ -132,7 +221,7 @@ impl Node<'static> {
 
 impl<'a> Node<'a> {
     fn expand(root: &'a Value, schemas: impl IntoIterator<Item = &'a Value>) -> Self {
-        let mut alternatives = Vec::new();
+        let mut alternatives: Vec<&Value> = Vec::new();
         let mut open: Vec<&Value> = schemas.into_iter().collect();
         open.reverse();
         while let Some(schema) = open.pop() {
@@ -140,7 +229,9 @@ impl<'a> Node<'a> {
             open.extend(target.and_then(|target| root.pointer(target)));
             let branches = ["anyOf", "oneOf"].map(|k| schema[k].as_array());
             open.extend(branches.into_iter().flatten().flatten().rev());
-            if schema.get("type").is_some() || schema.get("const").is_some() {
+            let says = schema.get("type").is_some() || schema.get("const").is_some();
+            // Several alternatives may lead to one definition.
+            if says && !alternatives.iter().any(|a| std::ptr::eq(*a, schema)) {
                 alternatives.push(schema);
             }
         }

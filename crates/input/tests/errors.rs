@@ -112,7 +112,21 @@ messages! {
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
         "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle";
     key_of_another_law: "law: impact" => "law: hertz",
-        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent";
+        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance";
+    misspelt_relation: "depth: 10 um" => "depth: 10 um, relation: conformel, at_clearance: 0.1 mm",
+        "m.yaml:21:96: joints.big_end.contact.relation: found 'conformel', expected one of eq5, conformal, constant; did you mean 'conformal'?";
+    misspelt_exponent: "depth: 10 um" => "depth: 10 um, relation: {stifness: -0.5}, at_clearance: 0.1 mm",
+        "m.yaml:21:97: joints.big_end.contact.relation.stifness: unknown key; expected one of stiffness, damping, depth; did you mean 'stiffness'?";
+    exponent_with_a_unit: "depth: 10 um" => "depth: 10 um, relation: {stiffness: 1 mm}, at_clearance: 0.1 mm",
+        "m.yaml:21:108: joints.big_end.contact.relation.stiffness: found '1 mm', expected a plain number";
+    relation_without_its_clearance: "depth: 10 um" => "depth: 10 um, relation: eq5",
+        "m.yaml:21:5: joints.big_end.contact.at_clearance: missing; expected a length greater than 0 with its unit, e.g. '0.1 mm'";
+    clearance_without_a_relation: "depth: 10 um" => "depth: 10 um, at_clearance: 0.1 mm",
+        "m.yaml:21:5: joints.big_end.contact.relation: missing; expected one of eq5, conformal, constant";
+    relation_at_no_clearance: "depth: 10 um" => "depth: 10 um, relation: eq5, at_clearance: 0 mm",
+        "m.yaml:21:115: joints.big_end.contact.at_clearance: found '0 mm', expected a length greater than 0 with its unit, e.g. '0.1 mm'";
+    radii_of_flat_faces: "  big_end:" => "  guide: {clearance: 0.1 mm, half_length: 9 cm, half_height: 7 cm, contact: {law: hertz, stiffness: 1 GN/m^1.5, relation: eq5, at_clearance: 1 mm}}\n  big_end:",
+        "m.yaml:18:123: joints.guide.contact.relation: found 'eq5', expected constant, or exponents: the guide's faces have no radius";
     missing_key: "  mass: 12 kg\n" => "",
         "m.yaml:4:1: rod.mass: missing; expected a mass greater than 0 with its unit, e.g. '12 kg'";
     missing_section: "crosshead: {mass: 18 kg}\n" => "",

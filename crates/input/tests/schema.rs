@@ -1,20 +1,22 @@
-//! The committed JSON Schema is the one that the program gives.
+//! The committed JSON Schemas are the ones that the program gives.
 
+use input::schema::{bundle_schema, machine_schema};
 use serde_json::Value;
 use std::path::PathBuf;
 
 #[test]
-fn the_committed_schema_is_current() {
-    let path =
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/schema/machine.schema.json");
-    let current = input::schema::machine_schema();
-    let committed = std::fs::read_to_string(path).unwrap_or_default();
-    let committed: Value = serde_json::from_str(&committed).unwrap_or_default();
-    assert!(
-        committed == current,
-        "data/schema/machine.schema.json is stale; refresh it with\n    \
-         cargo run --bin crosshead -- schema machine > data/schema/machine.schema.json"
-    );
+fn the_committed_schemas_are_current() {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/schema");
+    for (name, current) in [("machine", machine_schema()), ("bundle", bundle_schema())] {
+        let file = format!("{name}.schema.json");
+        let committed = std::fs::read_to_string(folder.join(&file)).unwrap_or_default();
+        let committed: Value = serde_json::from_str(&committed).unwrap_or_default();
+        assert!(
+            committed == current,
+            "data/schema/{file} is stale; refresh it with\n    \
+             cargo run --bin crosshead -- schema {name} > data/schema/{file}"
+        );
+    }
 }
 
 #[test]
@@ -31,10 +33,11 @@ fn every_reference_leads_to_a_definition() {
             _ => {}
         }
     }
-    let schema = input::schema::machine_schema();
-    let mut seen = 0;
-    check(&schema, &schema, &mut seen);
-    assert!(seen > 50, "{seen}");
+    for (schema, least) in [(machine_schema(), 50), (bundle_schema(), 3)] {
+        let mut seen = 0;
+        check(&schema, &schema, &mut seen);
+        assert!(seen >= least, "{seen}");
+    }
 }
 
 #[test]
@@ -55,6 +58,6 @@ fn every_key_has_a_description() {
         }
     }
     let mut missing = Vec::new();
-    check(&input::schema::machine_schema(), "", &mut missing);
+    check(&machine_schema(), "", &mut missing);
     assert_eq!(missing, [""; 0]);
 }

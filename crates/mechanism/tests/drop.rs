@@ -1,6 +1,7 @@
 //! A mass thrown against a contact: what it comes back with, how long it stays, how deep it goes.
 
 use integrate::{Integrator, System};
+use mechanism::joints::clearance_relation::Relation;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use mechanism::joints::stiffness::{Material, conformal};
 use mechanism::mode::ContactMode;
@@ -316,6 +317,41 @@ fn kelvin_voigt_follows_its_closed_form() {
             let off = (found / exact - 1.0).abs();
             eprintln!("zeta {zeta}: {name} {exact:.6e} to {off:.1e}");
             assert!(off < 1e-9, "zeta {zeta}, {name}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_whole_of_a_relation_keeps_the_restitution_and_the_stiffness_alone_does_not() {
+    // Figures of an independent program: 10 kg on K = 3.8e11, C = 1e5, d = 0.1 mm, from c to 3c.
+    let law = ContactLaw::Impact(Impact {
+        stiffness: 3.8e11,
+        exponent: 1.5,
+        damping: 1e5,
+        depth: 1e-4,
+    });
+    let widened = |relation: &Relation| law.at_clearance(relation, 0.05, [1e-4, 3e-4]);
+    let powers = |damping, depth| Relation::Powers {
+        stiffness: -0.5,
+        damping,
+        depth,
+    };
+    let whole = widened(&powers(-0.2, 0.2));
+    let stiffness_alone = widened(&powers(0.0, 0.0));
+    for (speed, kept, changed) in [
+        (0.05, 0.9951, 0.9907),
+        (0.15, 0.9787, 0.9603),
+        (0.5, 0.9059, 0.8403),
+    ] {
+        let restitution = |law: &ContactLaw| drop(law, 10.0, speed).restitution;
+        let before = restitution(&law);
+        assert!((before - kept).abs() < 6e-5, "{speed}: {before}");
+        let alone = restitution(&stiffness_alone);
+        assert!((alone - changed).abs() < 6e-5, "{speed}: {alone}");
+        let wide = widened(&Relation::Conformal);
+        for law in [&whole, &wide, &widened(&Relation::Equation5)] {
+            let after = restitution(law);
+            assert!((after - before).abs() < 1e-9, "{speed}: {before} {after}");
         }
     }
 }

@@ -56,6 +56,28 @@ fn the_papers_runs() {
 }
 
 #[test]
+fn every_choice_of_the_two_stage_machines_four_joints() {
+    let plan = shipped("two-stage.yaml");
+    let cases = all(&plan, |case| (case.labels, case.id));
+    assert_eq!(cases.len(), 1 + 15 * 3);
+    let faults: BTreeSet<&str> = cases.iter().map(|(l, _)| l.fault.as_str()).collect();
+    assert_eq!(faults.len(), 16);
+    for fault in ["none", "throw2.small_end", "throw1.big_end+throw2.big_end"] {
+        assert!(faults.contains(fault), "{fault}");
+    }
+    for (labels, id) in cases {
+        let [main, big1, small1, guide1, big2, small2, guide2] = labels.clearances_m[..] else {
+            panic!("seven joints");
+        };
+        assert_eq!([main, guide1, guide2], [0.0; 3]);
+        let normal = [1e-4, 8e-5, 1e-4, 8e-5];
+        let worn = [big1, small1, big2, small2];
+        let worn = worn.iter().zip(normal).filter(|(c, normal)| **c != *normal);
+        assert_eq!(worn.count(), labels.faulty_joints, "{id}");
+    }
+}
+
+#[test]
 fn bearing_faults_stay_in_their_ranges() {
     let plan = shipped("bearing-faults.yaml");
     assert_eq!(plan.cases(), 2048);
@@ -126,6 +148,30 @@ fn a_clearance_axis_counts_only_where_a_joint_has_it() {
     // Without an axis of joints a clearance is a path like any other.
     let direct = plan("cases:\n  - grid: {joints.small_end.clearance: [0 mm, 0.4 mm]}\n").unwrap();
     assert_eq!(all(&direct, |case| tenths(&case)), [[0., 0.], [0., 4.]]);
+}
+
+#[test]
+fn contact_parameters_follow_the_clearance_of_a_case() {
+    let plan = plan(
+        "cases:
+  - grid:
+      joints: [[], [big_end]]
+      clearance: [0.1 mm, 0.3 mm]
+      joints.big_end.contact.relation: conformal
+      joints.big_end.contact.at_clearance: 0.1 mm
+",
+    );
+    let stiffness = all(&plan.unwrap(), |case| {
+        let joint = case.resolved.machine.throws[0].big_end.clear().cloned();
+        joint.map(|clear| clear.contact.spring().0)
+    });
+    // R₁R₂/(R₂ - R₁) with R₁ = 50 mm, R₂ = 50.1 and 50.3 mm.
+    let wide = 24e9 * ((2515.0 / 0.3) / (2505.0 / 0.1_f64)).sqrt();
+    let [None, Some(narrow), Some(found)] = stiffness[..] else {
+        panic!("{stiffness:?}")
+    };
+    assert_eq!(narrow, 24e9);
+    assert!((found / wide - 1.0).abs() < 1e-9, "{found} {wide}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Contact and friction laws of a joint.
 
+use super::relation::{RelationSection, Stated};
 use crate::choice::{Or, Pair};
 use crate::error::{Error, quoted};
 use crate::quantity::{
@@ -34,56 +35,84 @@ pub(super) enum Contact {
     Flores(Restitution),
 }
 
-/// Parameters of IMPACT.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Impact {
-    /// Stiffness K, or what it follows from.
-    stiffness: StiffnessSource,
-    /// Exponent n of the penetration; 1.5 where it is left out.
-    #[serde(default = "hertzian")]
-    exponent: Number<FromOne>,
-    /// Greatest damping.
-    damping: NonNegative<Damping>,
-    /// Penetration at which the damping is full.
-    depth: Positive<Length>,
+/// Declares the parameters of a contact law: its own, and how they follow the clearance.
+macro_rules! law {
+    (
+        $(#[$meta:meta])*
+        struct $name:ident { $( $(#[$field_meta:meta])* $field:ident: $type:ty, )* }
+    ) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub(super) struct $name {
+            $( $(#[$field_meta])* $field: $type, )*
+            /// How the parameters follow the clearance: eq5, conformal, constant, or a section of
+            /// exponents. They do not follow it where it is left out.
+            #[serde(default)]
+            relation: Option<RelationSection>,
+            /// Clearance at which the parameters are as they stand here; needed with a relation.
+            #[serde(default)]
+            at_clearance: Option<Positive<Length>>,
+        }
+
+        impl $name {
+            fn stated(&self) -> Result<Option<Stated>, Error> {
+                Stated::new(self.relation.as_ref(), self.at_clearance)
+            }
+        }
+    };
 }
 
-/// Parameters of the elastic law.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Hertz {
-    /// Stiffness K, or what it follows from.
-    stiffness: StiffnessSource,
-    /// Exponent n of the penetration; 1.5 where it is left out.
-    #[serde(default = "hertzian")]
-    exponent: Number<FromOne>,
+law! {
+    /// Parameters of IMPACT.
+    struct Impact {
+        /// Stiffness K, or what it follows from.
+        stiffness: StiffnessSource,
+        /// Exponent n of the penetration; 1.5 where it is left out.
+        #[serde(default = "hertzian")]
+        exponent: Number<FromOne>,
+        /// Greatest damping.
+        damping: NonNegative<Damping>,
+        /// Penetration at which the damping is full.
+        depth: Positive<Length>,
+    }
 }
 
-/// Parameters of the linear law.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct KelvinVoigt {
-    /// Stiffness, in N/m.
-    stiffness: StiffnessSource,
-    /// Damping.
-    damping: NonNegative<Damping>,
+law! {
+    /// Parameters of the elastic law.
+    struct Hertz {
+        /// Stiffness K, or what it follows from.
+        stiffness: StiffnessSource,
+        /// Exponent n of the penetration; 1.5 where it is left out.
+        #[serde(default = "hertzian")]
+        exponent: Number<FromOne>,
+    }
 }
 
-/// Parameters of a law with a coefficient of restitution.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Restitution {
-    /// Stiffness K, or what it follows from.
-    stiffness: StiffnessSource,
-    /// Exponent n of the penetration; 1.5 where it is left out.
-    #[serde(default = "hertzian")]
-    exponent: Number<FromOne>,
-    /// Coefficient of restitution.
-    restitution: Number<Rebound>,
-    /// Smallest approach speed that the damping is computed with; 1 mm/s where it is left out.
-    #[serde(default)]
-    slowest_approach: Option<Positive<Velocity>>,
+law! {
+    /// Parameters of the linear law.
+    struct KelvinVoigt {
+        /// Stiffness, in N/m.
+        stiffness: StiffnessSource,
+        /// Damping.
+        damping: NonNegative<Damping>,
+    }
+}
+
+law! {
+    /// Parameters of a law with a coefficient of restitution.
+    struct Restitution {
+        /// Stiffness K, or what it follows from.
+        stiffness: StiffnessSource,
+        /// Exponent n of the penetration; 1.5 where it is left out.
+        #[serde(default = "hertzian")]
+        exponent: Number<FromOne>,
+        /// Coefficient of restitution.
+        restitution: Number<Rebound>,
+        /// Smallest approach speed that the damping is computed with; 1 mm/s where it is left out.
+        #[serde(default)]
+        slowest_approach: Option<Positive<Velocity>>,
+    }
 }
 
 type StiffnessSource = Or<Stiffness, Materials>;
@@ -167,13 +196,33 @@ enum Formula {
 pub(super) enum Surfaces {
     /// A journal of this radius in a bearing with this clearance, m.
     Journal { radius: f64, clearance: f64 },
-    /// Flat faces.
-    Flat,
+    /// Flat faces with this gap, m.
+    Flat { clearance: f64 },
 }
 
 impl Contact {
-    /// The law between `surfaces`.
+    /// The law between `surfaces`, whose clearance may differ from the one that its parameters are
+    /// stated for.
     pub(super) fn resolve(&self, surfaces: Surfaces) -> Result<ContactLaw, Error> {
+        match self.stated()? {
+            Some(stated) => stated.carry_over(surfaces, |surfaces| self.law(surfaces)),
+            None => self.law(surfaces),
+        }
+    }
+
+    fn stated(&self) -> Result<Option<Stated>, Error> {
+        match self {
+            Contact::Impact(law) => law.stated(),
+            Contact::Hertz(law) => law.stated(),
+            Contact::KelvinVoigt(law) => law.stated(),
+            Contact::HuntCrossley(law)
+            | Contact::LankaraniNikravesh(law)
+            | Contact::Flores(law) => law.stated(),
+        }
+    }
+
+    /// The law with the parameters as they stand.
+    fn law(&self, surfaces: Surfaces) -> Result<ContactLaw, Error> {
         let stiffness = |source: &StiffnessSource, exponent: f64| {
             resolve_stiffness(source, exponent, surfaces).map_err(|e| e.under("stiffness"))
         };
@@ -227,7 +276,7 @@ fn resolve_stiffness(
         )),
         Or::Section(materials) => match surfaces {
             Surfaces::Journal { radius, clearance } => Ok(materials.stiffness(radius, clearance)),
-            Surfaces::Flat => Err(Error::found(
+            Surfaces::Flat { .. } => Err(Error::found(
                 "",
                 "a stiffness from materials",
                 "a stiffness with its unit, e.g. '24 GN/m^1.5': the guide's faces have no radius",

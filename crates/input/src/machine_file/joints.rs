@@ -225,7 +225,7 @@ impl GuideFaces {
             half_height: self.half_height.si(),
             contact: self
                 .contact
-                .resolve(Surfaces::Flat)
+                .resolve(Surfaces::Flat { clearance })
                 .map_err(|e| e.under("contact"))?,
             friction: friction(&self.friction)?,
         };

@@ -7,6 +7,7 @@
 mod contact;
 mod effects;
 mod joints;
+mod relation;
 mod sections;
 mod sensors;
 mod shared;
@@ -18,6 +19,7 @@ use crate::{reader, schema};
 use effects::EffectSection;
 use joints::{Joints, ThrowJoints};
 use mechanism::{Direction, Machine, Throw};
+pub(crate) use relation::RelationSection;
 use schemars::JsonSchema;
 use sections::{Crank, Crosshead, Cylinder, FrameSection, Gravity, Rod};
 use sensors::SensorSection;

@@ -1,5 +1,6 @@
 //! The four places where clearance can be: main bearing, big end, small end, crosshead guide.
 
+pub mod clearance_relation;
 pub mod contact;
 pub mod friction;
 pub mod guide;

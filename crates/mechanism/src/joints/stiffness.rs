@@ -28,13 +28,21 @@ impl<S: Scalar> Material<S> {
 /// a stiffness some 30 times too small and almost independent of the clearance. It is here because
 /// they used it.
 pub fn equation_5<S: Scalar>(bodies: [Material<S>; 2], radii: [S; 2]) -> S {
-    point_contact(bodies, radii[0] * radii[1] / (radii[0] + radii[1]))
+    point_contact(bodies, effective_radius_eq5(radii))
+}
+
+pub(super) fn effective_radius_eq5<S: Scalar>(radii: [S; 2]) -> S {
+    radii[0] * radii[1] / (radii[0] + radii[1])
 }
 
 /// The conformal form: a journal in a bearing has R = R_j R_b/(R_b − R_j), so that K falls with
 /// the clearance like c^(−1/2). N/m^1.5.
 pub fn conformal<S: Scalar>(bodies: [Material<S>; 2], journal: S, clearance: S) -> S {
-    point_contact(bodies, journal * (journal + clearance) / clearance)
+    point_contact(bodies, effective_radius_conformal(journal, clearance))
+}
+
+pub(super) fn effective_radius_conformal<S: Scalar>(journal: S, clearance: S) -> S {
+    journal * (journal + clearance) / clearance
 }
 
 fn point_contact<S: Scalar>(bodies: [Material<S>; 2], radius: S) -> S {

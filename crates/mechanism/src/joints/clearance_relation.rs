@@ -1,0 +1,218 @@
+//! How contact parameters follow the clearance: a law that is known at one clearance becomes the
+//! law of the same joint at another.
+//!
+//! The two relations that come from a formula for the stiffness also carry over the damping. An
+//! impact of mass m at speed v on `F = K δⁿ + STEP(δ, 0, 0, d, C) δ̇` reaches a depth
+//! `δₘ ∝ (m v²/K)^(1/(n + 1))` (for n = 3/2 Hertz 1881; Johnson 1985, Contact Mechanics, section
+//! 11.4), and only `d/δₘ` and `C δₘ/(m v)` decide what it comes back with: nothing else in the
+//! equation of motion is without dimension. Both stay as they are, at every mass and speed, where
+//!
+//! ```text
+//! d ∝ K^(−1/(n + 1)),  C ∝ K^(1/(n + 1))
+//! ```
+//!
+//! so that the same materials give the same restitution. With n = 3/2 and the conformal stiffness
+//! K ∝ c^(−1/2) that is d ∝ c^(1/5) and C ∝ c^(−1/5); with Eq. (5), whose stiffness hardly depends
+//! on the clearance, nothing moves by more than a few tenths of a percent. A linear spring (n = 1)
+//! keeps its damping ratio. A coefficient of restitution stays as it is. Friction does too: it does
+//! not depend on the clearance to first order.
+
+use super::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
+use super::stiffness::{effective_radius_conformal, effective_radius_eq5};
+use scalar::Scalar;
+
+/// A relation between the contact parameters of a joint at different clearances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Relation<S = f64> {
+    /// The stiffness follows Eq. (5) of the papers, damping and depth keep the restitution.
+    Equation5,
+    /// The stiffness follows the conformal form of Hertz 1881, damping and depth keep the
+    /// restitution.
+    Conformal,
+    /// Nothing depends on the clearance.
+    Constant,
+    /// Powers of the clearance, as a fit finds them.
+    Powers {
+        /// Of the stiffness.
+        stiffness: S,
+        /// Of the damping.
+        damping: S,
+        /// Of IMPACT's depth.
+        depth: S,
+    },
+}
+
+/// Factors on the parameters of a law.
+struct Factors<S> {
+    stiffness: S,
+    damping: S,
+    depth: S,
+}
+
+impl<S: Scalar> Relation<S> {
+    /// Factors from the first to the second of two clearances (m, both above 0) of a journal of
+    /// radius `journal` (m), for a law with the exponent `exponent`.
+    fn factors(&self, journal: S, clearances: [S; 2], exponent: S) -> Factors<S> {
+        let power = |exponent: S| (clearances[1] / clearances[0]).powf(exponent);
+        let of_stiffness = |radius: fn(S, S) -> S| {
+            let [from, to] = clearances.map(|clearance| radius(journal, clearance));
+            Factors::with_equal_restitution((to / from).sqrt(), exponent)
+        };
+        match *self {
+            Relation::Equation5 => of_stiffness(|r, c| effective_radius_eq5([r, r + c])),
+            Relation::Conformal => of_stiffness(effective_radius_conformal),
+            Relation::Constant => Factors {
+                stiffness: S::one(),
+                damping: S::one(),
+                depth: S::one(),
+            },
+            Relation::Powers {
+                stiffness,
+                damping,
+                depth,
+            } => Factors {
+                stiffness: power(stiffness),
+                damping: power(damping),
+                depth: power(depth),
+            },
+        }
+    }
+}
+
+impl<S: Scalar> Factors<S> {
+    /// The factors beside that of the stiffness which leave the restitution as it is.
+    fn with_equal_restitution(stiffness: S, exponent: S) -> Self {
+        let damping = stiffness.powf(S::one() / (exponent + 1.0));
+        Self {
+            stiffness,
+            damping,
+            depth: S::one() / damping,
+        }
+    }
+}
+
+impl<S: Scalar> ContactLaw<S> {
+    /// The law at the second of two clearances (m, both above 0), where this one holds at the
+    /// first, of a journal of radius `journal` (m).
+    #[must_use]
+    pub fn at_clearance(&self, relation: &Relation<S>, journal: S, clearances: [S; 2]) -> Self {
+        let (_, exponent) = self.spring();
+        let factors = relation.factors(journal, clearances, exponent);
+        let restitution = |law: &Restitution<S>| Restitution {
+            stiffness: law.stiffness * factors.stiffness,
+            ..law.clone()
+        };
+        match self {
+            ContactLaw::Impact(law) => ContactLaw::Impact(Impact {
+                stiffness: law.stiffness * factors.stiffness,
+                exponent,
+                damping: law.damping * factors.damping,
+                depth: law.depth * factors.depth,
+            }),
+            ContactLaw::Hertz(law) => ContactLaw::Hertz(Hertz {
+                stiffness: law.stiffness * factors.stiffness,
+                exponent,
+            }),
+            ContactLaw::KelvinVoigt(law) => ContactLaw::KelvinVoigt(KelvinVoigt {
+                stiffness: law.stiffness * factors.stiffness,
+                damping: law.damping * factors.damping,
+            }),
+            ContactLaw::HuntCrossley(law) => ContactLaw::HuntCrossley(restitution(law)),
+            ContactLaw::LankaraniNikravesh(law) => ContactLaw::LankaraniNikravesh(restitution(law)),
+            ContactLaw::Flores(law) => ContactLaw::Flores(restitution(law)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLEARANCES: [f64; 2] = [1e-4, 3e-4];
+
+    fn impact() -> ContactLaw {
+        ContactLaw::Impact(Impact {
+            stiffness: 2e10,
+            exponent: 1.5,
+            damping: 2e4,
+            depth: 1e-5,
+        })
+    }
+
+    /// Stiffness, damping and depth of IMPACT with a journal of 35 mm, from 0.1 to 0.3 mm, as
+    /// factors.
+    fn factors(relation: Relation) -> [f64; 3] {
+        let ContactLaw::Impact(law) = impact().at_clearance(&relation, 0.035, CLEARANCES) else {
+            panic!("another law")
+        };
+        [law.stiffness / 2e10, law.damping / 2e4, law.depth / 1e-5]
+    }
+
+    fn assert_near(found: [f64; 3], expected: [f64; 3]) {
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn equation_5_hardly_depends_on_the_clearance() {
+        // R₁ = 35 mm, R₂ = 35.1 and 35.3 mm: R₁R₂/(R₁ + R₂) = 1228.5/70.1 and 1235.5/70.3 mm.
+        let stiffness = ((1235.5 / 70.3) / (1228.5 / 70.1_f64)).sqrt();
+        assert!((stiffness - 1.001_417_4).abs() < 1e-7, "{stiffness}");
+        let damping = stiffness.powf(0.4);
+        assert_near(
+            factors(Relation::Equation5),
+            [stiffness, damping, 1.0 / damping],
+        );
+    }
+
+    #[test]
+    fn conformal_follows_the_root_of_the_clearance() {
+        // R₁R₂/(R₂ − R₁) = 12 285 and 12 355/3 mm: √(1/3) but for 0.3 %.
+        let stiffness = (12_355.0 / 3.0 / 12_285.0_f64).sqrt();
+        let damping = stiffness.powf(0.4);
+        assert!((damping - 3_f64.powf(-0.2)).abs() < 1e-3, "{damping}");
+        assert_near(
+            factors(Relation::Conformal),
+            [stiffness, damping, 1.0 / damping],
+        );
+    }
+
+    #[test]
+    fn powers_are_taken_as_they_are() {
+        let relation = Relation::Powers {
+            stiffness: -0.5,
+            damping: -0.25,
+            depth: 0.0,
+        };
+        let expected = [1.0 / 3_f64.sqrt(), 1.0 / 3_f64.sqrt().sqrt(), 1.0];
+        assert_near(factors(relation), expected);
+    }
+
+    #[test]
+    fn nothing_changes_at_the_same_clearance_or_by_a_constant_relation() {
+        let constant = impact().at_clearance(&Relation::Constant, 0.035, CLEARANCES);
+        assert_eq!(constant, impact());
+        for relation in [Relation::Equation5, Relation::Conformal] {
+            assert_eq!(impact().at_clearance(&relation, 0.035, [2e-4; 2]), impact());
+        }
+    }
+
+    #[test]
+    fn a_linear_spring_keeps_its_damping_ratio() {
+        let law = KelvinVoigt {
+            stiffness: 2e8,
+            damping: 1e3,
+        };
+        let ratio = |law: &KelvinVoigt| law.damping / law.stiffness.sqrt();
+        let before = ratio(&law);
+        let law = ContactLaw::KelvinVoigt(law);
+        let ContactLaw::KelvinVoigt(law) =
+            law.at_clearance(&Relation::Conformal, 0.035, CLEARANCES)
+        else {
+            panic!("another law")
+        };
+        assert!((law.stiffness / 2e8 - 1.0).abs() > 0.4);
+        assert!((ratio(&law) / before - 1.0).abs() < 1e-12);
+    }
+}
