@@ -5,16 +5,24 @@
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
 
+pub mod flow;
 pub mod lyapunov;
 pub mod measure;
+pub mod periodic_orbit;
 pub mod record;
+pub mod regime;
 pub mod sensor;
 pub mod settings;
+mod strobes;
+mod tangents;
 pub mod trace;
 
-pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
+pub use flow::{Cycle, Flow};
+pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
+pub use periodic_orbit::PeriodicOrbit;
 pub use record::{Error, Record, simulate};
+pub use regime::{Extent, Motion, Regime, motion};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
