@@ -238,10 +238,12 @@ impl<S: Real> Dynamics<S> {
             let guide = matches!(&throw.guide, Guide::Clear(c) if c.contact.remembers());
             contacts.extend(mode.guide.iter_mut().map(|corner| (guide, corner)));
         }
-        let remembered = contacts.into_iter().filter(|(remembers, contact)| {
-            *remembers && contact.touching.value() > 0.0
-        });
-        remembered.map(|(_, contact)| &mut contact.approach).collect()
+        let remembered = contacts
+            .into_iter()
+            .filter(|(remembers, contact)| *remembers && contact.touching.value() > 0.0);
+        remembered
+            .map(|(_, contact)| &mut contact.approach)
+            .collect()
     }
 
     fn contact_mode(&mut self, place: Place) -> &mut ContactMode<S> {

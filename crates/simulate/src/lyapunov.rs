@@ -90,7 +90,11 @@ impl<F: Flow, const N: usize> Followed<F, N> {
     pub fn new(flow: &F, settings: &ExponentSettings, count: usize) -> Result<Self, Error> {
         let mut tangents = Tangents::<F, N>::start(flow, count, settings.tolerance);
         let mut strobes = Strobes::new(&tangents);
-        let stretches = if count == 1 { STRETCHES } else { MANY_STRETCHES };
+        let stretches = if count == 1 {
+            STRETCHES
+        } else {
+            MANY_STRETCHES
+        };
         let revolution = tangents.cycle().length();
         let mut growth = Vec::with_capacity(settings.revolutions as usize);
         tangents.advance(OFFSET * revolution, |_| ())?;

@@ -81,7 +81,11 @@ pub fn motion<F: Flow>(
     }
     let motion = match extent {
         Extent::Largest => judge(Followed::<F, 1>::new(flow, settings, 1)?, flow, settings),
-        Extent::Spectrum => judge(Followed::<F, 4>::new(flow, settings, states)?, flow, settings),
+        Extent::Spectrum => judge(
+            Followed::<F, 4>::new(flow, settings, states)?,
+            flow,
+            settings,
+        ),
     };
     motion.map(Some)
 }

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{reference, reference_machine};
-use simulate::{Extent, ExponentSettings, Regime, motion};
+use simulate::{ExponentSettings, Extent, Regime, motion};
 
 fn check(case: &str) {
     let reference = reference();
@@ -15,7 +15,9 @@ fn check(case: &str) {
         revolutions: if chaotic { 600 } else { 100 },
         ..ExponentSettings::default()
     };
-    let motion = motion(&machine, &settings, Extent::Largest).unwrap().unwrap();
+    let motion = motion(&machine, &settings, Extent::Largest)
+        .unwrap()
+        .unwrap();
     let exponent = &motion.exponents[0];
     let (ours, error) = (
         exponent.per_revolution(),
@@ -23,7 +25,15 @@ fn check(case: &str) {
     );
     let number = |key: &str| reference[case]["lyapunov"][key].as_f64().unwrap();
     let (theirs, their_error) = (number("per_rev"), number("per_rev_se"));
-    eprintln!("{:?} {:?}", motion.regime, motion.orbit.as_ref().map(|o| (o.period, &o.multipliers, o.exponent()*o.period / f64::from(o.revolutions))));
+    eprintln!(
+        "{:?} {:?}",
+        motion.regime,
+        motion.orbit.as_ref().map(|o| (
+            o.period,
+            &o.multipliers,
+            o.exponent() * o.period / f64::from(o.revolutions)
+        ))
+    );
     eprintln!("{case:18} {ours:8.4} ± {error:.4}   reference {theirs:8.4} ± {their_error:.4}");
     // The reference's regular cases agree with the largest Floquet multiplier to 1e-3.
     let allowed = (2.0 * error.hypot(their_error)).max(1e-3 * theirs.abs());
