@@ -99,7 +99,7 @@ impl<F: Flow, const N: usize> Followed<F, N> {
         let mut growth = Vec::with_capacity(settings.revolutions as usize);
         tangents.advance(OFFSET * revolution, |_| ())?;
         for number in 0..settings.transient + settings.revolutions {
-            let mut grown = vec![0.0; count];
+            let mut grown = vec![0.0; tangents.count()];
             for stretch in 1..=stretches {
                 let share = f64::from(stretch) / f64::from(stretches);
                 let end = (OFFSET + f64::from(number) + share) * revolution;
