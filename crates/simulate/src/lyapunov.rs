@@ -7,7 +7,8 @@
 //!
 //! A driven machine on a periodic orbit has a negative largest exponent, the orbit's contraction. A
 //! free crank makes the system autonomous: a regular motion then shows 0. Where rigid joints catch
-//! their journals without rebound, two directions a joint are lost for good: their exponents are −∞.
+//! their journals without rebound, two directions a joint are lost for good: their exponents are −∞
+//! (so is one that a very stiff contact takes below rounding within a renormalisation's time).
 //! A joint that follows a rigid surface or a massless link draws disturbances off it back at the
 //! rate of its stabilisation (Baumgarte 1972); so two of its exponents belong to that, not to the
 //! machine.
@@ -98,7 +99,11 @@ impl<F: Flow, const N: usize> Followed<F, N> {
         let revolution = tangents.cycle().length();
         let mut growth = Vec::with_capacity(settings.revolutions as usize);
         tangents.advance(OFFSET * revolution, |_| ())?;
+        tangents.spread();
         for number in 0..settings.transient + settings.revolutions {
+            if number == settings.transient / 2 {
+                tangents.undisturb_memory();
+            }
             let mut grown = vec![0.0; tangents.count()];
             for stretch in 1..=stretches {
                 let share = f64::from(stretch) / f64::from(stretches);

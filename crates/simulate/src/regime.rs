@@ -61,7 +61,7 @@ pub struct Motion {
 pub enum Extent {
     /// The largest exponent.
     Largest,
-    /// All exponents; it takes about as many times longer as there are pairs of states.
+    /// All exponents; of n states it takes about n/2 times as long.
     Spectrum,
 }
 
