@@ -6,12 +6,13 @@
 //! measured in the integration's own scales, which changes nothing in the limit.
 //!
 //! A driven machine on a periodic orbit has a negative largest exponent, the orbit's contraction. A
-//! free crank makes the system autonomous: a regular motion then shows 0. Where rigid joints catch
-//! their journals without rebound, two directions a joint are lost for good: their exponents are −∞
-//! (so is one that a very stiff contact takes below rounding within a renormalisation's time).
-//! A joint that follows a rigid surface or a massless link draws disturbances off it back at the
-//! rate of its stabilisation (Baumgarte 1972); so two of its exponents belong to that, not to the
-//! machine.
+//! free crank makes the system autonomous: a regular motion then shows 0.
+//!
+//! Where rigid joints catch their journals without rebound, two directions a joint are lost for
+//! good. An exponent of a direction that shrinks below rounding within a renormalisation's time is
+//! −∞; what the integration's error leaves of the other one fades at the rate at which a following
+//! joint is drawn back onto its surface (Baumgarte 1972). So do the two directions that lead off a
+//! massless link: those exponents are not the machine's.
 
 use crate::flow::Flow;
 use crate::record::Error;
