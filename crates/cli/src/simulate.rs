@@ -125,7 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             tolerance: settings.tolerance,
             ..ExponentSettings::default()
         };
-        let motion = simulate::motion(&machine.machine, &judged, Extent::Spectrum)
+        let motion = simulate::machine_motion(&machine.machine, &judged, Extent::Spectrum)
             .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
         tell_motion(motion.as_ref(), judged.revolutions);
     }

@@ -22,7 +22,7 @@ pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
 pub use periodic_orbit::PeriodicOrbit;
 pub use record::{Error, Record, simulate};
-pub use regime::{Extent, Motion, Regime, motion};
+pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
