@@ -52,11 +52,11 @@ pub trait Continuation {
     /// Where there is no such system.
     fn carry(&self, state: Self::State, value: usize) -> Result<Self::State, Self::Error>;
 
-    /// Goes on for one revolution, whose point is `kept` or thrown away.
+    /// Goes on for one revolution; `watched` tells that its point counts, or the next one's.
     ///
     /// # Errors
     /// Where it fails.
-    fn revolve(&self, state: &mut Self::State, kept: bool) -> Result<Self::Point, Self::Error>;
+    fn revolve(&self, state: &mut Self::State, watched: bool) -> Result<Self::Point, Self::Error>;
 }
 
 /// Which way the values are gone through.
@@ -81,7 +81,7 @@ impl Direction {
 /// Revolutions at each value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkSettings {
-    /// Thrown away.
+    /// Thrown away; with none the first point at a value is of a revolution that began before it.
     pub transient: u32,
     /// Recorded.
     pub revolutions: u32,
@@ -178,8 +178,8 @@ impl<'a, C: Continuation> Walk<'a, C> {
                 (self.system.start(value)?, transient)
             }
         };
-        for _ in 0..transient {
-            self.system.revolve(&mut state, false)?;
+        for left in (0..transient).rev() {
+            self.system.revolve(&mut state, left == 0 && recorded > 0)?;
         }
         let points = (0..recorded).map(|_| self.system.revolve(&mut state, true));
         let points = points.collect::<Result<_, _>>()?;
@@ -239,7 +239,7 @@ where
         Ok(Running(state.0.carried(&machine)))
     }
 
-    fn revolve(&self, state: &mut Running, kept: bool) -> Result<Revolution, E> {
-        Ok(state.0.revolve(kept)?)
+    fn revolve(&self, state: &mut Running, watched: bool) -> Result<Revolution, E> {
+        Ok(state.0.revolve(watched)?)
     }
 }

@@ -149,8 +149,8 @@ pub fn clear_joints(machine: &Machine) -> Vec<Joint> {
 /// Where the integration cannot meet its tolerance, or a free crank stalls.
 pub fn sections(machine: &Machine, settings: &SectionSettings) -> Result<Sections, Error> {
     let mut strobe = Strobe::start(machine, settings.angle, settings.tolerance);
-    for _ in 0..settings.transient {
-        strobe.revolve(false)?;
+    for left in (0..settings.transient).rev() {
+        strobe.revolve(left == 0)?;
     }
     let revolutions = (0..settings.revolutions).map(|_| strobe.revolve(true));
     Ok(Sections {
@@ -186,7 +186,8 @@ impl Strobe {
     /// The motion goes on in `machine`, whose parameters differ: crank angle and speed, rates and
     /// contacts stay as they are. Where a clearance differs, a journal in contact keeps its
     /// penetration, and one in flight its place relative to the clearance. A machine of another
-    /// build, or one that turns the other way, starts afresh.
+    /// build, or one that turns the other way, starts afresh. Impacts and peaks of the revolution
+    /// under way are forgotten.
     pub fn carried(mut self, machine: &Machine) -> Self {
         let mut watched = Watched::new(machine, self.watched.section);
         let before = &mut self.watched.dynamics;
@@ -211,8 +212,8 @@ impl Strobe {
         Self::at(watched, time, &y, self.tolerance)
     }
 
-    /// Goes on to the next passage; with `peaks` the peak of the acceleration is looked for on the
-    /// way (0 otherwise).
+    /// Goes on to the next passage, and up to a quarter beyond; with `peaks` the peak of the
+    /// acceleration is looked for on the way (0 otherwise).
     pub fn revolve(&mut self, peaks: bool) -> Result<Revolution, Error> {
         let begin = self.integrator.time();
         let period = self.watched.period();
