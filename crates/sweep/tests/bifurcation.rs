@@ -116,7 +116,9 @@ fn threads_and_interruptions_change_no_byte() {
     let manifest = String::from_utf8(whole["manifest.json"].clone()).unwrap();
     assert!(manifest.contains("bifurcations/speed.parquet"));
     let card = String::from_utf8(whole["README.md"].clone()).unwrap();
-    assert!(card.contains("- config_name: \"bifurcations\"\n  data_files: \"bifurcations/*.parquet\""));
+    assert!(
+        card.contains("- config_name: \"bifurcations\"\n  data_files: \"bifurcations/*.parquet\"")
+    );
 
     let table = read_table(&one.join("bifurcations/big-end.parquet")).unwrap();
     let values: &[Option<f64>] = table.values("value").unwrap();

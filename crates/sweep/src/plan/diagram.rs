@@ -75,7 +75,11 @@ impl Diagram {
         });
         check_clearances(std::slice::from_ref(&set), &axes, &key, frame).map_err(|_| {
             let expected = "their clearance as path, or beside it, e.g. 'set: {clearance: 0.2 mm}'";
-            Error::found(format!("{key}.joints"), "joints without clearance", expected)
+            Error::found(
+                format!("{key}.joints"),
+                "joints without clearance",
+                expected,
+            )
         })?;
         let mut diagram = Self {
             name: file.name.clone(),
