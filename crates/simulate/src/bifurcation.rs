@@ -20,8 +20,9 @@
 //!
 //! A value at which the system fails is reported as such; the next one starts afresh.
 
-use crate::poincare::{Revolution, Strobe};
+use crate::poincare::Revolution;
 use crate::record::Error;
+use crate::strobe::Strobe;
 use mechanism::Machine;
 use std::ops::Range;
 

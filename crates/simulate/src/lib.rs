@@ -4,6 +4,9 @@
 //! see, anti-aliased, without noise. [`measure`](measure()) is the rest of the measuring chain:
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
+//!
+//! What the equations say beyond a record: [`poincare`] sections, [`bifurcation`] diagrams and the
+//! [`lyapunov`] exponent.
 
 pub mod bifurcation;
 pub mod lyapunov;
@@ -12,6 +15,7 @@ pub mod poincare;
 pub mod record;
 pub mod sensor;
 pub mod settings;
+mod strobe;
 pub mod trace;
 
 pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};

@@ -5,6 +5,7 @@ mod common;
 
 use common::{Run, reference, reference_machine};
 use mechanism::Machine;
+use mechanism::drive::Drive;
 use mechanism::joints::revolute::Revolute;
 use serde_json::Value;
 use simulate::Error;
@@ -275,4 +276,23 @@ fn a_growing_clearance_carries_its_journal_along() {
         assert!((4e-5..6e-5).contains(&depth), "{i}: {depth:e}");
         assert!(revolution.throws[0].peak_acceleration < 2e3, "{i}");
     }
+}
+
+/// Without a motor the gas stops the crank before it comes round often: no endless wait.
+#[test]
+fn a_crank_that_stalls_is_told() {
+    let mut machine = machine("free_both_02mm");
+    machine.crankshaft.inertia = 0.5;
+    if let Drive::Free(motor) = &mut machine.drive {
+        (motor.mean_torque, motor.slope) = (0.0, 0.0);
+    }
+    let settings = SectionSettings {
+        tolerance: 1e-7,
+        ..SectionSettings::default()
+    };
+    let stalled = sections(&machine, &settings);
+    assert!(
+        matches!(stalled, Err(Error::Stalled { time }) if time > 1.0),
+        "{stalled:?}"
+    );
 }
