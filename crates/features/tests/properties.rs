@@ -25,7 +25,7 @@ fn defined(channels: &[Channel]) -> Vec<Definition> {
 fn window(channels: &[Channel], per_revolution: f64) -> Window<'_> {
     Window {
         sample_rate: 10_000.0,
-        speed_rpm: 60.0 * 10_000.0 / per_revolution,
+        speed_rpm: Some(60.0 * 10_000.0 / per_revolution),
         crank_angle: None,
         channels,
     }
