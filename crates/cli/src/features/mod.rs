@@ -56,8 +56,8 @@ pub struct Arguments {
     /// Speed of the crank, where neither a crank angle nor the file tells it
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     speed: Option<String>,
-    /// Length of a window: '2 s' or '10 revolutions' [default: the whole file up to 10 s, windows
-    /// of 10 s of a longer one; rows of a table are one window each]
+    /// Length of a window: '2 s' or '10 revolutions' [default: the whole file up to 10 s (or
+    /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     window: Option<String>,
     /// The table to write; one that is there is replaced

@@ -13,11 +13,13 @@ use signal::crank_angle::CrankAngle;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-/// The columns with which every row begins.
-fn first_columns() -> Vec<Column> {
+/// The columns with which every row begins; the labels follow.
+const FIRST_COLUMNS: usize = 6;
+
+fn first_columns() -> [Column; FIRST_COLUMNS] {
     let real =
         |name: &str, unit: &str, meaning: &str| Column::new(name, Kind::Real, meaning).unit(unit);
-    vec![
+    [
         Column::new("file", Kind::Text, "the recording"),
         Column::new(
             "window",
@@ -100,8 +102,9 @@ pub(super) struct Layout {
     pub(super) without_unit: Vec<String>,
     definitions: Vec<Definition>,
     feature_positions: Vec<usize>,
+    /// Places among the labels of all files; none of what is told by a column of its own.
     label_positions: Vec<Option<usize>>,
-    /// Labels from elsewhere, with their positions.
+    /// Labels from elsewhere, with their places.
     known: Vec<(usize, Value)>,
     /// Where the file's labels have the speed, and the window.
     pub(super) speed_label: Option<usize>,
@@ -273,7 +276,7 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
         _ => job.index as i64,
     };
     let mut row = vec![Value::Missing; columns];
-    let first: [Value; 6] = [
+    let first: [Value; FIRST_COLUMNS] = [
         layout.file.as_str().into(),
         index.into(),
         job.window.start_s.into(),
@@ -286,11 +289,11 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
     }
     for (position, value) in layout.label_positions.iter().zip(job.labels.iter()) {
         if let Some(position) = position {
-            row[*position] = value.clone();
+            row[FIRST_COLUMNS + position] = value.clone();
         }
     }
     for (position, value) in &layout.known {
-        row[*position] = value.clone();
+        row[FIRST_COLUMNS + position] = value.clone();
     }
     for (position, value) in layout.feature_positions.iter().zip(&values) {
         row[*position] = value.as_ref().ok().copied().into();

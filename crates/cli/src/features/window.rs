@@ -4,8 +4,9 @@ use crate::Failure;
 use input::quantity::{AboveZero, Duration, Quantity};
 use recordings::measured::Length;
 
-/// The window of long files where none is asked for, s.
-pub(super) const DEFAULT_S: f64 = 10.0;
+/// The window of long files where none is asked for, s, or in samples where those last longer.
+const DEFAULT_S: f64 = 10.0;
+const DEFAULT_SAMPLES: f64 = 1e5;
 
 /// The longest window, in samples: its analysis takes about 100 bytes for each.
 const MOST_SAMPLES: f64 = (1 << 24) as f64;
@@ -53,7 +54,7 @@ impl Asked {
         let samples = match (self, speed_rpm) {
             (Self::Nothing, _) if whole => return Ok(Length::UpTo(MOST_SAMPLES as usize)),
             (Self::Nothing, _) => {
-                let most = (DEFAULT_S * sample_rate_hz).clamp(FEWEST_SAMPLES as f64, MOST_SAMPLES);
+                let most = (DEFAULT_S * sample_rate_hz).clamp(DEFAULT_SAMPLES, MOST_SAMPLES);
                 return Ok(Length::UpTo(most as usize));
             }
             (Self::Seconds(seconds), _) => seconds * sample_rate_hz,
@@ -96,7 +97,7 @@ mod tests {
             length(Asked::Revolutions(10.0), Some(600.0)),
             Ok(Length::Equal(1000.0))
         );
-        assert_eq!(length(Asked::Nothing, None), Ok(Length::UpTo(10_000)));
+        assert_eq!(length(Asked::Nothing, None), Ok(Length::UpTo(100_000)));
         assert!(length(Asked::Revolutions(10.0), None).is_err());
         assert!(length(Asked::Seconds(0.05), None).is_err());
         assert!(length(Asked::Seconds(1e6), None).is_err());
