@@ -4,7 +4,7 @@
 //! the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`). A file without names has the
 //! columns `column_1`, `column_2`, ... Lines before it that are empty or begin with `#` are passed
 //! over. Where commas do not separate, they may be the decimal sign. An empty cell is a missing
-//! sample; a column that does not begin with a number is left out.
+//! sample, and so is an empty line within a single column; a column that does not begin with a number is left out.
 
 use crate::Error;
 use crate::measured::{
@@ -41,6 +41,8 @@ struct CsvSamples {
     names: Vec<String>,
     /// Whether the line that was read last is the next row.
     held: bool,
+    /// Empty lines before it that are missing samples: those within a single column.
+    empty: u64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,6 +130,7 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         targets,
         names,
         held: true,
+        empty: 0,
     };
     let count = channels.len();
     MeasuredFile::of_one(channels, Vec::new(), |labels| {
@@ -274,10 +277,18 @@ impl Samples for CsvSamples {
             if !std::mem::take(&mut self.held) && !self.lines.advance()? {
                 break;
             }
-            if !self.lines.is_blank() {
-                self.row(times, channels)?;
-                rows += 1;
+            if self.lines.is_blank() {
+                self.empty += u64::from(self.columns == 1 && self.lines.line.is_empty());
+                continue;
             }
+            if self.empty > 0 {
+                self.empty -= 1;
+                self.held = true;
+                channels.iter_mut().for_each(|c| c.push(f32::NAN));
+            } else {
+                self.row(times, channels)?;
+            }
+            rows += 1;
         }
         Ok(rows)
     }

@@ -18,18 +18,16 @@ const RATE: &str = "sample_rate_hz";
 /// columns are its labels; otherwise the columns of numbers are the channels of one recording.
 pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let file = ParquetFile::open(path)?;
-    if file.rows() == 0 {
-        return Err(Error::damaged("Parquet", path, "it has no rows"));
-    }
     let lists = file
         .schema()
         .columns()
         .iter()
         .any(|c| c.kind == Kind::Samples);
-    if lists {
-        rows(path, &file, options)
-    } else {
-        columns(path, &file, options)
+    match (lists, file.rows()) {
+        // A split of a dataset may have no case.
+        (true, _) => rows(path, &file, options),
+        (false, 0) => Err(Error::damaged("Parquet", path, "it has no rows")),
+        (false, _) => columns(path, &file, options),
     }
 }
 
