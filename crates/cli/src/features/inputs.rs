@@ -31,7 +31,11 @@ impl Input {
 pub(super) fn refused(path: &Path, error: recordings::Error) -> Failure {
     match error {
         recordings::Error::NoColumn { name, among } => {
-            let nearest = input::nearest(&name, among.iter().map(String::as_str));
+            // Without its unit in brackets a name is one, too.
+            let bare =
+                |column: &String| column.split(['[', '(']).next().map(|n| n.trim().to_owned());
+            let names: Vec<String> = among.iter().filter_map(bare).collect();
+            let nearest = input::nearest(&name, names.iter().map(String::as_str));
             let hint = nearest.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
             let among = among.join(", ");
             Failure::input(format!(

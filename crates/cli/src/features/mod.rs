@@ -103,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )?);
     }
     let schema = table::schema(labels, &mut layouts)?;
-    note_unknown_units(&layouts);
+    let note = unknown_units(&layouts);
     let columns = schema.columns().len();
 
     let out = WholeFile::create(&arguments.out.with_extension("part"), &arguments.out);
@@ -150,6 +150,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .finish()
         .and_then(WholeFile::commit)
         .map_err(Failure::work)?;
+    if let Some(note) = note {
+        eprintln!("{note}");
+    }
     println!(
         "{}: {rows} windows, {columns} columns, {} files",
         arguments.out.display(),
@@ -193,17 +196,16 @@ fn refuse_input_as_output(inputs: &[Input], out: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Says once which channels have no unit.
-fn note_unknown_units(layouts: &[Layout]) {
-    let with = layouts
+/// A note of the first file whose channels have no unit.
+fn unknown_units(layouts: &[Layout]) -> Option<String> {
+    let layout = layouts
         .iter()
-        .find(|layout| !layout.without_unit.is_empty());
-    let Some(layout) = with else { return };
-    eprintln!(
+        .find(|layout| !layout.without_unit.is_empty())?;
+    Some(format!(
         "note: {}: no unit of {}: statistics alone; --unit 'm/s^2' gives the rest",
         layout.file,
         layout.without_unit.join(", ")
-    );
+    ))
 }
 
 /// Windows done, on standard error; nothing where that is no terminal.
