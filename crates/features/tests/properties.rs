@@ -220,7 +220,7 @@ fn features_without_a_value_say_why() {
     let slow = acceleration(ramp);
     let mut window = window(&slow, 100.0);
     window.sample_rate = 4000.0;
-    window.speed_rpm = 2400.0;
+    window.speed_rpm = Some(2400.0);
     let last_band = features(&window)[18].clone();
     let low_hz = 2560.0;
     let nyquist_hz = 2000.0;
