@@ -10,7 +10,7 @@ use crate::measured::{
     one_rate, selected,
 };
 use crate::{Column, Error, Kind, Value};
-use mcap::records::Record;
+use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -258,7 +258,7 @@ impl Stream {
         })
     }
 
-    /// Hands the next record to `take`; false at the end.
+    /// Hands the next record to `take` that can matter; false at the end.
     fn next(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
         loop {
             let Some(event) = self.reader.next_event() else {
@@ -274,6 +274,14 @@ impl Stream {
                     self.reader.notify_read(read);
                 }
                 LinearReadEvent::Record { data, opcode } => {
+                    match lengths_fit(opcode, data) {
+                        None => continue,
+                        Some(true) => {}
+                        Some(false) => {
+                            let reason = "a record is shorter than it announces";
+                            return Err(damaged(&self.path, reason));
+                        }
+                    }
                     let record = mcap::parse_record(opcode, data);
                     take(record.map_err(|error| damaged(&self.path, error))?);
                     return Ok(true);
@@ -281,6 +289,38 @@ impl Stream {
             }
         }
     }
+}
+
+/// Whether the texts and blocks of a record are within it; none of records that do not matter here.
+/// The MCAP library takes memory for what a text announces before it looks whether that is there.
+fn lengths_fit(opcode: u8, data: &[u8]) -> Option<bool> {
+    let fixed = match opcode {
+        op::MESSAGE => return Some(true),
+        op::SCHEMA => 2,
+        op::CHANNEL => 4,
+        op::METADATA => 0,
+        _ => return None,
+    };
+    let blocks = data.get(fixed..).and_then(blocks);
+    let fit = blocks.is_some_and(|blocks| match (opcode, blocks.as_slice()) {
+        // The last block is a map of texts.
+        (op::CHANNEL, [_, _, map]) | (op::METADATA, [_, map]) => self::blocks(map).is_some(),
+        (op::SCHEMA, [_, _, _]) => true,
+        _ => false,
+    });
+    Some(fit)
+}
+
+/// Blocks that each begin with their length; none where they do not fill `data`.
+fn blocks(mut data: &[u8]) -> Option<Vec<&[u8]>> {
+    let mut blocks = Vec::new();
+    while let Some((length, rest)) = data.split_first_chunk() {
+        let length = usize::try_from(u32::from_le_bytes(*length)).ok()?;
+        let (block, rest) = rest.split_at_checked(length)?;
+        blocks.push(block);
+        data = rest;
+    }
+    data.is_empty().then_some(blocks)
 }
 
 impl Samples for McapSamples {
