@@ -179,7 +179,7 @@ pub(super) fn features_row(
     let mut row = about_row(plan, case, window);
     let values = features::features(&features::Window {
         sample_rate: sample_rate_hz,
-        speed_rpm: case.operating_point.speed_rpm,
+        speed_rpm: Some(case.operating_point.speed_rpm),
         crank_angle: crank_angle.map(|c| c.samples.as_slice()),
         channels,
     });
