@@ -63,7 +63,9 @@ impl<'a> Likelihood<'a> {
     pub fn by_run(&self, x: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let predictions = self.predictions(x)?;
         let runs = self.problem.runs.iter().zip(&predictions);
-        Ok(runs.map(|(run, p)| residuals(run, p, self.accuracy)).collect())
+        Ok(runs
+            .map(|(run, p)| residuals(run, p, self.accuracy))
+            .collect())
     }
 }
 
@@ -128,7 +130,12 @@ fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f
     all
 }
 
-fn derivatives(run: &Observation, prediction: &Prediction, count: usize, accuracy: f64) -> DMatrix<f64> {
+fn derivatives(
+    run: &Observation,
+    prediction: &Prediction,
+    count: usize,
+    accuracy: f64,
+) -> DMatrix<f64> {
     let mut whole = DMatrix::zeros(residual_count(run), count);
     // A motion that does not repeat itself has none.
     for (column, of_parameter) in prediction.derivatives.iter().enumerate() {

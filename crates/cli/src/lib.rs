@@ -6,6 +6,7 @@
 #![allow(clippy::print_stdout)]
 
 pub mod failure;
+pub mod features;
 pub mod gen_dataset;
 pub mod report;
 pub mod schema;

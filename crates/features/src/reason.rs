@@ -22,6 +22,9 @@ pub enum Reason {
         /// The highest that the samples per revolution allow.
         highest: usize,
     },
+    /// A feature per revolution, order or crank angle of a shaft whose turning is not known.
+    #[error("neither speed nor crank angle is known")]
+    NoSpeed,
     /// The signal cannot be analysed.
     #[error(transparent)]
     Signal(#[from] signal::Error),

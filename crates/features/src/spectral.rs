@@ -67,7 +67,8 @@ pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
         }
         None => {
             let samples = window.channels.first().map_or(0, |c| c.samples.len());
-            CrankAngle::from_speed(samples, window.sample_rate, window.speed_rpm)?
+            let speed_rpm = window.speed_rpm.ok_or(Reason::NoSpeed)?;
+            CrankAngle::from_speed(samples, window.sample_rate, speed_rpm)?
         }
     };
     let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;

@@ -25,7 +25,7 @@ fn defined(channels: &[Channel]) -> Vec<Definition> {
 fn window(channels: &[Channel], per_revolution: f64) -> Window<'_> {
     Window {
         sample_rate: 10_000.0,
-        speed_rpm: 60.0 * 10_000.0 / per_revolution,
+        speed_rpm: Some(60.0 * 10_000.0 / per_revolution),
         crank_angle: None,
         channels,
     }
@@ -220,7 +220,7 @@ fn features_without_a_value_say_why() {
     let slow = acceleration(ramp);
     let mut window = window(&slow, 100.0);
     window.sample_rate = 4000.0;
-    window.speed_rpm = 2400.0;
+    window.speed_rpm = Some(2400.0);
     let last_band = features(&window)[18].clone();
     let low_hz = 2560.0;
     let nyquist_hz = 2000.0;

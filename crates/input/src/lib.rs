@@ -9,6 +9,7 @@
 //!
 //! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected.
 
+pub mod bundle;
 pub mod bundle_machine;
 pub mod choice;
 pub mod error;

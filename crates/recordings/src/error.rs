@@ -39,6 +39,26 @@ pub enum Error {
         /// What the decoder found.
         reason: String,
     },
+    /// A column of time that tells no rate, or contradicts it.
+    #[error("`{}`, column `{column}`: {reason}", path.display())]
+    Time {
+        /// The file.
+        path: PathBuf,
+        /// Name of the column.
+        column: String,
+        /// What is wrong with the times.
+        reason: String,
+    },
+    /// A sample rate that is not the one in the file.
+    #[error("`{}` has samples at {file_hz} Hz, but the sample rate is said to be {stated_hz} Hz", path.display())]
+    RateContradicts {
+        /// The file.
+        path: PathBuf,
+        /// What the file says, Hz.
+        file_hz: f64,
+        /// What was said, Hz.
+        stated_hz: f64,
+    },
     /// A temporary file that readers of the folder would take for data.
     #[error("temporary file `{}` must end in `.part`, or readers take it for data", .0.display())]
     TemporaryName(PathBuf),
@@ -196,6 +216,22 @@ impl Error {
             action,
             path,
             source,
+        }
+    }
+
+    pub(crate) fn damaged(format: &'static str, path: &Path, reason: impl ToString) -> Self {
+        Self::Damaged {
+            format,
+            path: path.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
+
+    pub(crate) fn time(path: &Path, column: &str, reason: String) -> Self {
+        Self::Time {
+            path: path.to_owned(),
+            column: column.to_owned(),
+            reason,
         }
     }
 

@@ -2,6 +2,7 @@
 //!
 //! - [`Table`]: columns with a name, a unit and a description, and rows checked against them;
 //! - [`formats`]: one file per format; the only place in the workspace that knows Arrow and MCAP;
+//! - [`measured`]: recordings of any origin, read a stretch at a time;
 //! - [`WholeFile`]: a file that appears whole or not at all, with its size and checksum;
 //! - [`DatasetCard`] and [`Manifest`]: what a dataset says about itself, to people and programs.
 //!
@@ -27,6 +28,7 @@
 //! ```
 
 pub mod formats;
+pub mod measured;
 
 mod dataset_card;
 mod error;

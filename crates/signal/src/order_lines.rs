@@ -109,7 +109,9 @@ mod tests {
         let mut state = 1_u64;
         let lines = lines(40, |_| {
             // A linear congruential generator (Knuth's MMIX): uniform from −1/2 to 1/2.
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
         });
         let expected = 4.0 / 12.0 / (40 * PER_REVOLUTION) as f64;

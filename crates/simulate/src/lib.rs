@@ -4,20 +4,35 @@
 //! see, anti-aliased, without noise. [`measure`](measure()) is the rest of the measuring chain:
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
+//!
+//! What the equations say beyond a record: [`poincare`] sections, [`bifurcation`] diagrams and the
+//! [`regime`] of a motion with its Lyapunov exponents.
 
+pub mod bifurcation;
 mod chain;
+pub mod flow;
 pub mod lyapunov;
 pub mod measure;
+pub mod periodic_orbit;
+pub mod poincare;
 pub mod record;
+pub mod regime;
 mod run;
 pub mod sensitivity;
 pub mod sensor;
 pub mod settings;
+mod strobe;
+mod strobes;
+mod tangents;
 pub mod trace;
 
-pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
+pub use flow::{Cycle, Flow};
+pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
+pub use periodic_orbit::PeriodicOrbit;
+pub use poincare::{SectionSettings, Sections, sections};
 pub use record::{Error, Record, simulate};
+pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,

@@ -17,6 +17,8 @@ enum Verb {
     GenDataset(cli::gen_dataset::Arguments),
     /// Simulate one run of a machine: signals and a picture
     Simulate(cli::simulate::Arguments),
+    /// Compute the features of recordings, measured or simulated
+    Features(cli::features::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
     Report(cli::report::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
@@ -27,6 +29,7 @@ fn main() -> ExitCode {
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
+        Verb::Features(arguments) => cli::features::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })

@@ -4,14 +4,16 @@
 mod axis;
 mod block;
 mod case;
+mod diagram;
 mod drawn;
 mod estimate;
 mod levels;
 mod listed;
 mod sampler;
 
-pub use case::{Case, OperatingPoint};
-pub use estimate::Estimate;
+pub use case::{Case, Judgement, OperatingPoint};
+pub use diagram::Diagram;
+pub use estimate::{DiagramEstimate, Estimate};
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -19,11 +21,12 @@ use std::path::Path;
 use input::choice::Or;
 use input::yaml::Document;
 use input::{Error, MachineFile, Problem, Resolved, paths};
+use mechanism::Machine;
 use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use simulate::{ExponentSettings, Settings, Transient};
+use simulate::{ExponentSettings, Extent, Settings, Transient};
 
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
@@ -50,8 +53,8 @@ pub struct Plan {
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
-    /// How the Lyapunov exponent of each case is computed, where it is asked for.
-    pub exponent: Option<ExponentSettings>,
+    /// How the motion of each case is judged from the equations, where that is asked for.
+    pub judgement: Option<Judgement>,
     /// How recordings are cut.
     pub windows: Option<Windows>,
     /// Shares of train, validation and test.
@@ -64,6 +67,8 @@ pub struct Plan {
     pub joints: Vec<Joint>,
     /// What the sweep sets or varies beside clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
+    /// The bifurcation diagrams.
+    pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
     throws: Vec<String>,
@@ -140,13 +145,14 @@ impl Plan {
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
-            exponent: exponent(&file.run)?,
+            judgement: judgement(&file.run)?,
             windows: file.windows,
             shares: shares(file)?,
             format: file.format,
             shard_size: file.shard_size.map_or(256, |n| n.get()).into(),
             joints: joints(&base.machine),
             parameters: Vec::new(),
+            diagrams: Vec::new(),
             throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
             base,
             tree: tree.clone(),
@@ -166,6 +172,15 @@ impl Plan {
             let sampler =
                 sampler.map_err(|e| Error::new(path, e.problem().clone()).under("vary"))?;
             plan.vary.push((path.clone(), sampler));
+        }
+        for (position, file) in file.bifurcations.iter().enumerate() {
+            let diagram = Diagram::new(file, position, &plan.frame())?;
+            if plan.diagrams.iter().any(|other| other.name == diagram.name) {
+                let key = format!("bifurcations.{position}.name");
+                let expected = "another name than the diagrams before";
+                return Err(Error::found(key, diagram.name, expected));
+            }
+            plan.diagrams.push(diagram);
         }
         let cases = plan
             .blocks
@@ -258,8 +273,8 @@ impl Plan {
             id: self.case_id(index),
             repeat,
             settings: self.settings,
-            exponent: self.exponent,
-            lyapunov_true: None,
+            judgement: self.judgement,
+            motion: None,
             windows: self.windows,
             labels: labels(&self.joints, &resolved),
             operating_point: OperatingPoint::of(&resolved),
@@ -269,6 +284,14 @@ impl Plan {
             tree,
             resolved,
         })
+    }
+
+    /// The machine of `diagram` at its value number `value`.
+    ///
+    /// # Errors
+    /// Where the value makes no machine.
+    pub fn diagram_machine(&self, diagram: &Diagram, value: usize) -> Result<Machine, Error> {
+        diagram.machine(value, &self.frame())
     }
 
     /// The block that point `point` of the sweep is in, and its index there.
@@ -437,15 +460,23 @@ fn settings(run: &Run) -> Result<Settings, Error> {
     })
 }
 
-fn exponent(run: &Run) -> Result<Option<ExponentSettings>, Error> {
+fn judgement(run: &Run) -> Result<Option<Judgement>, Error> {
     let Some(asked) = run.lyapunov else {
         return Ok(None);
     };
     let default = ExponentSettings::default();
-    Ok(Some(ExponentSettings {
-        transient: asked.transient.map_or(default.transient, |n| n.get()),
-        revolutions: asked.revolutions.get(),
-        tolerance: settings(run)?.tolerance,
+    Ok(Some(Judgement {
+        settings: ExponentSettings {
+            transient: asked.transient.map_or(default.transient, |n| n.get()),
+            revolutions: asked.revolutions.get(),
+            tolerance: settings(run)?.tolerance,
+        },
+        extent: if asked.spectrum {
+            Extent::Spectrum
+        } else {
+            Extent::Largest
+        },
+        convergence: asked.convergence,
     }))
 }
 

@@ -15,6 +15,7 @@
 //! ```
 
 pub mod axes;
+pub mod bifurcation;
 pub mod values;
 
 use input::choice::{Count, Or};
@@ -24,6 +25,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 pub use axes::{Axes, Block, Design, Random};
+pub use bifurcation::{Bifurcation, Directions};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 
 /// A sweep: cases, how each is run, and how the dataset is divided.
@@ -51,6 +53,9 @@ pub struct SweepFile {
     /// sets itself is not varied.
     #[serde(default)]
     pub vary: Axes<Draw>,
+    /// Bifurcation diagrams, computed after the cases.
+    #[serde(default)]
+    pub bifurcations: Vec<Bifurcation>,
     /// Shares of the splits; 70 %, 15 % and 15 % where they are left out.
     #[serde(default)]
     pub splits: Splits,
@@ -86,14 +91,16 @@ pub struct Run {
     /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
-    /// The largest Lyapunov exponent of each case, from the equations of motion: column
-    /// `lyapunov_true_per_s`. Not computed where this is left out; it takes about twice as long per
-    /// revolution as the recording.
+    /// The motion of each case judged from the equations: the largest Lyapunov exponent, its
+    /// standard error, and the regime (columns `lyapunov_true_per_s`,
+    /// `lyapunov_true_standard_error_per_s`, `lyapunov_true_per_revolution`, `regime_true`,
+    /// `period_true_revolutions`, `floquet_multiplier_true`). Not computed where this is left out;
+    /// it takes about twice as long per revolution as the recording.
     #[serde(default)]
     pub lyapunov: Option<Lyapunov>,
 }
 
-/// How the exponent of each case is computed.
+/// How the motion of each case is judged.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lyapunov {
@@ -102,6 +109,14 @@ pub struct Lyapunov {
     /// Revolutions before; 50 where it is left out.
     #[serde(default)]
     pub transient: Option<Count<0, 1_000_000>>,
+    /// true for all exponents, in column `lyapunov_spectrum_true_per_s`; it takes about four times
+    /// as long as the largest alone for two joints with clearance.
+    #[serde(default)]
+    pub spectrum: bool,
+    /// true for the running average of the largest exponent after each revolution, in column
+    /// `lyapunov_convergence_true_per_s`.
+    #[serde(default)]
+    pub convergence: bool,
 }
 
 /// A transient that ends when the motion repeats itself.

@@ -7,6 +7,7 @@
 //! `descriptions`. pandas finds the units in `DataFrame.attrs`.
 
 mod read;
+pub(crate) mod recordings;
 mod write;
 
 pub use read::{ParquetFile, read_table};

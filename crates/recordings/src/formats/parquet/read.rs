@@ -6,7 +6,8 @@ use arrow::compute::cast;
 use arrow::datatypes::{DataType, Field, Float32Type, Float64Type, Int64Type};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{
-    ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReaderBuilder,
+    ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReader,
+    ParquetRecordBatchReaderBuilder,
 };
 use std::fs::File;
 use std::ops::Range;
@@ -63,7 +64,8 @@ impl ParquetFile {
 
     /// The columns whose type tables have; columns of other types (dates, lists of lists, ...)
     /// stand beside them in the file and are left alone. A column of float32 is one of real
-    /// numbers, and narrower whole numbers are whole numbers.
+    /// numbers, narrower whole numbers are whole numbers, and lists of float64 are rounded to
+    /// float32.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
@@ -107,6 +109,43 @@ impl ParquetFile {
         Table::from_columns(schema, data)
     }
 
+    /// The rows of some columns from the first to the last, `rows` at a time, in the order asked
+    /// for.
+    ///
+    /// # Errors
+    /// When a column is not there, or its type is none that tables have. Damage is found on the way.
+    pub(crate) fn batches_of(
+        &self,
+        columns: &[&str],
+        rows: usize,
+    ) -> Result<impl Iterator<Item = Result<Table, Error>> + Send + use<>, Error> {
+        let wanted = columns.iter().map(|name| self.wanted(name));
+        let wanted = Schema::new(wanted.collect::<Result<_, _>>()?)?;
+        let path = self.path.clone();
+        let mut batches = guarded(&path, || self.reader(columns, 0..self.rows, rows))?;
+        let mut ended = false;
+        Ok(std::iter::from_fn(move || {
+            if ended {
+                return None;
+            }
+            let read = guarded(&path, || {
+                let Some(batch) = batches.next() else {
+                    return Ok(None);
+                };
+                let batch = batch.map_err(damaged(&path))?;
+                table(&path, &batch, &wanted).map(Some)
+            });
+            ended = read.is_err();
+            read.transpose()
+        }))
+    }
+
+    /// Whether the file has the column in float32.
+    pub(crate) fn is_single_precision(&self, name: &str) -> bool {
+        let field = self.metadata.schema().field_with_name(name);
+        field.is_ok_and(|field| *field.data_type() == DataType::Float32)
+    }
+
     fn decode(
         &self,
         columns: &[&str],
@@ -117,7 +156,7 @@ impl ParquetFile {
         for batch in self.batches(columns, rows)? {
             let batch = batch.map_err(damaged(&self.path))?;
             for (column, data) in schema.columns().iter().zip(&mut *data) {
-                self.append(&batch, &column.name, data)?;
+                append_column(&self.path, &batch, &column.name, data)?;
             }
         }
         Ok(())
@@ -140,7 +179,17 @@ impl ParquetFile {
         &self,
         columns: &[&str],
         rows: Range<usize>,
-    ) -> Result<impl Iterator<Item = Result<RecordBatch, arrow::error::ArrowError>>, Error> {
+    ) -> Result<ParquetRecordBatchReader, Error> {
+        let at_a_time = BATCH_ROWS.min(rows.len().max(1));
+        self.reader(columns, rows, at_a_time)
+    }
+
+    fn reader(
+        &self,
+        columns: &[&str],
+        rows: Range<usize>,
+        at_a_time: usize,
+    ) -> Result<ParquetRecordBatchReader, Error> {
         let file = self
             .file
             .try_clone()
@@ -151,18 +200,34 @@ impl ParquetFile {
         let mask = ProjectionMask::roots(self.metadata.parquet_schema(), roots);
         ParquetRecordBatchReaderBuilder::new_with_metadata(file, self.metadata.clone())
             .with_projection(mask)
-            .with_batch_size(BATCH_ROWS.min(rows.len().max(1)))
+            .with_batch_size(at_a_time)
             .with_offset(rows.start)
             .with_limit(rows.len())
             .build()
             .map_err(damaged(&self.path))
     }
+}
 
-    fn append(&self, batch: &RecordBatch, name: &str, data: &mut Data) -> Result<(), Error> {
-        let missing = || damaged(&self.path)(format!("column `{name}` is not in its row groups"));
-        let array = batch.column_by_name(name).ok_or_else(missing)?;
-        append(array, data).map_err(damaged(&self.path))
+fn append_column(
+    path: &Path,
+    batch: &RecordBatch,
+    name: &str,
+    data: &mut Data,
+) -> Result<(), Error> {
+    let missing = || damaged(path)(format!("column `{name}` is not in its row groups"));
+    let array = batch.column_by_name(name).ok_or_else(missing)?;
+    append(array, data).map_err(damaged(path))
+}
+
+/// A batch as a table of the columns of `schema`.
+fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Error> {
+    let mut data = Vec::new();
+    for column in schema.columns() {
+        let mut values = Data::empty(column.kind);
+        append_column(path, batch, &column.name, &mut values)?;
+        data.push(values);
     }
+    Table::from_columns(schema.clone(), data)
 }
 
 /// The result of `read`, with an error in place of a panic: the Parquet library takes some damage
@@ -219,7 +284,7 @@ fn kind(data_type: &DataType) -> Option<Kind> {
         DataType::Float16 | DataType::Float32 | DataType::Float64 => Some(Kind::Real),
         DataType::Boolean => Some(Kind::Flag),
         DataType::List(item) | DataType::LargeList(item)
-            if *item.data_type() == DataType::Float32 =>
+            if matches!(item.data_type(), DataType::Float32 | DataType::Float64) =>
         {
             Some(Kind::Samples)
         }
@@ -274,7 +339,10 @@ fn append_lists(
             Some(list) if list.null_count() > 0 => {
                 return Err("a list with a missing sample".into());
             }
-            Some(list) => Some(list.as_primitive::<Float32Type>().values().to_vec()),
+            Some(list) => {
+                let list = cast(list, &DataType::Float32).map_err(|error| error.to_string())?;
+                Some(list.as_primitive::<Float32Type>().values().to_vec())
+            }
         };
         values.push(samples);
     }

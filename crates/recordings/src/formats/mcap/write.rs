@@ -1,11 +1,6 @@
-//! MCAP: one recording per file, for Foxglove, PlotJuggler and the tools of ROS 2.
-//!
-//! Every sample is one message of one topic, `/crosshead`: all channels are sampled together, and
-//! the plots of Foxglove draw a point per message (an array within a message is plotted against
-//! its index, not against time). The message is a flat ROS 2 message in CDR, and its definition
-//! lies in the file with the units as comments: nothing has to be installed to read it. The labels
-//! are the metadata record `labels`, the sweep is the attachment `sweep.yaml`.
+//! Recordings to MCAP.
 
+use super::TOPIC;
 use crate::Error;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -13,9 +8,6 @@ use mcap::{Attachment, McapError, WriteOptions};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
-
-/// The topic of the samples.
-pub const TOPIC: &str = "/crosshead";
 
 /// The definition of the time stamp, as it follows the message in the schema.
 const TIME: &str = "

@@ -1,4 +1,4 @@
-//! CSV of plain columns, for spreadsheets and for a look with the naked eye (RFC 4180).
+//! Tables to CSV.
 
 use crate::{Data, Error, Kind, Table};
 use std::io::{self, Write};

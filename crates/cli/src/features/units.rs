@@ -1,0 +1,157 @@
+//! Units of measured channels: what a file says becomes SI, so that features compare.
+
+use crate::Failure;
+use recordings::measured::{MeasuredChannel, stem};
+
+/// Standard gravity, m/s^2 (CGPM 1901). A measured `g` is never a gram.
+const GRAVITY: f64 = 9.80665;
+
+/// Pound-force per square inch, Pa (NIST SP 811, 2008, appendix B).
+const PSI: f64 = 6894.757;
+
+/// A channel as the features take it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scaled {
+    /// Name without its unit; `crank_angle_rad` for the crank angle.
+    pub(super) name: String,
+    /// Unit as the features know it, empty where it is not known.
+    pub(super) unit: String,
+    /// Units per unit of the file.
+    pub(super) factor: f64,
+    /// Whether it is the crank angle, which is taken into [0, 2π).
+    pub(super) is_crank_angle: bool,
+}
+
+/// The name of the crank angle's channel.
+pub(super) const CRANK_ANGLE: &str = "crank_angle_rad";
+
+/// What `--unit` says of channels without a unit: a unit (`m/s^2`), or how much one unit of the
+/// file is (`100 m/s^2`).
+pub(super) fn parse_argument(text: &str) -> Result<(f64, String), Failure> {
+    let of = |text: &str| to_si(text.trim()).map(|(factor, unit)| (factor, unit.to_owned()));
+    let text = text.trim();
+    let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)));
+    let (number, unit) = text.split_at(split.unwrap_or(text.len()));
+    let amount = match number {
+        "" => Some(1.0),
+        number => number
+            .parse()
+            .ok()
+            .filter(|x: &f64| x.is_finite() && *x != 0.0),
+    };
+    match (amount, of(unit)) {
+        (Some(amount), Some((factor, unit))) => Ok((amount * factor, unit)),
+        _ => Err(Failure::input(format!(
+            "--unit: found '{text}', expected a unit, e.g. 'm/s^2', or what 1 in the file is, e.g. \
+             '100 m/s^2'"
+        ))),
+    }
+}
+
+/// The channel in SI; `default` is what `--unit` says.
+pub(super) fn scaled(
+    channel: &MeasuredChannel,
+    default: Option<&(f64, String)>,
+) -> Result<Scaled, String> {
+    let base = stem(&channel.name);
+    if base.eq_ignore_ascii_case("crank_angle") {
+        return crank_angle(channel);
+    }
+    let (name, factor, unit) = match (&channel.unit, default) {
+        (Some(unit), _) => match to_si(unit) {
+            Some((factor, si)) => (base, factor, si),
+            None => (base, 1.0, unit.clone()),
+        },
+        (None, Some((factor, unit))) => (channel.name.as_str(), *factor, unit.clone()),
+        (None, None) => (channel.name.as_str(), 1.0, String::new()),
+    };
+    Ok(Scaled {
+        name: name.to_owned(),
+        unit,
+        factor,
+        is_crank_angle: false,
+    })
+}
+
+fn crank_angle(channel: &MeasuredChannel) -> Result<Scaled, String> {
+    let factor = match channel.unit.as_deref() {
+        Some("rad") => 1.0,
+        Some("deg" | "°") => std::f64::consts::PI / 180.0,
+        _ => {
+            return Err(format!(
+                "column `{}`: a crank angle is called crank_angle_rad or crank_angle_deg",
+                channel.column
+            ));
+        }
+    };
+    Ok(Scaled {
+        name: CRANK_ANGLE.to_owned(),
+        unit: "rad".to_owned(),
+        factor,
+        is_crank_angle: true,
+    })
+}
+
+/// SI units per `unit`, and their name. Speeds stay in rpm, as the field has them.
+fn to_si(unit: &str) -> Option<(f64, String)> {
+    match unit {
+        "g" => return Some((GRAVITY, "m/s^2".to_owned())),
+        "psi" => return Some((PSI, "Pa".to_owned())),
+        "rpm" => return Some((1.0, "rpm".to_owned())),
+        _ => {}
+    }
+    let measure = input::unit::parse(&format!("1 {unit}")).ok()?;
+    let exact = measure.si.is_finite() && measure.si > 0.0;
+    exact.then(|| (measure.si, measure.dimension.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(name: &str, unit: Option<&str>) -> MeasuredChannel {
+        MeasuredChannel {
+            column: name.to_owned(),
+            name: name.to_owned(),
+            unit: unit.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn units_become_si() {
+        for (name, unit, expected) in [
+            ("acc_m_s2", Some("m/s2"), ("acc", "m/s^2", 1.0)),
+            ("acc_g", Some("g"), ("acc", "m/s^2", 9.80665)),
+            ("p", Some("bar"), ("p", "Pa", 1e5)),
+            ("p", Some("psi"), ("p", "Pa", 6894.757)),
+            ("v_mm_s", Some("mm/s"), ("v", "m/s", 1e-3)),
+            ("u", Some("V"), ("u", "V", 1.0)),
+            ("u", None, ("u", "", 1.0)),
+            ("speed_rpm", Some("rpm"), ("speed", "rpm", 1.0)),
+        ] {
+            let found = scaled(&channel(name, unit), None).unwrap();
+            assert_eq!(
+                (found.name.as_str(), found.unit.as_str(), found.factor),
+                expected
+            );
+        }
+        let angle = scaled(&channel("crank_angle_deg", Some("deg")), None).unwrap();
+        assert!(
+            angle.is_crank_angle && (angle.factor * 180.0 - std::f64::consts::PI).abs() < 1e-15
+        );
+        assert!(scaled(&channel("crank_angle", None), None).is_err());
+    }
+
+    #[test]
+    fn the_argument_is_a_unit_or_an_amount() {
+        assert_eq!(parse_argument("m/s^2").unwrap(), (1.0, "m/s^2".to_owned()));
+        assert_eq!(
+            parse_argument("100 m/s^2").unwrap(),
+            (100.0, "m/s^2".to_owned())
+        );
+        assert_eq!(parse_argument("2.5 bar").unwrap(), (2.5e5, "Pa".to_owned()));
+        for wrong in ["", "7", "0 Pa", "nonsense", "1 / m"] {
+            assert!(parse_argument(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! `recordings.yaml`: a folder of measured runs of one machine.
+//!
+//! Programs write it, so its values are SI with the unit at the end of the key. The machine section
+//! is handed on as it stands: what is read from it depends on what it is wanted for. A bundle of a
+//! machine with one throw is one with the throw ``, so that load and joints have one shape.
+
+use crate::choice::{Ideal, Or};
+use crate::error::{Error, nearest};
+use crate::quantity::{AboveZero, FromZero, Number};
+use crate::yaml::Document;
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Name of the file that makes a folder a bundle.
+pub const FILE: &str = "recordings.yaml";
+
+/// A folder of measured runs.
+#[derive(Clone, Debug)]
+pub struct Bundle {
+    /// The folder.
+    pub folder: PathBuf,
+    /// The machine as its user knows it, as it stands in the file; null where there is none.
+    pub machine: Value,
+    /// The runs, at least one, each with an `id` of its own.
+    pub runs: Vec<Run>,
+    document: Document,
+}
+
+/// A run at one operating point.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Run {
+    /// Its name.
+    pub id: String,
+    /// Its recording, a path from the folder on.
+    pub file: PathBuf,
+    /// Measured mean speed, rpm.
+    pub speed_rpm: Option<Number<AboveZero>>,
+    /// Speed at which a free crank's torque is the mean torque, rpm.
+    pub speed_reference_rpm: Option<Number<AboveZero>>,
+    /// Gas pressures, by throw.
+    #[serde(default)]
+    pub load: BTreeMap<String, Load>,
+    /// Clearance of the joints as the user believes it, by throw and joint.
+    #[serde(default)]
+    pub joints: BTreeMap<String, BTreeMap<String, Joint>>,
+    /// Samples per second.
+    pub sample_rate_hz: Option<Number<AboveZero>>,
+    /// Samples of every channel.
+    pub samples: Option<u64>,
+    /// Revolutions that the recording covers.
+    pub revolutions: Option<Number<FromZero>>,
+    /// The channels, at least one.
+    pub channels: Vec<Channel>,
+}
+
+/// The gas pressures of a throw, absolute.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Load {
+    /// Suction pressure, Pa.
+    pub suction_pressure_pa: Number<FromZero>,
+    /// Discharge pressure, Pa.
+    pub discharge_pressure_pa: Number<FromZero>,
+}
+
+/// A joint: `ideal`, or with a clearance.
+pub type Joint = Or<Ideal, Clear>;
+
+/// A joint with clearance.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Clear {
+    /// Radial clearance, m.
+    pub clearance_m: Number<FromZero>,
+}
+
+/// A channel of a run.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Channel {
+    /// What it is, in words.
+    #[serde(default)]
+    pub name: String,
+    /// Its column in the file.
+    pub column: String,
+    /// Its unit, e.g. `m/s2`.
+    pub unit: String,
+}
+
+/// The keys of a run, to find slips of the keyboard among those that are unknown.
+const KEYS: [&str; 10] = [
+    "id",
+    "file",
+    "speed_rpm",
+    "speed_reference_rpm",
+    "load",
+    "joints",
+    "sample_rate_hz",
+    "samples",
+    "revolutions",
+    "channels",
+];
+
+impl Bundle {
+    /// Whether `path` is a folder with a `recordings.yaml`, or that file itself.
+    pub fn is_at(path: &Path) -> bool {
+        path.join(FILE).is_file() || path.file_name().is_some_and(|name| name == FILE)
+    }
+
+    /// Reads the bundle at `path`, a folder or its `recordings.yaml`. The recordings themselves are
+    /// not opened. Keys that are not known are passed over, as the format may grow, unless they look
+    /// like a misspelt one.
+    ///
+    /// # Errors
+    /// The first mistake, with its line.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let (folder, file) = if path.file_name().is_some_and(|name| name == FILE) {
+            (path.parent().unwrap_or(Path::new("")), path.to_owned())
+        } else {
+            (path, path.join(FILE))
+        };
+        Self::of(folder, Document::open(&file)?)
+    }
+
+    fn of(folder: &Path, document: Document) -> Result<Self, Error> {
+        let runs = runs(&document.tree).map_err(|error| document.locate(error))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            machine: document.tree.get("machine").cloned().unwrap_or_default(),
+            runs,
+            document,
+        })
+    }
+
+    /// Where the recording of a run lies.
+    pub fn path_of(&self, run: &Run) -> PathBuf {
+        self.folder.join(&run.file)
+    }
+
+    /// `error`, whose key is a dotted path (`runs.0.file`), with the line where that stands.
+    pub fn locate(&self, error: Error) -> Error {
+        self.document.locate(error)
+    }
+}
+
+fn runs(tree: &Value) -> Result<Vec<Run>, Error> {
+    let list = match tree.get("runs") {
+        Some(Value::Array(list)) if !list.is_empty() => list,
+        Some(_) => return Err(Error::clash("runs", "a list of one run or more")),
+        None => return Err(Error::missing("runs")),
+    };
+    let several = tree.get("machine").and_then(|m| m.get("throws")).is_some();
+    let mut ids = BTreeSet::new();
+    let mut runs = Vec::new();
+    for (i, run) in list.iter().enumerate() {
+        let key = format!("runs.{i}");
+        let run = read_run(run, several).map_err(|error| error.under(&key))?;
+        if !ids.insert(run.id.clone()) {
+            return Err(Error::clash(
+                format!("{key}.id"),
+                "an id of its own for every run",
+            ));
+        }
+        runs.push(run);
+    }
+    Ok(runs)
+}
+
+fn read_run(tree: &Value, several: bool) -> Result<Run, Error> {
+    let mut tree = tree.clone();
+    if let Value::Object(section) = &mut tree {
+        for key in section.keys().filter(|key| !KEYS.contains(&key.as_str())) {
+            if nearest(key, KEYS).is_some() {
+                return Err(Error::unknown_key(key, &KEYS));
+            }
+        }
+        for key in ["load", "joints"] {
+            if let Some(value) = section.get_mut(key).filter(|_| !several) {
+                // A key without letters leaves no trace in messages.
+                *value = Value::Object(Map::from_iter([(String::new(), value.take())]));
+            }
+        }
+    }
+    let run: Run = crate::reader::read(&tree)?;
+    if run.channels.is_empty() {
+        return Err(Error::clash("channels", "a list of one channel or more"));
+    }
+    let mut columns = BTreeSet::new();
+    for (i, channel) in run.channels.iter().enumerate() {
+        if !columns.insert(&channel.column) {
+            let key = format!("channels.{i}.column");
+            return Err(Error::clash(key, "a column of its own for every channel"));
+        }
+    }
+    Ok(run)
+}

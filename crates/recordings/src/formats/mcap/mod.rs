@@ -1,0 +1,18 @@
+//! MCAP: one recording per file, for Foxglove, PlotJuggler and the tools of ROS 2.
+//!
+//! Every sample is one message of one topic, `/crosshead`: all channels are sampled together, and
+//! the plots of Foxglove draw a point per message (an array within a message is plotted against
+//! its index, not against time). The message is a flat ROS 2 message in CDR, and its definition
+//! lies in the file with the units as comments: nothing has to be installed to read it. The labels
+//! are the metadata record `labels`, the sweep is the attachment `sweep.yaml`.
+//!
+//! Read are the files of this program, flat ROS 2 messages of other programs, and messages in JSON.
+
+pub(crate) mod read;
+mod ros2;
+mod write;
+
+pub use write::{Channel, Recording, write};
+
+/// The topic of the samples.
+pub const TOPIC: &str = "/crosshead";

@@ -1,0 +1,212 @@
+//! A column of time: the sample rate that it tells, and where samples are missing.
+
+use crate::Error;
+use std::path::Path;
+
+/// A rate and a time column, or two rates, contradict each other when they differ by more.
+const RATE_TOLERANCE: f64 = 0.01;
+
+/// Share of the first steps that must be alike for a rate to be told.
+const ALIKE: f64 = 0.9;
+
+/// A column of time in a file.
+#[derive(Clone, Debug)]
+pub(crate) struct TimeColumn {
+    pub(crate) name: String,
+    pub(crate) seconds_per_unit: f64,
+    /// Whether the file has it in single precision: its steps then grow uneven with time.
+    pub(crate) single_precision: bool,
+}
+
+/// Follows the times of a recording sample by sample.
+#[derive(Debug)]
+pub(crate) struct Clock {
+    column: TimeColumn,
+    step_s: f64,
+    last_s: Option<f64>,
+    sample: u64,
+}
+
+impl Clock {
+    /// From the first times of a recording, in the unit of the column, and the rate stated
+    /// elsewhere, if it is.
+    pub(crate) fn new(
+        path: &Path,
+        column: TimeColumn,
+        times: &[f64],
+        stated_hz: Option<f64>,
+    ) -> Result<Self, Error> {
+        let refuse = |reason: String| Err(Error::time(path, &column.name, reason));
+        if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
+            return refuse(format!("sample {sample} has no time"));
+        }
+        let scale = column.seconds_per_unit;
+        let steps: Vec<f64> = times.windows(2).map(|t| (t[1] - t[0]) * scale).collect();
+        let found = match (median(&steps), stated_hz) {
+            (None, Some(stated)) => 1.0 / stated,
+            (None, None) => return refuse("one sample tells no rate".into()),
+            (Some(median), _) => {
+                let slack = resolution(&column, times[times.len() - 1]);
+                let alike = |step: &&f64| (*step - median).abs() <= 0.5 * median + slack;
+                let alike: Vec<f64> = steps.iter().filter(alike).copied().collect();
+                if median <= 0.0 || (alike.len() as f64) < ALIKE * steps.len() as f64 {
+                    let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
+                    let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    return refuse(format!(
+                        "the times are not evenly spaced: steps from {least:.3e} to {most:.3e} s"
+                    ));
+                }
+                alike.iter().sum::<f64>() / alike.len() as f64
+            }
+        };
+        let found_hz = whole(1.0 / found);
+        if !(found_hz.is_finite() && found_hz > 0.0) {
+            return refuse(format!("the times are steps of {found:e} s"));
+        }
+        if let Some(stated) = stated_hz
+            && !agree(stated, found_hz)
+        {
+            return refuse(format!(
+                "the times are those of {found_hz:.6} Hz, but the sample rate is said to be {stated} Hz"
+            ));
+        }
+        Ok(Self {
+            step_s: 1.0 / stated_hz.unwrap_or(found_hz),
+            column,
+            last_s: None,
+            sample: 0,
+        })
+    }
+
+    pub(crate) fn sample_rate_hz(&self) -> f64 {
+        1.0 / self.step_s
+    }
+
+    /// Goes on to the next sample: the time that is missing before it, if samples are.
+    pub(crate) fn tick(&mut self, path: &Path, time: f64) -> Result<Option<f64>, Error> {
+        let time_s = time * self.column.seconds_per_unit;
+        let sample = self.sample;
+        if !time_s.is_finite() {
+            let reason = format!("sample {sample} has no time");
+            return Err(Error::time(path, &self.column.name, reason));
+        }
+        self.sample += 1;
+        let Some(last_s) = self.last_s.replace(time_s) else {
+            return Ok(None);
+        };
+        let slack = 0.5 * self.step_s + resolution(&self.column, time);
+        let excess = time_s - last_s - self.step_s;
+        if excess < -slack {
+            return Err(Error::time(
+                path,
+                &self.column.name,
+                format!("sample {sample} is at {time_s} s, the one before at {last_s} s"),
+            ));
+        }
+        Ok((excess > slack).then_some(excess))
+    }
+}
+
+/// Whether two sample rates are meant to be the same.
+pub(crate) fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= RATE_TOLERANCE * a.abs().max(b.abs())
+}
+
+/// The rounding of a time that was stored in single precision, s.
+fn resolution(column: &TimeColumn, time: f64) -> f64 {
+    if column.single_precision {
+        f64::from(f32::EPSILON) * time.abs() * column.seconds_per_unit
+    } else {
+        0.0
+    }
+}
+
+/// Times are rounded; a rate within 1e-5 of a whole number of Hz is that.
+fn whole(rate_hz: f64) -> f64 {
+    let rounded = rate_hz.round();
+    if (rate_hz - rounded).abs() <= 1e-5 * rate_hz {
+        rounded
+    } else {
+        rate_hz
+    }
+}
+
+fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clock(times: &[f64], stated: Option<f64>) -> Result<Clock, Error> {
+        let column = TimeColumn {
+            name: "t".into(),
+            seconds_per_unit: 1.0,
+            single_precision: false,
+        };
+        Clock::new(Path::new("a.csv"), column, times, stated)
+    }
+
+    fn times(rate: f64, count: usize) -> Vec<f64> {
+        (0..count).map(|i| i as f64 / rate).collect()
+    }
+
+    #[test]
+    fn the_rate_is_told_by_times_rounded_to_six_digits() {
+        let rounded: Vec<f64> = times(44_100.0, 4096)
+            .iter()
+            .map(|t| (t * 1e6).round() / 1e6)
+            .collect();
+        let rate = clock(&rounded, None).unwrap().sample_rate_hz();
+        assert!((rate / 44_100.0 - 1.0).abs() < 1e-9, "{rate}");
+    }
+
+    #[test]
+    fn times_in_single_precision_are_even_enough() {
+        let single: Vec<f64> = times(20_000.0, 4_000_000)
+            .iter()
+            .map(|t| f64::from(*t as f32))
+            .collect();
+        let column = TimeColumn {
+            name: "t".into(),
+            seconds_per_unit: 1.0,
+            single_precision: true,
+        };
+        let mut clock = Clock::new(Path::new("a"), column, &single[..4096], None).unwrap();
+        assert_eq!(clock.sample_rate_hz(), 20_000.0);
+        for time in single {
+            assert_eq!(clock.tick(Path::new("a"), time).unwrap(), None);
+        }
+    }
+
+    #[test]
+    fn gaps_are_measured_and_backward_steps_refused() {
+        let even = times(1000.0, 100);
+        let mut clock = clock(&even, None).unwrap();
+        let path = Path::new("a");
+        assert_eq!(clock.tick(path, 0.0).unwrap(), None);
+        assert_eq!(clock.tick(path, 0.0012).unwrap(), None);
+        let gap = clock.tick(path, 0.5022).unwrap().unwrap();
+        assert!((gap - 0.5).abs() < 1e-12);
+        let message = clock.tick(path, 0.4).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s"
+        );
+        assert!(clock.tick(path, f64::NAN).is_err());
+    }
+
+    #[test]
+    fn contradictions_are_refused() {
+        let message = |times: &[f64], stated| clock(times, stated).unwrap_err().to_string();
+        assert!(message(&times(1000.0, 50), Some(2000.0)).contains("those of 1000"));
+        assert!(message(&[0.0; 50], None).contains("not evenly spaced"));
+        assert!(message(&[0.0, 1.0, 5.0, 5.5, 9.0, 20.0], None).contains("not evenly spaced"));
+        assert!(message(&[0.0, f64::NAN], None).contains("sample 1 has no time"));
+        assert!(message(&[0.0], None).contains("one sample"));
+        assert_eq!(clock(&[0.0], Some(5.0)).unwrap().sample_rate_hz(), 5.0);
+    }
+}

@@ -1,0 +1,349 @@
+//! Recordings of any origin, read a stretch at a time: CSV, WAV, MAT (version 5), Parquet, MCAP.
+//!
+//! [`MeasuredFile::open`] reads the heading of a file: its channels with their units, and the
+//! columns of what else it says about its recordings. The recordings follow one after the other;
+//! most files have one, a table with lists of samples has one per row. A [`Recording`] hands out
+//! its samples in blocks, and [`Windows`] cuts these into windows. Memory is that of a block and of
+//! a window, whatever the length of the file.
+//!
+//! Samples become float32. A cell without a number becomes NaN: what is made of it is for those
+//! to say who use it.
+
+mod clock;
+mod kind;
+mod names;
+mod windows;
+
+pub use names::stem;
+pub use windows::{Length, Window, Windows};
+
+pub(crate) use clock::{TimeColumn, agree};
+pub(crate) use names::{name_and_unit, seconds_per_unit};
+
+use crate::formats::{csv, mat, mcap, parquet, wav};
+use crate::{Column, Error, Value};
+use clock::Clock;
+use kind::Kind;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Samples from which the rate is told where there is a column of time.
+const FIRST_SAMPLES: usize = 1 << 12;
+
+/// Samples of each channel that are decoded at a time.
+const BLOCK_SAMPLES: usize = 1 << 15;
+
+/// What is known about a file beside what stands in it.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Columns to read, by name; all columns of numbers where it is empty. A crank angle and a
+    /// column of time are read in any case.
+    pub columns: Vec<String>,
+    /// Samples per second.
+    pub sample_rate_hz: Option<f64>,
+}
+
+/// A channel of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeasuredChannel {
+    /// Name of the column as the file has it.
+    pub column: String,
+    /// Name without a unit in brackets: `acc` of `acc [m/s^2]`.
+    pub name: String,
+    /// The unit as the file has it, if it says one.
+    pub unit: Option<String>,
+}
+
+/// A file of recordings: its heading, and its recordings one after the other.
+pub struct MeasuredFile {
+    channels: Vec<MeasuredChannel>,
+    labels: Vec<Column>,
+    table: bool,
+    recordings: Box<dyn Iterator<Item = Result<Recording, Error>> + Send>,
+}
+
+/// A recording whose samples are read from the first to the last.
+pub struct Recording {
+    path: PathBuf,
+    labels: Vec<Value>,
+    sample_rate_hz: Option<f64>,
+    clock: Option<Clock>,
+    samples: Box<dyn Samples>,
+    /// Samples that are decoded and not handed out, from `next` on.
+    times: Vec<f64>,
+    block: Vec<Vec<f32>>,
+    next: usize,
+    gap_s: Option<f64>,
+}
+
+/// What was read at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Samples of every channel; 0 at the end.
+    pub samples: usize,
+    /// Time that is missing before the first of them, s; a block never has a gap within.
+    pub gap_s: Option<f64>,
+}
+
+/// The samples of a format, one block after the other.
+pub(crate) trait Samples: Send {
+    /// Appends at most `most` samples to every channel, and their times where there is a column of
+    /// time; how many, 0 at the end.
+    fn read(
+        &mut self,
+        most: usize,
+        times: &mut Vec<f64>,
+        channels: &mut [Vec<f32>],
+    ) -> Result<usize, Error>;
+}
+
+impl MeasuredFile {
+    /// Opens a file and reads its heading. The format is that of the name's ending, and for other
+    /// names the one that its first bytes show.
+    ///
+    /// # Errors
+    /// When the file is not there, is empty, damaged or of another format than its name says, when
+    /// a column that was asked for is not there, or the rates contradict each other.
+    pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
+        if let Some(rate) = options.sample_rate_hz
+            && !(rate.is_finite() && rate > 0.0)
+        {
+            return Err(Error::SampleRate(rate));
+        }
+        let length = fs::metadata(path).map_err(Error::io("open", path))?;
+        if length.is_dir() {
+            return Err(Error::damaged("a recording", path, "it is a folder"));
+        }
+        if length.len() == 0 {
+            return Err(Error::damaged("a recording", path, "it is empty"));
+        }
+        match kind::of(path)? {
+            Kind::Csv => csv::read::open(path, options),
+            Kind::Wav => wav::open(path, options),
+            Kind::Mat => mat::open(path, options),
+            Kind::Parquet => parquet::recordings::open(path, options),
+            Kind::Mcap => mcap::read::open(path, options),
+        }
+    }
+
+    /// A file of one recording.
+    pub(crate) fn of_one(
+        channels: Vec<MeasuredChannel>,
+        labels: Vec<(Column, Value)>,
+        make: impl FnOnce(Vec<Value>) -> Result<Recording, Error>,
+    ) -> Result<Self, Error> {
+        let (labels, values) = labels.into_iter().unzip();
+        let recording = make(values)?;
+        Ok(Self {
+            channels,
+            labels,
+            table: false,
+            recordings: Box::new(std::iter::once(Ok(recording))),
+        })
+    }
+
+    /// A table with one recording per row.
+    pub(crate) fn of_rows(
+        channels: Vec<MeasuredChannel>,
+        labels: Vec<Column>,
+        recordings: impl Iterator<Item = Result<Recording, Error>> + Send + 'static,
+    ) -> Self {
+        Self {
+            channels,
+            labels,
+            table: true,
+            recordings: Box::new(recordings),
+        }
+    }
+
+    /// The channels; every recording has them all.
+    pub fn channels(&self) -> &[MeasuredChannel] {
+        &self.channels
+    }
+
+    /// What the file says about its recordings: a case's name, its labels, the speed.
+    pub fn labels(&self) -> &[Column] {
+        &self.labels
+    }
+
+    /// Whether it is a table with one recording per row.
+    pub fn is_table(&self) -> bool {
+        self.table
+    }
+}
+
+impl Iterator for MeasuredFile {
+    type Item = Result<Recording, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.recordings.next()
+    }
+}
+
+impl Recording {
+    /// Where there is a column of time, the first samples are read to tell the rate.
+    pub(crate) fn new(
+        path: &Path,
+        labels: Vec<Value>,
+        channels: usize,
+        stated_hz: Option<f64>,
+        time: Option<TimeColumn>,
+        samples: impl Samples + 'static,
+    ) -> Result<Self, Error> {
+        if let Some(rate) = stated_hz
+            && !(rate.is_finite() && rate > 0.0)
+        {
+            return Err(Error::SampleRate(rate));
+        }
+        let mut recording = Self {
+            path: path.to_owned(),
+            labels,
+            sample_rate_hz: stated_hz,
+            clock: None,
+            samples: Box::new(samples),
+            times: Vec::new(),
+            block: vec![Vec::new(); channels],
+            next: 0,
+            gap_s: None,
+        };
+        if let Some(time) = time {
+            while recording.times.len() < FIRST_SAMPLES {
+                let most = FIRST_SAMPLES - recording.times.len();
+                if recording
+                    .samples
+                    .read(most, &mut recording.times, &mut recording.block)?
+                    == 0
+                {
+                    break;
+                }
+            }
+            if recording.times.is_empty() {
+                return Err(Error::damaged("a recording", path, "it has no samples"));
+            }
+            let clock = Clock::new(path, time, &recording.times, stated_hz)?;
+            recording.sample_rate_hz = Some(clock.sample_rate_hz());
+            recording.clock = Some(clock);
+        }
+        Ok(recording)
+    }
+
+    /// The values of the file's [`MeasuredFile::labels`].
+    pub fn labels(&self) -> &[Value] {
+        &self.labels
+    }
+
+    /// Samples per second, if the file or its reader knows it.
+    pub fn sample_rate_hz(&self) -> Option<f64> {
+        self.sample_rate_hz
+    }
+
+    /// Some of the next samples of every channel, at least one where there is one; they are still to
+    /// be read.
+    ///
+    /// # Errors
+    /// When the file is damaged or ends too early.
+    pub fn peek(&mut self) -> Result<Vec<&[f32]>, Error> {
+        if self.next == self.decoded() {
+            self.refill()?;
+        }
+        Ok(self.block.iter().map(|c| &c[self.next..]).collect())
+    }
+
+    /// Appends at most `most` samples to every channel of `into`, up to the next gap in time.
+    ///
+    /// # Errors
+    /// When the file is damaged or ends too early, or its times run backwards.
+    pub fn read(&mut self, most: usize, into: &mut [Vec<f32>]) -> Result<Block, Error> {
+        if self.next == self.decoded() && !self.refill()? {
+            return Ok(Block {
+                samples: 0,
+                gap_s: None,
+            });
+        }
+        let end = self.decoded().min(self.next.saturating_add(most));
+        let (stop, gap_before, gap_after) = self.stretch(end)?;
+        for (to, from) in into.iter_mut().zip(&self.block) {
+            to.extend_from_slice(&from[self.next..stop]);
+        }
+        let samples = stop - self.next;
+        self.next = stop;
+        self.gap_s = gap_after;
+        Ok(Block {
+            samples,
+            gap_s: gap_before,
+        })
+    }
+
+    fn decoded(&self) -> usize {
+        self.block.first().map_or(0, Vec::len)
+    }
+
+    fn refill(&mut self) -> Result<bool, Error> {
+        self.times.clear();
+        self.block.iter_mut().for_each(Vec::clear);
+        self.next = 0;
+        let read = self
+            .samples
+            .read(BLOCK_SAMPLES, &mut self.times, &mut self.block)?;
+        Ok(read > 0)
+    }
+
+    /// From the next sample to `end` or the first gap before it: where it stops, the gap before
+    /// it, and the gap at its end, which the clock has then passed.
+    fn stretch(&mut self, end: usize) -> Result<(usize, Option<f64>, Option<f64>), Error> {
+        let passed = self.gap_s.take();
+        let Some(clock) = &mut self.clock else {
+            return Ok((end, None, None));
+        };
+        let mut before = passed;
+        let first = self.next + usize::from(passed.is_some());
+        for i in first..end {
+            if let Some(gap) = clock.tick(&self.path, self.times[i])? {
+                if i == self.next {
+                    before = Some(gap);
+                } else {
+                    return Ok((i, before, Some(gap)));
+                }
+            }
+        }
+        Ok((end, before, None))
+    }
+}
+
+/// The channels that are to be read, of all that a file has: those asked for, by their column or
+/// their name, with the crank angle; all where none is asked for.
+pub(crate) fn selected(all: &[MeasuredChannel], options: &Options) -> Result<Vec<usize>, Error> {
+    let is = |channel: &MeasuredChannel, name: &str| channel.column == name || channel.name == name;
+    if let Some(name) = options
+        .columns
+        .iter()
+        .find(|name| !all.iter().any(|c| is(c, name)))
+    {
+        return Err(Error::NoColumn {
+            name: name.clone(),
+            among: all.iter().map(|c| c.column.clone()).collect(),
+        });
+    }
+    let wanted = |channel: &MeasuredChannel| {
+        options.columns.is_empty()
+            || stem(&channel.name) == "crank_angle"
+            || options.columns.iter().any(|name| is(channel, name))
+    };
+    Ok((0..all.len()).filter(|&i| wanted(&all[i])).collect())
+}
+
+/// The rate that a file states and the one that its reader states, which must not contradict.
+pub(crate) fn one_rate(
+    path: &Path,
+    of_file: Option<f64>,
+    options: &Options,
+) -> Result<Option<f64>, Error> {
+    match (of_file, options.sample_rate_hz) {
+        (Some(file), Some(stated)) if !agree(file, stated) => Err(Error::RateContradicts {
+            path: path.to_owned(),
+            file_hz: file,
+            stated_hz: stated,
+        }),
+        (file, stated) => Ok(stated.or(file)),
+    }
+}

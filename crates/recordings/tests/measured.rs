@@ -1,0 +1,581 @@
+//! Recordings of all formats, read back sample by sample, and damaged ones refused.
+
+use proptest::prelude::*;
+use recordings::formats::{csv, mcap, parquet};
+use recordings::measured::{Length, MeasuredFile, Options, Recording, Windows};
+use recordings::{Column, Data, Kind, Schema, Table, Value};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const RATE: f64 = 1000.0;
+
+fn options(columns: &[&str], sample_rate_hz: Option<f64>) -> Options {
+    Options {
+        columns: columns.iter().map(|c| (*c).to_owned()).collect(),
+        sample_rate_hz,
+    }
+}
+
+fn samples(mut recording: Recording, channels: usize) -> Vec<Vec<f32>> {
+    let mut all = vec![Vec::new(); channels];
+    // Blocks of any length give the same samples.
+    while recording.read(77, &mut all).unwrap().samples > 0 {}
+    all
+}
+
+/// The channels by name, and the rate, of a file with one recording.
+fn read(path: &Path, options: &Options) -> (BTreeMap<String, Vec<f32>>, Option<f64>) {
+    let mut file = MeasuredFile::open(path, options).unwrap();
+    let names: Vec<String> = file.channels().iter().map(|c| c.column.clone()).collect();
+    let recording = file.next().unwrap().unwrap();
+    let rate = recording.sample_rate_hz();
+    assert!(file.next().is_none());
+    let channels = samples(recording, names.len());
+    (names.into_iter().zip(channels).collect(), rate)
+}
+
+fn message(path: &Path, options: &Options) -> String {
+    let read = || {
+        for recording in MeasuredFile::open(path, options)? {
+            let mut recording = recording?;
+            let mut into = vec![Vec::new(); 64];
+            while recording.read(1000, &mut into)?.samples > 0 {}
+        }
+        Ok(())
+    };
+    let result: Result<(), recordings::Error> = read();
+    result.unwrap_err().to_string()
+}
+
+fn sine(n: usize) -> Vec<f32> {
+    (0..n).map(|i| (i as f32 * 0.1).sin()).collect()
+}
+
+/// A WAV file; `size` is what it says about the length of its samples.
+fn wav(code: u16, bits: u16, channels: u16, data: &[u8], size: u32) -> Vec<u8> {
+    let mut file = b"RIFF\0\0\0\0WAVEJUNK\x03\0\0\0abc\0fmt ".to_vec();
+    file.extend(16_u32.to_le_bytes());
+    file.extend(code.to_le_bytes());
+    file.extend(channels.to_le_bytes());
+    file.extend((RATE as u32).to_le_bytes());
+    let frame = channels * bits / 8;
+    file.extend((RATE as u32 * u32::from(frame)).to_le_bytes());
+    file.extend(frame.to_le_bytes());
+    file.extend(bits.to_le_bytes());
+    file.extend(b"data");
+    file.extend(size.to_le_bytes());
+    file.extend(data);
+    file
+}
+
+fn wav_i16(samples: &[i16], channels: u16) -> Vec<u8> {
+    let data: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();
+    wav(1, 16, channels, &data, data.len() as u32)
+}
+
+#[test]
+fn wav_of_every_encoding() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.wav");
+    let half = 0.5_f64;
+    for (code, bits, bytes) in [
+        (1, 8, vec![128, 192, 0]),
+        (
+            1,
+            16,
+            [0_i16, 16_384, -32_768]
+                .iter()
+                .flat_map(|x| x.to_le_bytes())
+                .collect(),
+        ),
+        (1, 24, vec![0, 0, 0, 0, 0, 0x40, 0, 0, 0x80]),
+        (
+            1,
+            32,
+            [0_i32, 1 << 30, i32::MIN]
+                .iter()
+                .flat_map(|x| x.to_le_bytes())
+                .collect(),
+        ),
+        (
+            3,
+            32,
+            [0.0_f32, 0.5, -1.0]
+                .iter()
+                .flat_map(|x| x.to_le_bytes())
+                .collect(),
+        ),
+        (
+            3,
+            64,
+            [0.0, half, -1.0]
+                .iter()
+                .flat_map(|x| x.to_le_bytes())
+                .collect(),
+        ),
+    ] {
+        // A recorder that was switched off says nothing about the length.
+        for size in [bytes.len() as u32, u32::MAX] {
+            fs::write(&path, wav(code, bits, 1, &bytes, size)).unwrap();
+            let (channels, rate) = read(&path, &Options::default());
+            assert_eq!(channels["channel_1"], [0.0, 0.5, -1.0], "{code} {bits}");
+            assert_eq!(rate, Some(RATE));
+        }
+    }
+    fs::write(&path, wav_i16(&[1, -2, 3, -4], 2)).unwrap();
+    let (channels, _) = read(&path, &options(&["channel_2"], None));
+    assert_eq!(channels.len(), 1);
+    assert_eq!(channels["channel_2"], [-2.0 / 32_768.0, -4.0 / 32_768.0]);
+}
+
+#[test]
+fn csv_of_many_dialects() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for text in [
+        "t_s,acc [m/s^2],note,p\n0,1.5,x,2\n0.001,-2,y,\n0.002,3e1,,4\n",
+        "# recorder 7\n\nt_s;acc [m/s^2];note;p\r\n0;1,5;x;2\r\n0,001;-2;y;\r\n0,002;3e1;;4\r\n",
+        "\u{feff}\"t_s\"\t\"acc [m/s^2]\"\t\"note\"\tp\n0\t1.5\tx\t2\n0.001\t-2\ty\t\n0.002\t30\tz\t4",
+    ] {
+        fs::write(&path, text).unwrap();
+        let (channels, rate) = read(&path, &Options::default());
+        assert_eq!(channels.keys().collect::<Vec<_>>(), ["acc [m/s^2]", "p"]);
+        assert_eq!(channels["acc [m/s^2]"], [1.5, -2.0, 30.0]);
+        assert!(channels["p"][1].is_nan());
+        assert_eq!(rate, Some(1000.0));
+        // The name without its unit will do.
+        let (channels, _) = read(&path, &options(&["acc"], None));
+        assert_eq!(channels.len(), 1);
+    }
+    fs::write(&path, "1,2\n3,4\n").unwrap();
+    let (channels, rate) = read(&path, &options(&[], Some(5.0)));
+    assert_eq!(channels["column_2"], [2.0, 4.0]);
+    assert_eq!(rate, Some(5.0));
+}
+
+#[test]
+fn mat_files_of_another_writer() {
+    for name in ["matlab-v6.mat", "matlab-v7.mat"] {
+        let path = Path::new("../../data/recordings").join(name);
+        let file = MeasuredFile::open(&path, &Options::default()).unwrap();
+        assert_eq!(file.labels()[0].name, "speed_rpm");
+        let (channels, rate) = read(&path, &Options::default());
+        assert_eq!(
+            channels.keys().collect::<Vec<_>>(),
+            ["acc_m_s2", "raw_1", "raw_2"]
+        );
+        assert_eq!(rate, Some(1000.0));
+        for (i, found) in channels["acc_m_s2"].iter().enumerate() {
+            let expected = (std::f64::consts::TAU * 50.0 * i as f64 / 1000.0).sin();
+            assert!((f64::from(*found) - expected).abs() < 1e-7);
+        }
+        let counted: Vec<f32> = (0..200).map(|i| i as f32).collect();
+        assert_eq!(channels["raw_1"], counted);
+        assert!(
+            channels["raw_2"]
+                .iter()
+                .zip(&counted)
+                .all(|(a, b)| *a == -b)
+        );
+        let mut file = MeasuredFile::open(&path, &Options::default()).unwrap();
+        assert_eq!(
+            file.next().unwrap().unwrap().labels(),
+            [Value::Real(1796.0)]
+        );
+    }
+}
+
+/// A variable of float64 in a MAT file, big-endian, with a short name in its tag.
+fn big_endian_mat(rows: u32, columns: u32, numbers: &[f64]) -> Vec<u8> {
+    let mut body = Vec::new();
+    let mut words = |words: &[u32]| body.extend(words.iter().flat_map(|w| w.to_be_bytes()));
+    words(&[6, 8, 6, 0]);
+    words(&[5, 8, rows, columns]);
+    words(&[1 << 16 | 1, u32::from_be_bytes(*b"x\0\0\0")]);
+    words(&[9, 8 * numbers.len() as u32]);
+    body.extend(numbers.iter().flat_map(|x| x.to_be_bytes()));
+    let mut file = vec![b' '; 124];
+    file.extend(b"\x01\0MI");
+    file.extend(14_u32.to_be_bytes());
+    file.extend((body.len() as u32).to_be_bytes());
+    file.extend(body);
+    file
+}
+
+#[test]
+fn mat_of_the_other_byte_order_with_channels_as_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mat");
+    let numbers: Vec<f64> = (0..20).map(f64::from).collect();
+    fs::write(&path, big_endian_mat(2, 10, &numbers)).unwrap();
+    let (channels, rate) = read(&path, &options(&[], Some(9.0)));
+    let even: Vec<f32> = (0..10).map(|i| 2.0 * i as f32).collect();
+    assert_eq!(channels["x_1"], even);
+    assert_eq!(channels["x_2"][9], 19.0);
+    assert_eq!(rate, Some(9.0));
+}
+
+fn reals(columns: Vec<(&str, Option<&str>, Vec<f64>)>) -> Table {
+    let (schema, data): (Vec<_>, Vec<_>) = columns
+        .into_iter()
+        .map(|(name, unit, values)| {
+            let column = Column::new(name, Kind::Real, "");
+            let column = unit.map_or(column.clone(), |unit| column.unit(unit));
+            (column, Data::Real(values.into_iter().map(Some).collect()))
+        })
+        .unzip();
+    Table::from_columns(Schema::new(schema).unwrap(), data).unwrap()
+}
+
+fn times(n: usize) -> Vec<f64> {
+    (0..n).map(|i| i as f64 / RATE).collect()
+}
+
+#[test]
+fn parquet_and_csv_of_this_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let n = 20_000;
+    let wave: Vec<f64> = sine(n).iter().map(|x| f64::from(*x)).collect();
+    let table = reals(vec![
+        ("t_s", Some("s"), times(n)),
+        ("force", Some("N"), wave),
+    ]);
+    let plain = folder.path().join("a.parquet");
+    fs::write(
+        &plain,
+        parquet::write_table(Vec::new(), &table, 3000).unwrap(),
+    )
+    .unwrap();
+    let text = folder.path().join("a.csv");
+    fs::write(&text, csv::write_table(Vec::new(), &table).unwrap()).unwrap();
+    for path in [&plain, &text] {
+        let (channels, rate) = read(path, &Options::default());
+        assert_eq!(channels["force"], sine(n));
+        assert_eq!(rate, Some(RATE));
+    }
+    let file = MeasuredFile::open(&plain, &Options::default()).unwrap();
+    assert_eq!(file.channels()[0].unit.as_deref(), Some("N"));
+}
+
+fn dataset_rows() -> Table {
+    let schema = Schema::new(vec![
+        Column::new("case_id", Kind::Text, ""),
+        Column::new("speed_rpm", Kind::Real, "").unit("rpm"),
+        Column::new("acc_m_s2", Kind::Samples, "").unit("m/s^2"),
+        Column::new("crank_angle_rad", Kind::Samples, "").unit("rad"),
+        Column::new("sample_rate_hz", Kind::Real, "").unit("Hz"),
+    ]);
+    let mut table = Table::new(schema.unwrap());
+    for (i, n) in [300_usize, 500].into_iter().enumerate() {
+        let row: Vec<Value> = vec![
+            format!("case-{i}").into(),
+            (500.0 + i as f64).into(),
+            sine(n).into(),
+            sine(n).into(),
+            (RATE * (i + 1) as f64).into(),
+        ];
+        table.push(row).unwrap();
+    }
+    table
+}
+
+#[test]
+fn every_row_of_lists_is_a_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.parquet");
+    fs::write(
+        &path,
+        parquet::write_table(Vec::new(), &dataset_rows(), 1).unwrap(),
+    )
+    .unwrap();
+    let mut file = MeasuredFile::open(&path, &options(&["acc_m_s2"], None)).unwrap();
+    assert!(file.is_table());
+    // The crank angle comes along.
+    assert_eq!(file.channels().len(), 2);
+    for (i, n) in [300, 500].into_iter().enumerate() {
+        let recording = file.next().unwrap().unwrap();
+        let labels = [format!("case-{i}").into(), (500.0 + i as f64).into()];
+        assert_eq!(recording.labels(), labels);
+        assert_eq!(recording.sample_rate_hz(), Some(RATE * (i + 1) as f64));
+        assert_eq!(samples(recording, 2)[0], sine(n));
+    }
+    assert!(file.next().is_none());
+}
+
+fn mcap_bytes(n: usize) -> Vec<u8> {
+    let wave = sine(n);
+    let channel = mcap::Channel {
+        name: "throw1.acceleration_m_s2",
+        unit: "m/s^2",
+        samples: &wave,
+    };
+    let labels = [
+        ("fault", "big_end"),
+        ("clearance_main_m", "1e-4"),
+        ("sample_rate_hz", "24000"),
+    ];
+    let labels = labels.map(|(a, b)| (a.to_owned(), b.to_owned())).into();
+    let recording = mcap::Recording {
+        sample_rate_hz: 24_000.0,
+        channels: &[channel],
+        labels: &labels,
+        sweep_yaml: "seed: 7\n",
+    };
+    mcap::write(Vec::new(), &recording).unwrap()
+}
+
+#[test]
+fn mcap_of_this_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    fs::write(&path, mcap_bytes(50_000)).unwrap();
+    let (channels, rate) = read(&path, &Options::default());
+    assert_eq!(channels["throw1_acceleration_m_s2"], sine(50_000));
+    assert_eq!(rate, Some(24_000.0));
+    let mut file = MeasuredFile::open(&path, &Options::default()).unwrap();
+    assert_eq!(file.channels()[0].unit.as_deref(), Some("m/s^2"));
+    let labels = file.next().unwrap().unwrap().labels().to_vec();
+    assert_eq!(labels, [Value::Real(1e-4), "big_end".into()]);
+}
+
+/// Messages in JSON, as other programs log them.
+fn json_mcap(n: u64) -> Vec<u8> {
+    let mut out = ::mcap::Writer::new(std::io::Cursor::new(Vec::new())).unwrap();
+    let schema = out.add_schema("Sample", "jsonschema", b"{}").unwrap();
+    let channel = out
+        .add_channel(schema, "/sensor", "json", &BTreeMap::new())
+        .unwrap();
+    for i in 0..n {
+        let header = ::mcap::records::MessageHeader {
+            channel_id: channel,
+            sequence: i as u32,
+            log_time: 5_000_000_000 + i * 1_000_000,
+            publish_time: 0,
+        };
+        let text = format!(
+            "{{\"name\": \"a\", \"acc_m_s2\": {}, \"on\": true}}",
+            i as f64 / 2.0
+        );
+        out.write_to_known_channel(&header, text.as_bytes())
+            .unwrap();
+    }
+    out.finish().unwrap();
+    out.into_inner().into_inner()
+}
+
+#[test]
+fn mcap_of_json_messages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.mcap");
+    fs::write(&path, json_mcap(300)).unwrap();
+    let (channels, rate) = read(&path, &Options::default());
+    assert_eq!(channels["acc_m_s2"][299], 149.5);
+    assert_eq!((channels.len(), rate), (1, Some(1000.0)));
+}
+
+fn windows(path: &Path, length: Length) -> (Vec<(f64, Option<f64>, usize)>, u64) {
+    let mut file = MeasuredFile::open(path, &Options::default()).unwrap();
+    let recording = file.next().unwrap().unwrap();
+    let rate = recording.sample_rate_hz().unwrap();
+    let mut windows = Windows::new(recording, file.channels().len(), rate, length);
+    let all = windows.by_ref().map(|window| {
+        let window = window.unwrap();
+        (window.start_s, window.gap_s, window.channels[0].len())
+    });
+    (all.collect(), windows.left_out())
+}
+
+#[test]
+fn windows_end_at_gaps_and_count_what_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    // 250 samples, 0.75 s of nothing, 130 samples, at 1 kHz.
+    let stamps = (0..250).chain(1000..1130).map(|i| f64::from(i) / 1000.0);
+    let lines: String = stamps.map(|t| format!("{t:.3},1\n")).collect();
+    fs::write(&path, format!("t,x\n{lines}")).unwrap();
+    let round = |(all, left): (Vec<(f64, Option<f64>, usize)>, u64)| {
+        let all = all.into_iter();
+        let milli = |s: f64| (1000.0 * s).round() as i64;
+        (
+            all.map(|(s, g, n)| (milli(s), g.map(milli), n))
+                .collect::<Vec<_>>(),
+            left,
+        )
+    };
+    assert_eq!(
+        round(windows(&path, Length::Equal(100.5))),
+        (
+            vec![(0, None, 100), (101, None, 100), (1000, Some(750), 100)],
+            49 + 29
+        )
+    );
+    assert_eq!(
+        round(windows(&path, Length::UpTo(100))),
+        (
+            vec![
+                (0, None, 100),
+                (100, None, 100),
+                (200, None, 50),
+                (1000, Some(750), 100)
+            ],
+            30
+        )
+    );
+    assert_eq!(
+        round(windows(&path, Length::UpTo(1000))).0,
+        [(0, None, 250), (1000, Some(750), 130)]
+    );
+}
+
+#[test]
+fn one_clear_message_for_each_mistake() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = |name: &str, content: &[u8]| -> PathBuf {
+        let path = folder.path().join(name);
+        fs::write(&path, content).unwrap();
+        path
+    };
+    let parquet = parquet::write_table(Vec::new(), &dataset_rows(), 1).unwrap();
+    let whole = wav_i16(&[1; 100], 1);
+    let mut no_rate = whole.clone();
+    let at = whole.windows(4).position(|w| w == b"fmt ").unwrap() + 12;
+    no_rate[at..at + 4].fill(0);
+    for (name, content, expected) in [
+        ("empty.wav", &b""[..], "it is empty"),
+        ("a.wav", &parquet, "as WAV: it looks like a Parquet file"),
+        ("a.csv", &whole, "as CSV: it looks like a WAV file"),
+        ("b.parquet", &whole[..20], "as Parquet: it looks like a WAV file"),
+        ("a.dat", b"PK\x03\x04\0\0", "it looks like a ZIP archive"),
+        ("b.dat", b"\0\x01\x02", "it is none of CSV, WAV, MAT, Parquet and MCAP"),
+        ("v73.mat", b"MATLAB 7.3 MAT-file\0", "version 7.3"),
+        ("cut.wav", &whole[..whole.len() - 50], "announces 200 bytes of samples and has 150"),
+        ("head.wav", &whole[..30], "ends before its samples begin"),
+        ("rate.wav", &no_rate, "its sample rate is 0 Hz"),
+        ("cut.parquet", &parquet[..parquet.len() / 2], "cannot read"),
+        ("cut.mcap", &mcap_bytes(1000)[..3000], "as MCAP: "),
+        ("cut.mat", &big_endian_mat(1, 50, &[0.0; 50])[..300], "it is cut off"),
+        ("names.csv", b"a,b\n", "names of columns and no rows"),
+        ("text.csv", b"a,b\nx,y\n", "no column of numbers"),
+        ("word.csv", b"a,b\n1,2\n1,two\n", "line 3, column `b`: found `two`"),
+        ("short.csv", b"a,b\n1,2\n1", "line 3 has 1 cells where the first has 2"),
+        ("back.csv", b"t,b\n0,2\n0.1,2\n0.2,1\n0.3,1\n0.15,1\n0.4,1\n0.5,1\n0.6,1\n0.7,1\n0.8,1\n0.9,1\n1.0,1\n1.1,1\n1.2,1\n1.3,1\n1.4,1\n1.5,1\n1.6,1\n1.7,1\n1.8,1\n1.9,1\n2.0,1\n2.1,1\n", "column `t`: sample 4 is at 0.15 s"),
+    ] {
+        let message = message(&case(name, content), &Options::default());
+        assert!(message.contains(expected), "{name}: {message}");
+        assert!(message.contains(name), "{message}");
+    }
+    let wave = case("a.wav", &whole);
+    assert!(message(&wave, &options(&["chanel_1"], None)).contains("there are: channel_1"));
+    assert!(message(&wave, &options(&[], Some(2000.0))).contains("at 1000 Hz, but"));
+    for rate in [0.0, -1.0, f64::NAN] {
+        assert!(message(&wave, &options(&[], Some(rate))).contains("must be positive"));
+    }
+    let timed = case("t.csv", b"t,b\n0,1\n0.1,1\n0.2,1\n");
+    assert!(message(&timed, &options(&[], Some(20.0))).contains("those of 10.0"));
+    assert!(message(&folder.path().join("none.csv"), &Options::default()).contains("No such file"));
+}
+
+/// A small file of every format.
+fn seeds() -> Vec<(&'static str, Vec<u8>)> {
+    let text = reals(vec![
+        ("t_s", Some("s"), times(60)),
+        ("x", None, vec![0.5; 60]),
+    ]);
+    let mat = |name: &str| fs::read(Path::new("../../data/recordings").join(name)).unwrap();
+    vec![
+        ("wav", wav_i16(&[5; 60], 2)),
+        ("csv", csv::write_table(Vec::new(), &text).unwrap()),
+        (
+            "parquet",
+            parquet::write_table(Vec::new(), &text, 20).unwrap(),
+        ),
+        (
+            "parquet",
+            parquet::write_table(Vec::new(), &dataset_rows(), 1).unwrap(),
+        ),
+        ("mat", mat("matlab-v6.mat")),
+        ("mat", mat("matlab-v7.mat")),
+        ("mat", big_endian_mat(2, 10, &[1.0; 20])),
+        ("mcap", mcap_bytes(60)),
+        ("mcap", json_mcap(20)),
+    ]
+}
+
+/// Reads whatever stands there to the end, or to its first error. Panics fail the test; more
+/// samples than a small file can hold are refused here.
+fn survive(path: &Path) {
+    let Ok(file) = MeasuredFile::open(path, &options(&[], None)) else {
+        return;
+    };
+    let channels = file.channels().len();
+    let mut left = 1 << 22;
+    for recording in file.take(100) {
+        let Ok(mut recording) = recording else { return };
+        let mut into = vec![Vec::new(); channels];
+        while let Ok(block) = recording.read(1 << 12, &mut into) {
+            assert!(block.samples <= 1 << 12);
+            left -= block.samples as i64;
+            if block.samples == 0 || left < 0 {
+                break;
+            }
+            into.iter_mut().for_each(Vec::clear);
+        }
+    }
+}
+
+/// Runs this many changed files of every format: 40 in an ordinary test, more by hand.
+fn fuzz_cases() -> u32 {
+    let asked = std::env::var("CROSSHEAD_FUZZ_CASES").ok();
+    asked.and_then(|n| n.parse().ok()).unwrap_or(40)
+}
+
+#[test]
+fn damaged_files_never_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    for (number, (ending, seed)) in seeds().into_iter().enumerate() {
+        let path = folder.path().join(format!("{number}.{ending}"));
+        fs::write(&path, &seed).unwrap();
+        let readable = MeasuredFile::open(&path, &options(&[], None));
+        assert!(
+            readable.is_ok() || seed.len() < 500,
+            "{ending}: {:?}",
+            readable.err()
+        );
+        let flips = proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..6);
+        let strategy = (
+            flips,
+            proptest::option::of(any::<prop::sample::Index>()),
+            any::<bool>(),
+        );
+        let config = ProptestConfig {
+            cases: fuzz_cases(),
+            failure_persistence: None,
+            max_shrink_iters: 0,
+            ..ProptestConfig::default()
+        };
+        let mut runner = proptest::test_runner::TestRunner::new(config);
+        let outcome = runner.run(&strategy, |(flips, cut, random)| {
+            let mut bytes = seed.clone();
+            for (index, byte) in &flips {
+                let at = index.index(bytes.len());
+                bytes[at] = *byte;
+            }
+            if let Some(cut) = cut {
+                bytes.truncate(cut.index(seed.len()));
+            }
+            if random {
+                // Random bytes behind a true beginning.
+                let keep = bytes.len().min(140);
+                let noise = (0..400_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8);
+                let salt = flips.first().map_or(0, |(_, byte)| *byte);
+                bytes.truncate(keep);
+                bytes.extend(noise.map(|b| b.wrapping_mul(salt | 1)));
+            }
+            fs::write(&path, &bytes).unwrap();
+            survive(&path);
+            Ok(())
+        });
+        outcome.unwrap();
+    }
+}
