@@ -6,6 +6,7 @@
 
 use super::{CaseChaos, Regime};
 use crate::text;
+use std::collections::BTreeMap;
 
 /// An exponent is above another if it exceeds it by more than this many standard errors of their
 /// difference.
@@ -15,21 +16,13 @@ const HIGHER: f64 = 2.0;
 /// compare.
 pub(super) fn claims(cases: &[CaseChaos]) -> Vec<String> {
     let clear: Vec<&CaseChaos> = cases.iter().filter(|case| case.clearance_m > 0.0).collect();
-    let larger = |a: &CaseChaos, b: &CaseChaos| {
-        a.joints == b.joints && a.speed_rpm == b.speed_rpm && next(&clear, a) == Some(b.clearance_m)
-    };
-    let more = |a: &CaseChaos, b: &CaseChaos| {
-        a.clearance_m == b.clearance_m && a.speed_rpm == b.speed_rpm && within(&a.joints, &b.joints)
-    };
     [
         compared(
-            &clear,
-            larger,
+            &larger(&clear),
             "to the next larger clearance in the same joints at the same speed",
         ),
         compared(
-            &clear,
-            more,
+            &more(&clear),
             "to clearance in more joints, of the same size at the same speed",
         ),
         by_joints(&clear),
@@ -39,14 +32,43 @@ pub(super) fn claims(cases: &[CaseChaos]) -> Vec<String> {
     .collect()
 }
 
-/// The next larger clearance in the same joints at the same speed.
-fn next(cases: &[&CaseChaos], of: &CaseChaos) -> Option<f64> {
-    cases
-        .iter()
-        .filter(|case| case.joints == of.joints && case.speed_rpm == of.speed_rpm)
-        .map(|case| case.clearance_m)
-        .filter(|clearance| *clearance > of.clearance_m)
-        .min_by(f64::total_cmp)
+/// Two cases of which the second is claimed to have the higher exponent.
+type Step<'a> = (&'a CaseChaos, &'a CaseChaos);
+
+/// Every case, and the one with the next larger clearance in the same joints at the same speed.
+fn larger<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
+    let mut alike: BTreeMap<(&str, u64), Vec<&CaseChaos>> = BTreeMap::new();
+    for case in cases {
+        let key = (case.joints.as_str(), case.speed_rpm.to_bits());
+        alike.entry(key).or_default().push(case);
+    }
+    let mut steps = Vec::new();
+    for mut group in alike.into_values() {
+        group.sort_by(|a, b| a.clearance_m.total_cmp(&b.clearance_m));
+        group.dedup_by_key(|case| case.clearance_m);
+        steps.extend(group.windows(2).map(|two| (two[0], two[1])));
+    }
+    steps
+}
+
+/// Cases of one clearance and speed: one with clearance in some joints, the other in these and more.
+fn more<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
+    let mut alike: BTreeMap<(u64, u64), BTreeMap<&str, &CaseChaos>> = BTreeMap::new();
+    for case in cases {
+        let key = (case.clearance_m.to_bits(), case.speed_rpm.to_bits());
+        let group = alike.entry(key).or_default();
+        group.entry(&case.joints).or_insert(case);
+    }
+    let mut steps = Vec::new();
+    for group in alike.values() {
+        for few in group.values() {
+            let many = group
+                .values()
+                .filter(|many| within(&few.joints, &many.joints));
+            steps.extend(many.map(|many| (*few, *many)));
+        }
+    }
+    steps
 }
 
 /// Whether `many` names all of the `few` joints, and more.
@@ -56,32 +78,28 @@ fn within(few: &str, many: &str) -> bool {
     few.len() < many.len() && few.iter().all(|joint| many.contains(joint))
 }
 
-fn compared(
-    cases: &[&CaseChaos],
-    step: impl Fn(&CaseChaos, &CaseChaos) -> bool,
-    words: &str,
-) -> Option<String> {
-    let (mut steps, mut rises, mut falls) = (0, 0, 0);
-    for a in cases {
-        for b in cases.iter().filter(|b| step(a, b)) {
-            let ([from, from_error], [to, to_error]) = (a.exponent?, b.exponent?);
-            let sure = HIGHER * from_error.hypot(to_error);
-            steps += 1;
-            rises += usize::from(to - from > sure);
-            falls += usize::from(from - to > sure);
-        }
+fn compared(steps: &[Step], words: &str) -> Option<String> {
+    let known = steps
+        .iter()
+        .filter_map(|(a, b)| Some((a.exponent?, b.exponent?)));
+    let (mut count, mut rises, mut falls) = (0, 0, 0);
+    for ([from, from_error], [to, to_error]) in known {
+        let sure = HIGHER * from_error.hypot(to_error);
+        count += 1;
+        rises += usize::from(to - from > sure);
+        falls += usize::from(from - to > sure);
     }
-    (steps > 0).then(|| {
+    (count > 0).then(|| {
         format!(
             "Of {} {words}, the exponent rises in {rises} and falls in {falls} by more than {HIGHER} standard errors.",
-            text::counted(steps, "step")
+            text::counted(count, "step")
         )
     })
 }
 
 /// How many cases are chaotic, by the number of joints with clearance.
 fn by_joints(cases: &[&CaseChaos]) -> Option<String> {
-    let mut counts: std::collections::BTreeMap<usize, [usize; 2]> = Default::default();
+    let mut counts: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
     for case in cases {
         if let Some(regime) = case.regime {
             let count = counts.entry(case.joints.split('+').count()).or_default();
@@ -133,7 +151,7 @@ pub(super) fn cells(case: &CaseChaos) -> [String; 9] {
     let signal = |window: &super::WindowChaos| match window.exponent {
         Some([value, low, high]) => {
             let [value, low, high] = [value, low, high].map(|v| text::number(v, 3));
-            format!("{value} ({low} to {high})")
+            format!("{value}\u{a0}[{low},\u{a0}{high}]")
         }
         None => window.reason.clone(),
     };

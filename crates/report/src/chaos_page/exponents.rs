@@ -13,6 +13,8 @@ const HALF: f64 = 1.96;
 const MOST_SPEEDS: usize = 3;
 /// At most this many sets of joints.
 const MOST_SETS: usize = 8;
+/// A panel draws at most so many cases, and the scatter so many windows: evenly over the sweep.
+const MOST_DRAWN: usize = 1_500;
 const EQUATIONS: Colour = Colour::Class(0);
 const SIGNAL: Colour = Colour::Class(1);
 
@@ -73,6 +75,13 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
     }]
 }
 
+/// At most [`MOST_DRAWN`] of them, spread evenly.
+fn evenly<T: Copy>(all: &[T]) -> impl Iterator<Item = T> {
+    all.iter()
+        .copied()
+        .step_by(all.len().div_ceil(MOST_DRAWN).max(1))
+}
+
 fn speed_words(apart: bool, speeds: &Levels) -> &'static str {
     if apart || speeds.count() < 2 {
         ""
@@ -93,7 +102,8 @@ fn panel<'a>(title: &str, cases: impl Iterator<Item = &'a &'a CaseChaos>) -> Pan
     const MILLIMETRES: f64 = 1e3;
     let (mut truths, mut true_bars) = (Vec::new(), Vec::new());
     let (mut signals, mut signal_bars) = (Vec::new(), Vec::new());
-    for case in cases {
+    let cases: Vec<&&CaseChaos> = cases.collect();
+    for case in evenly(&cases) {
         let x = case.clearance_m * MILLIMETRES;
         if let Some([value, error]) = case.exponent {
             truths.push([x, value]);

@@ -139,7 +139,7 @@ fn by_speed(
     Plate {
         heading: "Regimes by clearance and speed".to_owned(),
         caption: caption("at different speeds", clearances.width.max(speeds.width)),
-        svg: figure(sources, rows.collect(), 26.0 * speeds.count().max(2) as f64),
+        svg: figure(sources, rows.collect(), 26.0 * speeds.count().max(3) as f64),
     }
 }
 

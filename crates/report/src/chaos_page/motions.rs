@@ -9,6 +9,8 @@ use crate::text;
 
 /// Revolutions that a portrait or an orbit shows at most: more only blacken it.
 const REVOLUTIONS: usize = 10;
+/// Of more cases than this a caption names the first and the last.
+const MOST_NAMED: usize = 6;
 /// Largest plotting area of a small multiple in pixels.
 const HEIGHT: f64 = 150.0;
 
@@ -25,7 +27,7 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
         }
     };
     plates(page, || Plate {
-        heading: "Phase portraits".to_owned(),
+        heading: "Portraits of the crosshead".to_owned(),
         caption: format!(
             "Acceleration of the crosshead against its velocity over the last {REVOLUTIONS} revolutions or fewer. All \
              panels have the same axes: what is larger is larger. A single closed curve repeats itself every revolution, \
@@ -44,7 +46,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         series: vec![Series::new(
             "",
             Colour::Class(0),
-            Mark::WideDots,
+            Mark::Points,
             motion.strobe.iter().copied(),
         )],
         ..Panel::default()
@@ -70,7 +72,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     let mut made = plates(page, || Plate {
-        heading: "Poincaré sections once a revolution".to_owned(),
+        heading: "Sections once a revolution".to_owned(),
         caption: format!(
             "Velocity and acceleration of the crosshead whenever the crank passes angle 0, a dot per revolution, all panels \
              with the same axes. One dot is a motion that repeats itself every revolution, two are one of two revolutions, a \
@@ -80,7 +82,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         svg: small_multiples(page, strobe, Share::All),
     });
     made.extend(plates(page, || Plate {
-        heading: "Poincaré sections at impact".to_owned(),
+        heading: "Sections at impact".to_owned(),
         caption: format!(
             "Where in the revolution the journal meets the bearing again, and how fast, a dot per impact, all panels with \
              the same axes. Impacts at the same angles with the same speeds are those of a periodic motion; clouds are those of \
@@ -118,7 +120,7 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     plates(page, || Plate {
-        heading: "Journal orbits".to_owned(),
+        heading: "Orbits in the clearance circle".to_owned(),
         caption: format!(
             "The centre of the journal in its bearing over the last {REVOLUTIONS} revolutions or fewer, over the clearance: on \
              the circle the two touch, inside it the journal flies. One closed curve is a periodic motion. Where there is \
@@ -139,11 +141,20 @@ fn plates(page: &ChaosPage, plate: impl Fn() -> Plate) -> Vec<Plate> {
     any.then(plate).into_iter().collect()
 }
 
-/// Which cases the panels are of.
+/// Which cases the panels are of; of many the first and the last.
 fn cases(page: &ChaosPage) -> String {
     let motions = page.motions.iter().flat_map(|row| &row.motions).flatten();
     let ids: Vec<&str> = motions.map(|motion| motion.case_id.as_str()).collect();
-    format!("Simulated again without sensors: {}.", ids.join(", "))
+    let named = match ids.as_slice() {
+        [first, .., last] if ids.len() > MOST_NAMED => {
+            format!(
+                "{first} to {last} ({} shown)",
+                text::counted(ids.len(), "case")
+            )
+        }
+        _ => ids.join(", "),
+    };
+    format!("Simulated again without sensors: {named}.")
 }
 
 /// Where the last revolutions begin.

@@ -70,6 +70,6 @@ impl Regime {
 
     /// How dark it is on a map, from 0 to 1.
     pub(super) fn tint(self) -> f64 {
-        [0.28, 0.5, 1.0, 0.75, 0.0][self.kind()]
+        [0.3, 0.5, 1.0, 0.75, 0.0][self.kind()]
     }
 }

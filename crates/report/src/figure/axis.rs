@@ -145,10 +145,10 @@ impl Ruler {
                 .map(|(i, name)| (ruler.place(i as f64), name.clone()))
                 .collect();
         } else if range.is_some() {
-            match axis.scale {
-                Scale::Degrees => ruler.steps(degree_step((high - low) / count)),
-                Scale::Log if high >= 5.0 * low => ruler.powers(count),
-                Scale::Linear | Scale::Log => ruler.steps(linear_step(high - low, count)),
+            ruler.set_ticks(count);
+            // A panel too narrow for its spacing still has two numbers to read it by.
+            if ruler.ticks.len() < 2 {
+                ruler.set_ticks(2.0 * count);
             }
         }
         ruler
@@ -161,6 +161,16 @@ impl Ruler {
             return decades(value.max(self.low * 1e-3)) / decades(self.high);
         }
         (value - self.low) / (self.high - self.low)
+    }
+
+    /// About `count` ticks.
+    fn set_ticks(&mut self, count: f64) {
+        let (low, high) = (self.low, self.high);
+        match self.scale {
+            Scale::Degrees => self.steps(degree_step((high - low) / count)),
+            Scale::Log if high >= 5.0 * low => self.powers(count),
+            Scale::Linear | Scale::Log => self.steps(linear_step(high - low, count)),
+        }
     }
 
     fn steps(&mut self, step: f64) {

@@ -90,6 +90,8 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
         }
         let middle = baseline - 4.0;
         let (kind, sample) = match series.mark {
+            // A dot of a pixel is too small for a sample.
+            Mark::Dots | Mark::WideDots => (Mark::Points, vec![[left + KEY / 2.0, middle]]),
             separate if separate.is_separate() => (separate, vec![[left + KEY / 2.0, middle]]),
             Mark::Band => (
                 Mark::Band,
@@ -388,7 +390,7 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
         Mark::BoldLine => stroke(2.0, 1.0),
         Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),
         Mark::Rings => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.4\""),
-        Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.3\""),
+        Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\""),
         Mark::WideDots => {
             format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3\" stroke-opacity=\".45\"")
         }

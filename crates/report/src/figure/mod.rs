@@ -130,7 +130,7 @@ pub enum Colour {
     Class(usize),
     /// A place between the lowest (0) and the highest (1) of an ordered quantity.
     Ordered(f64),
-    /// A fill from nearly white (0) to dark (1) that also reads in grey.
+    /// A fill from light grey (0) to dark (1) that also reads in grey.
     Tint(f64),
     /// Dark grey, for a reference.
     Ink,

@@ -16,9 +16,9 @@ const ORDERED: [[f64; 3]; 4] = [
     [60.0, 8.0, 70.0],
 ];
 
-/// Stops of a scale of fills, from nearly white to as dark as [`ORDERED`] ends.
+/// Stops of a scale of fills, from light grey to as dark as [`ORDERED`] ends.
 const TINTS: [[f64; 3]; 4] = [
-    [250.0, 250.0, 250.0],
+    [232.0, 232.0, 232.0],
     [186.0, 218.0, 226.0],
     [74.0, 134.0, 176.0],
     [54.0, 20.0, 92.0],
