@@ -111,9 +111,23 @@ impl<S: Scalar> Dynamics<S> {
     /// Sets the mode that the initial state calls for.
     fn start(&mut self) {
         let y = self.initial_state();
-        self.set_outward(S::zero(), &y);
-        self.evaluate(S::zero(), &y);
         self.close_links();
+        self.set_gas_mode(S::zero(), &y);
+    }
+
+    /// Puts the machine into the mode of the state `y` at `t`, which another machine of the same
+    /// build left in the mode `left`. Contacts are taken over: where the new parameters contradict
+    /// them, a guard is overdue, and the integrator switches it at once. The gas has no memory, so
+    /// its mode follows from the state.
+    pub fn resume(&mut self, t: S, y: &[S], left: &Mode<S>) {
+        self.mode.clone_from(left);
+        self.set_gas_mode(t, y);
+    }
+
+    /// Sets the strokes and valves that the state calls for.
+    fn set_gas_mode(&mut self, t: S, y: &[S]) {
+        self.set_outward(t, y);
+        self.evaluate(t, y);
         for (mode, throw) in self.mode.throws.iter_mut().zip(&self.evaluation.throws) {
             mode.head_end = throw.gas.head_end.mode();
             mode.crank_end = throw.gas.crank_end.mode();

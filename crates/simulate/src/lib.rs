@@ -5,8 +5,10 @@
 //! noise, range, resolution. The two are apart because repeated measurements of one run differ in
 //! noise alone.
 
+pub mod bifurcation;
 pub mod lyapunov;
 pub mod measure;
+pub mod poincare;
 pub mod record;
 pub mod sensor;
 pub mod settings;

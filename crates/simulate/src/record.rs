@@ -35,6 +35,14 @@ pub enum Error {
         /// What is wrong with it.
         source: signal::Error,
     },
+    /// A free crank stands still, or swings.
+    #[error(
+        "the crank does not come round any more: none of its revolutions ended before t = {time} s"
+    )]
+    Stalled {
+        /// Time reached, s.
+        time: f64,
+    },
     /// The motion left the range in which the model means anything.
     #[error("the motion is no longer finite at t = {time} s")]
     NotFinite {

@@ -1,0 +1,482 @@
+//! Poincaré sections of the running machine: where it stands each time the crank passes an angle,
+//! and each time a journal touches its bearing.
+//!
+//! Both are located, not sampled. The section is one more guard of the integration, zero where the
+//! crank passes, so a free crank is caught at the angle itself and not at multiples of a period;
+//! impacts are the guards of the contacts. What lies on a curve or a cloud of points in the first
+//! section is quasi-periodic or chaotic; n points that repeat are a period of n revolutions.
+
+use crate::record::Error;
+use integrate::{Integrator, Step, System};
+use mechanism::joints::guide::Guide;
+use mechanism::mode::{ContactMode, Mode};
+use mechanism::{Dynamics, Machine};
+use std::f64::consts::TAU;
+
+/// Longest step, as a share of a revolution.
+const LONGEST_STEP: f64 = 0.05;
+/// The integration is asked for so much of a reference period at a time.
+const STRETCH: f64 = 0.25;
+/// Reference periods without a revolution after which a free crank counts as stalled.
+const PATIENCE: f64 = 50.0;
+/// Shares of a step at which the acceleration is looked at for its peak.
+const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// How sections are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SectionSettings {
+    /// Crank angle of the section, rad; 0 is the top dead centre of a throw with `pin_angle` 0.
+    pub angle: f64,
+    /// Revolutions that are thrown away. With none the first revolution is the start itself.
+    pub transient: u32,
+    /// Revolutions that are kept.
+    pub revolutions: u32,
+    /// Relative local error of the integration.
+    pub tolerance: f64,
+}
+
+impl Default for SectionSettings {
+    fn default() -> Self {
+        Self {
+            angle: 0.0,
+            transient: 50,
+            revolutions: 100,
+            tolerance: 1e-9,
+        }
+    }
+}
+
+/// A joint with clearance. Throws are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// The main bearing.
+    Main,
+    /// The big end of a throw.
+    BigEnd(usize),
+    /// The small end of a throw.
+    SmallEnd(usize),
+    /// The guide of a throw.
+    Guide(usize),
+}
+
+/// Where a joint stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointPoint {
+    /// Offset of the journal along x and y of its throw's frame, m; of a guide the shift, m, and
+    /// the tilt, rad.
+    pub offset: [f64; 2],
+    /// Its rate, per second.
+    pub rate: [f64; 2],
+}
+
+/// How a throw moves at the end of a revolution, and its peak within.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrowPoint {
+    /// Speed of the crosshead, m/s.
+    pub velocity: f64,
+    /// Its acceleration, m/s².
+    pub acceleration: f64,
+    /// Largest magnitude of the acceleration over the revolution, m/s².
+    pub peak_acceleration: f64,
+}
+
+/// A contact that is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// Where.
+    pub joint: Joint,
+    /// Which corner of a guide: upper rear, upper front, lower rear, lower front; 0 elsewhere.
+    pub corner: usize,
+    /// When, s since the start.
+    pub time: f64,
+    /// Crank angle in [0, 2π), rad.
+    pub angle: f64,
+    /// Offset as in [`JointPoint::offset`].
+    pub offset: [f64; 2],
+    /// Speed of approach along the normal, m/s.
+    pub approach: f64,
+}
+
+/// One revolution, from a passage of the section to the next, at which the points are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Revolution {
+    /// Time of the passage, s since the start.
+    pub time: f64,
+    /// Crank angle there, unwrapped, rad.
+    pub angle: f64,
+    /// The joints with clearance, as [`clear_joints`] has them.
+    pub joints: Vec<JointPoint>,
+    /// The throws.
+    pub throws: Vec<ThrowPoint>,
+    /// The contacts made on the way, in the order of time.
+    pub impacts: Vec<Impact>,
+}
+
+/// The sections of a machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sections {
+    /// The joints with clearance.
+    pub joints: Vec<Joint>,
+    /// The revolutions.
+    pub revolutions: Vec<Revolution>,
+}
+
+impl Sections {
+    /// All impacts at one joint.
+    pub fn impacts(&self, joint: Joint) -> impl Iterator<Item = &Impact> {
+        let all = self.revolutions.iter().flat_map(|r| &r.impacts);
+        all.filter(move |impact| impact.joint == joint)
+    }
+}
+
+/// The joints of `machine` that have clearance: the main bearing, then big end, small end and guide
+/// of each throw.
+pub fn clear_joints(machine: &Machine) -> Vec<Joint> {
+    let main = machine.main.clear().map(|_| Joint::Main);
+    let throws = machine.throws.iter().enumerate().flat_map(|(i, throw)| {
+        [
+            throw.big_end.clear().map(|_| Joint::BigEnd(i)),
+            throw.small_end.clear().map(|_| Joint::SmallEnd(i)),
+            throw.guide.clear().map(|_| Joint::Guide(i)),
+        ]
+    });
+    main.into_iter().chain(throws.flatten()).collect()
+}
+
+/// Runs `machine` and takes its sections.
+///
+/// # Errors
+/// Where the integration cannot meet its tolerance, or a free crank stalls.
+pub fn sections(machine: &Machine, settings: &SectionSettings) -> Result<Sections, Error> {
+    let mut strobe = Strobe::start(machine, settings.angle, settings.tolerance);
+    for left in (0..settings.transient).rev() {
+        strobe.revolve(left == 0)?;
+    }
+    let revolutions = (0..settings.revolutions).map(|_| strobe.revolve(true));
+    Ok(Sections {
+        joints: clear_joints(machine),
+        revolutions: revolutions.collect::<Result<_, _>>()?,
+    })
+}
+
+/// A machine that runs from one passage of the section to the next.
+pub(crate) struct Strobe {
+    watched: Watched,
+    integrator: Integrator<f64>,
+    tolerance: f64,
+}
+
+impl Strobe {
+    /// The machine at rest in its initial state.
+    pub fn start(machine: &Machine, angle: f64, tolerance: f64) -> Self {
+        let watched = Watched::new(machine, angle);
+        let state = watched.dynamics.initial_state();
+        Self::at(watched, 0.0, &state, tolerance)
+    }
+
+    fn at(mut watched: Watched, time: f64, state: &[f64], tolerance: f64) -> Self {
+        let longest = LONGEST_STEP * watched.period();
+        Self {
+            integrator: Integrator::new(&mut watched, time, state, tolerance, longest),
+            watched,
+            tolerance,
+        }
+    }
+
+    /// The motion goes on in `machine`, whose parameters differ: crank angle and speed, rates and
+    /// contacts stay as they are. Where a clearance differs, a journal in contact keeps its
+    /// penetration, and one in flight its place relative to the clearance. A machine of another
+    /// build, or one that turns the other way, starts afresh. Impacts and peaks of the revolution
+    /// under way are forgotten.
+    pub fn carried(mut self, machine: &Machine) -> Self {
+        let mut watched = Watched::new(machine, self.watched.section);
+        let before = &mut self.watched.dynamics;
+        let same_sense = watched.sense == self.watched.sense;
+        if !same_sense || before.layout() != watched.dynamics.layout() {
+            return Self::start(machine, self.watched.section, self.tolerance);
+        }
+        let mut y = self.integrator.state().to_vec();
+        let at = before.evaluate(self.integrator.time(), &y);
+        let (turned, speed) = ((watched.sense * at.angle).rem_euclid(TAU), at.speed);
+        rescale(before.machine(), &watched.dynamics, &mut y);
+        let reference = watched.dynamics.machine().drive.reference_speed();
+        let time = turned / reference.abs();
+        if let Some(i) = watched.dynamics.layout().crank {
+            y[i] = 0.0;
+            y[i + 1] = speed - reference;
+        }
+        watched.dynamics.resume(time, &y, before.mode());
+        // The section was passed less than half a revolution ago.
+        let passages = (turned - watched.sense * watched.section) / TAU;
+        watched.next = (passages + 0.5).floor() + 1.0;
+        Self::at(watched, time, &y, self.tolerance)
+    }
+
+    /// Goes on to the next passage, and up to a quarter beyond; with `peaks` the peak of the
+    /// acceleration is looked for on the way (0 otherwise).
+    pub fn revolve(&mut self, peaks: bool) -> Result<Revolution, Error> {
+        let begin = self.integrator.time();
+        let period = self.watched.period();
+        loop {
+            if let Some(revolution) = self.watched.finished.take() {
+                return Ok(revolution);
+            }
+            let time = self.integrator.time();
+            if time - begin > PATIENCE * period {
+                return Err(Error::Stalled { time });
+            }
+            let end = time + STRETCH * period;
+            let observe = |watched: &mut Watched, step: &Step<f64>| {
+                if peaks {
+                    watched.look_for_peaks(step);
+                }
+            };
+            self.integrator.advance(&mut self.watched, end, observe)?;
+            if !self.integrator.state().iter().all(|y| y.is_finite()) {
+                return Err(Error::NotFinite { time: end });
+            }
+        }
+    }
+}
+
+/// Offsets in `y` of a machine with other clearances.
+fn rescale(before: &Machine, dynamics: &Dynamics<f64>, y: &mut [f64]) {
+    let (after, layout) = (dynamics.machine(), dynamics.layout());
+    let mut journal = |at: Option<usize>, joints: [&_; 2]| {
+        let [old, new] = joints.map(mechanism::joints::revolute::Revolute::clear);
+        if let (Some(i), Some(old), Some(new)) = (at, old, new) {
+            let distance = y[i].hypot(y[i + 1]);
+            let depth = distance - old.clearance;
+            let factor = if depth > 0.0 {
+                (new.clearance + depth) / distance
+            } else {
+                new.clearance / old.clearance
+            };
+            y[i] *= factor;
+            y[i + 1] *= factor;
+        }
+    };
+    journal(layout.main, [&before.main, &after.main]);
+    let throws = before.throws.iter().zip(&after.throws);
+    for ((old, new), at) in throws.clone().zip(&layout.throws) {
+        journal(at.big_end, [&old.big_end, &new.big_end]);
+        journal(at.small_end, [&old.small_end, &new.small_end]);
+    }
+    for ((old, new), at) in throws.zip(&layout.throws) {
+        if let (Some(i), Guide::Clear(old), Guide::Clear(new)) = (at.guide, &old.guide, &new.guide)
+        {
+            y[i] *= new.clearance / old.clearance;
+            y[i + 1] *= new.clearance / old.clearance;
+        }
+    }
+}
+
+/// The machine as a system with one guard more: the section.
+struct Watched {
+    dynamics: Dynamics<f64>,
+    joints: Vec<Joint>,
+    /// Crank angle of the section, rad.
+    section: f64,
+    sense: f64,
+    /// Number of the passage to come.
+    next: f64,
+    impacts: Vec<Impact>,
+    /// Peak of each throw in this revolution.
+    peaks: Vec<f64>,
+    /// The revolution that ended and was not taken yet.
+    finished: Option<Revolution>,
+    /// Room for a state.
+    state: Vec<f64>,
+}
+
+/// A contact before a switch.
+struct Contact {
+    joint: Joint,
+    corner: usize,
+    touching: bool,
+    offset: [f64; 2],
+    approach: f64,
+}
+
+impl Watched {
+    fn new(machine: &Machine, section: f64) -> Self {
+        let mut machine = machine.clone();
+        // The frame only listens, and no section looks at it.
+        machine.frame = None;
+        let sense = machine.drive.reference_speed().signum();
+        let joints = clear_joints(&machine);
+        let dynamics = Dynamics::new(machine, false);
+        Self {
+            joints,
+            section,
+            sense,
+            // A whole revolution at least.
+            next: (-sense * section / TAU).ceil() + 1.0,
+            impacts: Vec::new(),
+            peaks: vec![0.0; dynamics.machine().throws.len()],
+            finished: None,
+            state: dynamics.initial_state(),
+            dynamics,
+        }
+    }
+
+    /// Period of the reference speed, s.
+    fn period(&self) -> f64 {
+        TAU / self.dynamics.machine().drive.reference_speed().abs()
+    }
+
+    /// Ends a revolution.
+    fn pass(&mut self, t: f64, y: &[f64]) {
+        let at = self.dynamics.evaluate(t, y);
+        let peaks = self.peaks.iter_mut().map(std::mem::take);
+        let throws = at.throws.iter().zip(peaks).map(|(throw, peak)| ThrowPoint {
+            velocity: throw.motion.crosshead_rate,
+            acceleration: throw.accelerations.crosshead,
+            peak_acceleration: peak,
+        });
+        let (angle, throws) = (at.angle, throws.collect());
+        let joints = self.joints.iter().map(|joint| self.point(*joint));
+        self.finished = Some(Revolution {
+            time: t,
+            angle,
+            joints: joints.collect(),
+            throws,
+            impacts: std::mem::take(&mut self.impacts),
+        });
+        self.next += 1.0;
+    }
+
+    /// A joint at the last evaluation.
+    fn point(&self, joint: Joint) -> JointPoint {
+        let at = self.dynamics.evaluation();
+        let [offset, rate] = match joint {
+            Joint::Main => [at.main.offset, at.main.rate],
+            Joint::BigEnd(i) => {
+                let joint = &at.throws[i].joints.big_end;
+                [joint.offset, joint.rate]
+            }
+            Joint::SmallEnd(i) => {
+                let joint = &at.throws[i].joints.small_end;
+                [joint.offset, joint.rate]
+            }
+            Joint::Guide(i) => {
+                let guide = &at.throws[i].joints.guide;
+                [guide.position, guide.rate]
+            }
+        };
+        JointPoint {
+            offset: [offset.x, offset.y],
+            rate: [rate.x, rate.y],
+        }
+    }
+
+    /// All contacts at the last evaluation.
+    fn contacts(&self) -> Vec<Contact> {
+        let at = self.dynamics.evaluation();
+        let mut contacts = Vec::new();
+        for &joint in &self.joints {
+            let modes = contact_modes(self.dynamics.mode(), joint);
+            for (corner, mode) in modes.iter().enumerate() {
+                contacts.push(Contact {
+                    joint,
+                    corner,
+                    touching: mode.touching > 0.0,
+                    offset: self.point(joint).offset,
+                    approach: match joint {
+                        Joint::Main => at.main.penetration_rate,
+                        Joint::BigEnd(i) => at.throws[i].joints.big_end.penetration_rate,
+                        Joint::SmallEnd(i) => at.throws[i].joints.small_end.penetration_rate,
+                        Joint::Guide(i) => {
+                            at.throws[i].joints.guide.corners[corner].penetration_rate
+                        }
+                    },
+                });
+            }
+        }
+        contacts
+    }
+
+    /// Keeps the largest acceleration of each throw within `step`.
+    fn look_for_peaks(&mut self, step: &Step<f64>) {
+        let mut seen = vec![[0.0; LOOKS.len()]; self.peaks.len()];
+        for (look, share) in LOOKS.into_iter().enumerate() {
+            step.interpolate(share, &mut self.state);
+            let t = step.start + share * step.length;
+            let at = self.dynamics.evaluate(t, &self.state);
+            for (seen, throw) in seen.iter_mut().zip(&at.throws) {
+                seen[look] = throw.accelerations.crosshead.abs();
+            }
+        }
+        for (peak, seen) in self.peaks.iter_mut().zip(&seen) {
+            *peak = peak.max(top(seen));
+        }
+    }
+}
+
+/// The top of the parabolas through neighbouring values.
+fn top(values: &[f64; LOOKS.len()]) -> f64 {
+    let highest = values.iter().copied().fold(0.0, f64::max);
+    let vertex = |three: &[f64]| {
+        let [before, at, after] = [three[0], three[1], three[2]];
+        let inside = at > before && at > after;
+        let curvature = before - 2.0 * at + after;
+        inside.then(|| at - (after - before).powi(2) / (8.0 * curvature))
+    };
+    values.windows(3).filter_map(vertex).fold(highest, f64::max)
+}
+
+fn contact_modes(mode: &Mode<f64>, joint: Joint) -> &[ContactMode<f64>] {
+    match joint {
+        Joint::Main => std::slice::from_ref(&mode.main),
+        Joint::BigEnd(i) => std::slice::from_ref(&mode.throws[i].big_end),
+        Joint::SmallEnd(i) => std::slice::from_ref(&mode.throws[i].small_end),
+        Joint::Guide(i) => &mode.throws[i].guide,
+    }
+}
+
+impl System<f64> for Watched {
+    fn dimension(&self) -> usize {
+        self.dynamics.dimension()
+    }
+
+    fn derivative(&mut self, t: f64, y: &[f64], dy: &mut [f64]) {
+        self.dynamics.derivative(t, y, dy);
+    }
+
+    fn scales(&self) -> &[f64] {
+        self.dynamics.scales()
+    }
+
+    fn guard_count(&self) -> usize {
+        self.dynamics.guard_count() + 1
+    }
+
+    fn guards(&mut self, t: f64, y: &[f64], guards: &mut [f64]) {
+        let (own, theirs) = guards.split_at_mut(1);
+        self.dynamics.guards(t, y, theirs);
+        let angle = self.dynamics.evaluation().angle;
+        own[0] = self.next * TAU - self.sense * (angle - self.section);
+    }
+
+    fn switch(&mut self, guard: usize, t: f64, y: &mut [f64]) {
+        let Some(guard) = guard.checked_sub(1) else {
+            return self.pass(t, y);
+        };
+        let angle = self.dynamics.evaluate(t, y).angle.rem_euclid(TAU);
+        let before = self.contacts();
+        self.dynamics.switch(guard, t, y);
+        for contact in before.into_iter().filter(|contact| !contact.touching) {
+            let modes = contact_modes(self.dynamics.mode(), contact.joint);
+            if modes[contact.corner].touching > 0.0 {
+                self.impacts.push(Impact {
+                    joint: contact.joint,
+                    corner: contact.corner,
+                    time: t,
+                    angle,
+                    offset: contact.offset,
+                    approach: contact.approach,
+                });
+            }
+        }
+    }
+}
