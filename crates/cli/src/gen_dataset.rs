@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use sweep::dataset::{Existing, Options, Progress, generate};
+use sweep::dataset::{Existing, Options, Progress, generate, sample_diagram};
 use sweep::sweep_file::Format;
 use sweep::{Plan, simulate_case};
 
@@ -121,14 +121,7 @@ struct Bar {
 
 impl Progress for Bar {
     fn begins(&mut self, cases: u64, finished: u64) {
-        let bar = ProgressBar::with_draw_target(Some(cases), ProgressDrawTarget::stderr());
-        let template = "{bar:40} {pos}/{len} cases  {per_sec}  {eta} left  {msg}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.set_position(finished);
-        bar.reset_eta();
-        self.bar = Some(bar);
+        self.show(cases, finished, "cases");
     }
 
     fn case_done(&mut self, _case: u64, failed: bool) {
@@ -139,9 +132,32 @@ impl Progress for Bar {
             bar.set_message(format!("{} failed", self.failed));
         }
     }
+
+    fn diagrams_begin(&mut self, values: u64, finished: u64) {
+        self.finish();
+        self.show(values, finished, "values of bifurcation diagrams");
+    }
+
+    fn values_done(&mut self, values: u64) {
+        if let Some(bar) = &self.bar {
+            bar.inc(values);
+        }
+    }
 }
 
 impl Bar {
+    fn show(&mut self, total: u64, finished: u64, what: &str) {
+        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
+        let template =
+            format!("{{bar:40}} {{pos}}/{{len}} {what}  {{per_sec}}  {{eta}} left  {{msg}}");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        bar.set_position(finished);
+        bar.reset_eta();
+        self.bar = Some(bar);
+    }
+
     fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -200,11 +216,38 @@ fn dry_run(plan: &Plan) -> Result<(), Failure> {
         each * estimate.cases as f64,
         each
     );
+    dry_run_diagrams(plan)?;
     if estimate.cases > sweep::plan::MOST_CASES {
         println!(
             "a dataset can have at most {} cases: this sweep will be refused",
             sweep::plan::MOST_CASES
         );
     }
+    Ok(())
+}
+
+/// The same for the bifurcation diagrams, from a few revolutions of each.
+fn dry_run_diagrams(plan: &Plan) -> Result<(), Failure> {
+    let estimate = plan.estimate_diagrams();
+    if estimate.diagrams == 0 {
+        return Ok(());
+    }
+    println!(
+        "bifurcation diagrams: {}, {} values, {} revolutions to simulate, {:.1} MB before compression",
+        estimate.diagrams,
+        estimate.values,
+        estimate.revolutions,
+        estimate.bytes / 1e6
+    );
+    let (mut seconds, mut sampled) = (0.0, 0.0);
+    for diagram in &plan.diagrams {
+        let started = Instant::now();
+        let revolutions = sample_diagram(plan, diagram)
+            .map_err(|e| Failure::work(format!("bifurcation diagram {}: {e}", diagram.name)))?;
+        let each = started.elapsed().as_secs_f64() / f64::from(revolutions);
+        seconds += each * diagram.revolutions() as f64;
+        sampled += f64::from(revolutions);
+    }
+    println!("time: {seconds:.0} s more on one core, measured on {sampled} revolutions");
     Ok(())
 }

@@ -24,6 +24,8 @@ pub struct DatasetCard {
     pub rows: BTreeMap<String, BTreeMap<String, u64>>,
     /// The tables; the first is the one that is loaded when none is named.
     pub subsets: Vec<Subset>,
+    /// Tables that are not divided into splits, in files `NAME/*.parquet`.
+    pub unsplit: Vec<Subset>,
     /// One MCAP file, where there are such: `mcap/CASE.mcap`.
     pub mcap_example: Option<String>,
     /// The command that makes the dataset again.
@@ -32,7 +34,7 @@ pub struct DatasetCard {
     pub version: String,
 }
 
-/// One table of a dataset, in files `NAME/SPLIT-*.parquet`.
+/// One table of a dataset, in files `NAME/SPLIT-*.parquet` or `NAME/*.parquet`.
 #[derive(Clone, Debug)]
 pub struct Subset {
     /// `signals`, `features`.
@@ -95,6 +97,11 @@ impl DatasetCard {
                 writeln!(f, "  - split: {}\n    path: {}", json!(split), json!(files))?;
             }
         }
+        for subset in self.unsplit.iter().filter(|_| !splits.is_empty()) {
+            let files = format!("{}/*.parquet", subset.name);
+            writeln!(f, "- config_name: {}", json!(subset.name))?;
+            writeln!(f, "  data_files: {}", json!(files))?;
+        }
         writeln!(f, "---")
     }
 
@@ -154,23 +161,14 @@ impl DatasetCard {
             f,
             "\n## How to load it\n\nFrom within this folder, in Python:"
         )?;
-        for subset in &self.subsets {
-            let name = &subset.name;
-            let splits = self.splits_with_rows();
-            let Some(split) = splits.first() else {
-                continue;
-            };
-            writeln!(
-                f,
-                "
-```python
-import os, datasets, pandas, polars, pyarrow.dataset
-{name} = datasets.load_dataset(os.getcwd(), \"{name}\")[\"{split}\"]
-{name} = pandas.read_parquet(\"{name}\")      # every split; units in {name}.attrs[\"units\"]
-{name} = polars.scan_parquet(\"{name}/{split}-*.parquet\").collect()
-{name} = pyarrow.dataset.dataset(\"{name}\").to_table()
-```"
-            )?;
+        if let Some(split) = self.splits_with_rows().first() {
+            for Subset { name, .. } in &self.subsets {
+                load(f, name, split, &format!("{split}-*.parquet"))?;
+            }
+            for Subset { name, .. } in &self.unsplit {
+                // What has no splits is one split of this name to `datasets`.
+                load(f, name, "train", "*.parquet")?;
+            }
         }
         let Some(example) = &self.mcap_example else {
             return Ok(());
@@ -194,7 +192,7 @@ Foxglove opens the files of `mcap/` as they are: add a Plot panel and drag a cha
     }
 
     fn columns(&self, f: &mut Formatter) -> fmt::Result {
-        for subset in &self.subsets {
+        for subset in self.subsets.iter().chain(&self.unsplit) {
             let columns = subset.schema.columns();
             writeln!(
                 f,
@@ -215,6 +213,21 @@ Foxglove opens the files of `mcap/` as they are: add a Plot panel and drag a cha
         }
         Ok(())
     }
+}
+
+/// How to load the table `name`, or of some readers a part of it.
+fn load(f: &mut Formatter, name: &str, split: &str, files: &str) -> fmt::Result {
+    writeln!(
+        f,
+        "
+```python
+import os, datasets, pandas, polars, pyarrow.dataset
+{name} = datasets.load_dataset(os.getcwd(), \"{name}\")[\"{split}\"]
+{name} = pandas.read_parquet(\"{name}\")      # every split; units in {name}.attrs[\"units\"]
+{name} = polars.scan_parquet(\"{name}/{files}\").collect()
+{name} = pyarrow.dataset.dataset(\"{name}\").to_table()
+```"
+    )
 }
 
 /// Splits in the order of use: train, validation, test, then any other by name.
@@ -284,6 +297,7 @@ mod tests {
                     schema: Schema::new(vec![column.clone()]).unwrap(),
                 })
                 .into(),
+            unsplit: Vec::new(),
             mcap_example: None,
             command: "gen-dataset sweep.yaml".into(),
             version: "0.1.0".into(),

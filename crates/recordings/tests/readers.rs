@@ -261,6 +261,7 @@ impl Dataset {
             machine: vec![("crank radius".into(), "120 mm".into())],
             rows: counts.rows.clone(),
             subsets,
+            unsplit: Vec::new(),
             mcap_example,
             command: "gen-dataset sweep.yaml".into(),
             version: "0.1.0".into(),

@@ -16,6 +16,7 @@ pub mod trace;
 
 pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
 pub use measure::measure;
+pub use poincare::{SectionSettings, Sections, sections};
 pub use record::{Error, Record, simulate};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,

@@ -72,16 +72,16 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
-    /// Two attempts at one shard gave different bytes.
+    /// Two attempts at one shard or diagram gave different bytes.
     #[error(
-        "shard {shard} came out differently than before ({} and {}): the program or the machine \
+        "{part} came out differently than before ({} and {}): the program or the machine \
          that it runs on is not the same",
         short(first),
         short(second)
     )]
     NotDeterministic {
-        /// The shard.
-        shard: u64,
+        /// The shard or the diagram.
+        part: String,
         /// Checksum of the earlier record.
         first: String,
         /// Checksum of the new one.
@@ -94,6 +94,20 @@ pub enum Error {
         shards: u64,
         /// Those that are missing; at least one.
         missing: Vec<u64>,
+    },
+    /// A dataset cannot be completed.
+    #[error("the bifurcation diagram {0} is missing")]
+    MissingDiagram(String),
+    /// The user wanted it to stop after the cases.
+    #[error(
+        "stopped; all cases and {done} of {diagrams} bifurcation diagrams are finished, and \
+         --resume goes on from there"
+    )]
+    DiagramsCancelled {
+        /// Finished diagrams.
+        done: usize,
+        /// Diagrams of the sweep.
+        diagrams: usize,
     },
     /// The user wanted it to stop.
     #[error("stopped; {done} of {shards} shards are finished, and --resume goes on from there")]

@@ -14,5 +14,5 @@ pub mod sweep_file;
 
 pub use dataset::{Existing, Options, Progress, Recording, Runner, finalize, generate, run_shards};
 pub use error::Error;
-pub use plan::{Case, Estimate, Plan};
+pub use plan::{Case, Diagram, DiagramEstimate, Estimate, Plan};
 pub use runner::simulate_case;

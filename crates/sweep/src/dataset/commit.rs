@@ -1,4 +1,5 @@
-//! What says that a shard is finished: `_sweep/commits/K.json`, written once, after its files.
+//! What says that a shard is finished: `_sweep/commits/K.json`, written once, after its files; and
+//! the same for bifurcation diagrams.
 //!
 //! A shard that is run twice (after a crash, or by two machines at once) writes the same files
 //! under the same names; its second commit finds the first and must agree with it. So no case is
@@ -9,6 +10,7 @@ use std::fs;
 use std::io::ErrorKind;
 
 use recordings::{FailedCase, FileEntry};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -38,18 +40,12 @@ impl Commit {
     /// # Errors
     /// Where it was finished before with other files, or the record cannot be written.
     pub(super) fn write(&self, output: &Output) -> Result<(), Error> {
-        let Some(before) = create_only(output, &name(self.shard), self)? else {
-            return Ok(());
-        };
-        let now = text(self)?;
-        if before == now {
-            return Ok(());
-        }
-        Err(Error::NotDeterministic {
-            shard: self.shard,
-            first: checksum(&before),
-            second: checksum(&now),
-        })
+        write(
+            output,
+            &name(self.shard),
+            &format!("shard {}", self.shard),
+            self,
+        )
     }
 
     /// The record of a shard, if it is finished and its files are there in full length.
@@ -57,30 +53,92 @@ impl Commit {
     /// # Errors
     /// Where the record is damaged or of another plan.
     pub(super) fn read(output: &Output, plan: &Plan, shard: u64) -> Result<Option<Self>, Error> {
-        let path = output.path(&name(shard));
-        let damaged = |reason| Error::Damaged {
-            path: path.clone(),
-            reason,
-        };
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(damaged(error.to_string())),
-        };
-        let commit: Self = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
-        if commit.plan_id != plan.id {
-            return Err(damaged("it belongs to another sweep".into()));
-        }
-        let whole = |file: &FileEntry| {
-            let found = fs::metadata(output.path(&file.path));
-            found.is_ok_and(|found| found.len() == file.bytes)
-        };
-        Ok(commit.files.iter().all(whole).then_some(commit))
+        let commit: Option<Self> = read(output, &name(shard), |c: &Self| c.plan_id == plan.id)?;
+        Ok(commit.filter(|c| c.files.iter().all(|file| is_whole(output, file))))
     }
 }
 
 fn name(shard: u64) -> String {
     format!("_sweep/commits/{shard}.json")
+}
+
+/// A finished bifurcation diagram: `_sweep/commits/bifurcation-NAME.json`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DiagramCommit {
+    /// The plan that it belongs to.
+    pub plan_id: String,
+    /// Its file.
+    pub file: FileEntry,
+}
+
+impl DiagramCommit {
+    /// Says that diagram `diagram` is finished.
+    ///
+    /// # Errors
+    /// As [`Commit::write`].
+    pub(super) fn write(&self, output: &Output, diagram: &str) -> Result<(), Error> {
+        let part = format!("diagram {diagram}");
+        write(output, &diagram_name(diagram), &part, self)
+    }
+
+    /// The record of diagram `diagram`, if it is finished and its file is there in full length.
+    ///
+    /// # Errors
+    /// As [`Commit::read`].
+    pub(super) fn read(output: &Output, plan: &Plan, diagram: &str) -> Result<Option<Self>, Error> {
+        let name = diagram_name(diagram);
+        let commit: Option<Self> = read(output, &name, |c: &Self| c.plan_id == plan.id)?;
+        Ok(commit.filter(|c| is_whole(output, &c.file)))
+    }
+}
+
+fn diagram_name(diagram: &str) -> String {
+    format!("_sweep/commits/bifurcation-{diagram}.json")
+}
+
+/// Writes the record of `part`, or compares it with the one that is there.
+fn write(output: &Output, name: &str, part: &str, commit: &impl Serialize) -> Result<(), Error> {
+    let Some(before) = create_only(output, name, commit)? else {
+        return Ok(());
+    };
+    let now = text(commit)?;
+    if before == now {
+        return Ok(());
+    }
+    Err(Error::NotDeterministic {
+        part: part.to_owned(),
+        first: checksum(&before),
+        second: checksum(&now),
+    })
+}
+
+/// The record `name`, if there is one; `ours` tells that it belongs to this plan.
+fn read<T: DeserializeOwned>(
+    output: &Output,
+    name: &str,
+    ours: impl Fn(&T) -> bool,
+) -> Result<Option<T>, Error> {
+    let path = output.path(name);
+    let damaged = |reason| Error::Damaged {
+        path: path.clone(),
+        reason,
+    };
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(damaged(error.to_string())),
+    };
+    let commit: T = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
+    if !ours(&commit) {
+        return Err(damaged("it belongs to another sweep".into()));
+    }
+    Ok(Some(commit))
+}
+
+/// Whether a file is there in full length.
+fn is_whole(output: &Output, file: &FileEntry) -> bool {
+    let found = fs::metadata(output.path(&file.path));
+    found.is_ok_and(|found| found.len() == file.bytes)
 }
 
 /// Writes `record` to `path` unless there is a file already, whose content is then handed back.

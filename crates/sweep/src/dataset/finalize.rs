@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use input::paths;
 use recordings::{Counts, DatasetCard, FileEntry, Manifest, Subset};
 
-use super::commit::Commit;
+use super::commit::{Commit, DiagramCommit};
+use super::diagrams::{self, DiagramTable};
 use super::output::Output;
 use super::tables::Tables;
 use crate::split::Split;
@@ -15,7 +16,7 @@ use crate::{Error, Plan};
 /// Completes the dataset of `plan`. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where a shard is missing, or a file cannot be written.
+/// Where a shard or a bifurcation diagram is missing, or a file cannot be written.
 pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let commits = commits(output, plan)?;
     let tables = Tables::new(plan)?;
@@ -37,7 +38,13 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
         files.extend(commit.files);
         failed.extend(commit.failed);
     }
-    let card = card(plan, &tables, &rows, &files).to_string();
+    for diagram in &plan.diagrams {
+        let commit = DiagramCommit::read(output, plan, &diagram.name)?;
+        let commit = commit.ok_or_else(|| Error::MissingDiagram(diagram.name.clone()))?;
+        files.push(commit.file);
+    }
+    let bifurcations = DiagramTable::new(plan)?.schema;
+    let card = card(plan, &tables, &bifurcations, &rows, &files).to_string();
     let sweep = input::yaml::to_string(plan.sweep())?;
     for (path, text) in [("README.md", card), ("sweep.yaml", sweep)] {
         let record = output.write(path, text.as_bytes())?;
@@ -85,6 +92,7 @@ fn commits(output: &Output, plan: &Plan) -> Result<Vec<Commit>, Error> {
 fn card(
     plan: &Plan,
     tables: &Tables,
+    bifurcations: &recordings::Schema,
     rows: &BTreeMap<String, BTreeMap<String, u64>>,
     files: &[FileEntry],
 ) -> DatasetCard {
@@ -124,6 +132,10 @@ fn card(
         subsets: match plan.format {
             Format::Parquet => vec![subset("signals", &tables.signals), features],
             Format::Mcap => vec![features],
+        },
+        unsplit: match plan.diagrams.as_slice() {
+            [] => Vec::new(),
+            _ => vec![subset(diagrams::FOLDER, bifurcations)],
         },
         mcap_example: example.next().cloned(),
         command: "gen-dataset sweep.yaml --out another-folder".into(),

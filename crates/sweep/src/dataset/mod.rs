@@ -2,12 +2,14 @@
 
 mod case_rows;
 mod commit;
+mod diagrams;
 mod finalize;
 mod output;
 mod shard;
 mod tables;
 
 pub use commit::Commit;
+pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::finalize;
 pub use output::{Existing, Output};
 pub use tables::Tables;
@@ -48,6 +50,10 @@ pub trait Progress {
     fn begins(&mut self, _cases: u64, _finished: u64) {}
     /// A case is done.
     fn case_done(&mut self, _case: u64, _failed: bool) {}
+    /// Values of all bifurcation diagrams, and how many of them were finished before.
+    fn diagrams_begin(&mut self, _values: u64, _finished: u64) {}
+    /// So many more values are done.
+    fn values_done(&mut self, _values: u64) {}
 }
 
 /// Nobody is told.
@@ -86,6 +92,7 @@ pub fn generate(
         }
     }
     run_shards(plan, &output, &pending, options, runner, progress)?;
+    run_diagrams(plan, &output, options, progress)?;
     finalize(&output, plan)
 }
 
@@ -101,12 +108,6 @@ pub fn run_shards(
     runner: &Runner,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
-    let threads = options.threads.max(1);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| Error::Threads {
-        threads,
-        reason: e.to_string(),
-    })?;
     let tables = Tables::new(plan)?;
     let sweep_yaml = input::yaml::to_string(plan.sweep())?;
     let unfinished: u64 = pending
@@ -126,8 +127,8 @@ pub fn run_shards(
         .iter()
         .flat_map(|&shard| plan.shard(shard).map(move |case| (shard, case)));
     in_order(
-        &pool,
-        2 * threads,
+        &pool(options.threads)?,
+        2 * options.threads.max(1),
         cases.take_while(|_| !cancelled()),
         |&(_, case)| run_case(plan, case, runner, &sweep_yaml),
         |(shard, case), rows| {
@@ -154,6 +155,15 @@ pub fn run_shards(
         return Err(stopped(done));
     }
     Ok(())
+}
+
+fn pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
+    let threads = threads.max(1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Error::Threads {
+        threads,
+        reason: e.to_string(),
+    })
 }
 
 impl Plan {

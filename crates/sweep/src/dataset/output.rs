@@ -1,7 +1,7 @@
 //! The folder that a dataset is written to.
 //!
-//! Beside what readers see (`signals/`, `features/`, `mcap/`, `README.md`, `sweep.yaml`,
-//! `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
+//! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
+//! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
 //! process at work. The operating system unlocks it when that process ends, however it ends.
 
@@ -44,7 +44,7 @@ struct PlanRecord {
 }
 
 /// What a dataset has at its top, apart from `_sweep`.
-const FOLDERS: [&str; 3] = ["signals", "features", "mcap"];
+const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
 /// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
 const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
@@ -82,7 +82,8 @@ impl Output {
             crate::sweep_file::Format::Parquet => &["signals", "features"],
             crate::sweep_file::Format::Mcap => &["mcap", "features"],
         };
-        for folder in folders {
+        let diagrams = Some("bifurcations").filter(|_| !plan.diagrams.is_empty());
+        for folder in folders.iter().copied().chain(diagrams) {
             make(&root.join(folder))?;
         }
         Ok(output)

@@ -133,7 +133,7 @@ fn feature(definition: Definition) -> Column {
     }
 }
 
-fn prefixed(throw: &str, name: &str) -> String {
+pub(super) fn prefixed(throw: &str, name: &str) -> String {
     match throw {
         "" => name.to_owned(),
         throw => format!("{throw}.{name}"),

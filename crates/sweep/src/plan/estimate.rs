@@ -19,7 +19,39 @@ pub struct Estimate {
     pub bytes: f64,
 }
 
+/// What the bifurcation diagrams amount to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiagramEstimate {
+    /// Diagrams.
+    pub diagrams: usize,
+    /// Their values, both directions counted.
+    pub values: u64,
+    /// Revolutions to simulate.
+    pub revolutions: u64,
+    /// Bytes of all points before compression.
+    pub bytes: f64,
+}
+
 impl Plan {
+    /// The size of the bifurcation diagrams.
+    pub fn estimate_diagrams(&self) -> DiagramEstimate {
+        let mut estimate = DiagramEstimate {
+            diagrams: self.diagrams.len(),
+            values: 0,
+            revolutions: 0,
+            bytes: 0.0,
+        };
+        for diagram in &self.diagrams {
+            let lists = 2 * diagram.joints.len() + 3 * self.throws.len();
+            let points = f64::from(diagram.settings.revolutions) * lists as f64;
+            let values = (diagram.count() * diagram.directions.len()) as u64;
+            estimate.values += values;
+            estimate.revolutions += diagram.revolutions();
+            estimate.bytes += values as f64 * points * 4.0;
+        }
+        estimate
+    }
+
     /// The size of the dataset, from up to 16 cases spread over the sweep.
     pub fn estimate(&self) -> Estimate {
         let cases = self.cases();

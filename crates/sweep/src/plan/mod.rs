@@ -4,6 +4,7 @@
 mod axis;
 mod block;
 mod case;
+mod diagram;
 mod drawn;
 mod estimate;
 mod levels;
@@ -11,7 +12,8 @@ mod listed;
 mod sampler;
 
 pub use case::{Case, OperatingPoint};
-pub use estimate::Estimate;
+pub use diagram::Diagram;
+pub use estimate::{DiagramEstimate, Estimate};
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -19,6 +21,7 @@ use std::path::Path;
 use input::choice::Or;
 use input::yaml::Document;
 use input::{Error, MachineFile, Problem, Resolved, paths};
+use mechanism::Machine;
 use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
@@ -64,6 +67,8 @@ pub struct Plan {
     pub joints: Vec<Joint>,
     /// What the sweep sets or varies beside clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
+    /// The bifurcation diagrams.
+    pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
     throws: Vec<String>,
@@ -147,6 +152,7 @@ impl Plan {
             shard_size: file.shard_size.map_or(256, |n| n.get()).into(),
             joints: joints(&base.machine),
             parameters: Vec::new(),
+            diagrams: Vec::new(),
             throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
             base,
             tree: tree.clone(),
@@ -166,6 +172,15 @@ impl Plan {
             let sampler =
                 sampler.map_err(|e| Error::new(path, e.problem().clone()).under("vary"))?;
             plan.vary.push((path.clone(), sampler));
+        }
+        for (position, file) in file.bifurcations.iter().enumerate() {
+            let diagram = Diagram::new(file, position, &plan.frame())?;
+            if plan.diagrams.iter().any(|other| other.name == diagram.name) {
+                let key = format!("bifurcations.{position}.name");
+                let expected = "another name than the diagrams before";
+                return Err(Error::found(key, diagram.name, expected));
+            }
+            plan.diagrams.push(diagram);
         }
         let cases = plan
             .blocks
@@ -269,6 +284,14 @@ impl Plan {
             tree,
             resolved,
         })
+    }
+
+    /// The machine of `diagram` at its value number `value`.
+    ///
+    /// # Errors
+    /// Where the value makes no machine.
+    pub fn diagram_machine(&self, diagram: &Diagram, value: usize) -> Result<Machine, Error> {
+        diagram.machine(value, &self.frame())
     }
 
     /// The block that point `point` of the sweep is in, and its index there.

@@ -15,6 +15,7 @@
 //! ```
 
 pub mod axes;
+pub mod bifurcation;
 pub mod values;
 
 use input::choice::{Count, Or};
@@ -24,6 +25,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 
 pub use axes::{Axes, Block, Design, Random};
+pub use bifurcation::{Bifurcation, Directions};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 
 /// A sweep: cases, how each is run, and how the dataset is divided.
@@ -51,6 +53,9 @@ pub struct SweepFile {
     /// sets itself is not varied.
     #[serde(default)]
     pub vary: Axes<Draw>,
+    /// Bifurcation diagrams, computed after the cases.
+    #[serde(default)]
+    pub bifurcations: Vec<Bifurcation>,
     /// Shares of the splits; 70 %, 15 % and 15 % where they are left out.
     #[serde(default)]
     pub splits: Splits,
