@@ -18,9 +18,9 @@ use scalar::Scalar;
 /// A machine in motion: parameters, mode, and what the last evaluation found.
 #[derive(Clone, Debug)]
 pub struct Dynamics<S> {
-    machine: Machine<S>,
+    pub(crate) machine: Machine<S>,
     layout: Layout,
-    mode: Mode<S>,
+    pub(crate) mode: Mode<S>,
     scales: Vec<S>,
     evaluation: Evaluation<S>,
     /// Room for the throws' eliminated joints, so that an evaluation allocates nothing.

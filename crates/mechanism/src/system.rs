@@ -222,6 +222,30 @@ impl<S: Real> Dynamics<S> {
         }
     }
 
+    /// What the present forces depend on beside time, state and switches: the approach speeds of
+    /// closed contacts whose law has a coefficient of restitution, m/s.
+    pub fn memory_mut(&mut self) -> Vec<&mut S> {
+        let Dynamics { machine, mode, .. } = self;
+        let joint = |joint: &Revolute<S>| {
+            joint
+                .clear()
+                .is_some_and(|c| c.model == JointModel::ThreeMode && c.contact.remembers())
+        };
+        let mut contacts = vec![(joint(&machine.main), &mut mode.main)];
+        for (throw, mode) in machine.throws.iter().zip(&mut mode.throws) {
+            contacts.push((joint(&throw.big_end), &mut mode.big_end));
+            contacts.push((joint(&throw.small_end), &mut mode.small_end));
+            let guide = matches!(&throw.guide, Guide::Clear(c) if c.contact.remembers());
+            contacts.extend(mode.guide.iter_mut().map(|corner| (guide, corner)));
+        }
+        let remembered = contacts
+            .into_iter()
+            .filter(|(remembers, contact)| *remembers && contact.touching.value() > 0.0);
+        remembered
+            .map(|(_, contact)| &mut contact.approach)
+            .collect()
+    }
+
     fn contact_mode(&mut self, place: Place) -> &mut ContactMode<S> {
         let mode = self.mode_mut();
         match place {

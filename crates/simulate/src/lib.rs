@@ -6,18 +6,26 @@
 //! noise alone.
 
 pub mod bifurcation;
+pub mod flow;
 pub mod lyapunov;
 pub mod measure;
+pub mod periodic_orbit;
 pub mod poincare;
 pub mod record;
+pub mod regime;
 pub mod sensor;
 pub mod settings;
+mod strobes;
+mod tangents;
 pub mod trace;
 
-pub use lyapunov::{Exponent, ExponentSettings, largest_exponent};
+pub use flow::{Cycle, Flow};
+pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
+pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};
 pub use record::{Error, Record, simulate};
+pub use regime::{Extent, Motion, Regime, motion};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };

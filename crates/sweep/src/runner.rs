@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::dataset::{Failure, Recording};
-use simulate::{largest_exponent, measure, simulate};
+use simulate::{measure, motion, simulate};
 
 /// Simulates `case` and measures it with its sensors and its noise.
 ///
@@ -13,12 +13,12 @@ pub fn simulate_case(case: &Case) -> Result<Recording, Failure> {
     let record = simulate(&resolved.machine, &resolved.sensors, &case.settings, false)?;
     let throws = resolved.machine.throws.iter();
     let names: Vec<&str> = throws.map(|throw| throw.name.as_str()).collect();
-    let exponent = match &case.exponent {
-        Some(settings) => largest_exponent(&resolved.machine, settings)?,
+    let motion = match &case.judgement {
+        Some(asked) => motion(&resolved.machine, &asked.settings, asked.extent)?,
         None => None,
     };
     Ok(Recording {
-        exponent,
+        motion,
         sample_rate_hz: record.sample_rate,
         channels: measure(&record, &resolved.sensors, &names, &mut case.noise()),
     })

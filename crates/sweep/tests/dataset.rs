@@ -68,7 +68,7 @@ fn record(case: &Case) -> Result<Recording, Failure> {
             .collect(),
     });
     Ok(Recording {
-        exponent: None,
+        motion: None,
         sample_rate_hz: rate,
         channels: channels.collect(),
     })

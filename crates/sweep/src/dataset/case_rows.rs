@@ -52,7 +52,7 @@ pub(super) fn run_case(
 fn rows(plan: &Plan, index: u64, runner: &Runner, sweep_yaml: &str) -> Result<CaseRows, Failure> {
     let mut case = plan.case(index)?;
     let mut recording = runner(&case)?;
-    case.lyapunov_true = recording.exponent.take();
+    case.motion = recording.motion.take();
     check_channels(plan, &recording)?;
     let rate = recording.sample_rate_hz;
     let windows = windows(&case, &recording)?

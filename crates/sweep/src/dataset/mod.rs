@@ -4,6 +4,7 @@ mod case_rows;
 mod commit;
 mod diagrams;
 mod finalize;
+mod judged;
 mod output;
 mod shard;
 mod tables;
@@ -19,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use recordings::Manifest;
 use signal::channel::Channel;
-use simulate::Exponent;
+use simulate::Motion;
 
 use crate::in_order::in_order;
 use crate::plan::MOST_CASES;
@@ -34,8 +35,8 @@ pub struct Recording {
     pub sample_rate_hz: f64,
     /// The channels, named as [`Plan::channels`] has them, from the first recorded revolution on.
     pub channels: Vec<Channel>,
-    /// The largest Lyapunov exponent from the equations, where the case asks for it and has one.
-    pub exponent: Option<Exponent>,
+    /// The motion as judged from the equations, where the case asks for that and can be disturbed.
+    pub motion: Option<Motion>,
 }
 
 /// Why a case failed; its text goes into the manifest.

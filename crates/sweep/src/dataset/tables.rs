@@ -7,6 +7,7 @@ use input::paths;
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
 
+use super::judged::{judged_columns, judged_values};
 use crate::Plan;
 use crate::plan::{Case, Parameter};
 use crate::sweep_file::Amount;
@@ -48,19 +49,6 @@ impl Tables {
         })
     }
 }
-
-/// The columns of the exponent from the equations, where the sweep asks for it.
-const EXPONENT: [(&str, &str); 2] = [
-    (
-        "lyapunov_true_per_s",
-        "largest Lyapunov exponent of the case, from the equations of motion; none where nothing \
-         moves freely",
-    ),
-    (
-        "lyapunov_true_standard_error_per_s",
-        "standard error of lyapunov_true_per_s, from batches of revolutions",
-    ),
-];
 
 /// What both tables say about a case before they part: names, labels, operating point, parameters.
 fn about(plan: &Plan) -> Vec<Column> {
@@ -114,13 +102,7 @@ fn about(plan: &Plan) -> Vec<Column> {
             _ => column,
         }
     }));
-    if plan.exponent.is_some() {
-        columns.extend(EXPONENT.map(|(name, meaning)| {
-            Column::new(name, Kind::Real, meaning)
-                .unit("1/s")
-                .optional()
-        }));
-    }
+    columns.extend(plan.judgement.iter().flat_map(judged_columns));
     columns
 }
 
@@ -156,10 +138,8 @@ fn about_row(plan: &Plan, case: &Case, window: usize) -> Vec<Value> {
     let pressures = case.operating_point.pressures_pa.iter().flatten();
     row.extend(pressures.map(|&p| Value::from(p)));
     row.extend(plan.parameters.iter().map(|p| parameter(p, case)));
-    if plan.exponent.is_some() {
-        let exponent = case.lyapunov_true.as_ref();
-        row.push(exponent.map(|e| e.per_second).into());
-        row.push(exponent.map(|e| e.standard_error).into());
+    if let Some(judgement) = &plan.judgement {
+        row.extend(judged_values(judgement, case.motion.as_ref()));
     }
     row
 }
@@ -215,7 +195,11 @@ pub(super) fn labels(plan: &Plan, case: &Case) -> BTreeMap<String, String> {
         Value::Integer(number) => Some(number.to_string()),
         Value::Real(number) => Some(number.to_string()),
         Value::Flag(flag) => Some(flag.to_string()),
-        Value::Samples(_) | Value::Missing => None,
+        Value::Samples(numbers) => {
+            let numbers: Vec<String> = numbers.iter().map(f32::to_string).collect();
+            Some(numbers.join(" "))
+        }
+        Value::Missing => None,
     };
     columns
         .filter(|(column, _)| column.name != "window")

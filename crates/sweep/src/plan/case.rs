@@ -4,7 +4,7 @@ use input::Resolved;
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-use simulate::{Exponent, ExponentSettings, Settings};
+use simulate::{ExponentSettings, Extent, Motion, Settings};
 
 use crate::labels::Labels;
 use crate::split::Split;
@@ -25,10 +25,10 @@ pub struct Case {
     pub resolved: Resolved,
     /// How it is run.
     pub settings: Settings,
-    /// How its Lyapunov exponent is computed, where the sweep asks for it.
-    pub exponent: Option<ExponentSettings>,
-    /// That exponent, once the case has been simulated; none where nothing moves freely.
-    pub lyapunov_true: Option<Exponent>,
+    /// How its motion is judged from the equations, where the sweep asks for that.
+    pub judgement: Option<Judgement>,
+    /// What was found, once the case has been simulated; none where nothing moves freely.
+    pub motion: Option<Motion>,
     /// How the recording is cut; one window, all of it, where there is none.
     pub windows: Option<Windows>,
     /// Which joints are faulty.
@@ -41,6 +41,17 @@ pub struct Case {
     pub split: Split,
     /// Seed of the sweep. Noise is drawn from [`Case::noise`].
     pub seed: u64,
+}
+
+/// How the motion of a case is judged from the equations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judgement {
+    /// How long and how accurately it is followed.
+    pub settings: ExponentSettings,
+    /// Which exponents are computed.
+    pub extent: Extent,
+    /// True where the running average of the largest exponent is a column.
+    pub convergence: bool,
 }
 
 impl Case {

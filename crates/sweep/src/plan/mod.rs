@@ -11,7 +11,7 @@ mod levels;
 mod listed;
 mod sampler;
 
-pub use case::{Case, OperatingPoint};
+pub use case::{Case, Judgement, OperatingPoint};
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
 
@@ -26,7 +26,7 @@ use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use simulate::{ExponentSettings, Settings, Transient};
+use simulate::{ExponentSettings, Extent, Settings, Transient};
 
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
@@ -53,8 +53,8 @@ pub struct Plan {
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
-    /// How the Lyapunov exponent of each case is computed, where it is asked for.
-    pub exponent: Option<ExponentSettings>,
+    /// How the motion of each case is judged from the equations, where that is asked for.
+    pub judgement: Option<Judgement>,
     /// How recordings are cut.
     pub windows: Option<Windows>,
     /// Shares of train, validation and test.
@@ -145,7 +145,7 @@ impl Plan {
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
-            exponent: exponent(&file.run)?,
+            judgement: judgement(&file.run)?,
             windows: file.windows,
             shares: shares(file)?,
             format: file.format,
@@ -273,8 +273,8 @@ impl Plan {
             id: self.case_id(index),
             repeat,
             settings: self.settings,
-            exponent: self.exponent,
-            lyapunov_true: None,
+            judgement: self.judgement,
+            motion: None,
             windows: self.windows,
             labels: labels(&self.joints, &resolved),
             operating_point: OperatingPoint::of(&resolved),
@@ -460,15 +460,23 @@ fn settings(run: &Run) -> Result<Settings, Error> {
     })
 }
 
-fn exponent(run: &Run) -> Result<Option<ExponentSettings>, Error> {
+fn judgement(run: &Run) -> Result<Option<Judgement>, Error> {
     let Some(asked) = run.lyapunov else {
         return Ok(None);
     };
     let default = ExponentSettings::default();
-    Ok(Some(ExponentSettings {
-        transient: asked.transient.map_or(default.transient, |n| n.get()),
-        revolutions: asked.revolutions.get(),
-        tolerance: settings(run)?.tolerance,
+    Ok(Some(Judgement {
+        settings: ExponentSettings {
+            transient: asked.transient.map_or(default.transient, |n| n.get()),
+            revolutions: asked.revolutions.get(),
+            tolerance: settings(run)?.tolerance,
+        },
+        extent: if asked.spectrum {
+            Extent::Spectrum
+        } else {
+            Extent::Largest
+        },
+        convergence: asked.convergence,
     }))
 }
 

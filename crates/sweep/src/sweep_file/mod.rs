@@ -91,14 +91,16 @@ pub struct Run {
     /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
-    /// The largest Lyapunov exponent of each case, from the equations of motion: column
-    /// `lyapunov_true_per_s`. Not computed where this is left out; it takes about twice as long per
-    /// revolution as the recording.
+    /// The motion of each case judged from the equations: the largest Lyapunov exponent, its
+    /// standard error, and the regime (columns `lyapunov_true_per_s`,
+    /// `lyapunov_true_standard_error_per_s`, `lyapunov_true_per_revolution`, `regime_true`,
+    /// `period_true_revolutions`, `floquet_multiplier_true`). Not computed where this is left out;
+    /// it takes about twice as long per revolution as the recording.
     #[serde(default)]
     pub lyapunov: Option<Lyapunov>,
 }
 
-/// How the exponent of each case is computed.
+/// How the motion of each case is judged.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lyapunov {
@@ -107,6 +109,14 @@ pub struct Lyapunov {
     /// Revolutions before; 50 where it is left out.
     #[serde(default)]
     pub transient: Option<Count<0, 1_000_000>>,
+    /// true for all exponents, in column `lyapunov_spectrum_true_per_s`; it takes some ten times
+    /// longer than the largest alone.
+    #[serde(default)]
+    pub spectrum: bool,
+    /// true for the running average of the largest exponent after each revolution, in column
+    /// `lyapunov_convergence_true_per_s`.
+    #[serde(default)]
+    pub convergence: bool,
 }
 
 /// A transient that ends when the motion repeats itself.

@@ -118,6 +118,16 @@ impl<S: Scalar> ContactLaw<S> {
         }
     }
 
+    /// True where the force depends on the approach speed at the last touch.
+    pub(crate) fn remembers(&self) -> bool {
+        match self {
+            ContactLaw::Impact(_) | ContactLaw::Hertz(_) | ContactLaw::KelvinVoigt(_) => false,
+            ContactLaw::HuntCrossley(_)
+            | ContactLaw::LankaraniNikravesh(_)
+            | ContactLaw::Flores(_) => true,
+        }
+    }
+
     /// The penetration at which the law has a kink of its own, m: IMPACT's damping depth.
     pub fn kink(&self) -> Option<S> {
         match self {
