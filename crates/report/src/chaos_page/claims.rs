@@ -1,4 +1,4 @@
-//! The clearance study's claims about chaos, and the table of all cases.
+//! The clearance study's claims about chaos.
 //!
 //! The study (dynamic analysis of the moving mechanism of the reciprocating compressor with
 //! clearance joints, section 4) concludes from portraits by eye: with a larger clearance chaos is
@@ -117,63 +117,6 @@ fn by_joints(cases: &[&CaseChaos]) -> Option<String> {
         })
         .collect();
     (!each.is_empty()).then(|| format!("Chaotic by the equations are {}.", each.join(", ")))
-}
-
-/// The cells of a case in the table: joints, clearance, speed, exponent per second and per
-/// revolution and regime from the equations, exponent and regime from the signal.
-pub(super) fn cells(case: &CaseChaos) -> [String; 9] {
-    let revolution = 60.0 / case.speed_rpm;
-    let dash = || "–".to_owned();
-    let exponent = |factor: f64| {
-        let exponent = case
-            .exponent
-            .map(|[value, error]| text::mean_and_spread(value * factor, error * factor));
-        exponent.unwrap_or_else(dash)
-    };
-    let regime = |regime: Regime| match regime {
-        Regime::Periodic(n @ 2..) => format!("periodic, {n} revolutions"),
-        other => other.label().to_owned(),
-    };
-    let each = |said: &dyn Fn(&super::WindowChaos) -> String| {
-        let said: Vec<String> = case
-            .windows
-            .iter()
-            .map(said)
-            .filter(|said| !said.is_empty())
-            .collect();
-        let alike = said.windows(2).all(|two| two[0] == two[1]);
-        match said.first() {
-            None => dash(),
-            Some(first) if alike => first.clone(),
-            Some(_) => said.join("; "),
-        }
-    };
-    let signal = |window: &super::WindowChaos| match window.exponent {
-        Some([value, low, high]) => {
-            let [value, low, high] = [value, low, high].map(|v| text::number(v, 3));
-            format!("{value}\u{a0}[{low},\u{a0}{high}]")
-        }
-        None => window.reason.clone(),
-    };
-    [
-        case.case_id.clone(),
-        if case.joints == "none" {
-            "none".to_owned()
-        } else {
-            text::words(&case.joints)
-        },
-        if case.clearance_m > 0.0 {
-            text::clearance(case.clearance_m)
-        } else {
-            dash()
-        },
-        text::quantity(case.speed_rpm, "rpm"),
-        exponent(1.0),
-        exponent(revolution),
-        case.regime.map_or_else(dash, regime),
-        each(&signal),
-        each(&|window| window.regime.map_or_else(String::new, regime)),
-    ]
 }
 
 #[cfg(test)]

@@ -131,12 +131,27 @@ fn panel<'a>(title: &str, cases: impl Iterator<Item = &'a &'a CaseChaos>) -> Pan
         series: vec![
             Series::new("", Colour::Ink, Mark::Line, zero),
             Series::intervals(SIGNAL, signal_bars),
-            Series::new("from the signal", SIGNAL, Mark::Rings, signals),
+            Series::new(
+                named(&signals, "from the signal"),
+                SIGNAL,
+                Mark::Rings,
+                signals,
+            ),
             Series::intervals(EQUATIONS, true_bars),
-            Series::new("from the equations", EQUATIONS, Mark::Points, truths),
+            Series::new(
+                named(&truths, "from the equations"),
+                EQUATIONS,
+                Mark::Points,
+                truths,
+            ),
         ],
         ..Panel::default()
     }
+}
+
+/// The name, for the legend, of a series that has points.
+fn named(points: &[[f64; 2]], name: &'static str) -> &'static str {
+    if points.is_empty() { "" } else { name }
 }
 
 /// The scatter of one over the other, where any window has both.

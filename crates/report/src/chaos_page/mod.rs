@@ -15,6 +15,7 @@ mod motions;
 mod page;
 mod regime;
 mod spectra;
+mod table;
 
 pub use regime::Regime;
 

@@ -7,8 +7,12 @@ use crate::plate::Plate;
 use crate::revolutions::last_turns;
 use crate::text;
 
-/// Revolutions that a portrait or an orbit shows at most: more only blacken it.
+/// Revolutions that a portrait shows at most: more only blacken it.
 const REVOLUTIONS: usize = 10;
+/// Revolutions that an orbit shows at most.
+const ORBIT_REVOLUTIONS: usize = 4;
+/// Largest height of the square of an orbit in pixels.
+const ORBIT_HEIGHT: f64 = 180.0;
 /// Of more cases than this a caption names the first and the last.
 const MOST_NAMED: usize = 6;
 /// Largest plotting area of a small multiple in pixels.
@@ -18,11 +22,12 @@ const HEIGHT: f64 = 150.0;
 pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
     let panel = |motion: &Motion| {
         let points = motion.velocity_m_s.iter().zip(&motion.acceleration_m_s2);
-        let points = points.skip(first(motion)).map(|(&v, &a)| [v, a]);
+        let first = last_turns(&motion.crank_angle_rad, REVOLUTIONS);
+        let points = points.skip(first).map(|(&v, &a)| [v, a]);
         Panel {
             x: Axis::linear("velocity (m/s)"),
             y: Axis::linear("acceleration (m/s²)"),
-            series: vec![Series::new("", Colour::Class(0), Mark::Line, points)],
+            series: vec![Series::new("", Colour::Class(0), Mark::HairLine, points)],
             ..Panel::default()
         }
     };
@@ -34,7 +39,7 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
              a double one every other; a band that fills is a motion that does not repeat. {}",
             cases(page)
         ),
-        svg: small_multiples(page, panel, Share::All),
+        svg: small_multiples(page, panel, Share::All, HEIGHT),
     })
 }
 
@@ -57,7 +62,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
             ..Axis::crank_angle()
         },
         y: Axis::linear("approach (m/s)"),
-        series: per_joint(motion, Mark::Dots, |orbit| {
+        series: per_joint(motion, Mark::WideDots, |orbit| {
             orbit
                 .impacts
                 .iter()
@@ -79,55 +84,55 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
              curve is quasi-periodic, a scatter is chaotic or has not settled. {}",
             cases(page)
         ),
-        svg: small_multiples(page, strobe, Share::All),
+        svg: small_multiples(page, strobe, Share::All, HEIGHT),
     });
     made.extend(plates(page, || Plate {
         heading: "Sections at impact".to_owned(),
         caption: format!(
             "Where in the revolution the journal meets the bearing again, and how fast, a dot per impact, all panels with \
              the same axes. Impacts at the same angles with the same speeds are those of a periodic motion; clouds are those of \
-             one that does not repeat. Impacts of a hundredth of the largest speed or less, where the journal all but rests, lie \
-             along the bottom. {}",
+             one that does not repeat. A panel without dots is of a journal that never leaves its bearing. {}",
             cases(page)
         ),
-        svg: small_multiples(page, impacts, Share::All),
+        svg: small_multiples(page, impacts, Share::All, HEIGHT),
     }));
     made
 }
 
 /// The journals in their clearance circles.
 pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
+    const MICROMETRES: f64 = 1e6;
     let panel = |motion: &Motion| Panel {
-        x: Axis {
-            range: Some((-1.15, 1.15)),
-            ..Axis::linear("x / clearance")
-        },
-        y: Axis {
-            range: Some((-1.15, 1.15)),
-            ..Axis::linear("y / clearance")
-        },
-        series: per_joint(motion, Mark::Line, |orbit| {
-            let points = orbit.x_m.iter().zip(&orbit.y_m).skip(first(motion));
+        x: Axis::linear("x (µm)"),
+        y: Axis::linear("y (µm)"),
+        series: per_joint(motion, Mark::HairLine, |orbit| {
+            let points = orbit.x_m.iter().zip(&orbit.y_m);
+            let points = points.skip(last_turns(&motion.crank_angle_rad, ORBIT_REVOLUTIONS));
             points
-                .map(|(&x, &y)| [x / orbit.clearance_m, y / orbit.clearance_m])
+                .map(|(&x, &y)| [x * MICROMETRES, y * MICROMETRES])
                 .collect()
         }),
-        circles: vec![Circle {
-            centre: [0.0, 0.0],
-            radius: 1.0,
-        }],
+        circles: motion
+            .joints
+            .iter()
+            .map(|orbit| Circle {
+                centre: [0.0, 0.0],
+                radius: orbit.clearance_m * MICROMETRES,
+            })
+            .collect(),
         equal_axes: true,
         ..Panel::default()
     };
     plates(page, || Plate {
         heading: "Orbits in the clearance circle".to_owned(),
         caption: format!(
-            "The centre of the journal in its bearing over the last {REVOLUTIONS} revolutions or fewer, over the clearance: on \
-             the circle the two touch, inside it the journal flies. One closed curve is a periodic motion. Where there is \
-             clearance in two joints, both orbits are in one panel. {}",
+            "The centre of the journal in its bearing over the last {ORBIT_REVOLUTIONS} revolutions or fewer. Inside the grey \
+             circle, whose radius is the clearance, the journal flies; outside of it journal and bearing are pressed together, the \
+             deeper the further. One closed curve is a periodic motion. Where there is clearance in two joints, both orbits are in \
+             one panel. Every panel has its own scale, the same along both axes. {}",
             cases(page)
         ),
-        svg: small_multiples(page, panel, Share::All),
+        svg: small_multiples(page, panel, Share::None, ORBIT_HEIGHT),
     })
 }
 
@@ -157,11 +162,6 @@ fn cases(page: &ChaosPage) -> String {
     format!("Simulated again without sensors: {named}.")
 }
 
-/// Where the last revolutions begin.
-fn first(motion: &Motion) -> usize {
-    last_turns(&motion.crank_angle_rad, REVOLUTIONS)
-}
-
 fn per_joint(
     motion: &Motion,
     mark: Mark,
@@ -184,7 +184,12 @@ fn joint_colour(name: &str) -> Colour {
 }
 
 /// A row of panels for each row of motions.
-fn small_multiples(page: &ChaosPage, panel: impl Fn(&Motion) -> Panel, share: Share) -> String {
+fn small_multiples(
+    page: &ChaosPage,
+    panel: impl Fn(&Motion) -> Panel,
+    share: Share,
+    row_height: f64,
+) -> String {
     let rows = page.motions.iter().map(|row| {
         let panels = row.motions.iter().map(|motion| match motion {
             Some(motion) => Panel {
@@ -201,7 +206,7 @@ fn small_multiples(page: &ChaosPage, panel: impl Fn(&Motion) -> Panel, share: Sh
     Figure {
         rows: rows.collect(),
         row_headings: page.motions.iter().map(|row| row.heading.clone()).collect(),
-        row_height: HEIGHT,
+        row_height,
         share_x: share,
         share_y: share,
         ..Figure::default()

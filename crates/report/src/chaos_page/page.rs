@@ -1,5 +1,6 @@
 //! The page itself: sections in the order of reading.
 
+use super::table::Table;
 use super::{
     CaseChaos, ChaosPage, agreement, bifurcations, claims, exponents, maps, motions, spectra,
 };
@@ -30,12 +31,12 @@ struct Section {
     missing: String,
     /// The figures with their numbers.
     plates: Vec<(usize, Plate)>,
-    /// Where the table of this kind follows.
-    table: Table,
+    /// The table that follows.
+    follows: Follows,
 }
 
 #[derive(PartialEq)]
-enum Table {
+enum Follows {
     None,
     Cases,
     Regimes,
@@ -48,6 +49,7 @@ struct View<'a> {
     claims: Vec<String>,
     sections: Vec<Section>,
     regimes: Option<[[usize; 5]; 5]>,
+    table: Table,
 }
 
 impl ChaosPage {
@@ -61,6 +63,7 @@ impl ChaosPage {
             claims: claims::claims(&self.cases),
             sections: sections(self),
             regimes: agreement::regimes(&self.cases),
+            table: Table::of(listed(self)),
         };
         let html = view.render()?;
         let plates = view.sections.into_iter().flat_map(|section| section.plates);
@@ -97,7 +100,7 @@ impl ChaosPage {
 fn sections(page: &ChaosPage) -> Vec<Section> {
     let mut number = 0;
     let mut section =
-        |id, heading, introduction: String, missing: String, plates: Vec<Plate>, table| {
+        |id, heading, introduction: String, missing: String, plates: Vec<Plate>, follows| {
             let plates = plates.into_iter().map(|plate| {
                 number += 1;
                 (number, plate)
@@ -108,7 +111,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
                 introduction,
                 missing,
                 plates: plates.collect(),
-                table,
+                follows,
             }
         };
     let unless = |there: bool, add: &str| if there { String::new() } else { add.to_owned() };
@@ -127,7 +130,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
             page.shown.clone(),
             unless(motions_there, ADD_CLEARANCE),
             motions::portraits(page),
-            Table::None,
+            Follows::None,
         ),
         section(
             "sections",
@@ -136,7 +139,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
                 .to_owned(),
             unless(motions_there, ADD_CLEARANCE),
             motions::sections(page),
-            Table::None,
+            Follows::None,
         ),
         section(
             "bifurcations",
@@ -144,7 +147,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
             "How the motion changes as one number of the machine does, both ways.".to_owned(),
             unless(!page.bifurcations.is_empty(), ADD_BIFURCATION),
             bifurcations::plates(page),
-            Table::None,
+            Follows::None,
         ),
         section(
             "exponents",
@@ -154,7 +157,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
                 .to_owned(),
             exponents_missing.join(" ").trim().to_owned(),
             [exponents::against_clearance(page), exponents::scatter(page)].into_iter().flatten().collect(),
-            Table::Cases,
+            Follows::Cases,
         ),
         section(
             "regimes",
@@ -162,7 +165,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
             "What kind of motion it is, where.".to_owned(),
             unless(page.has_regimes(), &format!("No case has a regime. {ADD_EXPONENT}")),
             maps::plates(page),
-            Table::Regimes,
+            Follows::Regimes,
         ),
         section(
             "spectra",
@@ -170,7 +173,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
             "What an accelerometer on the crosshead sees of it.".to_owned(),
             unless(!page.spectra.is_empty(), ADD_SIGNALS),
             spectra::plates(page),
-            Table::None,
+            Follows::None,
         ),
         section(
             "orbits",
@@ -178,9 +181,18 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
             "The cases of the phase portraits, seen inside the joints.".to_owned(),
             unless(motions_there, ADD_CLEARANCE),
             motions::orbits(page),
-            Table::None,
+            Follows::None,
         ),
     ]
+}
+
+/// The cases that the table holds; none where it would have no exponent.
+fn listed(page: &ChaosPage) -> &[CaseChaos] {
+    if page.has_truth() || page.has_signal() {
+        &page.cases[..page.cases.len().min(MOST_CASES)]
+    } else {
+        &[]
+    }
 }
 
 /// What the template asks for, formatted.
@@ -189,20 +201,8 @@ impl View<'_> {
         file_name("chaos", *number, &plate.heading)
     }
 
-    fn cases(&self) -> &[CaseChaos] {
-        if self.page.has_truth() || self.page.has_signal() {
-            &self.page.cases[..self.page.cases.len().min(MOST_CASES)]
-        } else {
-            &[]
-        }
-    }
-
-    fn cells(case: &CaseChaos) -> [String; 9] {
-        claims::cells(case)
-    }
-
     fn left_out(&self) -> String {
-        let (shown, all) = (self.cases().len(), self.page.cases.len());
+        let (shown, all) = (self.table.rows.len(), self.page.cases.len());
         if shown == 0 || shown == all {
             return String::new();
         }

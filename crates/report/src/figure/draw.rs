@@ -386,6 +386,7 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
     }
     let style = match series.mark {
         Mark::FaintLine => stroke(0.8, 0.4),
+        Mark::HairLine => stroke(0.6, 1.0),
         Mark::Line | Mark::Area => stroke(1.0, 1.0),
         Mark::BoldLine => stroke(2.0, 1.0),
         Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),

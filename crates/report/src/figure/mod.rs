@@ -105,6 +105,8 @@ pub struct Series {
 pub enum Mark {
     /// A light line, for one of many.
     FaintLine,
+    /// A thin line, for many turns in a small panel.
+    HairLine,
     /// A line.
     Line,
     /// A heavy line, for the one that counts.
