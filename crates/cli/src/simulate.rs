@@ -10,7 +10,10 @@ use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
-use simulate::{JointTrace, Record, Settings, ThrowTrace, Trace, Transient};
+use simulate::{
+    ExponentSettings, Extent, JointTrace, Motion, Record, Regime, Settings, ThrowTrace, Trace,
+    Transient,
+};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use sweep::Plan;
@@ -58,6 +61,9 @@ pub struct Arguments {
     /// Also write the motion itself, as no sensor sees it
     #[arg(long)]
     trace: bool,
+    /// Also judge the motion from the equations: exponents, regime, period, Floquet multipliers
+    #[arg(long)]
+    motion: bool,
     /// Replace the files of an earlier run
     #[arg(long)]
     overwrite: bool,
@@ -114,6 +120,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok(file)
     })?;
     summarise(&machine, &record, &channels, &[&signals, &picture]);
+    if arguments.motion {
+        let judged = ExponentSettings {
+            tolerance: settings.tolerance,
+            ..ExponentSettings::default()
+        };
+        let motion = simulate::machine_motion(&machine.machine, &judged, Extent::Spectrum)
+            .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
+        tell_motion(motion.as_ref(), judged.revolutions);
+    }
     Ok(())
 }
 
@@ -350,6 +365,34 @@ fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &
     }
     for file in files {
         println!("{}", file.display());
+    }
+}
+
+/// What kind of motion it is, and the numbers that say so.
+fn tell_motion(motion: Option<&Motion>, revolutions: u32) {
+    let Some(motion) = motion else {
+        println!("motion: periodic, 1 revolution; nothing moves freely");
+        return;
+    };
+    let period = match motion.regime {
+        Regime::Periodic { revolutions } => format!(", {revolutions} rev"),
+        _ => String::new(),
+    };
+    println!("motion: {}{period}", motion.regime.name());
+    println!("  Lyapunov exponents, 1/s, with standard errors, over {revolutions} revolutions:");
+    for exponent in &motion.exponents {
+        let (value, error) = (exponent.per_second, exponent.standard_error);
+        println!("    {value:.4} +- {error:.1e}");
+    }
+    if let Some(orbit) = &motion.orbit {
+        println!("  Floquet multipliers, over {:.6} s:", orbit.period);
+        // Below, they are rounding.
+        for multiplier in orbit.multipliers.iter().filter(|m| m.norm() > 1e-9) {
+            match multiplier.im {
+                0.0 => println!("    {:.3e}", multiplier.re),
+                im => println!("    {:.3e} {im:+.3e}i", multiplier.re),
+            }
+        }
     }
 }
 

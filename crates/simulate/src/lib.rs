@@ -25,7 +25,7 @@ pub use measure::measure;
 pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};
 pub use record::{Error, Record, simulate};
-pub use regime::{Extent, Motion, Regime, motion};
+pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensor::{
     Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };

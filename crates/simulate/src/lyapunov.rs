@@ -6,11 +6,13 @@
 //! measured in the integration's own scales, which changes nothing in the limit.
 //!
 //! A driven machine on a periodic orbit has a negative largest exponent, the orbit's contraction. A
-//! free crank makes the system autonomous: a regular motion then shows 0. Where rigid joints catch
-//! their journals without rebound, two directions a joint are lost for good: their exponents are −∞.
-//! A joint that follows a rigid surface or a massless link draws disturbances off it back at the
-//! rate of its stabilisation (Baumgarte 1972); so two of its exponents belong to that, not to the
-//! machine.
+//! free crank makes the system autonomous: a regular motion then shows 0.
+//!
+//! Where rigid joints catch their journals without rebound, two directions a joint are lost for
+//! good. An exponent of a direction that shrinks below rounding within a renormalisation's time is
+//! −∞; what the integration's error leaves of the other one fades at the rate at which a following
+//! joint is drawn back onto its surface (Baumgarte 1972). So do the two directions that lead off a
+//! massless link: those exponents are not the machine's.
 
 use crate::flow::Flow;
 use crate::record::Error;
@@ -98,7 +100,11 @@ impl<F: Flow, const N: usize> Followed<F, N> {
         let revolution = tangents.cycle().length();
         let mut growth = Vec::with_capacity(settings.revolutions as usize);
         tangents.advance(OFFSET * revolution, |_| ())?;
+        tangents.spread();
         for number in 0..settings.transient + settings.revolutions {
+            if number == settings.transient / 2 {
+                tangents.undisturb_memory();
+            }
             let mut grown = vec![0.0; tangents.count()];
             for stretch in 1..=stretches {
                 let share = f64::from(stretch) / f64::from(stretches);

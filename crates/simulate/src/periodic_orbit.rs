@@ -79,8 +79,13 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
         if end.len() != point.len() || !monodromy.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
-        let mut missing = &point - end;
-        let mut matrix = monodromy.clone() - DMatrix::identity(point.len(), point.len());
+        // What a contact that never opens remembers keeps its value: a parameter.
+        let live: Vec<usize> = (0..point.len())
+            .filter(|&i| i < start.scales().len() || !keeps(&monodromy, i))
+            .collect();
+        let monodromy = monodromy.select_rows(&live).select_columns(&live);
+        let mut missing = (&point - end).select_rows(&live);
+        let mut matrix = monodromy.clone() - DMatrix::identity(live.len(), live.len());
         if let Some(i) = cycle.free {
             let scale = tangents.scales()[i];
             let turned = cycle.rate * period - cycle.rate.signum() * TAU * f64::from(revolutions);
@@ -88,7 +93,7 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
             // In place of the angle's start its column has the period.
             let mut rate = tangents.rate();
             rate[i] += cycle.rate / scale;
-            matrix.set_column(i, &rate);
+            matrix.set_column(i, &rate.select_rows(&live));
         }
         let Some(mut change) = matrix.lu().solve(&missing) else {
             return Ok(None);
@@ -97,7 +102,9 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
             period += change[i];
             change[i] = 0.0;
         }
-        point += &change;
+        for (&i, change) in live.iter().zip(&change) {
+            point[i] += change;
+        }
         let distance = (&point - &from).amax();
         if distance > ASTRAY || !distance.is_finite() {
             return Ok(None);
@@ -116,6 +123,14 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
         }
     }
     Ok(None)
+}
+
+/// True where component `i` depends on its own start alone, and is the same.
+fn keeps(monodromy: &DMatrix<f64>, i: usize) -> bool {
+    let row = monodromy.row(i);
+    row.iter()
+        .enumerate()
+        .all(|(j, x)| *x == f64::from(u8::from(i == j)))
 }
 
 /// Eigenvalues of the monodromy matrix, the largest modulus first; without the one nearest to 1

@@ -5,6 +5,7 @@ use crate::lyapunov::{Exponent, ExponentSettings, Followed, exponents};
 use crate::periodic_orbit::{PeriodicOrbit, shoot};
 use crate::record::Error;
 use integrate::System;
+use mechanism::Machine;
 
 /// Standard errors by which an exponent must be clear of a limit: one in a hundred by chance, by
 /// Student's distribution for ten batches.
@@ -61,8 +62,21 @@ pub struct Motion {
 pub enum Extent {
     /// The largest exponent.
     Largest,
-    /// All exponents; it takes about as many times longer as there are pairs of states.
+    /// All exponents; of n states it takes about n/2 times as long.
     Spectrum,
+}
+
+/// [`motion`] of a machine: not generic, so that it is compiled here, and optimised in the dev
+/// profile too.
+///
+/// # Errors
+/// Where the integration cannot meet its tolerance.
+pub fn machine_motion(
+    machine: &Machine,
+    settings: &ExponentSettings,
+    extent: Extent,
+) -> Result<Option<Motion>, Error> {
+    motion(machine, settings, extent)
 }
 
 /// Follows the motion of `flow` and judges it; `None` where nothing moves freely (all joints

@@ -14,7 +14,7 @@ use scalar::Dual;
 /// Longest step, as a share of a revolution.
 const LONGEST_STEP: f64 = 0.05;
 /// A tangent shorter than this share of its length, once its parts along the others are taken
-/// away, is rounding: a rigid impact swallowed its direction.
+/// away, is rounding: a rigid impact swallowed its direction, or a contact too stiff to tell.
 const LOST: f64 = 1e-12;
 
 /// A trajectory and its tangents.
@@ -33,24 +33,35 @@ struct Chunk<F: Flow, const N: usize> {
 }
 
 impl<F: Flow, const N: usize> Tangents<F, N> {
-    /// `count` tangents at the start of `flow`; at most as many as it has states.
+    /// Room for `count` tangents at the start of `flow`; at most as many as it has states.
     pub fn start(flow: &F, count: usize, tolerance: f64) -> Self {
         let cycle = flow.cycle();
         let (system, state) = flow.start::<Dual<f64, N>>();
         let scales: Vec<f64> = system.scales().iter().map(|s| s.value()).collect();
         let count = count.min(scales.len());
-        // Any first direction will do that is not special: all components alike.
-        let mut directions = DMatrix::identity(scales.len(), count);
-        directions.column_mut(0).fill(1.0);
-        let mut tangents = Self {
+        Self {
             chunks: chunks(&system, 0.0, &state, count, tolerance, cycle),
             count,
             scales,
             cycle,
             tolerance,
-        };
-        tangents.set(&directions.qr().q());
-        tangents
+        }
+    }
+
+    /// Gives the tangents their first directions. Not at the very start: a centred journal has no
+    /// direction that could be disturbed.
+    pub fn spread(&mut self) {
+        // Any will do that are not special: the first has all components alike.
+        let mut directions = DMatrix::identity(self.scales.len(), self.count);
+        directions.column_mut(0).fill(1.0);
+        self.set(&directions.qr().q());
+    }
+
+    /// Undisturbs what the mode remembers. What is remembered afresh is disturbed again; what a
+    /// contact that never opens remembers for ever is a parameter, and no part of the motion.
+    pub fn undisturb_memory(&mut self) {
+        let states = self.matrix().rows(0, self.scales.len()).into_owned();
+        self.set(&states);
     }
 
     /// The same system and time at another point, disturbed in every direction.

@@ -2,7 +2,7 @@
 
 use crate::Case;
 use crate::dataset::{Failure, Recording};
-use simulate::{measure, motion, simulate};
+use simulate::{machine_motion, measure, simulate};
 
 /// Simulates `case` and measures it with its sensors and its noise.
 ///
@@ -14,7 +14,7 @@ pub fn simulate_case(case: &Case) -> Result<Recording, Failure> {
     let throws = resolved.machine.throws.iter();
     let names: Vec<&str> = throws.map(|throw| throw.name.as_str()).collect();
     let motion = match &case.judgement {
-        Some(asked) => motion(&resolved.machine, &asked.settings, asked.extent)?,
+        Some(asked) => machine_motion(&resolved.machine, &asked.settings, asked.extent)?,
         None => None,
     };
     Ok(Recording {

@@ -109,8 +109,8 @@ pub struct Lyapunov {
     /// Revolutions before; 50 where it is left out.
     #[serde(default)]
     pub transient: Option<Count<0, 1_000_000>>,
-    /// true for all exponents, in column `lyapunov_spectrum_true_per_s`; it takes some ten times
-    /// longer than the largest alone.
+    /// true for all exponents, in column `lyapunov_spectrum_true_per_s`; it takes about four times
+    /// as long as the largest alone for two joints with clearance.
     #[serde(default)]
     pub spectrum: bool,
     /// true for the running average of the largest exponent after each revolution, in column
