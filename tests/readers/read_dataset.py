@@ -167,11 +167,25 @@ def read_subset(folder, subset, expected):
     return splits
 
 
+def read_diagrams(folder):
+    """The bifurcation diagrams, which have no splits: to datasets all of them are split train."""
+    every = None
+    for path in sorted((folder / "bifurcations").glob("*")):
+        same(path.suffix, ".parquet", f"{path}: kind of file")
+        columns, _ = read_table(path)
+        same(set(columns["bifurcation"]), {path.stem}, f"{path}: names of diagrams")
+        every = together(every, columns)
+    return {"bifurcations": {"train": every}} if every else {}
+
+
 def read_with_datasets(folder, tables):
     """Hugging Face datasets: the configurations of the data card, and the one it takes by itself."""
     card = yaml.safe_load((folder / "README.md").read_text().split("---\n")[1])
     configs = card.get("configs", [])
-    tables = {name: splits for name, splits in tables.items() if any(c["case_id"] for c in splits.values())}
+    def has_rows(columns):
+        return bool(next(iter(columns.values())))
+
+    tables = {name: splits for name, splits in tables.items() if any(map(has_rows, splits.values()))}
     if not tables:
         return same(configs, [], "configurations of a dataset without rows")
     same(sorted(c["config_name"] for c in configs), sorted(tables), "configurations of the data card")
@@ -179,7 +193,7 @@ def read_with_datasets(folder, tables):
     same(default, [s for s in SUBSETS if s in tables][:1], "the default configuration")
     for name in [*tables, None]:
         loaded = datasets.load_dataset(str(folder), *([name] if name else []))
-        splits = {k: v for k, v in tables[name or default[0]].items() if v["case_id"]}
+        splits = {k: v for k, v in tables[name or default[0]].items() if has_rows(v)}
         same(sorted(loaded), sorted(splits), f"splits of {name} in datasets")
         for split, columns in splits.items():
             rows = loaded[split]
@@ -316,7 +330,8 @@ def main():
     if not tables and not recordings:
         raise Difference(f"{folder} holds neither tables nor MCAP files")
     check_counts(manifest, tables)
-    read_with_datasets(folder, tables)
+    diagrams = read_diagrams(folder)
+    read_with_datasets(folder, {**tables, **diagrams})
     cases = [check_mcap(folder, path, tables, expected) for path in recordings]
     if cases and "features" in tables:
         known = {case for columns in tables["features"].values() for case in columns["case_id"]}
@@ -326,6 +341,8 @@ def main():
     for subset, splits in tables.items():
         counts = ", ".join(f"{len(c['case_id'])} {split}" for split, c in splits.items())
         print(f"{subset}: {counts} rows, alike in pyarrow, pandas, polars and datasets")
+    for splits in diagrams.values():
+        print(f"bifurcations: {len(splits['train']['value'])} rows, alike in all four")
     print(f"{len(cases)} MCAP files, {blocks} pieces of code of the data card")
 
 

@@ -34,6 +34,15 @@ vary:
   joints.big_end.contact.damping: {lognormal: {factor: 1.5}}
 ";
 
+/// Two diagrams beside it: of other joints, so that some columns are empty.
+const DIAGRAMS: &str = "
+bifurcations:
+  - {name: clearance, path: joints.big_end.clearance, from: 0.1 mm, to: 0.2 mm, steps: 3,
+     transient: 1, revolutions: 2, chunk: 2}
+  - {name: speed, path: speed, from: 450 rpm, to: 500 rpm, steps: 2, transient: 1, revolutions: 3,
+     joints: [small_end], set: {clearance: 0.1 mm}, at: 30 deg}
+";
+
 fn write_sweep(folder: &Path) -> PathBuf {
     let machine = project().join("data/machines/single-stage.yaml");
     let path = folder.join("sweep.yaml");
@@ -80,6 +89,8 @@ fn bytes(root: &Path) -> BTreeMap<String, Vec<u8>> {
 fn the_bytes_do_not_depend_on_threads_and_the_resolved_sweep_gives_them_again() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = write_sweep(folder.path());
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    std::fs::write(&sweep, text + DIAGRAMS).unwrap();
     for format in ["parquet", "mcap"] {
         let out = |name: &str| folder.path().join(format!("{name}-{format}"));
         let run = |sweep: &Path, out: &Path, threads: &str| {
@@ -115,6 +126,8 @@ fn the_bytes_do_not_depend_on_threads_and_the_resolved_sweep_gives_them_again() 
 fn a_dry_run_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = write_sweep(folder.path());
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    std::fs::write(&sweep, text + DIAGRAMS).unwrap();
     let out = folder.path().join("out");
     let arguments = [
         sweep.to_str().unwrap(),
@@ -125,6 +138,10 @@ fn a_dry_run_writes_nothing() {
     let output = gen_dataset(&arguments);
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("12 cases, 24 rows, 3 shards"), "{text}");
+    assert!(
+        text.contains("bifurcation diagrams: 2, 10 values"),
+        "{text}"
+    );
     assert!(!out.exists());
 }
 

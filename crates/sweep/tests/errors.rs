@@ -18,7 +18,7 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, seed, run, repeats, windows, cases, vary, splits, format, shard_size; did you mean 'cases'?",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, seed, run, repeats, windows, cases, vary, bifurcations, splits, format, shard_size; did you mean 'cases'?",
     ),
     ("", "sweep.yaml:1:1: cases: missing"),
     (
@@ -184,6 +184,70 @@ const MISTAKES: &[(&str, &str)] = &[
     (
         "cases:\n  - grid:\n      sensors: [[{measure: crank_angle}]]",
         "sweep.yaml:6:16: cases.0.grid.sensors: found sensors that measure something else, expected those of the machine file",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_ned.clearance, from: 0.1 mm, to: 0.2 mm}",
+        "sweep.yaml:6:41: bifurcations.0.path: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 0.1 mm, to: 0.2 mm}",
+        "sweep.yaml:6:60: bifurcations.0.from: found '0.0001 m' (a length), expected a rotational speed greater than 0 with its unit, e.g. '500 rpm'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_end.clearance, from: 0.1 mm, to: 80 mm}",
+        "sweep.yaml:6:91: bifurcations.0.to: found '0.08 m', expected a length below journal_radius, 0.05 m",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_end.clearance, from: 0.2 mm, to: 0.1 mm}",
+        "sweep.yaml:6:91: bifurcations.0.to: found 0.0001 m, expected more than 0.0002 m, where it begins",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.big_end.clearance, from: 0.2 mm, to: 500 rpm}",
+        "sweep.yaml:6:91: bifurcations.0.to: found 500 rpm beside 0.0002 m, expected values of one kind",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: load, from: 0.2 mm, to: 0.3 mm}",
+        "sweep.yaml:6:47: bifurcations.0.path: found load, expected the path of one number, e.g. cylinder.discharge",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: clearance, from: 0.1 mm, to: 0.2 mm}",
+        "sweep.yaml:6:47: bifurcations.0.path: found a clearance without joints, expected joints beside it, e.g. 'joints: [big_end]'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: clearance, from: 0.1 mm, to: 0.2 mm, joints: [big_edn]}",
+        "sweep.yaml:6:93: bifurcations.0.joints.0: found 'big_edn', expected one of main, big_end, small_end, guide; did you mean 'big_end'?",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: joints.main.clearance, from: 0.1 mm, to: 0.2 mm, joints: [big_end]}",
+        "sweep.yaml:6:47: bifurcations.0.path: found joints.main.clearance, expected main among joints",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm, joints: [big_end]}",
+        "sweep.yaml:6:90: bifurcations.0.joints: found joints without clearance, expected their clearance as path, or beside it, e.g. 'set: {clearance: 0.2 mm}'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm, set: {rod.mass: 3 m}}",
+        "sweep.yaml:6:98: bifurcations.0.set.rod.mass: found '3 m' (a length), expected a mass greater than 0 with its unit, e.g. '12 kg'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: crosshead.mass, from: 1, to: 2}",
+        "sweep.yaml:6:69: bifurcations.0.from: found 1, expected a mass greater than 0 with its unit, e.g. '12 kg'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm, at: 3}",
+        "sweep.yaml:6:86: bifurcations.0.at: found 3, expected an angle with its unit, e.g. '30 deg'",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm, directions: sideways}",
+        "sweep.yaml:6:94: bifurcations.0.directions: found 'sideways', expected one of up, down, both",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a/b, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm}",
+        "sweep.yaml:6:12: bifurcations.0.name: found 'a/b', expected letters, digits, '-' and '_', e.g. big-end-clearance",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm}\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm}",
+        "sweep.yaml:7:12: bifurcations.1.name: found a, expected another name than the diagrams before",
     ),
 ];
 

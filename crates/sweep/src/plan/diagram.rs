@@ -10,7 +10,7 @@ use simulate::poincare::{Joint, clear_joints};
 use super::axis::{Axis, Frame, JointSet, Target, check_clearances, own};
 use super::case::rpm;
 use super::levels::Levels;
-use super::sampler::text;
+use super::sampler::{same_dimension, text};
 use crate::sweep_file::{Amount, Bifurcation, Directions, Range, Values};
 
 /// Values that are walked without a break.
@@ -57,7 +57,7 @@ impl Diagram {
         let mut axes = Vec::new();
         for (name, value) in &file.set.0 {
             let key = format!("{key}.set.{name}");
-            let target = frame.target(name, sets, &key)?;
+            let target = target(name, sets, &key, frame)?;
             if target == Target::Load {
                 frame.check_load(value).map_err(|e| e.under(&key))?;
             }
@@ -73,7 +73,14 @@ impl Diagram {
             values: values(file).map_err(|e| e.under(&key))?,
             key: key.clone(),
         });
-        check_clearances(std::slice::from_ref(&set), &axes, &key, frame)?;
+        check_clearances(std::slice::from_ref(&set), &axes, &key, frame).map_err(|_| {
+            let expected = "their clearance as path, or beside it, e.g. 'set: {clearance: 0.2 mm}'";
+            Error::found(
+                format!("{key}.joints"),
+                "joints without clearance",
+                expected,
+            )
+        })?;
         let mut diagram = Self {
             name: file.name.clone(),
             path: file.path.clone(),
@@ -182,10 +189,18 @@ impl Diagram {
     }
 }
 
+/// What `name` at `key` of the sweep file sets; `sets` tells whether the diagram has `joints`.
+fn target(name: &str, sets: bool, key: &str, frame: &Frame) -> Result<Target, Error> {
+    if name == "clearance" && !sets {
+        let expected = "joints beside it, e.g. 'joints: [big_end]'";
+        return Err(Error::found(key, "a clearance without joints", expected));
+    }
+    frame.target(name, sets, key)
+}
+
 /// What the parameter sets.
 fn parameter(file: &Bifurcation, set: &[usize], frame: &Frame) -> Result<Target, Error> {
-    let target = frame.target(&file.path, file.joints.is_some(), "path")?;
-    match target {
+    match target(&file.path, file.joints.is_some(), "path", frame)? {
         Target::Load => {
             let expected = "the path of one number, e.g. cylinder.discharge";
             Err(Error::found("path", "load", expected))
@@ -203,6 +218,7 @@ fn parameter(file: &Bifurcation, set: &[usize], frame: &Frame) -> Result<Target,
 
 fn values(file: &Bifurcation) -> Result<Levels, Error> {
     let (from, to) = (file.from, file.to);
+    same_dimension(&[from, to]).map_err(|e| e.under("to"))?;
     let levels = Levels::new(&Values::Rule(Range {
         from,
         to,
