@@ -21,7 +21,7 @@ pub fn page() -> ChaosPage {
         name: "chaos-map".to_owned(),
         version: "0.1.0".to_owned(),
         seed: 3,
-        motions: SETS.iter().map(|set| row(set)).collect(),
+        motions: SETS.iter().map(row).collect(),
         shown: "All cases of the first operating point, 500 rpm.".to_owned(),
         bifurcations: vec![bifurcation()],
         cases: cases(),
