@@ -67,14 +67,10 @@ fn caption(diagram: &Bifurcation, factor: f64, unit: &str) -> String {
         let both = both_ways(first);
         let apart: Vec<f64> = apart(first, &both);
         said += &format!(
-            " Of {} the two ways have no range of the {} in common at {}",
+            " At {} of {} the two ways have no range of the {} in common",
+            apart.len(),
             text::counted(both.len(), "value"),
             first.name,
-            if apart.is_empty() {
-                "none".to_owned()
-            } else {
-                apart.len().to_string()
-            },
         );
         if let (Some(low), Some(high)) = (apart.first(), apart.last()) {
             let [low, high] = [low, high].map(|v| text::number(v * factor, 3));

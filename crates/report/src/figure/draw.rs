@@ -391,9 +391,9 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
         Mark::BoldLine => stroke(2.0, 1.0),
         Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),
         Mark::Rings => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.4\""),
-        Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.5\""),
+        Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\""),
         Mark::WideDots => {
-            format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3\" stroke-opacity=\".45\"")
+            format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3.8\" stroke-opacity=\".45\"")
         }
         Mark::Band => format!("fill=\"{colour}\" fill-opacity=\".25\""),
     };

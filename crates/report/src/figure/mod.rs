@@ -115,7 +115,7 @@ pub enum Mark {
     Points,
     /// Separate open circles, for estimates beside [`Mark::Points`].
     Rings,
-    /// Separate dots of about a pixel, for thousands.
+    /// Separate dots of two pixels, for thousands.
     Dots,
     /// Separate dots twice as wide and light, to show under [`Mark::Dots`].
     WideDots,
