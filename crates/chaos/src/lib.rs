@@ -9,6 +9,8 @@ pub mod dimension;
 pub mod divergence;
 pub mod entropy;
 pub mod error;
+pub mod exponent;
+pub mod global_map;
 pub mod jacobian;
 pub mod local_map;
 pub mod neighbours;
