@@ -93,14 +93,17 @@ pub fn candidate(y: &[f64], m: usize, d: usize, count: usize, width: f64, passes
     let middle = mean(&folds);
     let jackknife = (folds.iter().map(|f| (f - middle).powi(2)).sum::<f64>() * (FOLDS as f64 - 1.0) / FOLDS as f64).sqrt();
     let steps = env("FREE", 20000.0) as usize;
-    let free = free_run(&basis, &fit.theta, &x[100..], steps, 6.0, q2.sqrt()).map(|f| f.0);
+    let free = free_run(&basis, &fit.theta, &x[100..], steps, 6.0, 0.0).map(|f| f.0);
     Some(Candidate { dimension: m, delay: d, count, ridge: fit.ridge, along: value, block_error, jackknife, free, likelihood, noise: s2.sqrt(), model: q2.sqrt() })
 }
 
 pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let (center, deviation) = checked(signal)?;
     let y: Vec<f64> = signal.iter().map(|v| (v - center) / deviation).collect();
-    let width = env("WIDTH", 1.5);
+    let width = env("WIDTH", 2.5);
+    let jitter = env("JITTER", 0.003);
+    let mut generator = <scalar::random::Stream as rand::SeedableRng>::seed_from_u64(0);
+    let y: Vec<f64> = y.iter().map(|v| v + jitter * rand::RngExt::sample::<f64, _>(&mut generator, rand_distr::StandardNormal)).collect();
     let mut delays = vec![times.delay.div_ceil(2), times.delay];
     delays.dedup();
     let list = screened(&y, &delays, width);
@@ -108,9 +111,9 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     for &(m, d, e) in list.iter().take(env("TAKE", 3.0) as usize) {
         if e > env("CUT", 1.5) * list[0].2 { break; }
         let count = env("COUNT", 150.0) as usize;
-        let Some(mut c) = candidate(&y, m, d, count.min(y.len() / 12), width, 3) else { continue };
-        if c.noise < c.model && env("MORE", 300.0) as usize > count {
-            if let Some(b) = candidate(&y, m, d, (env("MORE", 300.0) as usize).min(y.len() / 12), width, 3) { c = b; }
+        let Some(mut c) = candidate(&y, m, d, count.min(y.len() / 12), width, env("PASSES", 3.0) as usize) else { continue };
+        if c.noise < c.model && env("MORE", 0.0) as usize > count {
+            if let Some(b) = candidate(&y, m, d, (env("MORE", 0.0) as usize).min(y.len() / 12), width, 3) { c = b; }
         }
         details.push(c);
     }

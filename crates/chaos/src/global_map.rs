@@ -270,7 +270,7 @@ pub fn regress(phi: &[f64], size: usize, g: &[f64]) -> Option<Fit> {
     Some(Fit { theta: theta.as_slice().to_vec(), folds, ridge: 10f64.powi(power), held_out: error / rows as f64 })
 }
 
-fn se_factor() -> f64 { std::env::var("SE").ok().and_then(|s| s.parse().ok()).unwrap_or(1.0) }
+fn se_factor() -> f64 { std::env::var("SE").ok().and_then(|s| s.parse().ok()).unwrap_or(0.3) }
 
 fn solve(n: &DMatrix<f64>, r: &DVector<f64>, ridge: f64) -> Option<DVector<f64>> {
     let mut n = n.clone();
