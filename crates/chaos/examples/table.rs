@@ -1,42 +1,33 @@
-//! Prints the exponent found from the signal of each test system beside the true one.
-#![allow(clippy::print_stdout, reason = "an example prints")]
+#![allow(missing_docs, clippy::print_stdout)]
 use chaos::test_systems::{System, with_noise};
-use chaos::{delay, jacobian};
+use chaos::{delay, exponent::exponent};
 use std::time::Instant;
-
-const SEEDS: u64 = 5;
-
-fn main() -> Result<(), chaos::Error> {
-    let length = std::env::args()
-        .nth(1)
-        .and_then(|a| a.parse().ok())
-        .unwrap_or(10_000);
-    println!("system         noise  median |error|  median  true (per sample)  covered  s each");
+fn arg<T: std::str::FromStr>(i: usize, d: T) -> T { std::env::args().nth(i).and_then(|a| a.parse().ok()).unwrap_or(d) }
+fn main() {
+    let length: usize = arg(1, 10_000);
+    let which: String = arg(2, String::new());
+    let seeds: u64 = arg(3, 3);
+    let noises: String = arg(4, "0,0.01,0.05".into());
+    let first: u64 = arg(5, 1);
+    let verbose = std::env::var("V").is_ok();
     for system in System::ALL {
+        if !which.split(',').any(|w| system.name().to_lowercase().contains(w)) { continue; }
         let truth = system.exponent() * system.sample_interval();
-        for share in [0.0, 0.01, 0.05] {
-            let start = Instant::now();
-            let (mut errors, mut values, mut covered) = (Vec::new(), Vec::new(), 0);
-            let mut model = None;
-            for seed in 1..=SEEDS {
-                let signal = with_noise(&system.samples(length, seed), share, seed);
-                let found = jacobian::exponent(&signal, &delay::times(&signal)?)?;
-                errors.push((found.value / truth - 1.0).abs());
-                values.push(found.value);
-                covered += u32::from(found.low <= truth && truth <= found.high);
-                model = Some((found.model, found.prediction_error));
+        for share in noises.split(',').map(|s| s.parse::<f64>().unwrap()) {
+            let mut errors = vec![]; let mut covered = 0; let mut time = 0.0;
+            for seed in first..first + seeds {
+                let y = with_noise(&system.samples(length, seed), share, seed);
+                let start = Instant::now();
+                let times = delay::times(&y).unwrap();
+                let Ok(e) = exponent(&y, &times) else { println!("  refused"); continue };
+                time += start.elapsed().as_secs_f64();
+                errors.push(((e.value / truth - 1.0).abs(), e.value / truth));
+                covered += u32::from(e.low <= truth && truth <= e.high);
+                if verbose { println!("   {seed}: {:.3} [{:.3} {:.3}] m {} d {} noise {:.4} time {:.3} map {:.3} second {:.3}", e.value/truth, e.low/truth, e.high/truth, e.dimension, e.delay, e.noise, e.over_time/truth, e.of_map/truth, e.second/truth); }
             }
-            errors.sort_by(f64::total_cmp);
-            values.sort_by(f64::total_cmp);
-            println!(
-                "{:13} {:4.0} % {:12.1} % {:10.5} {truth:8.5} {covered:12}/{SEEDS} {:10.2}  {model:?}",
-                system.name(),
-                share * 100.0,
-                errors[errors.len() / 2] * 100.0,
-                values[values.len() / 2],
-                start.elapsed().as_secs_f64() / SEEDS as f64,
-            );
+            errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+            if errors.is_empty() { continue; }
+            println!("{:13} {share:5} median {:.1} % covered {covered}/{seeds} values {} time {:.2}", system.name(), errors[errors.len()/2].0 * 100.0, errors.iter().map(|e| format!("{:.3}", e.1)).collect::<Vec<_>>().join(" "), time / seeds as f64);
         }
     }
-    Ok(())
 }

@@ -1,127 +1,250 @@
-//! work in progress
+//! Largest Lyapunov exponent of a sampled signal, with a 95 % interval.
+//!
+//! A smooth map from delay vectors to the next sample is fitted to the whole signal, with noise in
+//! every sample allowed for; the growth of a tangent along the most likely signal is the exponent
+//! (Eckmann and Ruelle 1985). Dimension and delay are those of the greatest likelihood. The
+//! interval comes from three differences: between stretches of the signal, between maps fitted
+//! without parts of it, and between the two likeliest embeddings.
+
 use crate::delay::Times;
 use crate::error::{Error, checked};
-use crate::global_map::*;
+use crate::errors_in_variables::Model;
+use crate::global_map::{Basis, FOLDS, regression};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use scalar::random::Stream;
 
+/// Noise added to every signal, as a share of its standard deviation. A signal without noise lies
+/// on a thin attractor and leaves the slopes across it open, and with them exponents that the
+/// system does not have; noise settles them near 0 (Bishop 1995: noise on inputs acts as a
+/// penalty on slopes). So small a noise costs less accuracy than the length of the signal.
+const ADDED: f64 = 0.003;
+/// Largest dimension.
+const LARGEST: usize = 6;
+/// Longest delay in samples; of slower signals, means of successive samples are taken.
+const LONGEST_DELAY: usize = 7;
+/// Centres of the map, and fewest samples for each.
+const CENTRES: usize = 150;
+const PER_CENTRE: usize = 12;
+/// Vectors and centres with which embeddings are compared first.
+const SCREENED: usize = 2500;
+const FEW_CENTRES: usize = 100;
+/// Embeddings compared by likelihood, samples for that, and passes of the fits.
+const COMPARED: usize = 4;
+const TRIAL: usize = 4000;
+const PASSES: usize = 3;
+/// Blocks for the standard error over time.
+const BLOCKS: usize = 20;
+/// Two-sided 95 % quantile of Student's t for as many blocks.
+const QUANTILE: f64 = 2.093;
+/// Fewest samples of a signal (after taking means).
+const FEWEST: usize = 300;
+/// Noise from which nothing is said, as a share of the standard deviation.
+const DROWNED: f64 = 0.5;
+
+/// An exponent with its 95 % interval, all in nats per sample, and what it rests on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exponent {
+    /// Best estimate.
     pub value: f64,
+    /// Lower end of the interval.
     pub low: f64,
+    /// Upper end of the interval.
     pub high: f64,
-    pub noise: f64,
-    pub details: Vec<Candidate>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
+    /// Coordinates of the delay vectors that the map starts from.
     pub dimension: usize,
+    /// Samples between them.
     pub delay: usize,
-    pub count: usize,
-    pub ridge: f64,
-    pub along: f64,
-    pub block_error: f64,
-    pub jackknife: f64,
-    pub free: Option<f64>,
-    pub likelihood: f64,
+    /// Noise found in the signal: its standard deviation as a share of the signal's.
     pub noise: f64,
-    pub model: f64,
+    /// Standard error from the differences between stretches of the signal.
+    pub over_time: f64,
+    /// Standard error from maps fitted with parts of the signal left out (jackknife).
+    pub of_map: f64,
+    /// The exponent by the second likeliest embedding.
+    pub second: f64,
 }
 
-fn env(name: &str, d: f64) -> f64 { std::env::var(name).ok().and_then(|s| s.parse().ok()).unwrap_or(d) }
-
-fn mean(v: &[f64]) -> f64 { v.iter().sum::<f64>() / v.len() as f64 }
-
-pub fn screened(y: &[f64], delays: &[usize], width: f64) -> Vec<(usize, usize, f64)> {
-    let mut found = Vec::new();
-    for &d in delays {
-        for m in 1..=6 {
-            let span = (m - 1) * d;
-            if y.len() < span + 200 { continue; }
-            let rows = y.len() - span - 1;
-            let stride = rows.div_ceil(2500);
-            let picked: Vec<usize> = (0..rows).step_by(stride).collect();
-            let basis = Basis::new(y, m, d, 100.min(picked.len() / 8), width);
-            let size = basis.size();
-            let mut phi = vec![0.0; picked.len() * size];
-            let mut g = vec![0.0; picked.len()];
-            let mut z = vec![0.0; m];
-            for (k, &r) in picked.iter().enumerate() {
-                vector(y, span + r, &basis, &mut z);
-                basis.features(&z, &mut phi[k * size..(k + 1) * size]);
-                g[k] = y[span + r + 1];
-            }
-            if let Some(fit) = regress(&phi, size, &g) { found.push((m, d, fit.held_out.sqrt())); }
-        }
-    }
-    found.sort_by(|a, b| a.2.total_cmp(&b.2));
-    found
-}
-
-pub fn candidate(y: &[f64], m: usize, d: usize, count: usize, width: f64, passes: usize) -> Option<Candidate> {
-    let basis = Basis::new(y, m, d, count, width);
-    let mut x = y.to_vec();
-    let mut fit = fit_once(&basis, y, &x, None, 0.0, 1.0)?;
-    let mut best: Option<(f64, f64, f64, Vec<f64>, Fit)> = None;
-    let mut center = 0usize;
-    let ratios = [0.0, 0.01, 0.1, 1.0, 10.0, 100.0];
-    for pass in 0..=passes {
-        let (values, slopes) = slopes_along(&basis, &fit.theta, &x);
-        let range = if pass == 0 { 0..ratios.len() } else { center.saturating_sub(1)..(center + 2).min(ratios.len()) };
-        let mut here: Option<(f64, f64, f64, Vec<f64>)> = None;
-        for i in range {
-            let (noise, model) = (ratios[i] / (1.0 + ratios[i]), 1.0 / (1.0 + ratios[i]));
-            let (xx, like, chi) = smooth_with(&basis, &values, &slopes, y, &x, noise, model);
-            if here.as_ref().is_none_or(|h| like > h.0) { here = Some((like, noise * chi, model * chi, xx)); center = i; }
-        }
-        let (like, s2, q2, xx) = here?;
-        if best.as_ref().is_some_and(|b| like < b.0) { break; }
-        let old = fit;
-        if s2 == 0.0 || pass == passes { best = Some((like, s2, q2, xx, old)); break; }
-        x = xx.clone();
-        let (_, slopes) = slopes_along(&basis, &old.theta, &x);
-        best = Some((like, s2, q2, xx, old));
-        fit = fit_once(&basis, y, &x, Some(&slopes), s2, q2)?;
-    }
-    let (likelihood, s2, q2, x, fit) = best?;
-    let along = |theta: &[f64]| exponent_along(&slopes_along(&basis, theta, &x).1, m, d);
-    let growth = along(&fit.theta);
-    let value = mean(&growth);
-    let size = (growth.len() / 20).max(1);
-    let blocks: Vec<f64> = growth.chunks_exact(size).map(mean).collect();
-    let block_error = (blocks.iter().map(|b| (b - value).powi(2)).sum::<f64>() / ((blocks.len() - 1) * blocks.len()) as f64).sqrt();
-    let folds: Vec<f64> = fit.folds.iter().map(|t| mean(&along(t))).collect();
-    let middle = mean(&folds);
-    let jackknife = (folds.iter().map(|f| (f - middle).powi(2)).sum::<f64>() * (FOLDS as f64 - 1.0) / FOLDS as f64).sqrt();
-    let steps = env("FREE", 20000.0) as usize;
-    let free = free_run(&basis, &fit.theta, &x[100..], steps, 6.0, 0.0).map(|f| f.0);
-    Some(Candidate { dimension: m, delay: d, count, ridge: fit.ridge, along: value, block_error, jackknife, free, likelihood, noise: s2.sqrt(), model: q2.sqrt() })
-}
-
+/// The largest exponent of a signal.
 pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
-    let (center, deviation) = checked(signal)?;
-    let y: Vec<f64> = signal.iter().map(|v| (v - center) / deviation).collect();
-    let width = env("WIDTH", 2.5);
-    let jitter = env("JITTER", 0.003);
-    let mut generator = <scalar::random::Stream as rand::SeedableRng>::seed_from_u64(0);
-    let y: Vec<f64> = y.iter().map(|v| v + jitter * rand::RngExt::sample::<f64, _>(&mut generator, rand_distr::StandardNormal)).collect();
-    let mut delays = vec![times.delay.div_ceil(2), times.delay];
-    delays.dedup();
-    let list = screened(&y, &delays, width);
-    let mut details = Vec::new();
-    for &(m, d, e) in list.iter().take(env("TAKE", 3.0) as usize) {
-        if e > env("CUT", 1.5) * list[0].2 { break; }
-        let count = env("COUNT", 150.0) as usize;
-        let Some(mut c) = candidate(&y, m, d, count.min(y.len() / 12), width, env("PASSES", 3.0) as usize) else { continue };
-        if c.noise < c.model && env("MORE", 0.0) as usize > count {
-            if let Some(b) = candidate(&y, m, d, (env("MORE", 0.0) as usize).min(y.len() / 12), width, 3) { c = b; }
-        }
-        details.push(c);
+    let (mean, deviation) = checked(signal)?;
+    let samples = (times.delay / LONGEST_DELAY + 1).min(times.delay);
+    let y = prepared(signal, mean, deviation, samples);
+    if y.len() < FEWEST {
+        return Err(Error::TooShort {
+            found: signal.len(),
+            needed: FEWEST * samples,
+        });
     }
-    details.sort_by(|a, b| b.likelihood.total_cmp(&a.likelihood));
-    if details.is_empty() { return Err(Error::NoScalingRegion { reason: "no model" }); }
-    let values: Vec<f64> = details.iter().map(|c| c.along).collect();
-    let value = mean(&values);
-    let c = &details[0];
-    let half = 2.1 * c.block_error.hypot(c.jackknife);
-    Ok(Exponent { value, low: value - half, high: value + half, noise: c.noise, details })
+    let delay = (times.delay / samples).max(1);
+    let mut embeddings = screened(&y, delay);
+    embeddings.truncate(COMPARED);
+    let trial = &y[..y.len().min(TRIAL)];
+    let mut tried: Vec<(f64, Embedding)> = embeddings
+        .into_iter()
+        .filter_map(|e| Some((fitted(trial, trial, e, FEW_CENTRES)?.likelihood, e)))
+        .collect();
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let unfit = Error::NoScalingRegion {
+        reason: "no map from delay vectors to the next sample can be fitted",
+    };
+    let Some(&(_, first)) = tried.first() else {
+        return Err(unfit);
+    };
+    let mut best = fitted(&y, &y, first, CENTRES).ok_or(unfit)?;
+    let mut other = tried
+        .get(1)
+        .and_then(|(_, second)| fitted(&y, &best.signal, *second, CENTRES));
+    if let Some(second) = &mut other
+        && second.likelihood > best.likelihood
+    {
+        std::mem::swap(&mut best, second);
+    }
+    if best.noise > DROWNED {
+        return Err(Error::NoScalingRegion {
+            reason: "noise hides the dynamics",
+        });
+    }
+    let growth = Growth::new(&best);
+    let second = other.map_or(growth.mean, |model| Growth::new(&model).mean);
+    let error = growth
+        .over_time
+        .hypot(growth.of_map)
+        .hypot((second - growth.mean) / 2.0);
+    let half = QUANTILE * error;
+    let each = 1.0 / samples as f64;
+    Ok(Exponent {
+        value: growth.mean * each,
+        low: (growth.mean - half) * each,
+        high: (growth.mean + half) * each,
+        dimension: best.basis.dimension,
+        delay: best.basis.delay * samples,
+        noise: (best.noise.powi(2) - ADDED.powi(2)).max(0.0).sqrt(),
+        over_time: growth.over_time * each,
+        of_map: growth.of_map * each,
+        second: second * each,
+    })
+}
+
+/// The signal in units of its standard deviation, as means of so many samples, with a little noise.
+fn prepared(signal: &[f64], mean: f64, deviation: f64, samples: usize) -> Vec<f64> {
+    let mut generator = Stream::seed_from_u64(0);
+    signal
+        .chunks_exact(samples)
+        .map(|chunk| {
+            let value = chunk.iter().map(|x| (x - mean) / deviation).sum::<f64>();
+            value / samples as f64 + ADDED * generator.sample::<f64, _>(StandardNormal)
+        })
+        .collect()
+}
+
+/// Dimension and delay.
+#[derive(Clone, Copy, Debug)]
+struct Embedding {
+    dimension: usize,
+    delay: usize,
+}
+
+/// Embeddings in order of the held-out error of a coarse map.
+fn screened(y: &[f64], delay: usize) -> Vec<Embedding> {
+    let mut delays = vec![delay.div_ceil(2), delay];
+    delays.dedup();
+    let mut found = Vec::new();
+    for delay in delays {
+        for dimension in 1..=LARGEST {
+            let basis = Basis::new(y, dimension, delay, FEW_CENTRES.min(y.len() / PER_CENTRE));
+            let count = basis.rows(y);
+            let rows = (0..count).step_by(count.div_ceil(SCREENED));
+            let target: Vec<f64> = rows.clone().map(|r| y[basis.span() + r + 1]).collect();
+            let design = basis.design(y, rows);
+            if let Some(fit) = regression(&design, basis.size(), &target) {
+                found.push((fit.held_out, Embedding { dimension, delay }));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, embedding)| embedding).collect()
+}
+
+fn fitted(y: &[f64], start: &[f64], e: Embedding, centres: usize) -> Option<Model> {
+    let basis = Basis::new(y, e.dimension, e.delay, centres.min(y.len() / PER_CENTRE));
+    Model::fitted(basis, y, start, PASSES)
+}
+
+/// Mean growth of a tangent in nats per sample, with its standard errors.
+struct Growth {
+    mean: f64,
+    over_time: f64,
+    of_map: f64,
+}
+
+impl Growth {
+    fn new(model: &Model) -> Self {
+        let mut maps: Vec<&[f64]> = vec![&model.fit.map];
+        maps.extend(model.fit.folds.iter().map(Vec::as_slice));
+        let mut growths = model.basis.along(&maps, &model.signal).into_iter();
+        let whole = growths.next().map_or(Vec::new(), |linear| linear.growth());
+        let folds: Vec<f64> = growths.map(|linear| mean(&linear.growth())).collect();
+        let blocks: Vec<f64> = whole
+            .chunks_exact((whole.len() / BLOCKS).max(1))
+            .map(mean)
+            .collect();
+        Self {
+            mean: mean(&whole),
+            over_time: (variance(&blocks) / blocks.len() as f64).sqrt(),
+            // Of delete-a-part estimates (Efron and Stein 1981).
+            of_map: (FOLDS - 1) as f64 * (variance(&folds) / FOLDS as f64).sqrt(),
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Sample variance.
+fn variance(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::times;
+    use crate::test_systems::{Noise, Regular, System, with_noise};
+
+    fn found(signal: &[f64]) -> Exponent {
+        exponent(signal, &times(signal).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn maps_are_found_closely_also_with_noise() {
+        for (system, share, tolerance) in [
+            (System::Logistic, 0.0, 0.01),
+            (System::Logistic, 0.05, 0.12),
+            (System::Henon, 0.01, 0.04),
+        ] {
+            let exponent = found(&with_noise(&system.samples(2000, 1), share, 1));
+            let error = exponent.value / system.exponent() - 1.0;
+            assert!(error.abs() < tolerance, "{} {exponent:?}", system.name());
+            assert!((exponent.noise - share).abs() < 0.1 * share + 0.001, "{exponent:?}");
+        }
+    }
+
+    #[test]
+    fn the_interval_of_a_periodic_signal_reaches_zero() {
+        for share in [0.0, 0.05] {
+            let signal = with_noise(&Regular::Periodic.samples(2000, 1), share, 1);
+            let exponent = found(&signal);
+            assert!(exponent.low <= 0.0, "{exponent:?}");
+        }
+    }
+
+    #[test]
+    fn noise_alone_is_refused() {
+        let signal = Noise::White.samples(2000, 1);
+        let refused = exponent(&signal, &times(&signal).unwrap());
+        assert!(matches!(refused, Err(Error::NoScalingRegion { .. })), "{refused:?}");
+    }
 }

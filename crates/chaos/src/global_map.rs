@@ -1,420 +1,380 @@
 //! A smooth map from delay vectors to the next sample, fitted to the whole signal.
 
-use nalgebra::{DMatrix, DVector};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use scalar::random::Stream;
+use nalgebra::{Const, DMatrix, DVector, Dyn, MatrixView};
 
-/// Functions of delay vectors: 1, the coordinates, and inverse multiquadrics.
+/// Width of the basis functions in standard deviations of the signal: wide enough that a smooth
+/// map needs few of them (the flat limit of Fornberg and Driscoll 2002), narrow enough for double
+/// precision.
+const WIDTH: f64 = 2.5;
+/// Candidates per centre.
+const CANDIDATES: usize = 4;
+
+/// Functions of the delay vector `(x[n], x[n - delay], ...)`: 1, its coordinates, and inverse
+/// multiquadrics `(1 + r^2 / w^2)^(-1/2)` about centres (Hardy 1971; Casdagli 1989 for time series).
 #[derive(Clone, Debug)]
-pub struct Basis {
+pub(crate) struct Basis {
     pub dimension: usize,
     pub delay: usize,
-    /// axis-major
-    pub centres: Vec<f64>,
-    pub count: usize,
-    pub sharpness: f64,
+    /// Number of centres.
+    count: usize,
+    /// First coordinates of all centres, then second ones, and so on.
+    centres: Vec<f64>,
 }
 
 impl Basis {
-    pub fn new(x: &[f64], dimension: usize, delay: usize, count: usize, width: f64) -> Self {
+    /// About `count` centres among the vectors of `x`, each as far as possible from those before.
+    pub fn new(x: &[f64], dimension: usize, delay: usize, count: usize) -> Self {
         let span = (dimension - 1) * delay;
-        let available = x.len() - span;
-        // Low-discrepancy picks along the signal, farthest-point thinning of 4x candidates.
-        let golden = 0.618_033_988_749_895_f64;
-        let candidates: Vec<usize> = (0..4 * count)
-            .map(|i| ((i as f64 * golden).fract() * available as f64) as usize + span)
+        let golden = 0.618_033_988_749_895;
+        let candidates: Vec<usize> = (0..CANDIDATES * count)
+            .map(|i| span + ((i as f64 * golden).fract() * (x.len() - span) as f64) as usize)
             .collect();
-        let at = |n: usize, a: usize| x[n - a * delay];
         let mut nearest = vec![f64::INFINITY; candidates.len()];
-        let mut chosen = Vec::new();
-        let mut next = 0;
-        for _ in 0..count {
-            chosen.push(candidates[next]);
-            let c = candidates[next];
-            let (mut far, mut place) = (-1.0, 0);
-            for (i, &n) in candidates.iter().enumerate() {
-                let square: f64 = (0..dimension).map(|a| (at(n, a) - at(c, a)).powi(2)).sum();
-                nearest[i] = f64::min(nearest[i], square);
-                if nearest[i] > far {
-                    far = nearest[i];
-                    place = i;
-                }
-            }
-            next = place;
-        }
         let mut centres = vec![0.0; dimension * count];
-        for a in 0..dimension {
-            for (j, &n) in chosen.iter().enumerate() {
-                centres[a * count + j] = at(n, a);
+        let mut next = 0;
+        for place in 0..count {
+            let chosen = candidates[next];
+            for axis in 0..dimension {
+                centres[axis * count + place] = x[chosen - axis * delay];
+            }
+            let mut farthest = -1.0;
+            for (i, (&n, least)) in candidates.iter().zip(&mut nearest).enumerate() {
+                let square = (0..dimension)
+                    .map(|axis| (x[n - axis * delay] - x[chosen - axis * delay]).powi(2))
+                    .sum();
+                *least = least.min(square);
+                if *least > farthest {
+                    (farthest, next) = (*least, i);
+                }
             }
         }
         Self {
             dimension,
             delay,
-            centres,
             count,
-            sharpness: 1.0 / (width * width),
+            centres,
         }
     }
 
+    /// Number of functions.
     pub fn size(&self) -> usize {
         1 + self.dimension + self.count
     }
 
+    /// Samples before the newest that a vector reaches back.
     pub fn span(&self) -> usize {
         (self.dimension - 1) * self.delay
     }
 
-    fn squares(&self, z: &[f64], out: &mut [f64]) {
+    /// Number of vectors of `x` that have a next sample.
+    pub fn rows(&self, x: &[f64]) -> usize {
+        x.len().saturating_sub(self.span() + 1)
+    }
+
+    fn vector(&self, x: &[f64], row: usize, z: &mut [f64]) {
+        let newest = self.span() + row;
+        for (axis, z) in z.iter_mut().enumerate() {
+            *z = x[newest - axis * self.delay];
+        }
+    }
+
+    /// Values of the multiquadrics.
+    fn multiquadrics(&self, z: &[f64], out: &mut [f64]) {
         out.fill(1.0);
-        for (a, &za) in z.iter().enumerate() {
-            let c = &self.centres[a * self.count..(a + 1) * self.count];
-            for (o, c) in out.iter_mut().zip(c) {
-                let d = za - c;
-                *o += d * d * self.sharpness;
+        for (z, centres) in z.iter().zip(self.centres.chunks_exact(self.count)) {
+            for (o, c) in out.iter_mut().zip(centres) {
+                let apart = (z - c) * (1.0 / WIDTH);
+                *o += apart * apart;
+            }
+        }
+        out.iter_mut().for_each(|o| *o = 1.0 / o.sqrt());
+    }
+
+    /// The functions at the vectors of `rows`, one vector after the other.
+    pub fn design(&self, x: &[f64], rows: impl ExactSizeIterator<Item = usize>) -> Vec<f64> {
+        let (m, size) = (self.dimension, self.size());
+        let mut design = vec![0.0; rows.len() * size];
+        for (row, out) in rows.zip(design.chunks_exact_mut(size)) {
+            out[0] = 1.0;
+            self.vector(x, row, &mut out[1..=m]);
+            let (z, rest) = out.split_at_mut(1 + m);
+            self.multiquadrics(&z[1..], rest);
+        }
+        design
+    }
+
+    /// Along the signal `x`, the next sample by each map and its derivatives by the coordinates.
+    pub fn along(&self, maps: &[&[f64]], x: &[f64]) -> Vec<Linear> {
+        let mut z = vec![0.0; self.dimension];
+        let mut work = Work::new(self);
+        let rows = self.rows(x);
+        let mut found: Vec<Linear> = maps.iter().map(|_| Linear::new(self, rows)).collect();
+        for row in 0..rows {
+            self.vector(x, row, &mut z);
+            work.prepare(self, &z);
+            for (linear, map) in found.iter_mut().zip(maps) {
+                work.evaluate(self, map, linear);
+            }
+        }
+        found
+    }
+}
+
+/// A map along a signal: values of the next sample, and derivatives by the coordinates.
+#[derive(Clone, Debug)]
+pub(crate) struct Linear {
+    pub dimension: usize,
+    pub delay: usize,
+    pub values: Vec<f64>,
+    /// `dimension` of them for each value.
+    pub slopes: Vec<f64>,
+}
+
+impl Linear {
+    fn new(basis: &Basis, rows: usize) -> Self {
+        Self {
+            dimension: basis.dimension,
+            delay: basis.delay,
+            values: Vec::with_capacity(rows),
+            slopes: Vec::with_capacity(rows * basis.dimension),
+        }
+    }
+
+    /// Nats per sample by which a tangent grows along the signal, step by step, each step as many
+    /// samples as the tangent has coordinates. The first steps, in which it turns to the fastest
+    /// growing direction, are left out.
+    pub fn growth(&self) -> Vec<f64> {
+        let (m, delay) = (self.dimension, self.delay);
+        let width = (m - 1) * delay + 1;
+        // A ring of the last displacements, the newest at `head`; at first an arbitrary tangent.
+        let mut ring: Vec<f64> = (0..width).map(|i| 1.0 + (7.0 * i as f64).sin()).collect();
+        let mut head = 0;
+        let mut growth = Vec::with_capacity(self.values.len() / width);
+        for (row, slopes) in self.slopes.chunks_exact(m).enumerate() {
+            let next: f64 = slopes
+                .iter()
+                .enumerate()
+                .map(|(axis, slope)| slope * ring[(head + axis * delay) % width])
+                .sum();
+            head = (head + width - 1) % width;
+            ring[head] = next;
+            if (row + 1) % width == 0 {
+                let length = ring.iter().map(|t| t * t).sum::<f64>().sqrt().max(1e-150);
+                ring.iter_mut().for_each(|t| *t /= length);
+                growth.push(length.ln() / width as f64);
+            }
+        }
+        growth.drain(..growth.len() / 20);
+        growth
+    }
+}
+
+/// What all maps of one basis share at a vector.
+struct Work {
+    z: Vec<f64>,
+    /// Multiquadrics, their cubes, and the cubes times each coordinate of the centre.
+    values: Vec<f64>,
+    cubes: Vec<f64>,
+    moments: Vec<f64>,
+}
+
+impl Work {
+    fn new(basis: &Basis) -> Self {
+        Self {
+            z: vec![0.0; basis.dimension],
+            values: vec![0.0; basis.count],
+            cubes: vec![0.0; basis.count],
+            moments: vec![0.0; basis.count * basis.dimension],
+        }
+    }
+
+    fn prepare(&mut self, basis: &Basis, z: &[f64]) {
+        self.z.copy_from_slice(z);
+        basis.multiquadrics(z, &mut self.values);
+        for (cube, v) in self.cubes.iter_mut().zip(&self.values) {
+            *cube = v * v * v;
+        }
+        let centres = basis.centres.chunks_exact(basis.count);
+        for (moments, centres) in self.moments.chunks_exact_mut(basis.count).zip(centres) {
+            for ((moment, cube), c) in moments.iter_mut().zip(&self.cubes).zip(centres) {
+                *moment = cube * c;
             }
         }
     }
 
-    pub fn features(&self, z: &[f64], out: &mut [f64]) {
-        let m = self.dimension;
-        out[0] = 1.0;
-        out[1..=m].copy_from_slice(z);
-        let rest = &mut out[1 + m..];
-        self.squares(z, rest);
-        for o in rest {
-            *o = 1.0 / o.sqrt();
+    fn evaluate(&self, basis: &Basis, map: &[f64], out: &mut Linear) {
+        let (linear, weights) = map.split_at(1 + basis.dimension);
+        out.values
+            .push(linear[0] + dot(&linear[1..], &self.z) + dot(weights, &self.values));
+        let total = dot(weights, &self.cubes);
+        let moments = self.moments.chunks_exact(basis.count);
+        for ((slope, z), moments) in linear[1..].iter().zip(&self.z).zip(moments) {
+            let pull = z * total - dot(weights, moments);
+            out.slopes.push(slope - pull / (WIDTH * WIDTH));
         }
-    }
-
-    /// value and gradient
-    pub fn evaluate(&self, theta: &[f64], z: &[f64], work: &mut [f64], slopes: &mut [f64]) -> f64 {
-        let m = self.dimension;
-        let mut value = theta[0];
-        for a in 0..m {
-            value += theta[1 + a] * z[a];
-            slopes[a] = theta[1 + a];
-        }
-        self.squares(z, work);
-        let weights = &theta[1 + m..];
-        let mut sum = 0.0;
-        for (w, t) in work.iter_mut().zip(weights) {
-            let p = 1.0 / w.sqrt();
-            sum += t * p;
-            *w = t * p * p * p;
-        }
-        value += sum;
-        let total: f64 = work.iter().sum();
-        for a in 0..m {
-            let c = &self.centres[a * self.count..(a + 1) * self.count];
-            let dot: f64 = work.iter().zip(c).map(|(w, c)| w * c).sum();
-            slopes[a] -= self.sharpness * (z[a] * total - dot);
-        }
-        value
     }
 }
 
-pub fn vector(x: &[f64], n: usize, basis: &Basis, z: &mut [f64]) {
-    for (a, z) in z.iter_mut().enumerate() {
-        *z = x[n - a * basis.delay];
-    }
-}
-
-/// Banded lower Cholesky factor; row n has entries for columns n-k, k=0..=w.
-pub struct Band {
-    pub w: usize,
-    pub l: Vec<f64>,
-}
-
-/// slopes: rows x m. rows r correspond to n = span + r.
-pub fn covariance(slopes: &[f64], m: usize, delay: usize, noise: f64, model: f64) -> Band {
-    let rows = slopes.len() / m;
-    let w = (m - 1) * delay + 1;
-    let mut l = vec![0.0; rows * (w + 1)];
-    // Offsets: column = n - o, shifted by one.
-    let offset = |i: usize| if i == 0 { 0 } else { 1 + (i - 1) * delay };
-    let coefficient = |r: usize, i: usize| if i == 0 { 1.0 } else { -slopes[r * m + i - 1] };
-    for r in 0..rows {
-        l[r * (w + 1)] = model;
-        for i in 0..=m {
-            for j in 0..=i {
-                let k = offset(i) - offset(j);
-                if k <= r {
-                    l[r * (w + 1) + k] += noise * coefficient(r, i) * coefficient(r - k, j);
-                }
-            }
+/// Sum of products, in eight parts so that the machine can add them side by side.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut parts = [0.0; 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = (a8.remainder().iter().zip(b8.remainder()))
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in a8.zip(b8) {
+        for ((part, a), b) in parts.iter_mut().zip(a).zip(b) {
+            *part += a * b;
         }
     }
-    for r in 0..rows {
-        let reach = w.min(r);
-        for k in (0..=reach).rev() {
-            let c = r - k;
-            // sum over columns p < c of L[r,p] L[c,p]
-            let mut s = l[r * (w + 1) + k];
-            let back = w.saturating_sub(k).min(c);
-            for q in 1..=back {
-                s -= l[r * (w + 1) + k + q] * l[c * (w + 1) + q];
-            }
-            l[r * (w + 1) + k] = if k == 0 { s.max(1e-300).sqrt() } else { s / l[c * (w + 1)] };
-        }
-    }
-    Band { w, l }
+    rest + parts.iter().sum::<f64>()
 }
 
-impl Band {
-    /// In place L^-1 on row-major rows of `width`.
-    pub fn whiten(&self, rows: &mut [f64], width: usize) {
-        let w = self.w;
-        let count = rows.len() / width;
-        for r in 0..count {
-            let (before, here) = rows.split_at_mut(r * width);
-            let here = &mut here[..width];
-            for k in 1..=w.min(r) {
-                let c = self.l[r * (w + 1) + k];
-                if c != 0.0 {
-                    let other = &before[(r - k) * width..(r - k + 1) * width];
-                    for (h, o) in here.iter_mut().zip(other) {
-                        *h -= c * o;
-                    }
-                }
-            }
-            let d = 1.0 / self.l[r * (w + 1)];
-            here.iter_mut().for_each(|h| *h *= d);
-        }
-    }
+/// Parts of the signal that are left out in turn.
+pub(crate) const FOLDS: usize = 5;
+/// Those on which the ridge is chosen.
+const CHOOSING: [usize; 2] = [1, 3];
+/// Powers of ten of the ridge, as a share of the mean square of a function.
+const RIDGES: std::ops::RangeInclusive<i32> = -12..=-3;
+/// Largest increase of the held-out error for the sake of a larger ridge, in its standard errors.
+const TOLERATED: f64 = 0.3;
+/// Rows multiplied at a time.
+const BATCH: usize = 256;
 
-    /// L^-T on a vector
-    pub fn back(&self, v: &mut [f64]) {
-        let w = self.w;
-        for r in (0..v.len()).rev() {
-            v[r] /= self.l[r * (w + 1)];
-            for k in 1..=w.min(r) {
-                v[r - k] -= self.l[r * (w + 1) + k] * v[r];
-            }
-        }
-    }
-
-    pub fn log_determinant(&self) -> f64 {
-        let w = self.w;
-        self.l.chunks(w + 1).map(|r| 2.0 * r[0].ln()).sum()
-    }
-}
-
-pub const FOLDS: usize = 5;
-
-pub struct Fit {
-    pub theta: Vec<f64>,
+/// A map fitted by ridge regression.
+#[derive(Clone, Debug)]
+pub(crate) struct Fit {
+    /// Weights of the functions.
+    pub map: Vec<f64>,
+    /// The same, with each part of the signal left out in turn.
     pub folds: Vec<Vec<f64>>,
-    pub ridge: f64,
-    /// held-out mean square of whitened residual
+    /// Mean square error on the parts left out.
     pub held_out: f64,
 }
 
-/// Ridge regression with cross-validation by contiguous folds. phi row-major rows x size.
-pub fn regress(phi: &[f64], size: usize, g: &[f64]) -> Option<Fit> {
-    let rows = g.len();
-    let per = rows.div_ceil(FOLDS);
-    let mut normals = Vec::new();
-    for f in 0..FOLDS {
-        let (a, b) = (f * per, ((f + 1) * per).min(rows));
-        let mut n = DMatrix::<f64>::zeros(size, size);
-        let mut r = DVector::<f64>::zeros(size);
-        let mut yy = 0.0;
-        for start in (a..b).step_by(256) {
-            let end = (start + 256).min(b);
-            let p = DMatrix::from_column_slice(size, end - start, &phi[start * size..end * size]);
-            let t = DVector::from_column_slice(&g[start..end]);
-            let q = p.transpose();
-            n.gemm(1.0, &p, &q, 1.0);
-            r.gemv(1.0, &p, &t, 1.0);
-            yy += t.norm_squared();
+/// Sums of products over some rows.
+#[derive(Clone)]
+struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+    square: f64,
+}
+
+impl Normal {
+    fn new(design: &[f64], size: usize, target: &[f64]) -> Self {
+        let mut normal = Self {
+            matrix: DMatrix::zeros(size, size),
+            right: DVector::zeros(size),
+            square: target.iter().map(|t| t * t).sum(),
+        };
+        for (rows, target) in design.chunks(BATCH * size).zip(target.chunks(BATCH)) {
+            let rows = DMatrix::from_column_slice(size, target.len(), rows);
+            let target: MatrixView<f64, Dyn, Const<1>> =
+                MatrixView::from_slice_generic(target, Dyn(target.len()), Const::<1>);
+            normal.right.gemv(1.0, &rows, &target, 1.0);
+            normal.matrix.gemm(1.0, &rows, &rows.transpose(), 1.0);
         }
-        normals.push((n, r, yy));
+        normal
     }
-    let mut n = DMatrix::<f64>::zeros(size, size);
-    let mut r = DVector::<f64>::zeros(size);
-    for (a, b, _) in &normals {
-        n += a;
-        r += b;
+
+    fn without(&self, other: &Self) -> Self {
+        Self {
+            matrix: &self.matrix - &other.matrix,
+            right: &self.right - &other.right,
+            square: self.square - other.square,
+        }
     }
-    let scale = n.trace() / size as f64;
-    // Held-out error of two folds for each ridge.
+
+    fn solve(&self, ridge: f64) -> Option<DVector<f64>> {
+        let mut matrix = self.matrix.clone();
+        (0..matrix.nrows()).for_each(|i| matrix[(i, i)] += ridge);
+        Some(matrix.cholesky()?.solve(&self.right))
+    }
+
+    /// Sum of squared errors of a map on these rows.
+    fn error(&self, map: &DVector<f64>) -> f64 {
+        self.square - 2.0 * map.dot(&self.right) + map.dot(&(&self.matrix * map))
+    }
+}
+
+/// Ridge regression of `target` on the rows of `design`. The ridge is the largest whose held-out
+/// error is not significantly above the least (Breiman, Friedman, Olshen and Stone 1984).
+pub(crate) fn regression(design: &[f64], size: usize, target: &[f64]) -> Option<Fit> {
+    let count = target.len();
+    let part = count.div_ceil(FOLDS);
+    let parts: Vec<Normal> = (design.chunks(part * size).zip(target.chunks(part)))
+        .map(|(design, target)| Normal::new(design, size, target))
+        .collect();
+    let mut whole = parts[0].clone();
+    for other in &parts[1..] {
+        whole.matrix += &other.matrix;
+        whole.right += &other.right;
+        whole.square += other.square;
+    }
+    let rests: Vec<Normal> = parts.iter().map(|p| whole.without(p)).collect();
+    let scale = whole.matrix.trace() / size as f64;
     let mut errors = Vec::new();
-    for power in (-12..=-3).rev() {
-        let ridge = scale * 10f64.powi(power);
-        let (mut error, mut count) = (0.0, 0);
-        for f in [1, 3] {
-            let (a, b, yy) = &normals[f];
-            let Some(theta) = solve(&(&n - a), &(&r - b), ridge) else { error = f64::INFINITY; break };
-            error += yy - 2.0 * theta.dot(b) + theta.dot(&(a * &theta));
-            count += per;
+    for power in RIDGES.rev() {
+        let ridge = scale * 10.0_f64.powi(power);
+        let mut error = 0.0;
+        for fold in CHOOSING {
+            let map = rests.get(fold)?.solve(ridge);
+            error += map.map_or(f64::INFINITY, |map| parts[fold].error(&map));
         }
-        if error.is_finite() {
-            errors.push((power, error / count as f64));
-        }
+        errors.push((ridge, error));
     }
     let least = errors.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
-    // One-standard-error rule (Breiman et al. 1984).
-    let limit = least * (1.0 + se_factor() * (2.0 / rows as f64).sqrt());
-    let power = errors.iter().find(|e| e.1 <= limit)?.0;
-    let ridge = scale * 10f64.powi(power);
-    let mut error = 0.0;
+    let limit = least * (1.0 + TOLERATED * (2.0 / count as f64).sqrt());
+    let (ridge, _) = errors.iter().find(|(_, error)| *error <= limit)?;
+    let mut held_out = 0.0;
     let mut folds = Vec::new();
-    for (a, b, yy) in &normals {
-        let theta = solve(&(&n - a), &(&r - b), ridge)?;
-        error += yy - 2.0 * theta.dot(b) + theta.dot(&(a * &theta));
-        folds.push(theta.as_slice().to_vec());
+    for (rest, part) in rests.iter().zip(&parts) {
+        let map = rest.solve(*ridge)?;
+        held_out += part.error(&map) / count as f64;
+        folds.push(map.as_slice().to_vec());
     }
-    let theta = solve(&n, &r, ridge)?;
-    Some(Fit { theta: theta.as_slice().to_vec(), folds, ridge: 10f64.powi(power), held_out: error / rows as f64 })
+    Some(Fit {
+        map: whole.solve(*ridge)?.as_slice().to_vec(),
+        folds,
+        held_out,
+    })
 }
 
-fn se_factor() -> f64 { std::env::var("SE").ok().and_then(|s| s.parse().ok()).unwrap_or(0.3) }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_systems::System;
 
-fn solve(n: &DMatrix<f64>, r: &DVector<f64>, ridge: f64) -> Option<DVector<f64>> {
-    let mut n = n.clone();
-    for i in 0..n.nrows() {
-        n[(i, i)] += ridge;
-    }
-    Some(n.cholesky()?.solve(r))
-}
-
-pub struct State {
-    pub x: Vec<f64>,
-    pub slopes: Vec<f64>,
-    pub fit: Fit,
-    pub noise: f64,
-    pub model: f64,
-    pub likelihood: f64,
-}
-
-pub fn slopes_along(basis: &Basis, theta: &[f64], x: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let m = basis.dimension;
-    let span = basis.span();
-    let rows = x.len() - span - 1;
-    let mut slopes = vec![0.0; rows * m];
-    let mut values = vec![0.0; rows];
-    let mut z = vec![0.0; m];
-    let mut work = vec![0.0; basis.count];
-    for r in 0..rows {
-        vector(x, span + r, basis, &mut z);
-        values[r] = basis.evaluate(theta, &z, &mut work, &mut slopes[r * m..(r + 1) * m]);
-    }
-    (values, slopes)
-}
-
-/// One pass of GLS given the current x, its slopes and the noise levels.
-pub fn fit_once(basis: &Basis, y: &[f64], x: &[f64], slopes: Option<&[f64]>, noise: f64, model: f64) -> Option<Fit> {
-    let m = basis.dimension;
-    let span = basis.span();
-    let rows = y.len() - span - 1;
-    let size = basis.size();
-    let mut phi = vec![0.0; rows * size];
-    let mut z = vec![0.0; m];
-    let mut g = vec![0.0; rows];
-    for r in 0..rows {
-        let n = span + r;
-        vector(x, n, basis, &mut z);
-        basis.features(&z, &mut phi[r * size..(r + 1) * size]);
-        g[r] = y[n + 1];
-        if let Some(s) = slopes {
-            for a in 0..m {
-                let c = n - a * basis.delay;
-                g[r] -= s[r * m + a] * (y[c] - x[c]);
-            }
+    #[test]
+    fn the_henon_map_is_found_with_its_derivatives() {
+        // x(n+1) = 1 - 1.4 x(n)^2 + 0.3 x(n-1)
+        let x = System::Henon.samples(2000, 1);
+        let basis = Basis::new(&x, 2, 1, 60);
+        let design = basis.design(&x, 0..basis.rows(&x));
+        let fit = regression(&design, basis.size(), &x[2..]).unwrap();
+        let linear = &basis.along(&[&fit.map], &x)[0];
+        for row in (0..basis.rows(&x)).step_by(97) {
+            assert!((linear.values[row] - x[row + 2]).abs() < 2e-3);
+            assert!((linear.slopes[2 * row] + 2.8 * x[row + 1]).abs() < 0.1);
+            assert!((linear.slopes[2 * row + 1] - 0.3).abs() < 0.1);
         }
+        let growth = linear.growth();
+        let mean = growth.iter().sum::<f64>() / growth.len() as f64;
+        assert!((mean / System::Henon.exponent() - 1.0).abs() < 0.04, "{mean}");
     }
-    if let Some(s) = slopes {
-        let band = covariance(s, m, basis.delay, noise, model);
-        band.whiten(&mut phi, size);
-        band.whiten(&mut g, 1);
-    }
-    regress(&phi, size, &g)
-}
 
-/// State estimate by one Gauss-Newton step, and log-likelihood.
-pub fn smooth(basis: &Basis, theta: &[f64], y: &[f64], x: &[f64], noise: f64, model: f64) -> (Vec<f64>, f64, f64) {
-    let (values, slopes) = slopes_along(basis, theta, x);
-    smooth_with(basis, &values, &slopes, y, x, noise, model)
-}
-
-pub fn smooth_with(basis: &Basis, values: &[f64], slopes: &[f64], y: &[f64], x: &[f64], noise: f64, model: f64) -> (Vec<f64>, f64, f64) {
-    let m = basis.dimension;
-    let span = basis.span();
-    let rows = values.len();
-    let mut e = vec![0.0; rows];
-    for r in 0..rows {
-        let n = span + r;
-        e[r] = y[n + 1] - values[r];
-        for a in 0..m {
-            let c = n - a * basis.delay;
-            e[r] -= slopes[r * m + a] * (y[c] - x[c]);
-        }
+    #[test]
+    fn a_tangent_of_a_linear_recurrence_grows_by_the_largest_root() {
+        // x(n+1) = 1.3 x(n) - 0.4 x(n-2): the characteristic roots are the growth rates.
+        let linear = Linear {
+            dimension: 2,
+            delay: 2,
+            values: vec![0.0; 4000],
+            slopes: [1.3, -0.4].repeat(4000),
+        };
+        let root = |s: f64| s * s * s - 1.3 * s * s + 0.4;
+        let growth = linear.growth();
+        let rate = growth.iter().sum::<f64>() / growth.len() as f64;
+        assert!(root(rate.exp()).abs() < 1e-6, "{}", rate.exp());
     }
-    let band = covariance(slopes, m, basis.delay, noise, model);
-    band.whiten(&mut e, 1);
-    let chi: f64 = e.iter().map(|v| v * v).sum::<f64>();
-    let likelihood = -0.5 * (rows as f64 * (chi / rows as f64).ln() + band.log_determinant()) / rows as f64;
-    band.back(&mut e);
-    let mut out = y.to_vec();
-    for r in 0..rows {
-        let n = span + r;
-        out[n + 1] -= noise * e[r];
-        for a in 0..m {
-            out[n - a * basis.delay] += noise * slopes[r * m + a] * e[r];
-        }
-    }
-    (out, likelihood, chi / rows as f64)
-}
-
-/// Growth of a tangent per sample along slopes.
-pub fn exponent_along(slopes: &[f64], m: usize, delay: usize) -> Vec<f64> {
-    let w = (m - 1) * delay + 1;
-    let rows = slopes.len() / m;
-    let mut ring = vec![0.0; w];
-    for (i, r) in ring.iter_mut().enumerate() {
-        *r = ((i * 7919) as f64).sin() + 0.1;
-    }
-    let mut growths = Vec::with_capacity(rows);
-    let mut head = 0; // position of newest
-    for r in 0..rows {
-        let mut next = 0.0;
-        for a in 0..m {
-            next += slopes[r * m + a] * ring[(head + a * delay) % w];
-        }
-        head = (head + w - 1) % w;
-        ring[head] = next;
-        if (r + 1) % w == 0 || w == 1 {
-            let norm = ring.iter().map(|t| t * t).sum::<f64>().sqrt().max(1e-150);
-            ring.iter_mut().for_each(|t| *t /= norm);
-            growths.push(norm.ln());
-        }
-    }
-    let skip = growths.len() / 20;
-    growths.drain(..skip);
-    growths.iter_mut().for_each(|g| *g /= w as f64);
-    growths
-}
-
-/// Free run from the given start: exponent and the trajectory, None if it leaves.
-pub fn free_run(basis: &Basis, theta: &[f64], start: &[f64], steps: usize, bound: f64, kick: f64) -> Option<(f64, Vec<f64>)> {
-    let m = basis.dimension;
-    let span = basis.span();
-    let mut x = start[..=span].to_vec();
-    x.reserve(steps);
-    let mut slopes = vec![0.0; steps * m];
-    let mut z = vec![0.0; m];
-    let mut work = vec![0.0; basis.count];
-    let mut generator = Stream::seed_from_u64(0);
-    for r in 0..steps {
-        vector(&x, x.len() - 1, basis, &mut z);
-        let v = basis.evaluate(theta, &z, &mut work, &mut slopes[r * m..(r + 1) * m]);
-        if !(v.abs() < bound) {
-            return None;
-        }
-        x.push(v + kick * generator.sample::<f64, _>(StandardNormal));
-    }
-    let g = exponent_along(&slopes, m, basis.delay);
-    Some((g.iter().sum::<f64>() / g.len() as f64, x))
 }
