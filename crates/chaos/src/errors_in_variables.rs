@@ -40,7 +40,10 @@ impl Model {
                 .iter()
                 .map(|ratio| Smoothed::new(&linear, y, &signal, *ratio))
                 .max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))?;
-            if best.as_ref().is_some_and(|b| b.likelihood >= smoothed.likelihood) {
+            if best
+                .as_ref()
+                .is_some_and(|b| b.likelihood >= smoothed.likelihood)
+            {
                 break;
             }
             let (noise, own) = (smoothed.noise, smoothed.own);

@@ -360,7 +360,10 @@ mod tests {
         }
         let growth = linear.growth();
         let mean = growth.iter().sum::<f64>() / growth.len() as f64;
-        assert!((mean / System::Henon.exponent() - 1.0).abs() < 0.04, "{mean}");
+        assert!(
+            (mean / System::Henon.exponent() - 1.0).abs() < 0.04,
+            "{mean}"
+        );
     }
 
     #[test]

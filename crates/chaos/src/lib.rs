@@ -3,6 +3,7 @@
 //! Everything is a pure function of the samples: the same signal gives the same numbers.
 
 pub mod autocorrelation;
+pub mod classical;
 pub mod correlation_dimension;
 pub mod delay;
 pub mod dimension;
@@ -19,6 +20,7 @@ pub mod regime;
 pub mod scaling_region;
 pub mod surrogates;
 pub mod test_systems;
+pub mod wolf;
 pub mod zero_one;
 
 pub use error::Error;
