@@ -68,7 +68,8 @@ impl System {
     }
 
     /// Largest Lyapunov exponent in nats per step (maps) or per second (flows), computed once
-    /// with [`System::tangent_exponent`] over 4 million samples (Duffing: 0.1045 to 0.1049 as the stretch grows).
+    /// with [`System::tangent_exponent`] over 4 million samples (Duffing: 20 million, 0.10523 with
+    /// a standard error of 0.00020).
     pub fn exponent(self) -> f64 {
         match self {
             Self::Logistic => std::f64::consts::LN_2,
@@ -76,7 +77,7 @@ impl System {
             Self::Lorenz => 0.906,
             Self::Roessler => 0.0714,
             Self::MackeyGlass => 0.00513,
-            Self::Duffing => 0.1047,
+            Self::Duffing => 0.1052,
         }
     }
 
