@@ -23,6 +23,8 @@ pub(crate) struct Model {
     pub signal: Vec<f64>,
     /// Standard deviation of the noise.
     pub noise: f64,
+    /// Standard deviation of the map's own errors.
+    pub own: f64,
     /// Mean logarithm of the likelihood of a sample.
     pub likelihood: f64,
 }
@@ -59,6 +61,7 @@ impl Model {
                 fit,
                 signal: signal.clone(),
                 noise: noise.sqrt(),
+                own: own.sqrt(),
                 likelihood: smoothed.likelihood,
             });
             let Some(next) = next else { break };

@@ -44,7 +44,8 @@ const FEWEST: usize = 300;
 /// as the signal: about 1 % at 5 % noise on the tinkerbell and the delayed logistic map
 /// (`examples/calibrate.rs`), which the differences between maps do not show.
 const LEFT_BY_NOISE: f64 = 0.2;
-/// Noise from which nothing is said, as a share of the standard deviation.
+/// Noise and error of the map, together, from which nothing is said, as a share of the standard
+/// deviation.
 const DROWNED: f64 = 0.5;
 
 /// An exponent with its 95 % interval, all in nats per sample, and what it rests on.
@@ -105,7 +106,7 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     {
         std::mem::swap(&mut best, second);
     }
-    if best.noise > DROWNED {
+    if best.noise.hypot(best.own) > DROWNED {
         return Err(Error::NoScalingRegion {
             reason: "noise hides the dynamics",
         });
