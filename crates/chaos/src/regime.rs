@@ -7,7 +7,7 @@
 use crate::autocorrelation::autocorrelation;
 use crate::delay::Times;
 use crate::error::{Error, checked};
-use crate::jacobian::{Exponent, exponent};
+use crate::exponent::{Exponent, exponent};
 use crate::local_map::{Model, local_map};
 use crate::neighbours::{Delays, Neighbours};
 use crate::surrogates::iaaft;
