@@ -2,6 +2,7 @@
 
 use crate::error::{Error, checked};
 use crate::neighbours::{Delays, Neighbours};
+use std::ops::RangeInclusive;
 
 /// Mean logarithm of the distance against samples, from 0 on.
 pub type Curve = Vec<f64>;
@@ -9,22 +10,23 @@ pub type Curve = Vec<f64>;
 /// Mean logarithm of the distance of each vector to the successors of its nearest neighbour
 /// (Rosenstein, Collins and De Luca 1993), for `steps` samples.
 pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve, Error> {
-    let (search, count) = search(delays, theiler, steps)?;
-    let mut sums = vec![0.0; steps + 1];
-    let mut counts = vec![0_usize; steps + 1];
-    for index in 0..count {
-        let Some(near) = search.nearest(index, 1).first().copied() else {
-            continue;
-        };
-        for (step, (sum, count)) in sums.iter_mut().zip(&mut counts).enumerate() {
-            let square = delays.squared_distance(index + step, near.index + step);
-            if square > 0.0 {
-                *sum += 0.5 * square.ln();
-                *count += 1;
-            }
+    let (search, _) = search(delays, theiler, steps)?;
+    let mut logarithms = MeanLogarithms::new(steps + 1);
+    let reach = steps + 1 + delays.span();
+    let mut squares = vec![0.0; reach];
+    for (index, near) in search.nearest_of_each().into_iter().enumerate() {
+        let Some(near) = near else { continue };
+        let (here, there) = (&delays.signal[index..], &delays.signal[near.index..]);
+        for ((square, a), b) in squares.iter_mut().zip(here).zip(there) {
+            *square = (a - b) * (a - b);
+        }
+        let row = logarithms.next_row();
+        for axis in 0..delays.dimension {
+            add(row, &squares[axis * delays.delay..]);
         }
     }
-    mean_curve(sums, &counts)
+    // The squares of the distances have twice the logarithm.
+    Ok(logarithms.means()?.iter().map(|l| 0.5 * l).collect())
 }
 
 /// Mean over the vectors of the logarithm of the mean distance, in the last coordinate, to the
@@ -37,23 +39,18 @@ pub fn kantz(
     neighbours: usize,
 ) -> Result<Curve, Error> {
     let (search, count) = search(delays, theiler, steps)?;
-    let last = delays.dimension - 1;
-    let mut sums = vec![0.0; steps + 1];
-    let mut counts = vec![0_usize; steps + 1];
+    let last = &delays.signal[delays.span()..];
+    let mut logarithms = MeanLogarithms::new(steps + 1);
     for index in 0..count {
         let near = search.nearest(index, neighbours);
-        for (step, (sum, count)) in sums.iter_mut().zip(&mut counts).enumerate() {
-            let apart: f64 = near
-                .iter()
-                .map(|n| (delays.at(index + step, last) - delays.at(n.index + step, last)).abs())
-                .sum();
-            if apart > 0.0 {
-                *sum += (apart / near.len() as f64).ln();
-                *count += 1;
+        let row = logarithms.next_row();
+        for n in &near {
+            for ((sum, a), b) in row.iter_mut().zip(&last[index..]).zip(&last[n.index..]) {
+                *sum += (a - b).abs() / near.len() as f64;
             }
         }
     }
-    mean_curve(sums, &counts)
+    logarithms.means()
 }
 
 fn search(delays: &Delays, theiler: usize, steps: usize) -> Result<(Neighbours, usize), Error> {
@@ -71,17 +68,76 @@ fn search(delays: &Delays, theiler: usize, steps: usize) -> Result<(Neighbours, 
     Ok((search, count))
 }
 
-fn mean_curve(sums: Vec<f64>, counts: &[usize]) -> Result<Curve, Error> {
-    if counts.contains(&0) {
-        return Err(Error::NoScalingRegion {
-            reason: "all neighbours coincide",
-        });
+fn add(row: &mut [f64], more: &[f64]) {
+    for (sum, x) in row.iter_mut().zip(more) {
+        *sum += x;
     }
-    Ok(sums
-        .iter()
-        .zip(counts)
-        .map(|(s, c)| s / *c as f64)
-        .collect())
+}
+
+/// Means over rows of the logarithms of their columns; zeros are left out.
+///
+/// The logarithm of a product costs as much as that of one factor, so rows are taken together.
+struct MeanLogarithms {
+    columns: usize,
+    /// Rows not summed yet, one after the other.
+    rows: Vec<f64>,
+    sums: Vec<f64>,
+    counts: Vec<usize>,
+}
+
+/// Rows taken together.
+const TOGETHER: usize = 8;
+/// A product of so many factors in this range neither overflows nor loses digits.
+const PLAIN: RangeInclusive<f64> = 1e-38..=1e38;
+
+impl MeanLogarithms {
+    fn new(columns: usize) -> Self {
+        Self {
+            columns,
+            rows: Vec::with_capacity(TOGETHER * columns),
+            sums: vec![0.0; columns],
+            counts: vec![0; columns],
+        }
+    }
+
+    /// A row of zeros, to be filled.
+    fn next_row(&mut self) -> &mut [f64] {
+        if self.rows.len() == TOGETHER * self.columns {
+            self.sum_rows();
+        }
+        let end = self.rows.len();
+        self.rows.resize(end + self.columns, 0.0);
+        &mut self.rows[end..]
+    }
+
+    fn sum_rows(&mut self) {
+        for column in 0..self.columns {
+            let factors = self.rows[column..].iter().step_by(self.columns);
+            if factors.clone().all(|x| PLAIN.contains(x)) {
+                self.counts[column] += factors.len();
+                self.sums[column] += factors.product::<f64>().ln();
+            } else {
+                for x in factors.filter(|x| **x > 0.0) {
+                    self.counts[column] += 1;
+                    self.sums[column] += x.ln();
+                }
+            }
+        }
+        self.rows.clear();
+    }
+
+    fn means(mut self) -> Result<Vec<f64>, Error> {
+        if !self.rows.is_empty() {
+            self.sum_rows();
+        }
+        if self.counts.contains(&0) {
+            return Err(Error::NoScalingRegion {
+                reason: "all neighbours coincide",
+            });
+        }
+        let pairs = self.sums.iter().zip(&self.counts);
+        Ok(pairs.map(|(sum, count)| sum / *count as f64).collect())
+    }
 }
 
 #[cfg(test)]
