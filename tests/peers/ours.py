@@ -58,7 +58,7 @@ def cpu_time(work, at_least=1.0):
 
 
 def process(command, runs=9):
-    """CPU time, s (the least of several), and memory, MB, of a whole process."""
+    """CPU time of a whole process, s, the least of several."""
     least = float("inf")
     for _ in range(runs):
         child = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL)
@@ -67,4 +67,4 @@ def process(command, runs=9):
         if child.returncode:
             raise subprocess.CalledProcessError(child.returncode, command)
         least = min(least, usage.ru_utime + usage.ru_stime)
-    return least, usage.ru_maxrss / 1024
+    return least

@@ -61,14 +61,15 @@ def divergence():
         path = ours.samples(chaos, system, LENGTH, 1)
         delay, theiler = (int(n) for n in ours.measures(chaos, "times", path)["times"][1])
         curve = ours.SIGNALS / "curve.txt"
-        theirs, _ = ours.process([tisean, f"-m{DIMENSION}", f"-d{delay}", f"-t{theiler}", f"-s{STEPS}",
-                                  "-V0", "-o", curve, path])
+        theirs = ours.process([tisean, f"-m{DIMENSION}", f"-d{delay}", f"-t{theiler}", f"-s{STEPS}",
+                               "-V0", "-o", curve, path])
         command = [chaos, "curve", path, DIMENSION, delay, theiler, STEPS]
-        own, memory = ours.process(command)
-        found = np.array(ours.measures(*command)["curve"][1])
+        own = ours.process(command)
+        found = ours.measures(*command)
+        memory = found["memory"][1][0]
         # lyap_r scales the signal to a range of 1, which shifts the curve.
         x = np.loadtxt(path)
-        difference = np.abs(np.loadtxt(curve)[:, 1] + math.log(np.ptp(x)) - found).max()
+        difference = np.abs(np.loadtxt(curve)[:, 1] + math.log(np.ptp(x)) - found["curve"][1]).max()
         row(system, ms(theirs), ms(own), f"{theirs / own:.1f}", f"{memory:.1f}", f"{difference:.0e}")
         if difference > 2e-2:
             differences.append(f"divergence curve of {system}: {difference}")

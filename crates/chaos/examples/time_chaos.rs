@@ -3,7 +3,7 @@
 //! ```sh
 //! time_chaos samples SYSTEM LENGTH SEED NOISE         # one sample per line
 //! time_chaos times FILE                               # delay, Theiler window
-//! time_chaos curve FILE DIMENSION DELAY THEILER STEPS # divergence curve
+//! time_chaos curve FILE DIMENSION DELAY THEILER STEPS # divergence curve, memory used (MB)
 //! time_chaos exponent FILE                            # exponent per sample, its interval
 //! time_chaos measures FILE DIMENSION STEPS            # all measures with their times
 //! ```
@@ -47,7 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 delay: delay.parse()?,
             };
             let curve = rosenstein(&delays, theiler.parse()?, steps.parse()?)?;
-            print("curve", 0.0, &curve)
+            print("curve", 0.0, &curve)?;
+            print("memory", 0.0, &[most_memory()?])
         }
         ["exponent", path] => {
             let signal = read(path)?;
@@ -118,4 +119,12 @@ fn thread_time() -> Result<f64, Box<dyn Error>> {
     let counts = std::fs::read_to_string("/proc/thread-self/schedstat")?;
     let nanoseconds = counts.split(' ').next().ok_or("an empty schedstat")?;
     Ok(nanoseconds.parse::<f64>()? * 1e-9)
+}
+
+/// The most memory that this process had, MB, as Linux counts it.
+fn most_memory() -> Result<f64, Box<dyn Error>> {
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|l| l.trim().strip_suffix(" kB"));
+    Ok(kilobytes.ok_or("no VmHWM")?.parse::<f64>()? / 1024.0)
 }

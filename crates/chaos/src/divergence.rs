@@ -2,7 +2,7 @@
 
 use crate::error::{Error, checked};
 use crate::neighbours::{Delays, Neighbours};
-use std::ops::RangeInclusive;
+use std::f64::consts::LN_2;
 
 /// Mean logarithm of the distance against samples, from 0 on.
 pub type Curve = Vec<f64>;
@@ -20,10 +20,12 @@ pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve
         for ((square, a), b) in squares.iter_mut().zip(here).zip(there) {
             *square = (a - b) * (a - b);
         }
-        let row = logarithms.next_row();
-        for axis in 0..delays.dimension {
-            add(row, &squares[axis * delays.delay..]);
-        }
+        logarithms.add(|row| {
+            for axis in 0..delays.dimension {
+                let squares = &squares[axis * delays.delay..];
+                row.iter_mut().zip(squares).for_each(|(sum, x)| *sum += x);
+            }
+        });
     }
     // The squares of the distances have twice the logarithm.
     Ok(logarithms.means()?.iter().map(|l| 0.5 * l).collect())
@@ -43,12 +45,14 @@ pub fn kantz(
     let mut logarithms = MeanLogarithms::new(steps + 1);
     for index in 0..count {
         let near = search.nearest(index, neighbours);
-        let row = logarithms.next_row();
-        for n in &near {
-            for ((sum, a), b) in row.iter_mut().zip(&last[index..]).zip(&last[n.index..]) {
-                *sum += (a - b).abs() / near.len() as f64;
+        logarithms.add(|row| {
+            for n in &near {
+                let pairs = last[index..].iter().zip(&last[n.index..]);
+                for (sum, (a, b)) in row.iter_mut().zip(pairs) {
+                    *sum += (a - b).abs() / near.len() as f64;
+                }
             }
-        }
+        });
     }
     logarithms.means()
 }
@@ -68,75 +72,82 @@ fn search(delays: &Delays, theiler: usize, steps: usize) -> Result<(Neighbours, 
     Ok((search, count))
 }
 
-fn add(row: &mut [f64], more: &[f64]) {
-    for (sum, x) in row.iter_mut().zip(more) {
-        *sum += x;
-    }
-}
-
 /// Means over rows of the logarithms of their columns; zeros are left out.
 ///
-/// The logarithm of a product costs as much as that of one factor, so rows are taken together.
+/// A number is its mantissa, 1 to 2, times a power of two. Exponents are added and mantissas
+/// multiplied, so that there is one logarithm for many rows.
 struct MeanLogarithms {
-    columns: usize,
-    /// Rows not summed yet, one after the other.
-    rows: Vec<f64>,
+    /// Of each column: the logarithm of the mantissas put away,
     sums: Vec<f64>,
-    counts: Vec<usize>,
+    /// the product of the others,
+    mantissas: Vec<f64>,
+    /// the sum of the exponents, as they stand in the bits,
+    exponents: Vec<u64>,
+    /// and how many numbers count.
+    counts: Vec<u64>,
+    row: Vec<f64>,
+    rows: u64,
 }
 
-/// Rows taken together.
-const TOGETHER: usize = 8;
-/// A product of so many factors in this range neither overflows nor loses digits.
-const PLAIN: RangeInclusive<f64> = 1e-38..=1e38;
+/// Rows whose mantissas are multiplied; twice as many would not fit into a number.
+const TOGETHER: u64 = 512;
+/// The bits of the mantissa, and the exponent of 1.
+const DIGITS: u32 = f64::MANTISSA_DIGITS - 1;
+const ONE: u64 = 1.0_f64.to_bits();
 
 impl MeanLogarithms {
     fn new(columns: usize) -> Self {
         Self {
-            columns,
-            rows: Vec::with_capacity(TOGETHER * columns),
             sums: vec![0.0; columns],
+            mantissas: vec![1.0; columns],
+            exponents: vec![0; columns],
             counts: vec![0; columns],
+            row: vec![0.0; columns],
+            rows: 0,
         }
     }
 
-    /// A row of zeros, to be filled.
-    fn next_row(&mut self) -> &mut [f64] {
-        if self.rows.len() == TOGETHER * self.columns {
-            self.sum_rows();
+    /// Takes the row that `fill` makes of zeros. A zero, or a number too small to have all its
+    /// digits, does not count; a 1 stands for it.
+    fn add(&mut self, fill: impl FnOnce(&mut [f64])) {
+        self.row.fill(0.0);
+        fill(&mut self.row);
+        let parts = self.mantissas.iter_mut().zip(&mut self.exponents);
+        let columns = parts.zip(&mut self.counts);
+        for (x, ((mantissa, exponent), count)) in self.row.iter().zip(columns) {
+            let counts = *x >= f64::MIN_POSITIVE;
+            let bits = if counts { x.to_bits() } else { ONE };
+            *count += u64::from(counts);
+            *exponent += bits >> DIGITS;
+            *mantissa *= f64::from_bits(bits & ((1 << DIGITS) - 1) | ONE);
         }
-        let end = self.rows.len();
-        self.rows.resize(end + self.columns, 0.0);
-        &mut self.rows[end..]
+        self.rows += 1;
+        if self.rows.is_multiple_of(TOGETHER) {
+            self.put_away();
+        }
     }
 
-    fn sum_rows(&mut self) {
-        for column in 0..self.columns {
-            let factors = self.rows[column..].iter().step_by(self.columns);
-            if factors.clone().all(|x| PLAIN.contains(x)) {
-                self.counts[column] += factors.len();
-                self.sums[column] += factors.product::<f64>().ln();
-            } else {
-                for x in factors.filter(|x| **x > 0.0) {
-                    self.counts[column] += 1;
-                    self.sums[column] += x.ln();
-                }
-            }
+    fn put_away(&mut self) {
+        for (sum, mantissa) in self.sums.iter_mut().zip(&mut self.mantissas) {
+            *sum += mantissa.ln();
+            *mantissa = 1.0;
         }
-        self.rows.clear();
     }
 
     fn means(mut self) -> Result<Vec<f64>, Error> {
-        if !self.rows.is_empty() {
-            self.sum_rows();
-        }
+        self.put_away();
         if self.counts.contains(&0) {
             return Err(Error::NoScalingRegion {
                 reason: "all neighbours coincide",
             });
         }
-        let pairs = self.sums.iter().zip(&self.counts);
-        Ok(pairs.map(|(sum, count)| sum / *count as f64).collect())
+        let of_ones = self.rows * (ONE >> DIGITS);
+        let columns = self.sums.iter().zip(&self.exponents).zip(&self.counts);
+        let mean = |((sum, exponent), count): ((&f64, &u64), &u64)| {
+            let powers = exponent.wrapping_sub(of_ones) as i64;
+            (sum + powers as f64 * LN_2) / *count as f64
+        };
+        Ok(columns.map(mean).collect())
     }
 }
 
@@ -160,6 +171,28 @@ mod tests {
             let slope = (curve[4] - curve[1]) / 3.0;
             assert!((slope - 2.0_f64.ln()).abs() < 0.06, "{curve:?}");
         }
+    }
+
+    #[test]
+    fn logarithms_are_those_of_each_number() {
+        let columns = [[1e-200, 3.0], [0.0, 2.5e250], [7.5e180, 1e-3]];
+        let mut logarithms = MeanLogarithms::new(2);
+        for _ in 0..700 {
+            for column in columns {
+                logarithms.add(|row| row.copy_from_slice(&column));
+            }
+        }
+        let means = logarithms.means().unwrap();
+        let expected = [
+            (1e-200_f64.ln() + 7.5e180_f64.ln()) / 2.0,
+            (3.0_f64.ln() + 2.5e250_f64.ln() + 1e-3_f64.ln()) / 3.0,
+        ];
+        for (found, expected) in means.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
+        let mut nothing = MeanLogarithms::new(1);
+        nothing.add(|_| {});
+        assert!(nothing.means().is_err());
     }
 
     #[test]
