@@ -3,6 +3,7 @@
 Import it before numpy: the libraries read their number of threads when they are loaded.
 """
 
+import functools
 import os
 import re
 import subprocess
@@ -19,6 +20,7 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 SIGNALS = TARGET / "peers-signals"
 
 
+@functools.cache
 def build(crate, example):
     """The path of a crate's example, built for release."""
     command = ["cargo", "build", "--quiet", "--release", "--package", crate, "--example", example]
@@ -35,6 +37,7 @@ def samples(chaos, system, length, seed, noise=0.0):
     return path
 
 
+@functools.cache
 def measures(*command):
     """Name: (CPU time in s, numbers found) of each line that an example prints."""
     text = subprocess.run([str(c) for c in command], check=True, capture_output=True, text=True).stdout
@@ -46,12 +49,11 @@ def measures(*command):
 
 
 def cpu_time(work, at_least=1.0):
-    """CPU time of one run, s (the least of several, after one to warm up), and the result."""
-    result = work()
-    least, spent = float("inf"), 0.0
+    """CPU time of one run, s (the least of several), and the result. What takes long runs once."""
+    least, spent, result = float("inf"), 0.0, None
     while spent < at_least:
         start = time.process_time()
-        work()
+        result = work()
         passed = time.process_time() - start
         least, spent = min(least, passed), spent + passed
     return least, result

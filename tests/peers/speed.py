@@ -1,14 +1,16 @@
 """How fast the measures of this project are beside those of their peers, one thread each.
 
-    python tests/peers/speed.py [SECTION...]
+    python tests/peers/speed.py [SECTION...] [--systems ...]
 
-Sections: divergence, chaos, classic, kurtogram; all unless told. The table is printed as Markdown.
+Sections: divergence, entropy, recurrence, analysis, classic, kurtogram; all unless told. The tables
+are printed as Markdown.
 A peer's values are compared with ours where both compute the same thing; exit status 1 if they
 differ.
 """
 
 import ours  # noqa: I001  (sets the number of threads)
 
+import argparse
 import math
 import shutil
 import sys
@@ -48,7 +50,7 @@ def compare(what, found, expected, tolerance):
 # ---- the divergence curve
 
 
-def divergence():
+def divergence(systems):
     """Whole processes on the same file: read it, find the curve, write it."""
     tisean = shutil.which("lyap_r")
     if tisean is None:
@@ -56,8 +58,9 @@ def divergence():
         return
     chaos = ours.build("chaos", "time_chaos")
     header(f"Divergence curve, {LENGTH} samples, dimension {DIMENSION}, {STEPS} steps: whole processes",
-           "signal", "TISEAN lyap_r (ms)", "ours (ms)", "ratio", "ours (MB)", "largest difference of the curves")
-    for system in SYSTEMS:
+           "signal", "TISEAN lyap_r (ms)", "ours (ms)", "ratio", "ours (MB)",
+           "largest difference of the curves")
+    for system in systems:
         path = ours.samples(chaos, system, LENGTH, 1)
         delay, theiler = (int(n) for n in ours.measures(chaos, "times", path)["times"][1])
         curve = ours.SIGNALS / "curve.txt"
@@ -114,7 +117,8 @@ def recurrences(x, delay, theiler, radius):
         return found.determinism, found.average_diagonal_line
 
     def with_pyunicorn():
-        plot = RecurrencePlot(x, dim=DIMENSION, tau=delay, metric="euclidean", threshold=radius, silence_level=2)
+        plot = RecurrencePlot(
+            x, dim=DIMENSION, tau=delay, metric="euclidean", threshold=radius, silence_level=2)
         plot.laminarity(), plot.trapping_time(), plot.diag_entropy(), plot.max_diaglength()
         return plot.determinism(), plot.average_diaglength()
 
@@ -130,41 +134,48 @@ def recurrences(x, delay, theiler, radius):
     yield "rqa-analysis", with_rqa_analysis, False
 
 
-def chaos():
+def measured(system):
+    """A signal, and what ours finds in it."""
     binary = ours.build("chaos", "time_chaos")
-    entropies, plots, whole = [], [], []
-    for system in SYSTEMS:
-        path = ours.samples(binary, system, LENGTH, 1)
-        x = np.loadtxt(path)
-        found = ours.measures(binary, "measures", path, DIMENSION, STEPS)
-        delay, theiler = (int(n) for n in found["times"][1])
-        spread = 0.2 * x.std()
+    path = ours.samples(binary, system, LENGTH, 1)
+    return np.loadtxt(path), ours.measures(binary, "measures", path, DIMENSION, STEPS)
 
+
+def entropy(systems):
+    header(f"Sample entropy, {LENGTH} samples", "signal", "peer", "peer (ms)", "ours (ms)", "ratio")
+    for system in systems:
+        x, found = measured(system)
         own, [value] = found["sample_entropy"]
-        for name, work in sample_entropies(x, spread):
-            # The slow ones take seconds: once is enough.
-            seconds, expected = ours.cpu_time(work, at_least=0.3)
-            entropies.append((system, f"{name} {version(name)}", ms(seconds), ms(own), f"{seconds / own:.1f}"))
+        for name, work in sample_entropies(x, 0.2 * x.std()):
+            if name == "antropy":
+                work()  # compiled by its first call
+            seconds, expected = ours.cpu_time(work)
+            row(system, name, ms(seconds), ms(own), f"{seconds / own:.1f}")
             compare(f"sample entropy of {system} by {name}", value, expected, 1e-9)
 
+
+def recurrence(systems):
+    header(f"Recurrence measures, {VECTORS} vectors", "signal", "peer", "peer (ms)", "ours (ms)", "ratio")
+    for system in systems:
+        x, found = measured(system)
+        delay, theiler = (int(n) for n in found["times"][1])
         own, numbers = found["recurrence"]
         head = x[: VECTORS + (DIMENSION - 1) * delay]
-        for name, work, same in recurrences(head, delay, theiler, spread):
-            seconds, expected = ours.cpu_time(work, at_least=0.3)
-            plots.append((system, f"{name} {version(name)}", ms(seconds), ms(own), f"{seconds / own:.1f}"))
+        for name, work, same in recurrences(head, delay, theiler, 0.2 * x.std()):
+            work()  # PyRQA compiles its kernels in its first call
+            seconds, expected = ours.cpu_time(work)
+            row(system, name, ms(seconds), ms(own), f"{seconds / own:.1f}")
             if same:
                 compare(f"recurrence of {system} by {name}", numbers[1:3], expected, 1e-3)
 
-        curve, analysis = found["divergence"][0], found["exponent"][0]
-        whole.append((system, ms(curve), ms(analysis), f"{analysis / curve:.1f}"))
-    for title, rows in ((f"Sample entropy, {LENGTH} samples", entropies),
-                        (f"Recurrence measures, {VECTORS} vectors", plots)):
-        header(title, "signal", "peer", "peer (ms)", "ours (ms)", "ratio")
-        for cells in rows:
-            row(*cells)
-    header(f"Full automatic analysis of {LENGTH} samples", "signal", "divergence curve (ms)", "analysis (ms)", "ratio")
-    for cells in whole:
-        row(*cells)
+
+def analysis(systems):
+    header(f"Full automatic analysis of {LENGTH} samples",
+           "signal", "divergence curve (ms)", "analysis (ms)", "ratio")
+    for system in systems:
+        _, found = measured(system)
+        curve, whole = found["divergence"][0], found["exponent"][0]
+        row(system, ms(curve), ms(whole), f"{whole / curve:.1f}")
 
 
 # ---- the classic set
@@ -211,7 +222,8 @@ def envelope_by_transform(x, window):
     bins = fft.rfft(x - line)
     frequency = np.arange(len(bins)) * RATE / len(x)
     centre, width = 0.15 * RATE, 0.1 * RATE
-    shape = np.where(np.abs(frequency - centre) < width, np.cos(np.pi * (frequency - centre) / (2 * width)) ** 2, 0)
+    away = (frequency - centre) / width
+    shape = np.where(np.abs(away) < 1, np.cos(0.5 * np.pi * away) ** 2, 0)
     whole = np.zeros(len(x), complex)
     whole[: len(bins)] = 2 * bins * shape
     envelope = np.abs(fft.ifft(whole))
@@ -225,10 +237,11 @@ def envelope_by_filter(x, window):
     return spectrum(envelope - envelope.mean(), window)
 
 
-def classic():
+def classic(_):
     x, path = knocks()
     found = ours.measures(ours.build("features", "time_signals"), path)
-    header(f"Classic set, {len(x)} samples, SciPy {version('scipy')}", "part", "SciPy (ms)", "ours (ms)", "ratio")
+    header(f"Classic set, {len(x)} samples, SciPy {version('scipy')}",
+           "part", "SciPy (ms)", "ours (ms)", "ratio")
 
     def hann():
         return signal.windows.hann(len(x), sym=False)
@@ -308,7 +321,7 @@ def kurtogram_by_transform(x, most):
     return found
 
 
-def kurtogram():
+def kurtogram(_):
     x, path = knocks()
     own, (largest, *_, cells) = ours.measures(ours.build("features", "time_signals"), path)["kurtogram"]
     halves, thirds = filters()
@@ -323,13 +336,18 @@ def kurtogram():
     compare("largest kurtosis", largest, max(bands), 1e-6)
 
 
-SECTIONS = {f.__name__: f for f in (divergence, chaos, classic, kurtogram)}
+SECTIONS = {f.__name__: f for f in (divergence, entropy, recurrence, analysis, classic, kurtogram)}
 
 if __name__ == "__main__":
-    unknown = set(sys.argv[1:]) - set(SECTIONS)
+    arguments = argparse.ArgumentParser(description="Compare speeds.")
+    # Choices of a list that may be empty need their own check.
+    arguments.add_argument("sections", nargs="*", help=", ".join(SECTIONS))
+    arguments.add_argument("--systems", nargs="+", choices=SYSTEMS, default=SYSTEMS)
+    arguments = arguments.parse_args()
+    unknown = set(arguments.sections) - set(SECTIONS)
     if unknown:
         sys.exit(f"speed.py: no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
-    for name in sys.argv[1:] or SECTIONS:
-        SECTIONS[name]()
+    for name in arguments.sections or SECTIONS:
+        SECTIONS[name](arguments.systems)
     if differences:
         sys.exit("speed.py: " + "\n".join(differences))
