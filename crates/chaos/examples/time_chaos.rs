@@ -15,7 +15,7 @@ use chaos::delay::{Times, times};
 use chaos::divergence::rosenstein;
 use chaos::entropy::sample_entropy;
 use chaos::error::checked;
-use chaos::jacobian::exponent;
+use chaos::exponent::exponent;
 use chaos::neighbours::Delays;
 use chaos::recurrence::recurrence;
 use chaos::test_systems::{System, with_noise};

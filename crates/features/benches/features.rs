@@ -22,7 +22,7 @@ fn window(c: &mut Criterion) {
         .collect();
     let window = Window {
         sample_rate: 6000.0,
-        speed_rpm: 600.0,
+        speed_rpm: Some(600.0),
         crank_angle: None,
         channels: &channels,
     };

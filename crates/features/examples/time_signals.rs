@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }];
     let window = Window {
         sample_rate: *rate,
-        speed_rpm: 600.0,
+        speed_rpm: Some(600.0),
         crank_angle: None,
         channels: &channels,
     };
