@@ -9,6 +9,7 @@ pub mod dimension;
 pub mod divergence;
 pub mod entropy;
 pub mod error;
+pub mod forced;
 pub mod jacobian;
 pub mod local_map;
 pub mod neighbours;
