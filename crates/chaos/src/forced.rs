@@ -37,7 +37,7 @@ impl Scatter {
     }
 }
 
-/// A rate with its 95 % interval, nats per cycle.
+/// A rate with its 95 % interval, in nats per cycle or per sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
     /// Best estimate.
@@ -48,6 +48,17 @@ pub struct Growth {
     pub high: f64,
 }
 
+impl Growth {
+    /// The rate per sample of a cycle of `samples`.
+    pub fn per(self, samples: f64) -> Self {
+        Self {
+            value: self.value / samples,
+            low: self.low / samples,
+            high: self.high / samples,
+        }
+    }
+}
+
 /// Fewest cycles: each of the blocks for the standard error has two.
 pub const FEWEST_CYCLES: usize = 2 * BLOCKS;
 /// Fewest samples of a cycle.
@@ -56,8 +67,8 @@ const FEWEST_SAMPLES: usize = 8;
 const PHASES: usize = 16;
 const LAGS: usize = 16;
 /// Blocks of the jackknife, and the two-sided 95 % quantile of Student's t for them.
-const BLOCKS: usize = 10;
-const QUANTILE: f64 = 2.262;
+const BLOCKS: usize = 8;
+const QUANTILE: f64 = 2.365;
 
 /// The scatter of a signal with `per_cycle` samples in each cycle of its drive.
 pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
@@ -99,7 +110,7 @@ pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
 }
 
 /// The signal without its mean cycle.
-fn residual(signal: &[f64], per_cycle: usize) -> Vec<f64> {
+pub(crate) fn residual(signal: &[f64], per_cycle: usize) -> Vec<f64> {
     let cycles = (signal.len() / per_cycle) as f64;
     let mut mean = vec![0.0; per_cycle];
     for cycle in signal.chunks_exact(per_cycle) {

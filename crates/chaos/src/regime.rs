@@ -9,8 +9,8 @@
 use crate::autocorrelation::autocorrelation;
 use crate::delay::Times;
 use crate::error::{Error, checked};
-use crate::forced::{FEWEST_CYCLES, Scatter, scatter};
-use crate::jacobian::{Exponent, exponent};
+use crate::forced::{FEWEST_CYCLES, Growth, Scatter, residual, scatter};
+use crate::jacobian::exponent;
 use crate::local_map::{Model, local_map};
 use crate::neighbours::{Delays, Neighbours};
 use crate::surrogates::{Comparison, compare, iaaft};
@@ -59,15 +59,16 @@ impl Regime {
 pub struct Verdict {
     /// The kind of motion.
     pub regime: Regime,
-    /// Largest autocorrelation at lags from a quarter to half of the signal.
+    /// Largest autocorrelation at lags from a quarter to half of the signal; of its scatter, where a
+    /// drive is known.
     pub recurrence: f64,
     /// What differs from cycle to cycle; `None` where not more than half of the signal repeats itself.
     pub scatter: Option<Scatter>,
     /// Whether the signal is better predicted than its surrogates are; `None` where the question was
     /// not asked.
     pub predictability: Option<Comparison>,
-    /// The exponent; `None` where it was not needed.
-    pub exponent: Option<Exponent>,
+    /// The exponent, nats per sample; `None` where it was not needed.
+    pub exponent: Option<Growth>,
 }
 
 /// Autocorrelation at long lags from which a signal without a period counts as repeating itself.
@@ -117,6 +118,7 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         verdict.scatter = Some(scatter);
         if scatter.is_chaotic() && scatter.share > RESOLVED {
             verdict.regime = Regime::Chaotic;
+            verdict.exponent = period.map(|period| scatter.growth.per(period));
             return Ok(verdict);
         }
         if repeats || !scatter.is_deterministic() {
@@ -140,8 +142,39 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     if exponent.low > 0.0 {
         verdict.regime = Regime::Chaotic;
     }
-    verdict.exponent = Some(exponent);
+    verdict.exponent = Some(Growth {
+        value: exponent.value,
+        low: exponent.low,
+        high: exponent.high,
+    });
     Ok(verdict)
+}
+
+/// The verdict on a signal of which a drive repeats more than half, with `per_cycle` samples in each of
+/// its cycles; `None` where the drive repeats
+/// less: then [`verdict`] serves.
+pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict>, Error> {
+    let scatter = scatter(signal, per_cycle)?;
+    if scatter.share * scatter.share > HALF {
+        return Ok(None);
+    }
+    let rest = unbiased_correlation(&residual(signal, per_cycle));
+    let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
+    let regime = match () {
+        () if !scatter.is_deterministic() => Regime::Periodic,
+        () if scatter.is_chaotic() => Regime::Chaotic,
+        // The scatter itself repeats itself: after several cycles, or after other times.
+        () if recurrence >= REPEATS && period(&rest).is_some() => Regime::Periodic,
+        () if recurrence >= REPEATS => Regime::QuasiPeriodic,
+        () => Regime::Undecided,
+    };
+    Ok(Some(Verdict {
+        regime,
+        recurrence,
+        scatter: Some(scatter),
+        predictability: None,
+        exponent: (regime == Regime::Chaotic).then(|| scatter.growth.per(per_cycle as f64)),
+    }))
 }
 
 /// The signal interpolated (cubic: Keys 1981) to the next whole number of samples in a period, 8 at

@@ -14,12 +14,18 @@
 //! A new feature is a function where its signal processing lives, and a line in the table.
 
 mod envelope;
+mod missing;
+mod motion;
 mod reason;
+mod row;
 mod spectral;
 mod statistics;
 mod table;
 
+pub use missing::missing;
+pub use motion::{Motion, motion, motion_definitions};
 pub use reason::Reason;
+pub use row::{Cell, Content, columns, row};
 
 use envelope::Envelope;
 use signal::channel::Channel;
@@ -50,9 +56,10 @@ pub struct Definition {
 pub struct Window<'a> {
     /// Sample rate, Hz.
     pub sample_rate: f64,
-    /// Mean speed of the shaft, rpm. Used where there is no crank angle.
-    pub speed_rpm: f64,
-    /// Crank angle of each sample in [0, 2π), rad. Without one the speed is taken as constant.
+    /// Mean speed of the shaft, rpm, if it is known. Used where there is no crank angle.
+    pub speed_rpm: Option<f64>,
+    /// Crank angle of each sample in [0, 2π), rad. Without one the speed is taken as constant;
+    /// without either, what is said per revolution, order or crank angle has no value.
     pub crank_angle: Option<&'a [f32]>,
     /// The channels, all as long as the crank angle. One named `crank_angle_rad` is passed over.
     pub channels: &'a [Channel],

@@ -52,6 +52,8 @@ pub struct Plan {
     pub settings: Settings,
     /// How the Lyapunov exponent of each case is computed, where it is asked for.
     pub exponent: Option<ExponentSettings>,
+    /// Whether the kind of motion is told from the recorded signals.
+    pub chaos: bool,
     /// How recordings are cut.
     pub windows: Option<Windows>,
     /// Shares of train, validation and test.
@@ -141,6 +143,7 @@ impl Plan {
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
             exponent: exponent(&file.run)?,
+            chaos: file.run.chaos.unwrap_or(true),
             windows: file.windows,
             shares: shares(file)?,
             format: file.format,
