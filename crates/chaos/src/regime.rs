@@ -4,15 +4,19 @@
 //! [`forced`](crate::forced) does: noise, or deterministic and growing (then the motion is chaotic).
 //! Does it nearly repeat itself after other times? Then it is quasi-periodic. Else: is it better
 //! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Does the
-//! interval of its exponent lie above 0 (then it is chaotic)? What is left is undecided.
+//! interval of its exponent lie above 0 (then it is chaotic), or, where it holds 0, that of the rate at
+//! which neighbours part? What is left is undecided.
 
 use crate::autocorrelation::autocorrelation;
 use crate::delay::Times;
+use crate::dimension::unfolding;
+use crate::divergence::rosenstein;
 use crate::error::{Error, checked};
 use crate::forced::{FEWEST_CYCLES, Growth, Scatter, residual, scatter};
 use crate::jacobian::exponent;
 use crate::local_map::{Model, local_map};
-use crate::neighbours::{Delays, Neighbours};
+use crate::neighbours::{Delays, LARGEST_DIMENSION, Neighbours};
+use crate::scaling_region::{Fit, scaling_region};
 use crate::surrogates::{Comparison, compare, iaaft};
 use rand::SeedableRng;
 use scalar::random::Stream;
@@ -139,15 +143,49 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         return Ok(verdict);
     }
     let exponent = exponent(signal, times)?;
-    if exponent.low > 0.0 {
-        verdict.regime = Regime::Chaotic;
-    }
-    verdict.exponent = Some(Growth {
+    let by_maps = Growth {
         value: exponent.value,
         low: exponent.low,
         high: exponent.high,
-    });
+    };
+    // Local maps can disagree, on a coarsely quantised signal for one, where neighbours part clearly.
+    let by_parting = || parting(signal, times).ok();
+    let exponent = match by_maps.low > 0.0 || by_maps.high < 0.0 {
+        true => by_maps,
+        false => by_parting().unwrap_or(by_maps),
+    };
+    if exponent.low > 0.0 {
+        verdict.regime = Regime::Chaotic;
+    }
+    verdict.exponent = Some(exponent);
     Ok(verdict)
+}
+
+/// The rate at which nearest neighbours part, from the straight part of their divergence curve, with
+/// the spread of the rates in dimensions beside that of the unfolded attractor.
+fn parting(signal: &[f64], times: &Times) -> Result<Growth, Error> {
+    let unfolded = unfolding(signal, times, LARGEST_DIMENSION - 2)?.dimension();
+    let steps = (10.0 * times.mean_period).min(signal.len() as f64 / 10.0) as usize;
+    let fits = (unfolded..=unfolded + 2)
+        .map(|dimension| {
+            let delays = Delays {
+                signal,
+                dimension,
+                delay: times.delay,
+            };
+            scaling_region(&rosenstein(&delays, times.theiler, steps)?, times.delay)
+        })
+        .collect::<Result<Vec<Fit>, Error>>()?;
+    let count = fits.len() as f64;
+    let value = fits.iter().map(|f| f.slope).sum::<f64>() / count;
+    let square = fits.iter().map(|f| (f.slope - value).powi(2)).sum::<f64>() / (count - 1.0);
+    // The two-sided 95 % quantile of Student's t for the spread of three.
+    let half = 4.303 * square.sqrt().max(fits[0].standard_error);
+    Ok(Growth {
+        value,
+        low: value - half,
+        high: value + half,
+    })
 }
 
 /// The verdict on a signal of which a drive repeats more than half, with `per_cycle` samples in each of

@@ -122,26 +122,23 @@ pub struct Comparison {
     pub significant: bool,
 }
 
-/// Surrogates that the signal must stand below, all of them, where nothing is clear before: one
-/// chance in 40 (rank test: Theiler et al. 1992).
-const SURROGATES: usize = 39;
-/// Numbers of surrogates after which a clear difference ends the test: the one-sided 0.1 % quantile
-/// of Student's t, for the prediction of one more value from that many.
+/// Numbers of surrogates after which is looked whether the signal differs clearly, and the one-sided
+/// 0.1 % quantiles of Student's t, for the prediction of one more value from that many. Three looks
+/// call at most three signals in a thousand different that are not.
 const LOOKS: [(usize, f64); 3] = [(5, 7.173), (10, 4.297), (20, 3.579)];
 
-/// Compares a statistic that is small where the signal is deterministic with those of surrogates.
-/// From the fifth on a surrogate that does as well ends the test, as does a clear difference, so most
-/// signals need a few surrogates only. `None` where a surrogate has no statistic.
+/// Compares a statistic that is small where the signal is deterministic with those of surrogates. The
+/// test ends with a clear difference, or with a surrogate that does as well, so most signals need a few
+/// surrogates only. `None` where a surrogate has no statistic.
 pub fn compare(own: f64, mut surrogate: impl FnMut() -> Option<f64>) -> Option<Comparison> {
     let mut others: Vec<f64> = Vec::new();
-    let mut significant = true;
-    while others.len() < LOOKS[0].0 || others.len() < SURROGATES && significant {
-        others.push(surrogate()?);
-        significant &= others[others.len() - 1] > own;
-        let look = LOOKS.iter().find(|(count, _)| *count == others.len());
-        if look.is_some_and(|(count, quantile)| {
-            deviations(own, &others) > quantile * (1.0 + 1.0 / *count as f64).sqrt()
-        }) {
+    let mut significant = false;
+    for (count, quantile) in LOOKS {
+        while others.len() < count {
+            others.push(surrogate()?);
+        }
+        significant = deviations(own, &others) > quantile * (1.0 + 1.0 / count as f64).sqrt();
+        if significant || others.iter().any(|other| *other <= own) {
             break;
         }
     }
