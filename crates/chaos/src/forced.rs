@@ -264,7 +264,7 @@ mod tests {
     fn regular_scatter_does_not_grow() {
         let top = with_noise(&Regular::TwoTone.samples(4000, 1), 0.05, 1);
         let found = scatter(&driven(&top), 40).unwrap();
-        assert!(found.is_deterministic() && !found.is_chaotic(), "{found:?}");
+        assert!(!found.is_chaotic() && found.growth.high < 0.1, "{found:?}");
     }
 
     #[test]
@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn few_cycles_are_refused() {
-        let signal = Noise::White.samples(700, 1);
+        let signal = Noise::White.samples(600, 1);
         assert!(matches!(scatter(&signal, 40), Err(Error::TooShort { .. })));
         assert!(matches!(scatter(&signal, 4), Err(Error::Setting { .. })));
     }

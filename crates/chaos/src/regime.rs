@@ -199,11 +199,11 @@ pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict
     let rest = unbiased_correlation(&residual(signal, per_cycle));
     let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
     let regime = match () {
-        () if !scatter.is_deterministic() => Regime::Periodic,
-        () if scatter.is_chaotic() => Regime::Chaotic,
         // The scatter itself repeats itself: after several cycles, or after other times.
         () if recurrence >= REPEATS && period(&rest).is_some() => Regime::Periodic,
         () if recurrence >= REPEATS => Regime::QuasiPeriodic,
+        () if !scatter.is_deterministic() => Regime::Periodic,
+        () if scatter.is_chaotic() => Regime::Chaotic,
         () => Regime::Undecided,
     };
     Ok(Some(Verdict {
