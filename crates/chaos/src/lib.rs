@@ -12,6 +12,7 @@ pub mod entropy;
 pub mod error;
 mod errors_in_variables;
 pub mod exponent;
+pub mod forced;
 mod global_map;
 pub mod local_map;
 pub mod neighbours;

@@ -15,13 +15,17 @@
 
 mod envelope;
 mod missing;
+mod motion;
 mod reason;
+mod row;
 mod spectral;
 mod statistics;
 mod table;
 
 pub use missing::missing;
+pub use motion::{Motion, motion, motion_definitions};
 pub use reason::Reason;
+pub use row::{Cell, Content, FEWEST_SAMPLES, columns, row};
 
 use envelope::Envelope;
 use signal::channel::Channel;
