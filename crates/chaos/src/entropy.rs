@@ -4,9 +4,17 @@ use crate::error::{Error, checked};
 
 /// Sample entropy (Richman and Moorman 2000) in nats: minus the logarithm of the probability that
 /// `length` samples that agree within `tolerance` also agree in the next one. `None` where no
-/// stretch agrees in the next one.
+/// stretch agrees in the next one. `length` must be at least 1 and less than the samples.
 pub fn sample_entropy(signal: &[f64], length: usize, tolerance: f64) -> Result<Option<f64>, Error> {
     checked(signal)?;
+    if !(1..signal.len()).contains(&length) {
+        return Err(Error::Setting {
+            name: "length",
+            value: length,
+            low: 1,
+            high: signal.len() - 1,
+        });
+    }
     Ok(matches_ratio(signal, length, tolerance))
 }
 
@@ -69,25 +77,77 @@ fn lehmer(value: impl Fn(usize) -> f64, order: usize) -> usize {
     })
 }
 
-/// Pairs are found along the sorted first samples, so only those within the tolerance are compared.
+/// Pairs are found along the sorted first samples, so only those within the tolerance there are
+/// compared. Samples are compared by their ranks: those within the tolerance of one are a stretch
+/// of ranks, and ranks are half as long as samples.
 fn matches_ratio(signal: &[f64], length: usize, tolerance: f64) -> Option<f64> {
     let count = signal.len().saturating_sub(length);
-    let mut order: Vec<usize> = (0..count).collect();
-    order.sort_by(|&a, &b| signal[a].total_cmp(&signal[b]));
+    let mut order: Vec<u32> = (0..signal.len() as u32).collect();
+    order.sort_by(|&a, &b| signal[a as usize].total_cmp(&signal[b as usize]));
+    let mut stretches = vec![Stretch::default(); signal.len()];
+    let (mut low, mut high) = (0, 0);
+    for (rank, &index) in order.iter().enumerate() {
+        let value = signal[index as usize];
+        let apart = |rank: usize| (signal[order[rank] as usize] - value).abs();
+        while low < rank && apart(low) > tolerance {
+            low += 1;
+        }
+        while high < order.len() && (high <= rank || apart(high) <= tolerance) {
+            high += 1;
+        }
+        stretches[index as usize] = Stretch {
+            rank: rank as u32,
+            low: low as u32,
+            width: (high - 1 - low) as u32,
+        };
+    }
+    order.retain(|&index| (index as usize) < count);
+    // The ranks of the samples after the first, in the order of the first.
+    let followers: Vec<Vec<u32>> = (1..=length)
+        .map(|k| {
+            let follower = |&index: &u32| stretches[index as usize + k].rank;
+            order.iter().map(follower).collect()
+        })
+        .collect();
+    let mut agree = vec![0; count];
     let (mut short, mut long) = (0_u64, 0_u64);
-    for (place, &a) in order.iter().enumerate() {
-        for &b in &order[place + 1..] {
-            if signal[b] - signal[a] > tolerance {
-                break;
+    let mut end = 0;
+    for (place, &index) in order.iter().enumerate() {
+        let index = index as usize;
+        let within = |&b: &u32| signal[b as usize] - signal[index] <= tolerance;
+        end += order[end..].iter().take_while(|b| within(b)).count();
+        let agree = &mut agree[..end.saturating_sub(place + 1)];
+        agree.fill(1);
+        for (k, ranks) in (1..).zip(&followers) {
+            if k == length {
+                short += sum(agree);
             }
-            let agrees = |k: usize| (signal[a + k] - signal[b + k]).abs() <= tolerance;
-            if (1..length).all(agrees) {
-                short += 1;
-                long += u64::from(agrees(length));
+            let stretch = stretches[index + k];
+            for (agrees, rank) in agree.iter_mut().zip(&ranks[place + 1..]) {
+                *agrees &= u32::from(stretch.holds(*rank));
             }
         }
+        long += sum(agree);
     }
     (long > 0).then(|| (short as f64 / long as f64).ln())
+}
+
+/// The rank of a sample, and the ranks of those within the tolerance.
+#[derive(Clone, Copy, Default)]
+struct Stretch {
+    rank: u32,
+    low: u32,
+    width: u32,
+}
+
+impl Stretch {
+    fn holds(self, rank: u32) -> bool {
+        rank.wrapping_sub(self.low) <= self.width
+    }
+}
+
+fn sum(agree: &[u32]) -> u64 {
+    u64::from(agree.iter().sum::<u32>())
 }
 
 #[cfg(test)]

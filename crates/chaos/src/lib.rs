@@ -3,21 +3,25 @@
 //! Everything is a pure function of the samples: the same signal gives the same numbers.
 
 pub mod autocorrelation;
+pub mod classical;
 pub mod correlation_dimension;
 pub mod delay;
 pub mod dimension;
 pub mod divergence;
 pub mod entropy;
 pub mod error;
-pub mod jacobian;
+mod errors_in_variables;
+pub mod exponent;
+pub mod forced;
+mod global_map;
 pub mod local_map;
 pub mod neighbours;
-pub mod noise_reduction;
 pub mod recurrence;
 pub mod regime;
 pub mod scaling_region;
 pub mod surrogates;
 pub mod test_systems;
+pub mod wolf;
 pub mod zero_one;
 
 pub use error::Error;

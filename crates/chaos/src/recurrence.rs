@@ -39,16 +39,38 @@ pub fn recurrence(delays: &Delays, theiler: usize, radius: f64) -> Result<Recurr
         });
     }
     let count = delays.count().min(MOST_VECTORS);
-    let close = |a: usize, b: usize| delays.squared_distance(a, b) < radius * radius;
+    // One lag after the other. Along a lag run the diagonal lines; from lag to lag the column of a
+    // pair's later vector is extended upwards, and that of its earlier vector downwards (which is
+    // the row of the same plot mirrored). The band about the diagonal ends a line.
     let mut diagonals = Lines::new(count);
-    for lag in theiler + 1..count {
-        diagonals.add((0..count - lag).map(|i| close(i, i + lag)));
-    }
     let mut verticals = Lines::new(count);
-    for column in 0..count {
-        // The band about the diagonal ends a line; above and below are the same plot mirrored.
-        verticals.add((0..column.saturating_sub(theiler)).map(|i| close(i, column)));
-        verticals.add((column + theiler + 1..count).map(|i| close(i, column)));
+    let (mut above, mut below) = (vec![0; count], vec![0; count]);
+    let mut squares = vec![0.0; count + delays.span()];
+    let mut sums = vec![0.0; count];
+    for lag in theiler + 1..count {
+        let ends = delays.signal.iter().zip(&delays.signal[lag..]);
+        for (square, (a, b)) in squares.iter_mut().zip(ends) {
+            *square = (a - b) * (a - b);
+        }
+        let sums = &mut sums[..count - lag];
+        sums.fill(0.0);
+        for axis in 0..delays.dimension {
+            for (sum, square) in sums.iter_mut().zip(&squares[axis * delays.delay..]) {
+                *sum += square;
+            }
+        }
+        let mut along = 0;
+        let columns = above[lag..].iter_mut().zip(&mut below);
+        for (sum, (above, below)) in sums.iter().zip(columns) {
+            let close = *sum < radius * radius;
+            diagonals.extend(&mut along, close);
+            verticals.extend(above, close);
+            verticals.extend(below, close);
+        }
+        diagonals.extend(&mut along, false);
+    }
+    for length in above.iter_mut().chain(&mut below) {
+        verticals.extend(length, false);
     }
     let pairs = (theiler + 1..count).map(|lag| count - lag).sum::<usize>();
     Ok(Recurrence {
@@ -70,17 +92,14 @@ impl Lines {
         Self(vec![0; longest + 1])
     }
 
-    fn add(&mut self, row: impl Iterator<Item = bool>) {
-        let mut length = 0;
-        for close in row {
-            if close {
-                length += 1;
-            } else {
-                self.0[length] += 1;
-                length = 0;
-            }
+    /// Makes a line that has `length` points longer, or ends it.
+    fn extend(&mut self, length: &mut usize, close: bool) {
+        if close {
+            *length += 1;
+        } else if *length > 0 {
+            self.0[*length] += 1;
+            *length = 0;
         }
-        self.0[length] += 1;
     }
 
     fn points(&self, shortest: usize) -> usize {

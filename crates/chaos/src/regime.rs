@@ -1,16 +1,23 @@
 //! What kind of motion a signal shows.
 //!
-//! Three questions in order. Does the signal repeat itself after a long time (then it is regular)?
-//! Is it better predicted than linear noise with its spectrum and values (if not, it is stochastic)?
-//! Does the interval of its exponent lie above 0 (then it is chaotic)? What is left is undecided.
+//! Does more than half of the signal repeat itself after one period? Then what is left is judged, as
+//! [`forced`](crate::forced) does: noise, or deterministic and growing (then the motion is chaotic).
+//! Does it nearly repeat itself after other times? Then it is quasi-periodic. Else: is it better
+//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Does the
+//! interval of its exponent lie above 0 (then it is chaotic), or, where it holds 0, that of the rate at
+//! which neighbours part? What is left is undecided.
 
 use crate::autocorrelation::autocorrelation;
 use crate::delay::Times;
+use crate::dimension::unfolding;
+use crate::divergence::rosenstein;
 use crate::error::{Error, checked};
-use crate::jacobian::{Exponent, exponent};
+use crate::exponent::exponent;
+use crate::forced::{FEWEST_CYCLES, Growth, Scatter, residual, scatter};
 use crate::local_map::{Model, local_map};
-use crate::neighbours::{Delays, Neighbours};
-use crate::surrogates::iaaft;
+use crate::neighbours::{Delays, LARGEST_DIMENSION, Neighbours};
+use crate::scaling_region::{Fit, scaling_region};
+use crate::surrogates::{Comparison, compare, iaaft};
 use rand::SeedableRng;
 use scalar::random::Stream;
 
@@ -30,6 +37,15 @@ pub enum Regime {
 }
 
 impl Regime {
+    /// Every kind.
+    pub const ALL: [Self; 5] = [
+        Self::Periodic,
+        Self::QuasiPeriodic,
+        Self::Chaotic,
+        Self::Stochastic,
+        Self::Undecided,
+    ];
+
     /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -47,24 +63,33 @@ impl Regime {
 pub struct Verdict {
     /// The kind of motion.
     pub regime: Regime,
-    /// Largest autocorrelation at lags from a quarter to half of the signal.
+    /// Largest autocorrelation at lags from a quarter to half of the signal; of its scatter, where a
+    /// drive is known.
     pub recurrence: f64,
-    /// How many standard deviations better than surrogates the signal is predicted; `None` where it
-    /// repeats itself and the question was not asked.
-    pub predictability: Option<f64>,
-    /// The exponent; `None` where it was not needed.
-    pub exponent: Option<Exponent>,
+    /// What differs from cycle to cycle; `None` where not more than half of the signal repeats itself.
+    pub scatter: Option<Scatter>,
+    /// Whether the signal is better predicted than its surrogates are; `None` where the question was
+    /// not asked.
+    pub predictability: Option<Comparison>,
+    /// The exponent, nats per sample; `None` where it was not needed.
+    pub exponent: Option<Growth>,
 }
 
-/// Autocorrelation at long lags from which a signal counts as repeating itself. Noise of 5 % lowers
-/// that of a repeating signal to 0.9975.
+/// Autocorrelation at long lags from which a signal without a period counts as repeating itself.
+/// Noise of 5 % lowers that of a repeating signal to 0.9975.
 const REPEATS: f64 = 0.95;
-/// Autocorrelation that every multiple of a period must keep.
-const PERIOD_KEEPS: f64 = 0.9;
-/// Surrogates, iterations of each, and standard deviations by which the signal must differ.
-const SURROGATES: usize = 19;
-const ITERATIONS: usize = 50;
-const DIFFERS: f64 = 3.0;
+/// Least autocorrelation at a period: that of a signal of which half is periodic.
+const HALF: f64 = 0.5;
+/// Share of it that every multiple of the period must keep (of a periodic signal, all), and least
+/// number of multiples.
+const KEEPS: f64 = 0.9;
+const MULTIPLES: usize = 8;
+/// Scatter about a period that was found in the signal itself below which it is put down to
+/// interpolation between samples.
+const RESOLVED: f64 = 0.01;
+/// Iterations of a surrogate, and most samples of it.
+const ITERATIONS: usize = 20;
+const SURROGATE_SAMPLES: usize = 4096;
 /// Vectors predicted in the surrogate test.
 const TRIALS: usize = 500;
 /// The predictor of the surrogate test.
@@ -79,18 +104,33 @@ const PREDICTOR: Model = Model {
 pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     checked(signal)?;
     let correlation = unbiased_correlation(signal);
-    let recurrence = correlation[signal.len() / 4..]
-        .iter()
-        .copied()
-        .fold(-1.0, f64::max);
+    let long = &correlation[signal.len() / 4..];
     let mut verdict = Verdict {
         regime: Regime::Undecided,
-        recurrence,
+        recurrence: long.iter().copied().fold(-1.0, f64::max),
+        scatter: None,
         predictability: None,
         exponent: None,
     };
-    if recurrence >= REPEATS {
-        verdict.regime = match period(&correlation) {
+    let repeats = verdict.recurrence >= REPEATS;
+    let period = period(&correlation);
+    let cycles = period.map(|period| at_whole_samples(signal, period));
+    if let Some((cycles, per_cycle)) = cycles
+        && cycles.len() >= FEWEST_CYCLES * per_cycle
+    {
+        let scatter = scatter(&cycles, per_cycle)?;
+        verdict.scatter = Some(scatter);
+        if scatter.is_chaotic() && scatter.share > RESOLVED {
+            verdict.regime = Regime::Chaotic;
+            verdict.exponent = period.map(|period| scatter.growth.per(period));
+            return Ok(verdict);
+        }
+        if repeats || !scatter.is_deterministic() {
+            verdict.regime = Regime::Periodic;
+            return Ok(verdict);
+        }
+    } else if repeats {
+        verdict.regime = match period {
             Some(_) => Regime::Periodic,
             None => Regime::QuasiPeriodic,
         };
@@ -98,16 +138,97 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     }
     let predictability = predictability(signal, times)?;
     verdict.predictability = Some(predictability);
-    if predictability < DIFFERS {
+    if !predictability.significant {
         verdict.regime = Regime::Stochastic;
         return Ok(verdict);
     }
-    let exponent = exponent(signal, times)?;
-    if exponent.low > 0.0 {
+    let by_map = match exponent(signal, times) {
+        Ok(exponent) => Some(Growth {
+            value: exponent.value,
+            low: exponent.low,
+            high: exponent.high,
+        }),
+        Err(Error::NoScalingRegion { .. }) => None,
+        Err(error) => return Err(error),
+    };
+    // The map can say nothing, on a coarsely quantised signal for one, where neighbours part clearly.
+    verdict.exponent = match by_map {
+        Some(growth) if growth.low > 0.0 || growth.high < 0.0 => by_map,
+        _ => parting(signal, times).ok().or(by_map),
+    };
+    if verdict.exponent.is_some_and(|growth| growth.low > 0.0) {
         verdict.regime = Regime::Chaotic;
     }
-    verdict.exponent = Some(exponent);
     Ok(verdict)
+}
+
+/// The rate at which nearest neighbours part, from the straight part of their divergence curve, with
+/// the spread of the rates in dimensions beside that of the unfolded attractor.
+fn parting(signal: &[f64], times: &Times) -> Result<Growth, Error> {
+    let unfolded = unfolding(signal, times, LARGEST_DIMENSION - 2)?.dimension();
+    let steps = (10.0 * times.mean_period).min(signal.len() as f64 / 10.0) as usize;
+    let fits = (unfolded..=unfolded + 2)
+        .map(|dimension| {
+            let delays = Delays {
+                signal,
+                dimension,
+                delay: times.delay,
+            };
+            scaling_region(&rosenstein(&delays, times.theiler, steps)?, times.delay)
+        })
+        .collect::<Result<Vec<Fit>, Error>>()?;
+    let count = fits.len() as f64;
+    let value = fits.iter().map(|f| f.slope).sum::<f64>() / count;
+    let square = fits.iter().map(|f| (f.slope - value).powi(2)).sum::<f64>() / (count - 1.0);
+    // The two-sided 95 % quantile of Student's t for the spread of three.
+    let half = 4.303 * square.sqrt().max(fits[0].standard_error);
+    Ok(Growth {
+        value,
+        low: value - half,
+        high: value + half,
+    })
+}
+
+/// The verdict on a signal of which a drive repeats more than half, with `per_cycle` samples in each of
+/// its cycles; `None` where the drive repeats
+/// less: then [`verdict`] serves.
+pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict>, Error> {
+    let scatter = scatter(signal, per_cycle)?;
+    if scatter.share * scatter.share > HALF {
+        return Ok(None);
+    }
+    let rest = unbiased_correlation(&residual(signal, per_cycle));
+    let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
+    let regime = match () {
+        // The scatter itself repeats itself: after several cycles, or after other times.
+        () if recurrence >= REPEATS && period(&rest).is_some() => Regime::Periodic,
+        () if recurrence >= REPEATS => Regime::QuasiPeriodic,
+        () if !scatter.is_deterministic() => Regime::Periodic,
+        () if scatter.is_chaotic() => Regime::Chaotic,
+        () => Regime::Undecided,
+    };
+    Ok(Some(Verdict {
+        regime,
+        recurrence,
+        scatter: Some(scatter),
+        predictability: None,
+        exponent: (regime == Regime::Chaotic).then(|| scatter.growth.per(per_cycle as f64)),
+    }))
+}
+
+/// The signal interpolated (cubic: Keys 1981) to the next whole number of samples in a period, 8 at
+/// the least, and that number.
+fn at_whole_samples(signal: &[f64], period: f64) -> (Vec<f64>, usize) {
+    let per_cycle = period.ceil().max(8.0);
+    let step = period / per_cycle;
+    let count = ((signal.len() - 3) as f64 / step) as usize;
+    let at = |i: usize| {
+        let place = 1.0 + i as f64 * step;
+        let (whole, t) = (place as usize, place.fract());
+        let [a, b, c, d] = [whole - 1, whole, whole + 1, whole + 2].map(|j| signal[j]);
+        b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
+    };
+    ((0..count).map(at).collect(), per_cycle as usize)
 }
 
 /// Autocorrelation up to half of the signal, made up for the shrinking overlap.
@@ -120,13 +241,18 @@ fn unbiased_correlation(signal: &[f64]) -> Vec<f64> {
     correlation
 }
 
-/// The period in samples, where the autocorrelation is high at every multiple of it.
+/// The shortest period in samples at every multiple of which the autocorrelation is high.
 fn period(correlation: &[f64]) -> Option<f64> {
-    let fallen = correlation.iter().position(|r| *r < 0.5)?;
-    let (mut period, _) = (fallen.max(1)..correlation.len() - 1)
+    let fallen = correlation.iter().position(|r| *r < HALF)?;
+    (fallen.max(1)..correlation.len() / MULTIPLES)
         .filter(|&lag| correlation[lag] >= correlation[lag - 1].max(correlation[lag + 1]))
         .map(|lag| peak(correlation, lag))
-        .find(|(_, height)| *height > PERIOD_KEEPS)?;
+        .filter(|(_, height)| *height > HALF)
+        .find_map(|(lag, height)| kept_period(correlation, lag, KEEPS * height))
+}
+
+/// A period, sharpened, if the autocorrelation is at least `kept` at every multiple of it.
+fn kept_period(correlation: &[f64], mut period: f64, kept: f64) -> Option<f64> {
     let mut multiple = 1.0;
     // Each multiple found sharpens the period with which the next is looked for.
     loop {
@@ -138,7 +264,7 @@ fn period(correlation: &[f64]) -> Option<f64> {
         let highest =
             (centre - 1..=centre + 1).max_by(|&a, &b| correlation[a].total_cmp(&correlation[b]))?;
         let (place, height) = peak(correlation, highest);
-        if height < PERIOD_KEEPS {
+        if height < kept {
             return None;
         }
         period = place / multiple;
@@ -156,9 +282,8 @@ fn peak(correlation: &[f64], lag: usize) -> (f64, f64) {
     (lag as f64 + shift, here - 0.25 * (before - after) * shift)
 }
 
-/// How much better the signal is predicted than its surrogates are (Theiler et al. 1992), in
-/// standard deviations among the surrogates.
-pub fn predictability(signal: &[f64], times: &Times) -> Result<f64, Error> {
+/// Whether the signal is better predicted than its surrogates are (Theiler et al. 1992).
+pub fn predictability(signal: &[f64], times: &Times) -> Result<Comparison, Error> {
     let needed = 10 * times.delay + 2 * times.theiler + 100;
     let too_short = Error::TooShort {
         found: signal.len(),
@@ -167,37 +292,43 @@ pub fn predictability(signal: &[f64], times: &Times) -> Result<f64, Error> {
     if signal.len() < needed {
         return Err(too_short);
     }
-    let whole = joined_at_the_ends(signal);
+    let whole = joined_at_the_ends(signal, needed);
     let own = prediction_error(whole, times).ok_or(too_short.clone())?;
     let mut generator = Stream::seed_from_u64(0);
-    let errors = (0..SURROGATES)
-        .map(|_| prediction_error(&iaaft(whole, ITERATIONS, &mut generator), times))
-        .collect::<Option<Vec<f64>>>()
-        .ok_or(too_short)?;
-    let count = SURROGATES as f64;
-    let mean = errors.iter().sum::<f64>() / count;
-    let variance = errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    Ok((mean - own) / variance.sqrt().max(1e-12))
+    compare(own, || {
+        prediction_error(&iaaft(whole, ITERATIONS, &mut generator), times)
+    })
+    .ok_or(too_short)
 }
 
-/// The signal without the few samples that make its end meet its start worst: a jump there would
+/// The stretch of a length that transforms fast whose end meets its start best: a jump there would
 /// spread over the surrogate's spectrum (Schreiber and Schmitz 2000, section 4.5).
-fn joined_at_the_ends(signal: &[f64]) -> &[f64] {
-    let slack = signal.len() / 20;
-    let mismatch = |start: usize, end: usize| {
+fn joined_at_the_ends(signal: &[f64], needed: usize) -> &[f64] {
+    let most = (signal.len() - signal.len() / 20).clamp(needed, SURROGATE_SAMPLES.max(needed));
+    let length = (needed..=most)
+        .rev()
+        .find(|n| is_smooth(*n))
+        .unwrap_or(most);
+    let mismatch = |start: usize| {
+        let end = start + length;
         let jump = signal[end - 1] - signal[start];
         let kink = (signal[end - 1] - signal[end - 2]) - (signal[start + 1] - signal[start]);
         jump * jump + kink * kink
     };
-    let (start, end) = (0..slack)
-        .flat_map(|start| {
-            (signal.len() - slack..=signal.len())
-                .step_by(7)
-                .map(move |end| (start, end))
-        })
-        .min_by(|&(a, b), &(c, d)| mismatch(a, b).total_cmp(&mismatch(c, d)))
-        .unwrap_or((0, signal.len()));
-    &signal[start..end]
+    let start = (0..=signal.len() - length)
+        .min_by(|&a, &b| mismatch(a).total_cmp(&mismatch(b)))
+        .unwrap_or(0);
+    &signal[start..start + length]
+}
+
+/// Whether a number has no prime factor above 5.
+fn is_smooth(mut number: usize) -> bool {
+    for factor in [2, 3, 5] {
+        while number.is_multiple_of(factor) {
+            number /= factor;
+        }
+    }
+    number == 1
 }
 
 /// Logarithm of the root mean square error of prediction one delay ahead.
@@ -259,6 +390,14 @@ mod tests {
                 "{} {verdict:?}",
                 system.name()
             );
+        }
+    }
+
+    #[test]
+    fn a_clean_periodic_signal_has_its_period() {
+        for (signal, expected) in [(Regular::Periodic, 20.3), (Regular::KnockTrain, 47.3)] {
+            let found = period(&unbiased_correlation(&signal.samples(2000, 1))).unwrap();
+            assert!((found - expected).abs() < 0.01, "{signal:?} {found}");
         }
     }
 

@@ -68,7 +68,8 @@ impl System {
     }
 
     /// Largest Lyapunov exponent in nats per step (maps) or per second (flows), computed once
-    /// with [`System::tangent_exponent`] over 4 million samples (Duffing: 0.1045 to 0.1049 as the stretch grows).
+    /// with [`System::tangent_exponent`] over 4 million samples (Duffing: 20 million, 0.10523 with
+    /// a standard error of 0.00020).
     pub fn exponent(self) -> f64 {
         match self {
             Self::Logistic => std::f64::consts::LN_2,
@@ -76,7 +77,7 @@ impl System {
             Self::Lorenz => 0.906,
             Self::Roessler => 0.0714,
             Self::MackeyGlass => 0.00513,
-            Self::Duffing => 0.1047,
+            Self::Duffing => 0.1052,
         }
     }
 
@@ -96,15 +97,28 @@ impl System {
     /// The exponent by the tangent method over `length` samples, in the unit of
     /// [`System::exponent`].
     pub fn tangent_exponent(self, length: usize) -> f64 {
-        let growth = match self {
-            Self::Logistic => map_growth(logistic, [Dual::variable(0.3, 0)], length),
-            Self::Henon => map_growth(henon, [Dual::variable(0.1, 0), Dual::constant(0.0)], length),
-            Self::Lorenz => self.flow_growth(&Lorenz, [1.3, 1.0, 20.0], length),
-            Self::Roessler => self.flow_growth(&Roessler, [1.3, 1.0, 0.0], length),
-            Self::Duffing => self.flow_growth(&Duffing, [0.3, 0.0], length),
-            Self::MackeyGlass => MackeyGlass::new(Dual::variable(0.9, 0)).growth(length),
+        self.tangent_exponents(length, 1)[0]
+    }
+
+    /// The same for so many successive stretches of `length` samples, whose scatter tells the error.
+    pub fn tangent_exponents(self, length: usize, stretches: usize) -> Vec<f64> {
+        let lengths = (length, stretches);
+        let mut growths = match self {
+            Self::Logistic => map_growth(logistic, [Dual::variable(0.3, 0)], lengths),
+            Self::Henon => map_growth(
+                henon,
+                [Dual::variable(0.1, 0), Dual::constant(0.0)],
+                lengths,
+            ),
+            Self::Lorenz => self.flow_growth(&Lorenz, [1.3, 1.0, 20.0], lengths),
+            Self::Roessler => self.flow_growth(&Roessler, [1.3, 1.0, 0.0], lengths),
+            Self::Duffing => self.flow_growth(&Duffing, [0.3, 0.0], lengths),
+            Self::MackeyGlass => MackeyGlass::new(Dual::variable(0.9, 0)).growth(lengths),
         };
-        growth / self.sample_interval()
+        growths
+            .iter_mut()
+            .for_each(|g| *g /= self.sample_interval());
+        growths
     }
 
     fn flow_samples<const N: usize>(
@@ -130,15 +144,15 @@ impl System {
         self,
         flow: &impl Flow<N>,
         start: [f64; N],
-        length: usize,
-    ) -> f64 {
+        lengths: (usize, usize),
+    ) -> Vec<f64> {
         let interval = self.sample_interval();
         let mut y: [Tangent; N] = start.map(|x| Dual {
             value: x,
             tangent: [1.0],
         });
         let mut t = 0.0;
-        mean_growth(length, || {
+        mean_growths(lengths, || {
             y = flows::advance(flow, t, y, interval);
             t += interval;
             renormalise(&mut y)
@@ -177,20 +191,22 @@ fn map_samples<const N: usize>(
 fn map_growth<const N: usize>(
     map: impl Fn([Tangent; N]) -> [Tangent; N],
     mut y: [Tangent; N],
-    length: usize,
-) -> f64 {
-    mean_growth(length, || {
+    lengths: (usize, usize),
+) -> Vec<f64> {
+    mean_growths(lengths, || {
         y = map(y);
         renormalise(&mut y)
     })
 }
 
-/// Mean of `growth` (nats per call) after the transient.
-fn mean_growth(length: usize, mut growth: impl FnMut() -> f64) -> f64 {
+/// Means of `growth` (nats per call) over successive stretches after the transient.
+fn mean_growths((length, stretches): (usize, usize), mut growth: impl FnMut() -> f64) -> Vec<f64> {
     (0..TRANSIENT).for_each(|_| {
         growth();
     });
-    (0..length).map(|_| growth()).sum::<f64>() / length as f64
+    (0..stretches)
+        .map(|_| (0..length).map(|_| growth()).sum::<f64>() / length as f64)
+        .collect()
 }
 
 /// Brings the tangent back to length 1 and returns the logarithm of what it was.

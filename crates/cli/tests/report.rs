@@ -37,6 +37,26 @@ vary:
   crosshead.mass: {lognormal: {factor: 1.02}}
 ";
 
+/// Two clearances with exponents from the equations, and a bifurcation diagram.
+const CHAOS: &str = "
+run: {revolutions: 4, transient: 2, tolerance: 1e-7, lyapunov: {revolutions: 20, transient: 5}}
+splits: {train: 100 %}
+cases:
+  - grid:
+      joints: [[big_end], [small_end]]
+      clearance: [0.02 mm, 0.3 mm]
+      speed: [500 rpm]
+bifurcations:
+  - name: small-end
+    path: clearance
+    joints: [small_end]
+    from: 0.1 mm
+    to: 0.3 mm
+    steps: 3
+    transient: 2
+    revolutions: 3
+";
+
 /// A dataset in a folder that goes with it.
 struct Dataset {
     folder: TempDir,
@@ -185,6 +205,91 @@ fn levels_are_those_of_the_recordings() {
     }
 }
 
+/// The pages beside the first, their figures as files, and the numbers of the dataset on them.
+#[test]
+fn chaos_and_features_have_pages_of_their_own() {
+    let dataset = Dataset::of(CHAOS, Format::Parquet);
+    fs::create_dir(dataset.path().join("figures")).unwrap();
+    for name in ["chaos-99-gone.svg", "mine.svg"] {
+        fs::write(dataset.path().join("figures").join(name), "").unwrap();
+    }
+    assert!(dataset.report(&[]).status.success());
+    let read = |name: &str| fs::read_to_string(dataset.path().join(name)).unwrap();
+    let chaos = read("chaos.html");
+    stands_alone(&chaos);
+    let pages = [chaos.clone(), read("report.html")];
+    let mut figures: Vec<String> = Vec::new();
+    for entry in fs::read_dir(dataset.path().join("figures")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        if name != "mine.svg" {
+            let page = &pages[usize::from(name.starts_with("dataset-"))];
+            assert!(page.contains(&read(&format!("figures/{name}"))), "{name}");
+            assert!(page.contains(&format!("figures/{name}\"")));
+            figures.push(name);
+        }
+    }
+    let all: usize = pages
+        .iter()
+        .map(|page| page.matches("<figcaption>").count())
+        .sum();
+    assert_eq!(figures.len(), all);
+
+    // The page's numbers are those of the table.
+    let table = dataset.path().join("features/train-00000-of-00001.parquet");
+    let table = recordings::formats::parquet::read_table(&table).unwrap();
+    let column = |name: &str| table.values::<f64>(name).unwrap().to_vec();
+    let (exponents, errors) = (
+        column("lyapunov_true_per_s"),
+        column("lyapunov_true_standard_error_per_s"),
+    );
+    let page = cli::report::chaos_page(&dataset.path()).unwrap();
+    assert_eq!(page.cases.len(), 4);
+    for (i, case) in page.cases.iter().enumerate() {
+        assert_eq!(
+            case.exponent,
+            Some([exponents[i].unwrap(), errors[i].unwrap()])
+        );
+        assert_eq!(case.clearance_m, [2e-5, 3e-4][i % 2]);
+        assert!(case.regime.is_some());
+        assert_eq!(case.joints, ["big_end", "small_end"][i / 2]);
+    }
+    // Rows are joints and columns clearances, the one that counts as healthy too.
+    let titles = page.motions.iter().map(|row| {
+        let motions = row.motions.iter().flatten();
+        (
+            row.heading.as_str(),
+            motions.map(|m| m.title.as_str()).collect::<Vec<_>>(),
+        )
+    });
+    let clearances = vec!["0.02\u{a0}mm", "0.3\u{a0}mm"];
+    assert_eq!(
+        titles.collect::<Vec<_>>(),
+        [("Big end", clearances.clone()), ("Small end", clearances)]
+    );
+    for motion in page.motions.iter().flat_map(|row| &row.motions).flatten() {
+        assert_eq!(motion.strobe.len(), 4);
+        assert_eq!(motion.joints.len(), 1);
+        // The journal has nowhere else to go.
+        let orbit = &motion.joints[0];
+        let offsets = orbit.x_m.iter().zip(&orbit.y_m).map(|(x, y)| x.hypot(*y));
+        let furthest = offsets.fold(0.0, f64::max);
+        assert!(furthest > orbit.clearance_m && furthest < orbit.clearance_m + 1e-4);
+    }
+    let quantity = &page.bifurcations[0].quantities[0];
+    assert_eq!((quantity.up.len(), quantity.down.len()), (9, 9));
+    let last = quantity.up[8];
+    assert!(
+        (last[0] - 3e-4).abs() < 1e-12 && last[1] > 300.0,
+        "{last:?}"
+    );
+
+    let features = read("features.html");
+    stands_alone(&features);
+    for said in ["order_01 … order_20", "lyapunov_true_per_s", "√(Σx²/n)"] {
+        assert!(features.contains(said), "{said}");
+    }
+}
+
 #[test]
 fn random_cases_have_distributions() {
     let dataset = Dataset::of(RANDOM, Format::Parquet);
@@ -224,6 +329,12 @@ fn a_dataset_of_mcap_files_has_a_page_without_recordings() {
     assert!(html.contains("The recordings of this dataset are MCAP files"));
     assert!(html.contains("The larger the clearance, the higher the amplitude"));
     assert_eq!(html.matches("<figcaption>").count(), 0);
+    // What is simulated again needs no recording.
+    let chaos = fs::read_to_string(dataset.path().join("chaos.html")).unwrap();
+    assert!(
+        chaos.contains("Portraits of the crosshead")
+            && chaos.contains("the format has to be parquet")
+    );
 }
 
 #[test]
@@ -242,8 +353,14 @@ fn the_page_is_the_same_each_time_and_takes_the_place_of_the_last() {
 fn a_dataset_that_replaces_another_takes_its_page_away() {
     let dataset = Dataset::of(GRID, Format::Parquet);
     assert!(dataset.report(&[]).status.success());
+    let mine = dataset.path().join("figures/mine.svg");
+    fs::write(&mine, "").unwrap();
     dataset.generate(Format::Parquet, Existing::Overwrite);
-    assert!(!dataset.path().join("report.html").exists());
+    for page in ["report.html", "chaos.html", "features.html"] {
+        assert!(!dataset.path().join(page).exists(), "{page}");
+    }
+    let figures = fs::read_dir(dataset.path().join("figures")).unwrap();
+    assert!(mine.exists() && figures.count() == 1);
 }
 
 /// The page shows the first throw's crosshead and says so.
@@ -388,8 +505,5 @@ fn a_page_that_cannot_be_written_is_failed_work() {
     let out = dataset.folder.path().join("gone/page.html");
     let (status, message) = dataset.refusal(&["--out", out.to_str().unwrap()]);
     assert_eq!(status, 1);
-    assert!(
-        message.starts_with("error: cannot create `T/gone/page.part`"),
-        "{message}"
-    );
+    assert!(message.starts_with("error: T/gone/figures: "), "{message}");
 }

@@ -15,13 +15,17 @@
 
 mod envelope;
 mod missing;
+mod motion;
 mod reason;
+mod row;
 mod spectral;
 mod statistics;
 mod table;
 
 pub use missing::missing;
+pub use motion::{Motion, motion, motion_definitions};
 pub use reason::Reason;
+pub use row::{Cell, Content, FEWEST_SAMPLES, columns, row};
 
 use envelope::Envelope;
 use signal::channel::Channel;
@@ -37,6 +41,8 @@ pub struct Definition {
     /// Column name: the channel without its unit, a point, the feature, and the unit if it has
     /// one: `crosshead_acceleration.order_03_m_s2`.
     pub name: String,
+    /// The feature alone, without channel and unit: `order_03`.
+    pub feature: String,
     /// The unit written out, `m/s^2`; `1` for a pure number.
     pub unit: String,
     /// What it is, in a sentence.
@@ -135,6 +141,7 @@ fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
         .unwrap_or(channel);
     Definition {
         name: format!("{stem}.{}{}", line.name, ending(unit)),
+        feature: line.name.clone(),
         unit: unit.to_owned(),
         description: line.description.clone(),
         formula: line.formula,

@@ -25,6 +25,27 @@ pub enum Reason {
     /// A feature per revolution, order or crank angle of a shaft whose turning is not known.
     #[error("neither speed nor crank angle is known")]
     NoSpeed,
+    /// There is no channel but the crank angle.
+    #[error("there is no channel to analyse")]
+    NoChannel,
+    /// The range of the sensor cut the signal off.
+    #[error("the range of the sensor cut off {percent:.1} % of the samples")]
+    CutOff {
+        /// Share of the samples that stand in a row at an end of the range.
+        percent: f64,
+    },
+    /// The motion is of a kind whose exponent a signal does not show.
+    #[error("the motion is {regime}; a signal shows the exponent of a chaotic one only")]
+    NotChaotic {
+        /// Name of the regime.
+        regime: &'static str,
+    },
+    /// No two stretches of the signal are alike.
+    #[error("no stretches of the signal are alike")]
+    NoMatches,
+    /// The motion cannot be analysed.
+    #[error(transparent)]
+    Motion(#[from] chaos::Error),
     /// The signal cannot be analysed.
     #[error(transparent)]
     Signal(#[from] signal::Error),

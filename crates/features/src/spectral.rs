@@ -60,6 +60,15 @@ pub(crate) fn band(bands: &[f64], index: usize, sample_rate: f64) -> Result<f64,
 /// The equally spaced crank angles at which a window is resampled: a power of two per
 /// revolution, not below its samples per revolution (but for the 1 % that the grid allows).
 pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
+    let angle = crank_angle(window)?;
+    let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;
+    // Below 64 the orders would not fit; above 65 536 there is more detail than an encoder's.
+    let points = per_revolution.clamp(64, 1 << 16).next_power_of_two();
+    Ok(AngleGrid::new(&angle, points)?)
+}
+
+/// The crank angle of a window: as recorded, or of a constant speed.
+pub(crate) fn crank_angle(window: &Window) -> Result<CrankAngle, Reason> {
     let angle = match window.crank_angle {
         Some(readings) => {
             let readings: Vec<f64> = readings.iter().map(|a| f64::from(*a)).collect();
@@ -71,10 +80,7 @@ pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
             CrankAngle::from_speed(samples, window.sample_rate, speed_rpm)?
         }
     };
-    let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;
-    // Below 64 the orders would not fit; above 65 536 there is more detail than an encoder's.
-    let points = per_revolution.clamp(64, 1 << 16).next_power_of_two();
-    Ok(AngleGrid::new(&angle, points)?)
+    Ok(angle)
 }
 
 /// Orders 1 to [`HIGHEST_ORDER`] of a channel.

@@ -248,3 +248,92 @@ fn rows_do_not_depend_on_what_the_thread_did_before() {
     }
     assert_eq!(row(4608), fresh);
 }
+
+/// What the columns of a row hold, by name.
+fn motion_of(channels: &[Channel], per_revolution: f64) -> Vec<(String, Option<features::Cell>)> {
+    let names = channels.iter().map(|c| (c.name.as_str(), c.unit.as_str()));
+    let columns = features::columns(names, true);
+    let row = features::row(&window(channels, per_revolution), true);
+    assert_eq!(columns.len(), row.len());
+    let named = columns.into_iter().map(|(d, _)| d.name).zip(row);
+    named.filter(|(name, _)| !name.contains('.')).collect()
+}
+
+fn cell(row: &[(String, Option<features::Cell>)], name: &str) -> Option<features::Cell> {
+    row.iter().find(|(n, _)| n == name).unwrap().1.clone()
+}
+
+fn text(text: &str) -> Option<features::Cell> {
+    Some(features::Cell::Text(text.to_owned()))
+}
+
+#[test]
+fn a_knocking_wave_with_noise_is_periodic() {
+    let mut state = 1_u32;
+    let mut noise = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let angle = |i: usize| TAU * (i % 400) as f64 / 400.0;
+    let samples = (0..40 * 400).map(|i| knocking([3.0, 1.0, 0.5, 0.2], angle(i)) + 0.3 * noise());
+    let row = motion_of(&acceleration(samples.map(|x| x as f32).collect()), 400.0);
+    assert_eq!(cell(&row, "regime"), text("periodic"));
+    assert_eq!(cell(&row, "lyapunov_per_s"), None);
+    let reason = "the motion is periodic; a signal shows the exponent of a chaotic one only";
+    assert_eq!(cell(&row, "lyapunov_reason"), text(reason));
+    let Some(features::Cell::Text(missing)) = cell(&row, "missing") else {
+        panic!("{row:?}")
+    };
+    assert!(
+        missing.contains(&format!("lyapunov_low_per_s: {reason}; ")),
+        "{missing}"
+    );
+}
+
+#[test]
+fn bad_signals_have_no_motion_and_say_why() {
+    let ramp = |n: usize| (0..n).map(|i| (i % 37) as f32).collect::<Vec<f32>>();
+    let mut gap = ramp(8000);
+    gap[3000] = f32::NAN;
+    let clipped = (0..8000).map(|i| (2.0 * (i as f32 * 0.1).sin()).clamp(-1.0, 1.0));
+    for (samples, why) in [
+        (vec![2.5; 8000], "the signal is constant"),
+        (gap, "sample 3000 is NaN"),
+        (clipped.collect(), "the range of the sensor cut off"),
+        (
+            ramp(99),
+            "the signal has 99 samples; at least 100 are needed",
+        ),
+        (ramp(3000), "revolutions"),
+    ] {
+        let row = motion_of(&acceleration(samples), 400.0);
+        assert_eq!(cell(&row, "regime"), None);
+        let Some(features::Cell::Text(reason)) = cell(&row, "lyapunov_reason") else {
+            panic!("{row:?}")
+        };
+        assert!(reason.contains(why), "{reason}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever the samples: finite numbers or nothing, and no panic.
+    #[test]
+    fn motions_are_whole_and_finite(
+        x in prop::collection::vec(prop_oneof![
+            30 => -1e3f32..1e3,
+            10 => Just(0.0f32),
+            1 => Just(1e30f32),
+        ], 0..1200),
+        repeats in 1usize..5,
+        per_revolution in prop_oneof![10.0..100.0, Just(f64::NAN)],
+    ) {
+        let channels = acceleration(x.repeat(repeats));
+        for (name, cell) in motion_of(&channels, per_revolution) {
+            if let Some(features::Cell::Number(number)) = cell {
+                prop_assert!(number.is_finite(), "{name}");
+            }
+        }
+    }
+}

@@ -26,10 +26,11 @@ fn main() -> io::Result<()> {
     )?;
     fs::write(out.join("spectrum.svg"), spectrum(&two))?;
     for (name, page) in [
-        ("grid.html", synthetic::datasets::grid()),
-        ("random.html", synthetic::datasets::random()),
+        ("grid.html", synthetic::datasets::grid().render()),
+        ("random.html", synthetic::datasets::random().render()),
+        ("chaos.html", synthetic::chaos::page().render()),
     ] {
-        fs::write(out.join(name), page.html().map_err(io::Error::other)?)?;
+        fs::write(out.join(name), page.map_err(io::Error::other)?.html)?;
     }
     Ok(())
 }

@@ -3,6 +3,8 @@
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
 //! - [`dataset_page`]: the HTML page of a dataset;
+//! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
+//! - [`features_page`]: the HTML page that documents the features;
 //! - [`text`]: numbers with units, words, escaping.
 //!
 //! Structs go in, text comes out: nothing here reads or writes a file, and the same structs always
@@ -13,10 +15,16 @@
 //! out lopsided, angles get ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
 
 pub mod case_picture;
+pub mod chaos_page;
 pub mod dataset_page;
+pub mod features_page;
 pub mod figure;
+mod plate;
 mod revolutions;
+mod statistics;
 pub mod text;
+
+pub use plate::{FigureFile, Rendered};
 
 /// What can go wrong in making a page.
 #[derive(Debug, thiserror::Error)]

@@ -86,6 +86,15 @@ pub fn readable_unit(largest: f64, unit: &str) -> (f64, &str) {
     }
 }
 
+/// A name with its unit in parentheses; an empty unit is left out.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} ({unit})")
+    }
+}
+
 /// A unit of the data with its powers raised: `m/s^2` is «m/s²». Fractional powers stay.
 pub fn unit(unit: &str) -> String {
     let mut parts = unit.split('^');

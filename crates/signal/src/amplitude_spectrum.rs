@@ -43,7 +43,7 @@ pub fn amplitude_spectrum(
     Ok(AmplitudeSpectrum {
         resolution: sample_rate / n as f64,
         amplitude: amplitude
-            .map(|(k, c)| sides(k, n) * scale * c.norm())
+            .map(|(k, c)| sides(k, n) * scale * c.norm_sqr().sqrt())
             .collect(),
     })
 }

@@ -45,7 +45,9 @@ impl Window {
                 sum + signed * (f64::from(m) * phase).cos()
             })
         };
-        (0..n).map(weight).collect()
+        // w_(n−i) = w_i
+        let half: Vec<f64> = (0..=n / 2).map(weight).collect();
+        (0..n).map(|i| half[i.min(n - i)]).collect()
     }
 }
 

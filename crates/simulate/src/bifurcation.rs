@@ -22,7 +22,7 @@
 
 use crate::poincare::Revolution;
 use crate::record::Error;
-use crate::strobe::Strobe;
+use crate::return_map::ReturnMap;
 use mechanism::Machine;
 use std::ops::Range;
 
@@ -219,7 +219,7 @@ pub struct Machines<F> {
 }
 
 /// A machine on its way.
-pub struct Running(Strobe);
+pub struct Running(ReturnMap);
 
 impl<F, E> Continuation for Machines<F>
 where
@@ -232,7 +232,11 @@ where
 
     fn start(&self, value: usize) -> Result<Running, E> {
         let machine = (self.machine)(value)?;
-        Ok(Running(Strobe::start(&machine, self.angle, self.tolerance)))
+        Ok(Running(ReturnMap::start(
+            &machine,
+            self.angle,
+            self.tolerance,
+        )))
     }
 
     fn carry(&self, state: Running, value: usize) -> Result<Running, E> {

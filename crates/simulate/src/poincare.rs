@@ -7,7 +7,7 @@
 //! section is quasi-periodic or chaotic; n points that repeat are a period of n revolutions.
 
 use crate::record::Error;
-use crate::strobe::Strobe;
+use crate::return_map::ReturnMap;
 use mechanism::Machine;
 
 /// How sections are taken.
@@ -136,7 +136,7 @@ pub fn clear_joints(machine: &Machine) -> Vec<Joint> {
 /// # Errors
 /// Where the integration cannot meet its tolerance, or a free crank stalls.
 pub fn sections(machine: &Machine, settings: &SectionSettings) -> Result<Sections, Error> {
-    let mut strobe = Strobe::start(machine, settings.angle, settings.tolerance);
+    let mut strobe = ReturnMap::start(machine, settings.angle, settings.tolerance);
     for left in (0..settings.transient).rev() {
         strobe.revolve(left == 0)?;
     }

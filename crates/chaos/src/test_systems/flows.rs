@@ -1,7 +1,7 @@
 //! The chaotic flows, integrated with the fourth-order Runge-Kutta method (Kutta 1901) in steps
 //! small enough that its error is far below the error of any estimator.
 
-use super::{TRANSIENT, Tangent, mean_growth, renormalise};
+use super::{TRANSIENT, Tangent, mean_growths, renormalise};
 use scalar::Scalar;
 
 /// An autonomous or driven differential equation.
@@ -117,9 +117,9 @@ impl MackeyGlass<f64> {
 }
 
 impl MackeyGlass<Tangent> {
-    /// Mean growth of the tangent over one sample (nats).
-    pub(super) fn growth(mut self, length: usize) -> f64 {
-        mean_growth(length, || {
+    /// Mean growth of the tangent over one sample (nats), for each stretch.
+    pub(super) fn growth(mut self, lengths: (usize, usize)) -> Vec<f64> {
+        mean_growths(lengths, || {
             self.sample();
             let growth = renormalise(&mut self.values);
             let scale = (-growth).exp();

@@ -3,15 +3,15 @@
 use super::inputs::Input;
 use super::units::{CRANK_ANGLE, Scaled, scaled};
 use super::warnings::clipped;
-use super::window::FEWEST_SAMPLES;
 use crate::Failure;
-use ::features::{Definition, Reason};
+use ::features::Cell;
 use recordings::measured::{MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
 use signal::crank_angle::CrankAngle;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
+use sweep::dataset::feature_column;
 
 /// The columns with which every row begins; the labels follow.
 const FIRST_COLUMNS: usize = 6;
@@ -42,30 +42,13 @@ fn first_columns() -> [Column; FIRST_COLUMNS] {
     ]
 }
 
-/// The columns with which every row ends.
-fn last_columns() -> [Column; 2] {
-    [
-        Column::new(
-            "missing",
-            Kind::Text,
-            "why features have no value, as `column: reason`, joined by `; `",
-        )
-        .optional(),
-        Column::new("warnings", Kind::Text, "what looks wrong with the window").optional(),
-    ]
+/// The column with which every row ends, behind [`MISSING`].
+fn warnings_column() -> Column {
+    Column::new("warnings", Kind::Text, "what looks wrong with the window").optional()
 }
 
-/// The columns of the features of channels, and what they are.
-fn feature_columns(definitions: &[Definition]) -> impl Iterator<Item = Column> {
-    definitions.iter().map(|definition| {
-        let meaning = format!("{}: {}", definition.description, definition.formula);
-        let column = Column::new(&definition.name, Kind::Real, meaning).optional();
-        match definition.unit.as_str() {
-            "1" => column,
-            unit => column.unit(unit),
-        }
-    })
-}
+/// The last of a file's features, which stands behind those of all files.
+const MISSING: &str = "missing";
 
 /// The columns of the table, each once.
 #[derive(Default)]
@@ -100,7 +83,7 @@ pub(super) struct Layout {
     pub(super) channels: Vec<Scaled>,
     /// Channels whose unit is not known.
     pub(super) without_unit: Vec<String>,
-    definitions: Vec<Definition>,
+    features: Vec<Column>,
     feature_positions: Vec<usize>,
     /// Places among the labels of all files; none of what is told by a column of its own.
     label_positions: Vec<Option<usize>>,
@@ -130,8 +113,8 @@ impl Layout {
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
         let fixed: BTreeSet<String> = first_columns()
             .into_iter()
-            .chain(last_columns())
             .map(|c| c.name)
+            .chain([MISSING.to_owned(), warnings_column().name])
             .collect();
         let mut label_positions = Vec::new();
         for column in file.labels() {
@@ -150,7 +133,10 @@ impl Layout {
         }
         let is = |name: &str, kind| own(name).filter(|&i| file.labels()[i].kind == kind);
         Ok(Self {
-            definitions: ::features::definitions(names),
+            features: ::features::columns(names, true)
+                .into_iter()
+                .map(feature_column)
+                .collect(),
             feature_positions: Vec::new(),
             speed_label: is("speed_rpm", Kind::Real),
             window_label: is("window", Kind::Integer),
@@ -219,13 +205,20 @@ pub(super) fn schema(labels: Columns, layouts: &mut [Layout]) -> Result<Schema, 
         add(column)?;
     }
     for layout in layouts.iter_mut() {
-        for column in feature_columns(&layout.definitions) {
-            layout.feature_positions.push(add(column)?);
+        for column in &layout.features {
+            if column.name != MISSING {
+                layout.feature_positions.push(add(column.clone())?);
+            }
         }
     }
-    for column in last_columns() {
-        add(column)?;
+    for layout in layouts.iter_mut() {
+        for column in &layout.features {
+            if column.name == MISSING {
+                layout.feature_positions.push(add(column.clone())?);
+            }
+        }
     }
+    add(warnings_column())?;
     Schema::new(all.columns).map_err(Failure::input)
 }
 
@@ -256,20 +249,15 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
     let samples = channels.first().map_or(0, |c| c.samples.len());
     let crank_angle = channels.iter().find(|c| c.name == CRANK_ANGLE);
     let crank_angle = crank_angle.map(|c| c.samples.as_slice());
-    let values = if samples < FEWEST_SAMPLES {
-        let few = signal::Error::TooFewSamples {
-            needed: FEWEST_SAMPLES,
-            got: samples,
-        };
-        vec![Err(Reason::Signal(few)); layout.definitions.len()]
-    } else {
-        ::features::features(&::features::Window {
+    let cells = ::features::row(
+        &::features::Window {
             sample_rate: job.sample_rate_hz,
             speed_rpm: job.speed_rpm,
             crank_angle,
             channels: &channels,
-        })
-    };
+        },
+        true,
+    );
     let measured = crank_angle.and_then(|angle| speed_rpm(angle, job.sample_rate_hz));
     let index = match layout.window_label.and_then(|i| job.labels.get(i)) {
         Some(Value::Integer(window)) if job.index == 0 => *window,
@@ -295,10 +283,13 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
     for (position, value) in &layout.known {
         row[FIRST_COLUMNS + position] = value.clone();
     }
-    for (position, value) in layout.feature_positions.iter().zip(&values) {
-        row[*position] = value.as_ref().ok().copied().into();
+    for (position, cell) in layout.feature_positions.iter().zip(cells) {
+        row[*position] = match cell {
+            None => Value::Missing,
+            Some(Cell::Number(number)) => number.into(),
+            Some(Cell::Text(text)) => text.into(),
+        };
     }
-    row[columns - 2] = ::features::missing(&layout.definitions, &values).into();
     row[columns - 1] = warnings(job, &channels).into();
     row
 }

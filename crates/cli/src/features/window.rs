@@ -1,6 +1,7 @@
 //! How long windows are.
 
 use crate::Failure;
+use ::features::FEWEST_SAMPLES;
 use input::quantity::{AboveZero, Duration, Quantity};
 use recordings::measured::Length;
 
@@ -10,9 +11,6 @@ const DEFAULT_SAMPLES: f64 = 1e5;
 
 /// The longest window, in samples: its analysis takes about 100 bytes for each.
 const MOST_SAMPLES: f64 = (1 << 24) as f64;
-
-/// Fewer samples are no signal.
-pub(super) const FEWEST_SAMPLES: usize = 100;
 
 /// What `--window` asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]

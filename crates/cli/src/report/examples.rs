@@ -47,7 +47,7 @@ pub(super) fn examples(
 }
 
 /// The first of those whose value is the (upper) median.
-fn nearest_median<T>(all: &[T], value: impl Fn(&T) -> f64) -> Option<&T> {
+pub(super) fn nearest_median<T>(all: &[T], value: impl Fn(&T) -> f64) -> Option<&T> {
     let mut values: Vec<f64> = all.iter().map(&value).collect();
     values.sort_by(f64::total_cmp);
     let median = *values.get(values.len() / 2)?;

@@ -128,7 +128,7 @@ fn common_clearance(dataset: &Dataset, windows: &Windows, window: usize) -> Opti
 }
 
 /// Everything that is said about the case but its clearances.
-fn all_else(dataset: &Dataset, windows: &Windows, window: usize) -> Vec<String> {
+pub(super) fn all_else(dataset: &Dataset, windows: &Windows, window: usize) -> Vec<String> {
     let labels = dataset.labels.iter().zip(&windows.labels);
     let numbers = labels.filter(|(label, _)| label.joint.is_none());
     let numbers = numbers.map(|(_, values)| format!("{:e}", values[window]));

@@ -63,7 +63,7 @@ pub(super) fn of(plan: &Plan) -> Vec<Label> {
 
 /// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
-fn in_words(path: &str) -> String {
+pub(super) fn in_words(path: &str) -> String {
     let sections = ["joints.", "sensors.", "throws."];
     let path = sections.iter().fold(path, |path, section| {
         path.strip_prefix(section).unwrap_or(path)

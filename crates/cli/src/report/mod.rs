@@ -1,24 +1,27 @@
-//! `crosshead report`: the HTML page of a dataset.
+//! `crosshead report`: the HTML pages of a dataset.
 
+mod chaos;
 mod columns;
 mod counts;
 mod dataset;
 mod examples;
 mod features;
+mod features_page;
 mod grid;
 mod labels;
+mod pages;
 mod random;
 mod recording;
 mod windows;
 
 use crate::Failure;
+use ::report::chaos_page::ChaosPage;
 use ::report::dataset_page::{DatasetPage, Design};
 use clap::Args;
 use dataset::Dataset;
-use recordings::WholeFile;
-use std::io::Write;
+use pages::Place;
 use std::path::{Path, PathBuf};
-use windows::Windows;
+use windows::{Case, Windows};
 
 /// Arguments of `crosshead report`.
 #[derive(Args, Debug)]
@@ -27,7 +30,10 @@ Examples:
   crosshead report datasets/paper2
   crosshead report datasets/bearing-faults --out bearing-faults.html
 
-Exit status: 0 done; 1 the page cannot be written; 2 the folder is no whole dataset.")]
+Beside the page stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
+feature is) and figures/, every figure as an SVG file.
+
+Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
     /// Folder of a dataset, as gen-dataset writes it
     dir: PathBuf,
@@ -36,20 +42,34 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// Writes the page, in place of any file of its name, and prints where it is; with a grid of
-/// clearances also the table of the clearance study's claims.
+/// Writes the pages, in place of any files of their names, and prints where the first is; with a
+/// grid of clearances also the table of the clearance study's claims.
 ///
 /// # Errors
-/// A folder that is no whole dataset, or a page that cannot be written.
+/// A folder that is no whole dataset, or a page that cannot be made or written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let page = page(&arguments.dir)?;
-    let html = page.html().map_err(Failure::work)?;
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| arguments.dir.join("report.html"));
-    write(&out, &html)?;
-    println!("{}", out.display());
+    let contents = Contents::read(&arguments.dir)?;
+    let page = contents.dataset_page()?;
+    let place = Place {
+        dataset: arguments
+            .out
+            .clone()
+            .unwrap_or_else(|| arguments.dir.join("report.html")),
+    };
+    place.write(&[
+        (
+            place.beside("chaos.html"),
+            contents.chaos_page()?.render().map_err(Failure::work)?,
+        ),
+        (
+            place.beside("features.html"),
+            features_page::page(&contents.dataset)?
+                .render()
+                .map_err(Failure::work)?,
+        ),
+        (place.dataset.clone(), page.render().map_err(Failure::work)?),
+    ])?;
+    println!("{}", place.dataset.display());
     if let Design::Grid(grid) = &page.design
         && !grid.levels.is_empty()
     {
@@ -63,49 +83,77 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// A folder that is no whole dataset.
 pub fn page(folder: &Path) -> Result<DatasetPage, Failure> {
-    let dataset = Dataset::open(folder)?;
-    let windows = Windows::read(&dataset)?;
-    let cases = windows.cases();
-    let faults = counts::faults(&dataset, &windows, &cases);
-    let examples = examples::examples(&dataset, &windows, &cases, &faults)?;
-    let design = match grid::grid(&dataset, &windows, &cases)? {
-        Some(grid) => Design::Grid(grid),
-        None => Design::Random(random::sweep(&dataset, &windows, &cases, &faults)),
-    };
-    let (features, feature_rows) = features::by_fault(&windows, &faults);
-    Ok(DatasetPage {
-        name: dataset.plan.name.clone(),
-        about: dataset.about(),
-        version: dataset.manifest.version.clone(),
-        seed: dataset.manifest.seed,
-        sample_rate_hz: dataset.plan.settings.sample_rate,
-        revolutions_per_window: dataset.revolutions_per_window(),
-        samples_per_window: counts::samples_per_window(&dataset, &windows),
-        channels: dataset
-            .plan
-            .channels()
-            .into_iter()
-            .map(|(name, _)| name)
-            .collect(),
-        splits: dataset.splits(),
-        faults,
-        ranges: counts::ranges(&dataset, &windows, &cases),
-        failed: counts::failed(&dataset),
-        no_examples: dataset.why_no_recordings(),
-        examples,
-        design,
-        features,
-        feature_rows,
-        columns: columns::columns(&dataset)?,
-    })
+    Contents::read(folder)?.dataset_page()
 }
 
-/// Writes the page whole or not at all.
-fn write(out: &Path, html: &str) -> Result<(), Failure> {
-    let written = WholeFile::create(&out.with_extension("part"), out).and_then(|mut file| {
-        file.write_all(html.as_bytes())
-            .map_err(recordings::Error::Write)?;
-        file.commit()
-    });
-    written.map(drop).map_err(Failure::work)
+/// What the page about chaos of the dataset in `folder` tells.
+///
+/// # Errors
+/// A folder that is no whole dataset, or a case that cannot be simulated again.
+pub fn chaos_page(folder: &Path) -> Result<ChaosPage, Failure> {
+    Contents::read(folder)?.chaos_page()
+}
+
+/// A dataset and its table of features.
+struct Contents {
+    dataset: Dataset,
+    windows: Windows,
+    cases: Vec<Case>,
+}
+
+impl Contents {
+    fn read(folder: &Path) -> Result<Self, Failure> {
+        let dataset = Dataset::open(folder)?;
+        let windows = Windows::read(&dataset)?;
+        let cases = windows.cases();
+        Ok(Self {
+            dataset,
+            windows,
+            cases,
+        })
+    }
+
+    fn chaos_page(&self) -> Result<ChaosPage, Failure> {
+        chaos::page(&self.dataset, &self.windows, &self.cases)
+    }
+
+    fn dataset_page(&self) -> Result<DatasetPage, Failure> {
+        let Self {
+            dataset,
+            windows,
+            cases,
+        } = self;
+        let faults = counts::faults(dataset, windows, cases);
+        let examples = examples::examples(dataset, windows, cases, &faults)?;
+        let design = match grid::grid(dataset, windows, cases)? {
+            Some(grid) => Design::Grid(grid),
+            None => Design::Random(random::sweep(dataset, windows, cases, &faults)),
+        };
+        let (features, feature_rows) = features::by_fault(windows, &faults);
+        Ok(DatasetPage {
+            name: dataset.plan.name.clone(),
+            about: dataset.about(),
+            version: dataset.manifest.version.clone(),
+            seed: dataset.manifest.seed,
+            sample_rate_hz: dataset.plan.settings.sample_rate,
+            revolutions_per_window: dataset.revolutions_per_window(),
+            samples_per_window: counts::samples_per_window(dataset, windows),
+            channels: dataset
+                .plan
+                .channels()
+                .into_iter()
+                .map(|(name, _)| name)
+                .collect(),
+            splits: dataset.splits(),
+            faults,
+            ranges: counts::ranges(dataset, windows, cases),
+            failed: counts::failed(dataset),
+            no_examples: dataset.why_no_recordings(),
+            examples,
+            design,
+            features,
+            feature_rows,
+            columns: columns::columns(dataset)?,
+        })
+    }
 }

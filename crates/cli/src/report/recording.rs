@@ -7,8 +7,11 @@ use ::report::dataset_page::{Response, Spectrum};
 use signal::amplitude_spectrum::amplitude_spectrum;
 use signal::angle_resampling::{AngleGrid, Revolutions};
 use signal::crank_angle::CrankAngle;
+use signal::envelope::envelope;
+use signal::kurtogram::kurtogram;
 use signal::order_spectrum::order_spectrum;
 use signal::phase_portrait::PhasePortrait;
+use signal::welch::welch;
 use signal::windows::Window;
 use std::f64::consts::TAU;
 
@@ -154,6 +157,63 @@ impl Recording {
             at: (1..=highest).map(|order| order as f64).collect(),
             amplitude_m_s2: spectrum.rms,
         })
+    }
+}
+
+/// Samples in a segment of a density, and orders of an envelope's spectrum with the width of its bins.
+const SEGMENT: usize = 1024;
+const ENVELOPE_ORDERS: f64 = 20.0;
+const ORDER_BIN: f64 = 0.25;
+/// The narrowest band of an envelope, in orders: eight times the highest order shown.
+const NARROWEST_ORDERS: f64 = 8.0 * ENVELOPE_ORDERS;
+
+impl Recording {
+    /// Frequencies in Hz and the amplitude density there, in m/s²/√Hz (Welch 1967).
+    ///
+    /// # Errors
+    /// None in practice: a recording has two samples.
+    pub(super) fn density(&self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        let segment = SEGMENT.min(self.acceleration.len());
+        let density = welch(
+            &self.acceleration,
+            self.sample_rate_hz,
+            Window::Hann,
+            segment,
+        )
+        .map_err(Failure::work)?;
+        let at = (0..density.density.len()).map(|k| k as f64 * density.resolution);
+        let amplitude = density.density.iter().map(|d| d.sqrt());
+        // Without the mean, which the segments do not have.
+        Ok((at.skip(1).collect(), amplitude.skip(1).collect()))
+    }
+
+    /// Orders of the crank's speed and the highest amplitude of the envelope's spectrum about each,
+    /// in m/s²: the envelope in the most impulsive band. None for a recording without such a band.
+    pub(super) fn envelope_spectrum(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let shaft = self.sample_rate_hz / self.grid.samples_per_revolution();
+        let kurtogram = kurtogram(
+            &self.acceleration,
+            self.sample_rate_hz,
+            NARROWEST_ORDERS * shaft,
+        )
+        .ok()?;
+        let (band, _) = kurtogram.most_impulsive().ok()?;
+        let envelope = envelope(&self.acceleration, self.sample_rate_hz, band).ok()?;
+        let revolutions = self.grid.resample(&envelope).ok()?;
+        let points = revolutions.points_per_revolution() as f64;
+        let mean = revolutions.samples().iter().sum::<f64>() / revolutions.samples().len() as f64;
+        let about_mean: Vec<f64> = revolutions.samples().iter().map(|y| y - mean).collect();
+        let spectrum = amplitude_spectrum(&about_mean, points, Window::Hann).ok()?;
+        let bins = (ENVELOPE_ORDERS / ORDER_BIN) as usize;
+        let mut highest = vec![f64::NAN; bins];
+        for (order, amplitude) in spectrum.frequencies().zip(&spectrum.amplitude) {
+            let bin = (order / ORDER_BIN).round() as usize;
+            if let Some(highest) = bin.checked_sub(1).and_then(|bin| highest.get_mut(bin)) {
+                *highest = highest.max(*amplitude);
+            }
+        }
+        let orders = (1..=bins).map(|bin| bin as f64 * ORDER_BIN);
+        Some((orders.collect(), highest))
     }
 }
 

@@ -4,9 +4,10 @@
 
 use super::captions::{self, Level};
 use super::examples::{PORTRAIT_REVOLUTIONS, portrait};
-use super::page::{Plate, class_colour};
+use super::page::class_colour;
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
+use crate::plate::Plate;
 use crate::revolutions::Revolutions;
 use crate::text;
 

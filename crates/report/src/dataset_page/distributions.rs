@@ -1,9 +1,10 @@
 //! How the cases of a random sweep lie, and how features go with parameters.
 
 use super::examples::fault_words;
-use super::page::{Plate, class_colour};
+use super::page::class_colour;
 use super::{DatasetPage, Histogram, RandomSweep, Scatter};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
 use crate::text;
 
 const MOST_BINS: usize = 30;
@@ -40,7 +41,7 @@ fn histograms(all: &[Histogram]) -> Plate {
             .collect();
         let (edges, counts) = binned(&values);
         Panel {
-            x: Axis::linear(label(&histogram.name, unit)),
+            x: Axis::linear(text::with_unit(&histogram.name, unit)),
             y: Axis::linear("cases"),
             series: vec![Series::histogram("", Colour::Class(0), &edges, &counts)],
             note: if counts.is_empty() {
@@ -110,9 +111,9 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
             points.iter().map(|p| [p[0] * x_factor, p[1]]),
         )
     });
-    let y_label = label(y, y_unit);
+    let y_label = text::with_unit(y, y_unit);
     let panel = Panel {
-        x: Axis::linear(label(x, x_unit)),
+        x: Axis::linear(text::with_unit(x, x_unit)),
         y: if scatter.log_y {
             Axis::log(y_label)
         } else {
@@ -150,14 +151,6 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
-}
-
-fn label(name: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{name} ({unit})")
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! One example of each class.
 
-use super::page::{Plate, class_colour};
+use super::page::class_colour;
 use super::{ClassExample, DatasetPage, Spectrum, captions};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
 use crate::revolutions::{Revolutions, last_turns};
 use crate::text;
 

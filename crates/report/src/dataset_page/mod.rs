@@ -1,6 +1,6 @@
 //! The HTML page of a dataset.
 //!
-//! The caller reads the tables of the dataset and fills a [`DatasetPage`]; [`DatasetPage::html`]
+//! The caller reads the tables of the dataset and fills a [`DatasetPage`]; [`DatasetPage::render`]
 //! is one file with its styles and figures inside, for a browser or a printer. Its size is bounded
 //! whatever the dataset: figures thin their lines, long tables end with a count of what is left
 //! out.

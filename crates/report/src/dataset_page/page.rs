@@ -7,6 +7,7 @@ use super::{
     ParameterRange, comparison, distributions,
 };
 use crate::figure::Colour;
+use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
 use askama::Template;
 
@@ -14,13 +15,6 @@ use askama::Template;
 const MOST_FAULTS: usize = 200;
 const MOST_FAILED: usize = 100;
 const MOST_COLUMNS: usize = 500;
-
-/// A figure with its heading and caption.
-pub(super) struct Plate {
-    pub(super) heading: String,
-    pub(super) caption: String,
-    pub(super) svg: String,
-}
 
 /// A part of the page that holds figures.
 struct Gallery<'a> {
@@ -45,17 +39,29 @@ struct View<'a> {
 }
 
 impl DatasetPage {
-    /// The page as one HTML file that loads nothing from anywhere.
+    /// The page as one HTML file that loads nothing from anywhere, and its figures.
     ///
     /// # Errors
     /// [`Error::Template`] if the template cannot be filled in.
-    pub fn html(&self) -> Result<String, Error> {
-        Ok(View {
+    pub fn render(&self) -> Result<Rendered, Error> {
+        let view = View {
             page: self,
             facts: facts(self),
             galleries: galleries(self),
-        }
-        .render()?)
+        };
+        let html = view.render()?;
+        let plates = view
+            .galleries
+            .into_iter()
+            .flat_map(|gallery| (gallery.first..).zip(gallery.plates));
+        let figures = plates.map(|(number, plate)| FigureFile {
+            name: file_name("dataset", number, &plate.heading),
+            svg: plate.svg,
+        });
+        Ok(Rendered {
+            html,
+            figures: figures.collect(),
+        })
     }
 }
 
@@ -146,6 +152,10 @@ fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
 
 /// What the template asks for, formatted.
 impl View<'_> {
+    fn file(gallery: &Gallery<'_>, at: &usize) -> String {
+        file_name("dataset", gallery.first + at, &gallery.plates[*at].heading)
+    }
+
     fn faults(&self) -> &[FaultCount] {
         &self.page.faults[..self.page.faults.len().min(MOST_FAULTS)]
     }

@@ -63,7 +63,7 @@ pub(super) fn range(panels: &[&Panel], direction: Direction) -> Option<(f64, f64
     let from_zero =
         direction == Direction::Y && low >= 0.0 && series().any(|s| s.mark == Mark::Area);
     let across = direction == Direction::X
-        && series().all(|s| s.mark != Mark::Points && s.points.is_sorted_by(|a, b| a[0] <= b[0]));
+        && series().all(|s| !s.mark.is_separate() && s.points.is_sorted_by(|a, b| a[0] <= b[0]));
     let room = if across { 0.0 } else { (high - low) * MARGIN };
     Some((if from_zero { 0.0 } else { low - room }, high + room))
 }
@@ -74,8 +74,13 @@ fn values(panel: &Panel, direction: Direction) -> impl Iterator<Item = f64> {
         let centre = direction.of(circle.centre);
         [centre - circle.radius, centre + circle.radius]
     });
+    let fields = panel.fields.iter().flat_map(move |field| {
+        let middle = direction.of(field.at);
+        [middle - 0.5, middle + 0.5]
+    });
     let points = panel.series.iter().flat_map(|series| &series.points);
-    points.map(move |&point| direction.of(point)).chain(circles)
+    let points = points.map(move |&point| direction.of(point));
+    points.chain(circles).chain(fields)
 }
 
 /// The range, widened where it is a single value, upside down or not a number, and on a logarithmic
@@ -132,11 +137,18 @@ impl Ruler {
             ticks: Vec::new(),
         };
         let count = (length / spacing).max(1.0);
-        if range.is_some() {
-            match axis.scale {
-                Scale::Degrees => ruler.steps(degree_step((high - low) / count)),
-                Scale::Log if high >= 5.0 * low => ruler.powers(count),
-                Scale::Linear | Scale::Log => ruler.steps(linear_step(high - low, count)),
+        if !axis.names.is_empty() {
+            ruler.ticks = axis
+                .names
+                .iter()
+                .enumerate()
+                .map(|(i, name)| (ruler.place(i as f64), name.clone()))
+                .collect();
+        } else if range.is_some() {
+            ruler.set_ticks(count);
+            // A panel too narrow for its spacing still has two numbers to read it by.
+            if ruler.ticks.len() < 2 {
+                ruler.set_ticks(2.0 * count);
             }
         }
         ruler
@@ -149,6 +161,16 @@ impl Ruler {
             return decades(value.max(self.low * 1e-3)) / decades(self.high);
         }
         (value - self.low) / (self.high - self.low)
+    }
+
+    /// About `count` ticks.
+    fn set_ticks(&mut self, count: f64) {
+        let (low, high) = (self.low, self.high);
+        match self.scale {
+            Scale::Degrees => self.steps(degree_step((high - low) / count)),
+            Scale::Log if high >= 5.0 * low => self.powers(count),
+            Scale::Linear | Scale::Log => self.steps(linear_step(high - low, count)),
+        }
     }
 
     fn steps(&mut self, step: f64) {

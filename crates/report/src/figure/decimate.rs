@@ -148,6 +148,23 @@ pub(super) fn points(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// Most dots of one series.
+const MOST_DOTS: usize = 12_000;
+
+/// The points without those that fall on the same half pixel as another, from left to right and
+/// upwards; of more than [`MOST_DOTS`] only every second, third, …
+pub(super) fn dots(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut halves: Vec<[i64; 2]> = points
+        .iter()
+        .map(|point| point.map(|v| (2.0 * v).round() as i64))
+        .collect();
+    halves.sort_unstable();
+    halves.dedup();
+    let stride = halves.len().div_ceil(MOST_DOTS).max(1);
+    let kept = halves.into_iter().step_by(stride);
+    kept.map(|half| half.map(|v| v as f64 / 2.0)).collect()
+}
+
 /// The places of the points that are furthest left, right, down and up.
 fn outermost(points: &[[f64; 2]]) -> [usize; 4] {
     let furthest = |coordinate: usize, sign: f64| {
@@ -276,5 +293,8 @@ mod tests {
         assert!(kept.len() <= MOST_POINTS);
         assert_eq!(extremes(&kept), extremes(&cloud));
         assert!(line(&[], 0).is_empty() && points(&[]).is_empty());
+        assert!(dots(&cloud).len() <= MOST_DOTS && dots(&[]).is_empty());
+        let same = [[1.0, 2.0], [1.1, 2.1], [0.0, 7.0]];
+        assert_eq!(dots(&same), [[0.0, 7.0], [1.0, 2.0]]);
     }
 }

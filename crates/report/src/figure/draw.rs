@@ -1,7 +1,9 @@
 //! The image itself.
 
 use super::axis::drawable;
-use super::layout::{self, Frame, LABEL_SIZE, Placed, TICK_SIZE, TITLE_SIZE, text_width};
+use super::layout::{
+    self, Frame, HEADING_SIZE, LABEL_SIZE, Placed, TICK_SIZE, TITLE_SIZE, text_width,
+};
 use super::{Figure, Mark, Series, decimate, palette};
 use crate::text::{escape, shortened};
 use std::fmt::Write;
@@ -31,8 +33,18 @@ pub(super) fn figure(figure: &Figure) -> String {
         top += 10.0;
     }
     top = legend(&mut body, figure, top);
-    let (placed, height) = layout::place(figure, top);
-    for cell in &placed {
+    let layout = layout::place(figure, top);
+    for (baseline, heading) in &layout.headings {
+        let heading = fitted(heading, figure.width - 24.0, HEADING_SIZE);
+        write_text(
+            &mut body,
+            [12.0, *baseline],
+            &heading,
+            HEADING_SIZE,
+            "font-weight=\"600\"",
+        );
+    }
+    for cell in &layout.cells {
         panel(&mut body, cell);
     }
     format!(
@@ -41,7 +53,7 @@ pub(super) fn figure(figure: &Figure) -> String {
          stroke-linejoin=\"round\" stroke-linecap=\"round\"><path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>{body}</svg>",
         escape(name(figure)),
         width = px(figure.width),
-        height = px(height),
+        height = px(layout.height),
     )
 }
 
@@ -78,7 +90,18 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
         }
         let middle = baseline - 4.0;
         let (kind, sample) = match series.mark {
-            Mark::Points => (Mark::Points, vec![[left + KEY / 2.0, middle]]),
+            // A dot of a pixel is too small for a sample.
+            Mark::Dots | Mark::WideDots => (Mark::Points, vec![[left + KEY / 2.0, middle]]),
+            separate if separate.is_separate() => (separate, vec![[left + KEY / 2.0, middle]]),
+            Mark::Band => (
+                Mark::Band,
+                vec![
+                    [left, middle - 4.0],
+                    [left + KEY, middle - 4.0],
+                    [left + KEY, middle + 4.0],
+                    [left, middle + 4.0],
+                ],
+            ),
             Mark::Area => (
                 Mark::Area,
                 vec![[left, middle - 4.0], [left + KEY, middle - 4.0]],
@@ -145,6 +168,7 @@ fn panel(out: &mut String, cell: &Placed<'_>) {
         xs.chain(ys).collect::<String>()
     );
     guides(out, cell);
+    fields(out, cell);
     for series in &cell.panel.series {
         mark(out, series, &in_pixels(series, cell), height);
     }
@@ -254,6 +278,37 @@ fn guides(out: &mut String, cell: &Placed<'_>) {
     }
 }
 
+/// The fields of the panel with their letters.
+fn fields(out: &mut String, cell: &Placed<'_>) {
+    for field in &cell.panel.fields {
+        let [x, y] = field.at;
+        let ([left, top], [right, bottom]) = (
+            pixel([x - 0.5, y + 0.5], cell),
+            pixel([x + 0.5, y - 0.5], cell),
+        );
+        if ![left, top, right, bottom].into_iter().all(drawable) {
+            continue;
+        }
+        let _ = write!(
+            out,
+            "<path fill=\"{}\" stroke=\"#fff\" d=\"M{} {}H{}V{}H{}z\"/>",
+            palette::hex(field.fill),
+            px(left),
+            px(top),
+            px(right),
+            px(bottom),
+            px(left)
+        );
+        let letters = fitted(&field.letters, right - left, TICK_SIZE);
+        let middle = [f64::midpoint(left, right), f64::midpoint(top, bottom) + 4.0];
+        let style = format!(
+            "text-anchor=\"middle\" fill=\"{}\"",
+            palette::writing_on(field.fill)
+        );
+        write_text(out, middle, &letters, TICK_SIZE, &style);
+    }
+}
+
 /// A point in pixels from the upper left corner of the plotting area.
 fn pixel(point: [f64; 2], cell: &Placed<'_>) -> [f64; 2] {
     let Frame { width, height, .. } = cell.frame;
@@ -271,9 +326,12 @@ fn in_pixels(series: &Series, cell: &Placed<'_>) -> Vec<Vec<[f64; 2]>> {
         .points
         .split(|point| !drawable(point[0]) || !drawable(point[1]));
     let stretches = stretches.map(|stretch| stretch.iter().map(place).collect::<Vec<_>>());
-    if series.mark == Mark::Points {
+    if series.mark.is_separate() {
         let all: Vec<[f64; 2]> = stretches.flatten().collect();
-        return vec![decimate::points(&all)];
+        return vec![match series.mark {
+            Mark::Dots | Mark::WideDots => decimate::dots(&all),
+            _ => decimate::points(&all),
+        }];
     }
     let lines: Vec<Vec<[f64; 2]>> = stretches.filter(|stretch| stretch.len() > 1).collect();
     // A line that fills the panel needs no more vertices than this to look full.
@@ -299,15 +357,18 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
             "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\"{dashes}"
         )
     };
-    let data: String = match series.mark {
-        Mark::Points => {
-            let shape = SHAPES[cycle % SHAPES.len()];
-            stretches
-                .iter()
-                .flatten()
-                .map(|p| format!("M{} {}{shape}", px(p[0]), px(p[1])))
-                .collect()
-        }
+    let shape = match series.mark {
+        Mark::Points => Some(SHAPES[cycle % SHAPES.len()]),
+        Mark::Rings => Some(RING),
+        _ => None,
+    };
+    let data: String = match (series.mark, shape) {
+        (_, Some(shape)) => stretches
+            .iter()
+            .flatten()
+            .map(|p| format!("M{} {}{shape}", px(p[0]), px(p[1])))
+            .collect(),
+        (Mark::Dots | Mark::WideDots, _) => stretches.iter().map(|stretch| dots(stretch)).collect(),
         _ => stretches.iter().map(|stretch| path(stretch)).collect(),
     };
     if data.is_empty() {
@@ -325,9 +386,16 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
     }
     let style = match series.mark {
         Mark::FaintLine => stroke(0.8, 0.4),
+        Mark::HairLine => stroke(0.6, 1.0),
         Mark::Line | Mark::Area => stroke(1.0, 1.0),
         Mark::BoldLine => stroke(2.0, 1.0),
         Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),
+        Mark::Rings => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.4\""),
+        Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\""),
+        Mark::WideDots => {
+            format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3.8\" stroke-opacity=\".45\"")
+        }
+        Mark::Band => format!("fill=\"{colour}\" fill-opacity=\".25\""),
     };
     let _ = write!(out, "<path {style} d=\"{data}\"/>");
 }
@@ -339,6 +407,26 @@ const SHAPES: [&str; 4] = [
     "m0-2.8l2.6 4.6h-5.2z",
     "m0-2.9l2.9 2.9-2.9 2.9-2.9-2.9z",
 ];
+
+/// Outline of an open circle, from the middle.
+const RING: &str = "m-3.2 0a3.2 3.2 0 1 0 6.4 0a3.2 3.2 0 1 0-6.4 0";
+
+/// Strokes of no length, which round caps make dots, each as its difference from the one before.
+fn dots(points: &[[f64; 2]]) -> String {
+    let mut out = String::new();
+    let mut last = [0, 0];
+    for point in points.iter().map(|p| p.map(|v| (v * 10.0).round() as i64)) {
+        let letter = if out.is_empty() { 'M' } else { 'm' };
+        let _ = write!(
+            out,
+            "{letter}{} {}h0",
+            tenth(point[0] - last[0]),
+            tenth(point[1] - last[1])
+        );
+        last = point;
+    }
+    out
+}
 
 /// A polyline as path data: tenths of pixels, each vertex as its difference from the one before.
 fn path(points: &[[f64; 2]]) -> String {

@@ -5,6 +5,8 @@ use super::{Figure, Panel, Share};
 
 /// Font sizes in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;
+/// Size of the headings of rows.
+pub(super) const HEADING_SIZE: f64 = 13.0;
 /// Size of panel headings, axis labels and legend.
 pub(super) const LABEL_SIZE: f64 = 12.0;
 /// Size of tick labels.
@@ -53,8 +55,17 @@ impl Placed<'_> {
     }
 }
 
-/// All panels in place below `top`, and the height of the image.
-pub(super) fn place(figure: &Figure, top: f64) -> (Vec<Placed<'_>>, f64) {
+/// Everything in its place.
+pub(super) struct Layout<'a> {
+    pub(super) cells: Vec<Placed<'a>>,
+    /// Headings of rows, with their base lines.
+    pub(super) headings: Vec<(f64, &'a str)>,
+    /// Height of the image.
+    pub(super) height: f64,
+}
+
+/// All panels in place below `top`.
+pub(super) fn place(figure: &Figure, top: f64) -> Layout<'_> {
     let mut rows: Vec<Vec<Placed<'_>>> = figure
         .rows
         .iter()
@@ -71,7 +82,12 @@ pub(super) fn place(figure: &Figure, top: f64) -> (Vec<Placed<'_>>, f64) {
         .collect();
     align_columns(&mut rows);
     let mut top = top;
+    let mut headings = Vec::new();
     for at in 0..rows.len() {
+        if let Some(heading) = figure.row_headings.get(at) {
+            top += LINE;
+            headings.push((top - 2.0, heading.as_str()));
+        }
         let (before, rest) = rows.split_at_mut(at);
         let row = &mut rest[0];
         let titled = row.iter().any(|cell| !cell.panel.title.is_empty());
@@ -88,7 +104,11 @@ pub(super) fn place(figure: &Figure, top: f64) -> (Vec<Placed<'_>>, f64) {
             8.0
         };
     }
-    (rows.into_iter().flatten().collect(), top + EDGE - 8.0)
+    Layout {
+        cells: rows.into_iter().flatten().collect(),
+        headings,
+        height: top + EDGE - 8.0,
+    }
 }
 
 /// A panel with its axes; where it stands and how wide it is is not known yet.

@@ -18,6 +18,8 @@ pub struct Figure {
     pub title: String,
     /// The panels, top to bottom and left to right.
     pub rows: Vec<Vec<Panel>>,
+    /// Heading of each row, above the panels' own; none where there are fewer than rows.
+    pub row_headings: Vec<String>,
     /// Width of the whole image in pixels.
     pub width: f64,
     /// Height of the plotting area of one row in pixels.
@@ -54,6 +56,8 @@ pub struct Panel {
     pub equal_axes: bool,
     /// Circles drawn under the series, for instance the clearance circle of a bearing.
     pub circles: Vec<Circle>,
+    /// Fields of a map, drawn under the series.
+    pub fields: Vec<Field>,
     /// A remark in the middle of the panel, for a panel that has nothing to show.
     pub note: String,
 }
@@ -67,6 +71,8 @@ pub struct Axis {
     pub scale: Scale,
     /// Lowest and highest value shown; taken from the data where it is missing.
     pub range: Option<(f64, f64)>,
+    /// What stands at 0, 1, 2, … in place of numbers; none on an axis of numbers.
+    pub names: Vec<String>,
 }
 
 /// How values are placed along an axis.
@@ -99,12 +105,22 @@ pub struct Series {
 pub enum Mark {
     /// A light line, for one of many.
     FaintLine,
+    /// A thin line, for many turns in a small panel.
+    HairLine,
     /// A line.
     Line,
     /// A heavy line, for the one that counts.
     BoldLine,
     /// Separate points.
     Points,
+    /// Separate open circles, for estimates beside [`Mark::Points`].
+    Rings,
+    /// Separate dots of two pixels, for thousands.
+    Dots,
+    /// Separate dots twice as wide and light, to show under [`Mark::Dots`].
+    WideDots,
+    /// The area that the line through all points encloses, for instance between two quartiles.
+    Band,
     /// The area between the points and the lower edge of the panel.
     Area,
 }
@@ -116,8 +132,21 @@ pub enum Colour {
     Class(usize),
     /// A place between the lowest (0) and the highest (1) of an ordered quantity.
     Ordered(f64),
+    /// A fill from light grey (0) to dark (1) that also reads in grey.
+    Tint(f64),
     /// Dark grey, for a reference.
     Ink,
+}
+
+/// A square of a map, one unit wide and high, with a few letters in it.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Its middle.
+    pub at: [f64; 2],
+    /// Its fill, a [`Colour::Tint`].
+    pub fill: Colour,
+    /// What stands in it.
+    pub letters: String,
 }
 
 /// A circle in the units of the axes.
@@ -129,11 +158,22 @@ pub struct Circle {
     pub radius: f64,
 }
 
+impl Mark {
+    /// Whether the points stand by themselves, and are no line.
+    fn is_separate(self) -> bool {
+        matches!(
+            self,
+            Self::Points | Self::Rings | Self::Dots | Self::WideDots
+        )
+    }
+}
+
 impl Default for Figure {
     fn default() -> Self {
         Self {
             title: String::new(),
             rows: Vec::new(),
+            row_headings: Vec::new(),
             width: 960.0,
             row_height: 220.0,
             share_x: Share::None,
@@ -189,7 +229,17 @@ impl Axis {
         Self {
             label: label.into(),
             scale: Scale::Log,
-            range: None,
+            ..Self::default()
+        }
+    }
+
+    /// An axis of names, at 0, 1, 2, …
+    pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
+        Self {
+            label: label.into(),
+            range: Some((-0.5, names.len().max(1) as f64 - 0.5)),
+            names,
+            ..Self::default()
         }
     }
 
@@ -199,6 +249,7 @@ impl Axis {
             label: "crank angle (°)".to_owned(),
             scale: Scale::Degrees,
             range: Some((0.0, 360.0)),
+            ..Self::default()
         }
     }
 }
@@ -217,6 +268,14 @@ impl Series {
             mark,
             points: points.into_iter().collect(),
         }
+    }
+
+    /// Upright bars from low to high at each place, for intervals: (x, low, high).
+    pub fn intervals(colour: Colour, bars: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let ends = bars
+            .into_iter()
+            .flat_map(|[x, low, high]| [[x, low], [x, high], [f64::NAN; 2]]);
+        Self::new("", colour, Mark::Line, ends)
     }
 
     /// The outline of a histogram: `counts[i]` cases lie between `edges[i]` and `edges[i + 1]`.

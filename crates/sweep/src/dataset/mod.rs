@@ -13,7 +13,7 @@ pub use commit::Commit;
 pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::finalize;
 pub use output::{Existing, Output};
-pub use tables::Tables;
+pub use tables::{Tables, feature_column};
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -46,6 +46,9 @@ struct PlanRecord {
 /// What a dataset has at its top, apart from `_sweep`.
 const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
+/// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
+const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
+const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
 
 impl Output {
     /// Makes the folder ready for the dataset of `plan`, and locks it.
@@ -116,14 +119,33 @@ impl Output {
         for file in FILES
             .into_iter()
             .rev()
-            .chain(["_sweep/plan.json", "report.html"])
+            .chain(["_sweep/plan.json"])
+            .chain(PAGES)
         {
             remove(&self.path(file), |path| fs::remove_file(path))?;
         }
         for folder in FOLDERS.into_iter().chain(["_sweep/commits"]) {
             remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
         }
+        self.clear_figures()?;
         make(&self.path("_sweep/commits"))
+    }
+
+    /// Removes the figures of a report; whatever else is in their folder stays.
+    fn clear_figures(&self) -> Result<(), Error> {
+        let folder = self.path("figures");
+        let Ok(entries) = fs::read_dir(&folder) else {
+            return Ok(());
+        };
+        for entry in entries.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.ends_with(".svg") && FIGURES.iter().any(|start| name.starts_with(start)) {
+                remove(&entry.path(), |path| fs::remove_file(path))?;
+            }
+        }
+        // A folder that still has something in it is not removed.
+        let _ = fs::remove_dir(&folder);
+        Ok(())
     }
 
     /// Writes which plan the folder is for, or checks it.

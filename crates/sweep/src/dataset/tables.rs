@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use features::Definition;
+use features::{Cell, Content, Definition};
 use input::paths;
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
@@ -41,7 +41,11 @@ impl Tables {
         signals.push(rate.unit("Hz"));
         let mut summed_up = about;
         let names = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
-        summed_up.extend(features::definitions(names).into_iter().map(feature));
+        summed_up.extend(
+            features::columns(names, plan.chaos)
+                .into_iter()
+                .map(feature_column),
+        );
         let metadata = BTreeMap::from([("plan_id".to_owned(), plan.id.clone())]);
         Ok(Self {
             signals: Schema::new(signals)?.with_metadata(metadata.clone()),
@@ -106,9 +110,16 @@ fn about(plan: &Plan) -> Vec<Column> {
     columns
 }
 
-fn feature(definition: Definition) -> Column {
-    let meaning = format!("{}: {}", definition.description, definition.formula);
-    let column = Column::new(definition.name, Kind::Real, meaning).optional();
+/// The column of a feature.
+pub fn feature_column((definition, content): (Definition, Content)) -> Column {
+    let (kind, meaning) = match content {
+        Content::Number => (
+            Kind::Real,
+            format!("{}: {}", definition.description, definition.formula),
+        ),
+        Content::Text => (Kind::Text, definition.description),
+    };
+    let column = Column::new(definition.name, kind, meaning).optional();
     match definition.unit.as_str() {
         "1" => column,
         unit => column.unit(unit),
@@ -177,13 +188,18 @@ pub(super) fn features_row(
 ) -> Vec<Value> {
     let crank_angle = channels.iter().find(|c| c.name == "crank_angle_rad");
     let mut row = about_row(plan, case, window);
-    let values = features::features(&features::Window {
+    let window = features::Window {
         sample_rate: sample_rate_hz,
         speed_rpm: Some(case.operating_point.speed_rpm),
         crank_angle: crank_angle.map(|c| c.samples.as_slice()),
         channels,
-    });
-    row.extend(values.into_iter().map(|value| Value::from(value.ok())));
+    };
+    let cells = features::row(&window, plan.chaos);
+    row.extend(cells.into_iter().map(|cell| match cell {
+        Some(Cell::Number(number)) => number.into(),
+        Some(Cell::Text(text)) => text.into(),
+        None => Value::Missing,
+    }));
     row
 }
 

@@ -55,6 +55,8 @@ pub struct Plan {
     pub settings: Settings,
     /// How the motion of each case is judged from the equations, where that is asked for.
     pub judgement: Option<Judgement>,
+    /// Whether the kind of motion is told from the recorded signals.
+    pub chaos: bool,
     /// How recordings are cut.
     pub windows: Option<Windows>,
     /// Shares of train, validation and test.
@@ -146,6 +148,7 @@ impl Plan {
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
             judgement: judgement(&file.run)?,
+            chaos: file.run.chaos.unwrap_or(true),
             windows: file.windows,
             shares: shares(file)?,
             format: file.format,

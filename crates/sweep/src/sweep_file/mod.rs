@@ -98,6 +98,11 @@ pub struct Run {
     /// it takes about twice as long per revolution as the recording.
     #[serde(default)]
     pub lyapunov: Option<Lyapunov>,
+    /// Whether the features tell what kind of motion each window shows, from the signal: `regime`,
+    /// `lyapunov_per_s` and what goes with them, entropies, dimension, recurrence. True where it is
+    /// left out; it can take as long as the simulation, so a large sweep may switch it off.
+    #[serde(default)]
+    pub chaos: Option<bool>,
 }
 
 /// How the motion of each case is judged.

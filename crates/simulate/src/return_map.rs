@@ -19,13 +19,13 @@ const PATIENCE: f64 = 50.0;
 const LOOKS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// A machine that runs from one passage of the section to the next.
-pub(crate) struct Strobe {
+pub(crate) struct ReturnMap {
     watched: Watched,
     integrator: Integrator<f64>,
     tolerance: f64,
 }
 
-impl Strobe {
+impl ReturnMap {
     /// The machine at rest in its initial state.
     pub fn start(machine: &Machine, angle: f64, tolerance: f64) -> Self {
         let watched = Watched::new(machine, angle);

@@ -1,0 +1,263 @@
+//! Largest Lyapunov exponent of a sampled signal, with a 95 % interval.
+//!
+//! A smooth map from delay vectors to the next sample is fitted to the whole signal, with noise in
+//! every sample allowed for; the growth of a tangent along the most likely signal is the exponent
+//! (Eckmann and Ruelle 1985). Dimension and delay are those of the greatest likelihood. The
+//! interval comes from three differences: between stretches of the signal, between maps fitted
+//! without parts of it, and between the two likeliest embeddings. It knows nothing of what no such
+//! map can follow: corners in the law (Lozi's map), or states that the delay vectors do not hold.
+
+use crate::delay::Times;
+use crate::error::{Error, checked};
+use crate::errors_in_variables::Model;
+use crate::global_map::{Basis, FOLDS, regression};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use scalar::random::Stream;
+
+/// Noise added to every signal, as a share of its standard deviation. A signal without noise lies
+/// on a thin attractor and leaves the slopes across it open, and with them exponents that the
+/// system does not have; noise settles them near 0 (Bishop 1995: noise on inputs acts as a
+/// penalty on slopes). So small a noise costs less accuracy than the length of the signal.
+const ADDED: f64 = 0.003;
+/// Largest dimension.
+const LARGEST: usize = 6;
+/// Longest delay in samples; of slower signals, means of successive samples are taken.
+const LONGEST_DELAY: usize = 7;
+/// Centres of the map, and fewest samples for each.
+const CENTRES: usize = 150;
+const PER_CENTRE: usize = 12;
+/// Vectors and centres with which embeddings are compared first.
+const SCREENED: usize = 2500;
+const FEW_CENTRES: usize = 100;
+/// Embeddings compared by likelihood, samples for that, and passes of the fits.
+const COMPARED: usize = 4;
+const TRIAL: usize = 4000;
+const PASSES: usize = 3;
+/// Blocks for the standard error over time.
+const BLOCKS: usize = 20;
+/// Two-sided 95 % quantile of Student's t for as many blocks.
+const QUANTILE: f64 = 2.093;
+/// Fewest samples of a signal (after taking means).
+const FEWEST: usize = 300;
+/// Standard error by what noise leaves in curved maps, as a share of the exponent for noise as large
+/// as the signal: about 1 % at 5 % noise on the tinkerbell and the delayed logistic map
+/// (`examples/calibrate.rs`), which the differences between maps do not show.
+const LEFT_BY_NOISE: f64 = 0.2;
+/// Noise and error of the map, together, from which nothing is said, as a share of the standard
+/// deviation.
+const DROWNED: f64 = 0.5;
+
+/// An exponent with its 95 % interval, all in nats per sample, and what it rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exponent {
+    /// Best estimate.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end of the interval.
+    pub high: f64,
+    /// Coordinates of the delay vectors that the map starts from.
+    pub dimension: usize,
+    /// Samples between them.
+    pub delay: usize,
+    /// Noise found in the signal: its standard deviation as a share of the signal's.
+    pub noise: f64,
+    /// Standard error from the differences between stretches of the signal.
+    pub over_time: f64,
+    /// Standard error from maps fitted with parts of the signal left out (jackknife).
+    pub of_map: f64,
+    /// The exponent by the second likeliest embedding.
+    pub second: f64,
+}
+
+/// The largest exponent of a signal.
+pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
+    let (mean, deviation) = checked(signal)?;
+    let samples = (times.delay / LONGEST_DELAY + 1).min(times.delay);
+    let y = prepared(signal, mean, deviation, samples);
+    if y.len() < FEWEST {
+        return Err(Error::TooShort {
+            found: signal.len(),
+            needed: FEWEST * samples,
+        });
+    }
+    let delay = (times.delay / samples).max(1);
+    let mut embeddings = screened(&y, delay);
+    embeddings.truncate(COMPARED);
+    let trial = &y[..y.len().min(TRIAL)];
+    let mut tried: Vec<(f64, Embedding)> = embeddings
+        .into_iter()
+        .filter_map(|e| Some((fitted(trial, trial, e, FEW_CENTRES)?.likelihood, e)))
+        .collect();
+    tried.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let unfit = Error::NoScalingRegion {
+        reason: "no map from delay vectors to the next sample can be fitted",
+    };
+    let Some(&(_, first)) = tried.first() else {
+        return Err(unfit);
+    };
+    let mut best = fitted(&y, &y, first, CENTRES).ok_or(unfit)?;
+    let mut other = tried
+        .get(1)
+        .and_then(|(_, second)| fitted(&y, &best.signal, *second, CENTRES));
+    if let Some(second) = &mut other
+        && second.likelihood > best.likelihood
+    {
+        std::mem::swap(&mut best, second);
+    }
+    if best.noise.hypot(best.own) > DROWNED {
+        return Err(Error::NoScalingRegion {
+            reason: "noise hides the dynamics",
+        });
+    }
+    let growth = Growth::new(&best);
+    let second = other.map_or(growth.mean, |model| Growth::new(&model).mean);
+    let error = growth
+        .over_time
+        .hypot(growth.of_map)
+        .hypot((second - growth.mean) / 2.0)
+        .hypot(LEFT_BY_NOISE * best.noise * growth.mean);
+    let half = QUANTILE * error;
+    let each = 1.0 / samples as f64;
+    Ok(Exponent {
+        value: growth.mean * each,
+        low: (growth.mean - half) * each,
+        high: (growth.mean + half) * each,
+        dimension: best.basis.dimension,
+        delay: best.basis.delay * samples,
+        noise: (best.noise.powi(2) - ADDED.powi(2)).max(0.0).sqrt(),
+        over_time: growth.over_time * each,
+        of_map: growth.of_map * each,
+        second: second * each,
+    })
+}
+
+/// The signal in units of its standard deviation, as means of so many samples, with a little noise.
+fn prepared(signal: &[f64], mean: f64, deviation: f64, samples: usize) -> Vec<f64> {
+    let mut generator = Stream::seed_from_u64(0);
+    signal
+        .chunks_exact(samples)
+        .map(|chunk| {
+            let value = chunk.iter().map(|x| (x - mean) / deviation).sum::<f64>();
+            value / samples as f64 + ADDED * generator.sample::<f64, _>(StandardNormal)
+        })
+        .collect()
+}
+
+/// Dimension and delay.
+#[derive(Clone, Copy, Debug)]
+struct Embedding {
+    dimension: usize,
+    delay: usize,
+}
+
+/// Embeddings in order of the held-out error of a coarse map.
+fn screened(y: &[f64], delay: usize) -> Vec<Embedding> {
+    let mut delays = vec![delay.div_ceil(2), delay];
+    delays.dedup();
+    let mut found = Vec::new();
+    for delay in delays {
+        for dimension in 1..=LARGEST {
+            let basis = Basis::new(y, dimension, delay, FEW_CENTRES.min(y.len() / PER_CENTRE));
+            let count = basis.rows(y);
+            let rows = (0..count).step_by(count.div_ceil(SCREENED));
+            let target: Vec<f64> = rows.clone().map(|r| y[basis.span() + r + 1]).collect();
+            let design = basis.design(y, rows);
+            if let Some(fit) = regression(&design, basis.size(), &target) {
+                found.push((fit.held_out, Embedding { dimension, delay }));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, embedding)| embedding).collect()
+}
+
+fn fitted(y: &[f64], start: &[f64], e: Embedding, centres: usize) -> Option<Model> {
+    let basis = Basis::new(y, e.dimension, e.delay, centres.min(y.len() / PER_CENTRE));
+    Model::fitted(basis, y, start, PASSES)
+}
+
+/// Mean growth of a tangent in nats per sample, with its standard errors.
+struct Growth {
+    mean: f64,
+    over_time: f64,
+    of_map: f64,
+}
+
+impl Growth {
+    fn new(model: &Model) -> Self {
+        let mut maps: Vec<&[f64]> = vec![&model.fit.map];
+        maps.extend(model.fit.folds.iter().map(Vec::as_slice));
+        let mut growths = model.basis.along(&maps, &model.signal).into_iter();
+        let whole = growths.next().map_or(Vec::new(), |linear| linear.growth());
+        let folds: Vec<f64> = growths.map(|linear| mean(&linear.growth())).collect();
+        let blocks: Vec<f64> = whole
+            .chunks_exact((whole.len() / BLOCKS).max(1))
+            .map(mean)
+            .collect();
+        Self {
+            mean: mean(&whole),
+            over_time: (variance(&blocks) / blocks.len() as f64).sqrt(),
+            // Of delete-a-part estimates (Efron and Stein 1981).
+            of_map: (FOLDS - 1) as f64 * (variance(&folds) / FOLDS as f64).sqrt(),
+        }
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Sample variance.
+fn variance(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delay::times;
+    use crate::test_systems::{Noise, Regular, System, with_noise};
+
+    fn found(signal: &[f64]) -> Exponent {
+        exponent(signal, &times(signal).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn maps_are_found_closely_also_with_noise() {
+        for (system, share, tolerance) in [
+            (System::Logistic, 0.0, 0.01),
+            (System::Logistic, 0.05, 0.12),
+            (System::Henon, 0.01, 0.04),
+        ] {
+            let exponent = found(&with_noise(&system.samples(2000, 1), share, 1));
+            let error = exponent.value / system.exponent() - 1.0;
+            assert!(error.abs() < tolerance, "{} {exponent:?}", system.name());
+            assert!(
+                (exponent.noise - share).abs() < 0.1 * share + 0.001,
+                "{exponent:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_interval_of_a_periodic_signal_reaches_zero() {
+        for share in [0.0, 0.05] {
+            let signal = with_noise(&Regular::Periodic.samples(2000, 1), share, 1);
+            let exponent = found(&signal);
+            assert!(exponent.low <= 0.0, "{exponent:?}");
+        }
+    }
+
+    #[test]
+    fn noise_alone_is_refused() {
+        let signal = Noise::White.samples(2000, 1);
+        let refused = exponent(&signal, &times(&signal).unwrap());
+        assert!(
+            matches!(refused, Err(Error::NoScalingRegion { .. })),
+            "{refused:?}"
+        );
+    }
+}

@@ -1,0 +1,168 @@
+//! The page that documents the features, from their one table and the columns of the files.
+
+use super::dataset::Dataset;
+use crate::Failure;
+use ::report::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
+use ::report::text;
+use features::Definition;
+
+/// Headings, and how the names of the features under them begin; the first is of all others.
+const GROUPS: [(&str, &[&str]); 7] = [
+    ("Statistics of the samples", &[]),
+    (
+        "Frequency bands and spectral shape",
+        &["band_", "spectral_"],
+    ),
+    ("Orders of the shaft", &["order_", "cepstrum_"]),
+    ("Velocity-acceleration portrait", &["portrait_"]),
+    (
+        "Impacts: envelope in the most impulsive band",
+        &["envelope_"],
+    ),
+    (
+        "Revolution by revolution",
+        &["residual_", "synchronous_", "sector_"],
+    ),
+    (
+        "Chaos",
+        &[
+            "lyapunov",
+            "regime",
+            "zero_one",
+            "correlation_",
+            "sample_entropy",
+            "permutation_",
+            "multiscale_",
+            "recurrence_",
+            "embedding_",
+            "surrogate_",
+            "delay_",
+            "dimension_",
+        ],
+    ),
+];
+
+/// # Errors
+/// A table that cannot be read.
+pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Failure> {
+    let channels = dataset.plan.channels();
+    let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
+    let definitions = features::definitions(named);
+    let groups = GROUPS.iter().enumerate().map(|(at, (heading, _))| {
+        let own = definitions
+            .iter()
+            .filter(|definition| group(&definition.feature) == at);
+        FeatureGroup {
+            heading: (*heading).to_owned(),
+            features: entries(own),
+        }
+    });
+    let groups = groups.filter(|group| !group.features.is_empty()).collect();
+    Ok(FeaturesPage {
+        name: dataset.plan.name.clone(),
+        version: dataset.manifest.version.clone(),
+        groups,
+        columns: labels(dataset, &definitions)?,
+    })
+}
+
+/// The group of a feature.
+fn group(feature: &str) -> usize {
+    let begins =
+        |(_, beginnings): &(&str, &[&str])| beginnings.iter().any(|b| feature.starts_with(b));
+    GROUPS.iter().position(begins).unwrap_or(0)
+}
+
+/// An entry for each feature, whatever the channels, and for each run of names that differ in
+/// digits alone.
+fn entries<'a>(definitions: impl Iterator<Item = &'a Definition>) -> Vec<FeatureEntry> {
+    let mut features: Vec<(&str, FeatureEntry)> = Vec::new();
+    for definition in definitions {
+        let unit = if definition.unit == "1" {
+            String::new()
+        } else {
+            text::unit(&definition.unit)
+        };
+        match features
+            .iter_mut()
+            .find(|(feature, _)| *feature == definition.feature)
+        {
+            Some((_, entry)) => {
+                entry.columns.push(definition.name.clone());
+                if !entry.units.contains(&unit) {
+                    entry.units.push(unit);
+                }
+            }
+            None => features.push((
+                &definition.feature,
+                FeatureEntry {
+                    name: definition.feature.clone(),
+                    columns: vec![definition.name.clone()],
+                    units: vec![unit],
+                    definition: definition.description.clone(),
+                    formula: definition.formula.to_owned(),
+                    source: definition.source.to_owned(),
+                },
+            )),
+        }
+    }
+    let pattern = |feature: &str| feature.replace(|c: char| c.is_ascii_digit(), "#");
+    let runs = features.chunk_by(|(a, _), (b, _)| pattern(a) == pattern(b));
+    let merged = runs.map(|run| {
+        let mut entry = run[0].1.clone();
+        if let [_, .., (last, _)] = run {
+            entry.name = format!("{} … {last}", entry.name);
+            entry.definition += "; and so on";
+        }
+        entry
+    });
+    merged.collect()
+}
+
+/// The columns of the table of features that are no features.
+fn labels(dataset: &Dataset, definitions: &[Definition]) -> Result<Vec<LabelColumn>, Failure> {
+    let Some(path) = dataset.files("features").into_iter().next() else {
+        return Ok(Vec::new());
+    };
+    let file = dataset.table(&path)?;
+    let columns = file.schema().columns().iter();
+    let others = columns.filter(|column| {
+        definitions
+            .iter()
+            .all(|definition| definition.name != column.name)
+    });
+    let labels = others.map(|column| LabelColumn {
+        name: column.name.clone(),
+        kind: column.kind.to_string(),
+        unit: text::unit(column.unit.as_deref().unwrap_or_default()),
+        meaning: column.description.clone(),
+    });
+    Ok(labels.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_feature_is_in_a_group_and_rows_of_them_are_one_entry() {
+        let definitions = features::definitions([("a_m_s2", "m/s^2"), ("p_pa", "Pa")]);
+        let orders: Vec<&Definition> = definitions
+            .iter()
+            .filter(|d| group(&d.feature) == 2)
+            .collect();
+        let entries = entries(orders.into_iter());
+        let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "order_01 … order_20",
+                "order_01_rms … order_20_rms",
+                "cepstrum_revolution"
+            ]
+        );
+        assert_eq!(entries[0].units, ["m/s²", "Pa"]);
+        assert_eq!(entries[0].columns, ["a.order_01_m_s2", "p.order_01_pa"]);
+        assert_eq!(group("kurtosis"), 0);
+    }
+}

@@ -1,0 +1,59 @@
+//! Figures on their way into a page, and as files beside it.
+
+use crate::text;
+
+/// A figure with its heading and caption.
+pub(crate) struct Plate {
+    pub(crate) heading: String,
+    pub(crate) caption: String,
+    pub(crate) svg: String,
+}
+
+/// A page and the figures on it.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// The page as one HTML file.
+    pub html: String,
+    /// Its figures, in the order of the page.
+    pub figures: Vec<FigureFile>,
+}
+
+/// A figure as a file.
+#[derive(Clone, Debug)]
+pub struct FigureFile {
+    /// Name of the file: `chaos-01-phase-portraits.svg`.
+    pub name: String,
+    /// Its content, the same that the page has.
+    pub svg: String,
+}
+
+/// The name of the file of a page's figure of this number and heading.
+pub(crate) fn file_name(page: &str, number: usize, heading: &str) -> String {
+    let letters = heading.chars().map(|c| match c {
+        c if c.is_ascii_alphanumeric() => c.to_ascii_lowercase(),
+        _ => ' ',
+    });
+    let words = letters.collect::<String>();
+    let words = words.split_whitespace().collect::<Vec<_>>().join("-");
+    let short = text::shortened(&words, 60);
+    format!(
+        "{page}-{number:02}-{}.svg",
+        short.trim_end_matches(['-', '…'])
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::file_name;
+
+    #[test]
+    fn names_of_files_are_plain() {
+        assert_eq!(
+            file_name("dataset", 3, "Big end + small end, 0.1\u{a0}mm"),
+            "dataset-03-big-end-small-end-0-1-mm.svg"
+        );
+        let hostile = file_name("chaos", 12, &"../<b>&".repeat(40));
+        assert!(hostile.len() < 80 && hostile.ends_with(".svg"));
+        assert!(!hostile.contains("..") && !hostile.contains('/'));
+    }
+}
