@@ -53,6 +53,9 @@ pub struct Run {
     pub revolutions: Option<Number<FromZero>>,
     /// The channels, at least one.
     pub channels: Vec<Channel>,
+    /// The run as it stands in the file.
+    #[serde(skip)]
+    pub section: Value,
 }
 
 /// The gas pressures of a throw, absolute.
@@ -165,8 +168,8 @@ fn runs(tree: &Value) -> Result<Vec<Run>, Error> {
     Ok(runs)
 }
 
-fn read_run(tree: &Value, several: bool) -> Result<Run, Error> {
-    let mut tree = tree.clone();
+fn read_run(section: &Value, several: bool) -> Result<Run, Error> {
+    let mut tree = section.clone();
     if let Value::Object(section) = &mut tree {
         for key in section.keys().filter(|key| !KEYS.contains(&key.as_str())) {
             if nearest(key, KEYS).is_some() {
@@ -180,7 +183,8 @@ fn read_run(tree: &Value, several: bool) -> Result<Run, Error> {
             }
         }
     }
-    let run: Run = crate::reader::read(&tree)?;
+    let mut run: Run = crate::reader::read(&tree)?;
+    run.section = section.clone();
     if run.channels.is_empty() {
         return Err(Error::clash("channels", "a list of one channel or more"));
     }
