@@ -72,6 +72,20 @@ pub struct Fit {
     pub complete: bool,
 }
 
+impl Fit {
+    /// Root mean square over runs, those held out or the others; none where there is none.
+    pub fn misfit(&self, held_out: bool, of: impl Fn(&RunFit) -> f64) -> Option<f64> {
+        let chosen: Vec<f64> = self
+            .runs
+            .iter()
+            .filter(|run| run.held_out == held_out)
+            .map(|run| of(run).powi(2))
+            .collect();
+        let mean = chosen.iter().sum::<f64>() / chosen.len() as f64;
+        (!chosen.is_empty()).then(|| mean.sqrt())
+    }
+}
+
 /// What was found of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
@@ -184,7 +198,7 @@ fn search(
     watch: optimiser::Watch,
 ) -> Result<Progress, Error> {
     let most = settings.evaluations;
-    let (seed, count) = (settings.seed, likelihood.count() as f64);
+    let seed = settings.seed;
     match settings.optimiser {
         Optimiser::LevenbergMarquardt => {
             optimiser::levenberg_marquardt(likelihood, start, most, watch)
@@ -194,10 +208,9 @@ fn search(
         Optimiser::Default => {
             let mut best = optimiser::levenberg_marquardt(likelihood, start, most, watch)?;
             let mut spent = best.evaluations;
-            let is_noise = |cost: f64| (2.0 * cost / count).sqrt() < NOISE;
             let starts = other_starts(start, &likelihood.bounds(), seed);
             for start in starts {
-                if is_noise(best.cost) || spent >= most {
+                if best.misfit() < NOISE || spent >= most {
                     break;
                 }
                 let left = most - spent;
@@ -205,7 +218,7 @@ fn search(
                 spent += found.evaluations;
                 best = better(best, found);
             }
-            if !is_noise(best.cost) && spent < most {
+            if best.misfit() >= NOISE && spent < most {
                 let left = most - spent;
                 let far = optimiser::cma_es(likelihood, &best.x, seed, left, watch)?;
                 spent += far.evaluations;

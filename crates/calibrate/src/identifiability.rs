@@ -106,6 +106,9 @@ mod tests {
         fn bounds(&self) -> Vec<[f64; 2]> {
             vec![[-10.0, 10.0]; 3]
         }
+        fn count(&self) -> usize {
+            4
+        }
         fn residuals(&self, x: &[f64]) -> Vec<f64> {
             let noise = [0.3, -0.4, 0.1, 0.0];
             (0..4)

@@ -42,11 +42,6 @@ impl<'a> Likelihood<'a> {
         Self { problem, accuracy }
     }
 
-    /// How many residuals there are.
-    pub fn count(&self) -> usize {
-        self.problem.runs.iter().map(residual_count).sum()
-    }
-
     /// The predictions of all runs.
     ///
     /// # Errors
@@ -76,6 +71,10 @@ impl LeastSquares for Likelihood<'_> {
             .iter()
             .map(|p| p.box_bounds())
             .collect()
+    }
+
+    fn count(&self) -> usize {
+        self.problem.runs.iter().map(residual_count).sum()
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {

@@ -16,7 +16,9 @@ use std::ops::ControlFlow;
 pub trait LeastSquares {
     /// Least and greatest value of each coordinate.
     fn bounds(&self) -> Vec<[f64; 2]>;
-    /// The residuals at `x`; always as many.
+    /// How many residuals there are.
+    fn count(&self) -> usize;
+    /// The residuals at `x`.
     fn residuals(&self, x: &[f64]) -> Vec<f64>;
     /// Their derivatives, one row per residual.
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64>;
@@ -29,8 +31,17 @@ pub struct Progress {
     pub x: Vec<f64>,
     /// Half the sum of squares there.
     pub cost: f64,
+    /// Residuals that it is the sum of.
+    pub count: usize,
     /// Evaluations of the model so far; one with derivatives counts as [`DERIVATIVES`].
     pub evaluations: u64,
+}
+
+impl Progress {
+    /// Root mean square of the residuals.
+    pub fn misfit(&self) -> f64 {
+        (2.0 * self.cost / self.count.max(1) as f64).sqrt()
+    }
 }
 
 /// What an evaluation with derivatives counts for, whatever the number of parameters: the tangents
@@ -114,13 +125,14 @@ fn half_square(residuals: &[f64]) -> f64 {
 
 /// The steps of an executor until it stops, `watch` says so, or `most` evaluations are made.
 macro_rules! run {
-    ($executor:expr, $evaluations:expr, $most:expr, $watch:expr) => {{
+    ($executor:expr, $evaluations:expr, $count:expr, $most:expr, $watch:expr) => {{
         let mut stepper = $executor.into_stepper().map_err(failed)?;
         loop {
             let state = stepper.state();
             let progress = Progress {
                 x: state.best_param().clone(),
                 cost: state.best_cost(),
+                count: $count,
                 evaluations: $evaluations.get(),
             };
             if $watch(&progress).is_break() || progress.evaluations >= $most {
@@ -131,6 +143,7 @@ macro_rules! run {
                 break Ok(Progress {
                     x: state.best_param().clone(),
                     cost: state.best_cost(),
+                    count: $count,
                     evaluations: $evaluations.get(),
                 });
             }
@@ -155,7 +168,7 @@ pub fn levenberg_marquardt(
         solver,
         PointState::new(start.to_vec()),
     );
-    run!(executor, evaluations, most, watch)
+    run!(executor, evaluations, problem.count(), most, watch)
 }
 
 /// CMA-ES within bounds (Hansen 2016), from `start`, with an initial standard deviation of a
@@ -181,7 +194,7 @@ pub fn cma_es(
         solver,
         PopulationProgress::from_point(start.to_vec()),
     );
-    run!(executor, evaluations, most, watch)
+    run!(executor, evaluations, problem.count(), most, watch)
 }
 
 /// A genetic algorithm, the reference method (Paper 1): a steady-state one with real genes, blend
@@ -224,7 +237,7 @@ pub fn genetic(
         solver,
         PopulationProgress::empty(),
     );
-    run!(executor, evaluations, most, watch)
+    run!(executor, evaluations, problem.count(), most, watch)
 }
 
 #[cfg(test)]
@@ -237,6 +250,9 @@ mod tests {
     impl LeastSquares for Valley {
         fn bounds(&self) -> Vec<[f64; 2]> {
             vec![[-2.0, 3.0]; 2]
+        }
+        fn count(&self) -> usize {
+            2
         }
         fn residuals(&self, x: &[f64]) -> Vec<f64> {
             vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]

@@ -5,6 +5,8 @@
 //! standard error. Exit status: 0 done, 1 the work failed, 2 the input or the arguments are wrong.
 #![allow(clippy::print_stdout)]
 
+pub mod bundle;
+pub mod calibrate;
 pub mod failure;
 pub mod features;
 pub mod gen_dataset;

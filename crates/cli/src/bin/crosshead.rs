@@ -21,6 +21,8 @@ enum Verb {
     Features(cli::features::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
     Report(cli::report::Arguments),
+    /// Fit a machine's parameters to recordings of it
+    Calibrate(cli::calibrate::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
     Schema(cli::schema::Arguments),
 }
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
         Verb::Features(arguments) => cli::features::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),
+        Verb::Calibrate(arguments) => cli::calibrate::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })
 }
