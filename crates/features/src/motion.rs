@@ -85,7 +85,7 @@ pub fn motion_definitions() -> Vec<Definition> {
             ROSENSTEIN,
         ),
         line(
-            "zero_one_k",
+            "zero_one_test",
             "1",
             "0-1 test: near 1 for chaos and noise, near 0 for regular motion",
             "median over c of corr(t, M_c(t))",
