@@ -69,6 +69,13 @@ const LAGS: usize = 16;
 /// Blocks of the jackknife, and the two-sided 95 % quantile of Student's t for them.
 const BLOCKS: usize = 8;
 const QUANTILE: f64 = 2.365;
+/// How growth fades as distances approach saturation ([`rate`]): 1 after Lorenz (1982), 2 after Dalcher
+/// and Kalnay (1987), whose law is for squared distances; below 1 where small distances grow fastest
+/// (Aurell et al. 1997), as between parts that touch now and then. A signal in which distances start near saturation does not tell
+/// which, so the interval spans 1/2 to 2. The power of the best estimate is between, where it
+/// is neither low nor high on average on 23 chaotic compressors; nothing else is adjusted to them.
+const POWER: f64 = 0.7;
+const POWERS: [f64; 2] = [0.5, 2.0];
 
 /// The scatter of a signal with `per_cycle` samples in each cycle of its drive.
 pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
@@ -189,38 +196,42 @@ impl Parting {
         curve.map(|c| c / count)
     }
 
-    /// The rate, with the standard error of a jackknife over blocks of cycles. The saturation of the
-    /// distances is a model: half of what it changes widens the interval, and so does half of the
-    /// difference that it makes to look at half a cycle only.
+    /// The rate with its interval: a jackknife over blocks of cycles for chance, and for the model the
+    /// farthest that the rate comes below and above with other powers and shorter stretches.
     fn growth(&self) -> Growth {
         let curve = self.curve(None);
-        let value = rate(&curve, self.saturation);
+        let whole = |curve: &[f64]| rate(curve, self.saturation, POWER);
+        let value = whole(&curve);
         let deleted: f64 = (0..BLOCKS)
-            .map(|block| (rate(&self.curve(Some(block)), self.saturation) - value).powi(2))
+            .map(|block| (whole(&self.curve(Some(block))) - value).powi(2))
             .sum();
         let statistical = QUANTILE * (deleted * (BLOCKS - 1) as f64 / BLOCKS as f64).sqrt();
-        let straight = rate(&curve, f64::INFINITY);
-        let half = rate(&curve[..=LAGS / 2], self.saturation);
-        let width = statistical
-            .hypot((straight - value) / 2.0)
-            .hypot((half - value) / 2.0);
+        let others = POWERS.iter().flat_map(|&power| {
+            let stretches = [LAGS / 4, LAGS / 2, LAGS].into_iter();
+            stretches.map(move |last| rate(&curve[..=last], self.saturation, power))
+        });
+        let (lowest, highest) = others.fold((value, value), |(low, high), other| {
+            (low.min(other), high.max(other))
+        });
         Growth {
             value,
-            low: value - width,
-            high: value + width,
+            low: value - statistical.hypot(value - lowest),
+            high: value + statistical.hypot(highest - value),
         }
     }
 }
 
 /// Rate at the start of a growth that saturates: a small distance D grows as
-/// `d ln D / dt = rate (1 - D / D_saturated)` (Lorenz 1982), so `ln(D_saturated / D - 1)` falls in a
-/// straight line, fitted with weights for the error of `ln D`.
-fn rate(curve: &[f64], saturation: f64) -> f64 {
+/// `d ln D / dt = rate (1 - (D / D_saturated)^power)` (Stroe and Royer 1993; power 1: Lorenz 1982), so
+/// `ln((D_saturated / D)^power - 1)` falls in a straight line, fitted with weights for the error of
+/// `ln D`.
+fn rate(curve: &[f64], saturation: f64, power: f64) -> f64 {
     let (mut w, mut wt, mut wz, mut wtt, mut wtz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (lag, y) in curve.iter().enumerate() {
         let t = lag as f64 / LAGS as f64;
-        // 1 - D / D_saturated; a distance above saturation says nothing.
-        let room = 1.0 - (y - saturation).exp();
+        let y = power * (y - saturation);
+        // A distance above saturation says nothing.
+        let room = 1.0 - y.exp();
         if room <= 0.0 {
             continue;
         }
@@ -234,7 +245,7 @@ fn rate(curve: &[f64], saturation: f64) -> f64 {
     }
     let spread = w * wtt - wt * wt;
     if spread > 0.0 {
-        -(w * wtz - wt * wz) / spread
+        -(w * wtz - wt * wz) / (spread * power)
     } else {
         0.0
     }
