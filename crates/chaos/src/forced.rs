@@ -5,8 +5,9 @@
 //! the drive, part at once if the scatter is noise; they stay alike, and part at the rate of the
 //! exponent, if it is deterministic. The phase is a coordinate of the state of a driven system (Stark
 //! 1999), so only cycles at the same phase are compared; and a mean over all phases is a mean over the
-//! cycle. Noise as large as the distances of cycles that are alike hides part of their growth: then the
-//! rate is too low.
+//! cycle. A hundred cycles are rarely much alike, and fast growth fades soon: the rate at the start is
+//! extrapolated, and its interval says how far laws of fading differ. Noise as large as the distances
+//! of cycles that are alike hides part of their growth: then the rate is too low.
 
 use crate::delay;
 use crate::error::{Error, checked};
@@ -71,9 +72,9 @@ const BLOCKS: usize = 8;
 const QUANTILE: f64 = 2.365;
 /// How growth fades as distances approach saturation ([`rate`]): 1 after Lorenz (1982), 2 after Dalcher
 /// and Kalnay (1987), whose law is for squared distances; below 1 where small distances grow fastest
-/// (Aurell et al. 1997), as between parts that touch now and then. A signal in which distances start near saturation does not tell
-/// which, so the interval spans 1/2 to 2. The power of the best estimate is between, where it
-/// is neither low nor high on average on 23 chaotic compressors; nothing else is adjusted to them.
+/// (Aurell et al. 1997), as between parts that touch now and then. Distances that start near saturation
+/// do not tell which, so the interval spans 1/2 to 2. The best estimate's power is one at which it is
+/// neither low nor high on average on 23 chaotic compressors; on them the interval was chosen, too.
 const POWER: f64 = 0.7;
 const POWERS: [f64; 2] = [0.5, 2.0];
 
@@ -196,8 +197,8 @@ impl Parting {
         curve.map(|c| c / count)
     }
 
-    /// The rate with its interval: a jackknife over blocks of cycles for chance, and for the model the
-    /// farthest that the rate comes below and above with other powers and shorter stretches.
+    /// The rate with its interval, from three differences: by chance (a jackknife over blocks of cycles),
+    /// with other powers, and over half and a quarter of a cycle.
     fn growth(&self) -> Growth {
         let curve = self.curve(None);
         let whole = |curve: &[f64]| rate(curve, self.saturation, POWER);
@@ -206,17 +207,19 @@ impl Parting {
             .map(|block| (whole(&self.curve(Some(block))) - value).powi(2))
             .sum();
         let statistical = QUANTILE * (deleted * (BLOCKS - 1) as f64 / BLOCKS as f64).sqrt();
-        let others = POWERS.iter().flat_map(|&power| {
-            let stretches = [LAGS / 4, LAGS / 2, LAGS].into_iter();
-            stretches.map(move |last| rate(&curve[..=last], self.saturation, power))
-        });
-        let (lowest, highest) = others.fold((value, value), |(low, high), other| {
-            (low.min(other), high.max(other))
-        });
+        // How far other rates lie below and above.
+        let reach = |others: [f64; 2]| {
+            let below = others.iter().fold(0.0, |far: f64, x| far.max(value - x));
+            let above = others.iter().fold(0.0, |far: f64, x| far.max(x - value));
+            (below, above)
+        };
+        let law = reach(POWERS.map(|power| rate(&curve, self.saturation, power)));
+        let part = |last: usize| rate(&curve[..=last], self.saturation, POWER);
+        let stretch = reach([part(LAGS / 2), part(LAGS / 4)]);
         Growth {
             value,
-            low: value - statistical.hypot(value - lowest),
-            high: value + statistical.hypot(highest - value),
+            low: value - statistical.hypot(law.0).hypot(stretch.0),
+            high: value + statistical.hypot(law.1).hypot(stretch.1),
         }
     }
 }
