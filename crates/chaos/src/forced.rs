@@ -295,6 +295,19 @@ mod tests {
     }
 
     #[test]
+    fn the_rate_is_that_at_the_start_of_each_law() {
+        // The law's solution: D^-power - 1 falls as exp(-rate power t), saturation being 1.
+        for power in [0.5, 1.0, 2.0] {
+            let distance = |lag: usize| {
+                let t = lag as f64 / LAGS as f64;
+                (1.0 + 20.0 * (-3.0 * power * t).exp()).powf(-1.0 / power)
+            };
+            let curve: Vec<f64> = (0..=LAGS).map(|lag| distance(lag).ln()).collect();
+            assert!((rate(&curve, 0.0, power) - 3.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
     fn few_cycles_are_refused() {
         let signal = Noise::White.samples(600, 1);
         assert!(matches!(scatter(&signal, 40), Err(Error::TooShort { .. })));

@@ -51,8 +51,8 @@ pub struct Motion {
     pub numbers: Vec<Result<f64, Reason>>,
 }
 
-const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) with saturation (Lorenz \
-    1982), or a map with errors in variables; crate chaos, modules forced and exponent";
+const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) with saturation (Stroe, \
+    Royer 1993), or a map with errors in variables; crate chaos, modules forced and exponent";
 const MARWAN: &str = "Marwan et al. 2007, Physics Reports 438, 237";
 
 /// The numbers that tell a motion; the same for every recording.
