@@ -10,7 +10,7 @@
 
 use crate::reason::Reason;
 use crate::spectral::crank_angle;
-use crate::{Definition, Window, has_features};
+use crate::{Definition, Group, Window, has_features};
 use chaos::correlation_dimension::correlation_dimension;
 use chaos::delay::{Times, times};
 use chaos::dimension::unfolding;
@@ -60,6 +60,7 @@ pub fn motion_definitions() -> Vec<Definition> {
     let line = |name: &str, unit: &str, description: &str, formula, source| Definition {
         name: name.to_owned(),
         feature: name.to_owned(),
+        group: Group::Motion,
         unit: unit.to_owned(),
         description: description.to_owned(),
         formula,
