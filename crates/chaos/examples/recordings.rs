@@ -60,7 +60,7 @@ fn analyse(signal: &[f64]) -> Result<(), chaos::Error> {
         "  correlation dimension {:.2}, scatter of its slope {:.2}",
         correlation.value, correlation.scatter
     );
-    println!("  0-1 test {:.2}", zero_one::zero_one(signal, &times)?);
+    println!("  0-1 test {:.2}", zero_one::zero_one(signal, times.delay)?);
     let verdict = regime::verdict(signal, &times)?;
     if let Some(test) = verdict.predictability {
         println!(

@@ -8,7 +8,8 @@
 //! squares for errors in variables, Fuller 1987), and `x = y - s^2 D' C^-1 (error)` is the most
 //! likely signal.
 
-use crate::global_map::{Basis, Fit, Linear, regression};
+use crate::global_map::{Basis, FIRST_RIDGE, Fit, Linear, dot, regression, set_target};
+use nalgebra::DMatrix;
 
 /// Variances of the noise, as a multiple of that of the map's own errors, among which the
 /// likelihood chooses. The last is far from a deterministic map, whose likelihood has many maxima.
@@ -33,15 +34,17 @@ impl Model {
     /// Fits to the signal `y`, starting from the estimate `start` of it: map, noise and signal in
     /// turn, as long as the likelihood grows and at most `passes` times.
     pub fn fitted(basis: Basis, y: &[f64], start: &[f64], passes: usize) -> Option<Self> {
-        let mut fit = ordinary(&basis, start)?;
+        let mut design = basis.design(start, 0..basis.rows(start));
+        set_target(&mut design, start[basis.span() + 1..].iter().copied());
+        let mut ridge = FIRST_RIDGE;
+        let mut fit = regression(&design, &mut ridge)?;
         let mut signal = start.to_vec();
+        let mut whitened = DMatrix::zeros(0, 0);
+        let mut ratio = RATIOS.len() / 2;
         let mut best: Option<Self> = None;
         for pass in 0.. {
-            let linear = basis.along(&[&fit.map], &signal).remove(0);
-            let smoothed = RATIOS
-                .iter()
-                .map(|ratio| Smoothed::new(&linear, y, &signal, *ratio))
-                .max_by(|a, b| a.likelihood.total_cmp(&b.likelihood))?;
+            let linear = basis.along(&[&fit.map], &design).remove(0);
+            let smoothed = Smoothed::likeliest(&linear, y, &signal, &mut ratio);
             if best
                 .as_ref()
                 .is_some_and(|b| b.likelihood >= smoothed.likelihood)
@@ -50,9 +53,17 @@ impl Model {
             }
             let (noise, own) = (smoothed.noise, smoothed.own);
             signal = smoothed.signal;
+            basis.redesign(&mut design, &signal, 0..basis.rows(&signal));
             let next = if noise > 0.0 && pass < passes {
-                let linear = basis.along(&[&fit.map], &signal).remove(0);
-                generalised(&basis, &linear, y, &signal, noise, own)
+                // Regression with whitened errors. The functions are taken at the most likely
+                // signal, the target is moved by what the last slopes make of the difference to
+                // `y`; the value at the signal itself cancels.
+                let errors = errors(&linear, y, &signal);
+                let target = errors.iter().zip(&linear.values).map(|(e, v)| e + v);
+                set_target(&mut design, target);
+                whitened.clone_from(&design);
+                Band::new(&linear, noise, own).whiten(&mut whitened);
+                regression(&whitened, &mut ridge)
             } else {
                 None
             };
@@ -69,33 +80,6 @@ impl Model {
         }
         best
     }
-}
-
-/// Plain regression.
-fn ordinary(basis: &Basis, x: &[f64]) -> Option<Fit> {
-    let design = basis.design(x, 0..basis.rows(x));
-    regression(&design, basis.size(), &x[basis.span() + 1..])
-}
-
-/// Regression with whitened errors. The functions are taken at the most likely signal `x`, the
-/// target is moved by what the slopes make of the difference to `y`.
-fn generalised(
-    basis: &Basis,
-    linear: &Linear,
-    y: &[f64],
-    x: &[f64],
-    noise: f64,
-    own: f64,
-) -> Option<Fit> {
-    let mut design = basis.design(x, 0..basis.rows(x));
-    let mut target = errors(linear, y, x);
-    for (target, value) in target.iter_mut().zip(&linear.values) {
-        *target += value;
-    }
-    let band = Band::new(linear, noise, own);
-    band.whiten(&mut design, basis.size());
-    band.whiten(&mut target, 1);
-    regression(&design, basis.size(), &target)
 }
 
 /// Errors of prediction at `y`, linear about `x`.
@@ -126,12 +110,37 @@ struct Smoothed {
 }
 
 impl Smoothed {
+    /// By the likeliest of `RATIOS`, looked for uphill from that at `place`, which becomes its
+    /// place.
+    fn likeliest(linear: &Linear, y: &[f64], x: &[f64], place: &mut usize) -> Self {
+        let mut best = Self::new(linear, y, x, RATIOS[*place]);
+        let (above, below) = (*place + 1..RATIOS.len(), (0..*place).rev());
+        for next in above {
+            let other = Self::new(linear, y, x, RATIOS[next]);
+            if other.likelihood <= best.likelihood {
+                break;
+            }
+            (best, *place) = (other, next);
+        }
+        // Uphill is one way only.
+        if *place == below.len() {
+            for next in below {
+                let other = Self::new(linear, y, x, RATIOS[next]);
+                if other.likelihood <= best.likelihood {
+                    break;
+                }
+                (best, *place) = (other, next);
+            }
+        }
+        best
+    }
+
     fn new(linear: &Linear, y: &[f64], x: &[f64], ratio: f64) -> Self {
         let (noise, own) = (ratio / (1.0 + ratio), 1.0 / (1.0 + ratio));
         let mut errors = errors(linear, y, x);
         let count = errors.len() as f64;
         let band = Band::new(linear, noise, own);
-        band.whiten(&mut errors, 1);
+        band.solve(&mut errors);
         // The common scale of both variances is the one that makes the errors most likely.
         let scale = errors.iter().map(|e| e * e).sum::<f64>() / count;
         let likelihood = -0.5 * scale.ln() - band.logarithm_of_root() / count;
@@ -194,11 +203,10 @@ impl Band {
                 let known = &here[left + 1..=left + reach];
                 if left > 0 {
                     let other = &above[column * stride..(column + 1) * stride];
-                    let sum: f64 = known.iter().zip(&other[1..]).map(|(a, b)| a * b).sum();
+                    let sum = dot(known, &other[1..=reach]);
                     here[left] = (here[left] - sum) / other[0];
                 } else {
-                    let sum: f64 = known.iter().map(|a| a * a).sum();
-                    here[0] = (here[0] - sum).max(f64::MIN_POSITIVE).sqrt();
+                    here[0] = (here[0] - dot(known, known)).max(f64::MIN_POSITIVE).sqrt();
                 }
             }
         }
@@ -211,19 +219,55 @@ impl Band {
         diagonal.map(|d| d.ln()).sum()
     }
 
-    /// Multiplies by the inverse of `L`, for rows of `size` numbers.
-    fn whiten(&self, rows: &mut [f64], size: usize) {
-        let bands = self.root.chunks_exact(self.width + 1);
-        for (r, band) in bands.enumerate() {
-            let (before, here) = rows.split_at_mut(r * size);
-            let here = &mut here[..size];
-            for left in (1..=self.width.min(r)).filter(|left| band[*left] != 0.0) {
-                let other = &before[(r - left) * size..][..size];
-                for (h, o) in here.iter_mut().zip(other) {
-                    *h -= band[left] * o;
+    /// Multiplies by the inverse of `L`.
+    fn solve(&self, vector: &mut [f64]) {
+        // The vector backwards, as the bands are.
+        vector.reverse();
+        for (r, band) in self.root.chunks_exact(self.width + 1).enumerate() {
+            let place = vector.len() - 1 - r;
+            let (here, before) = vector[place..].split_at_mut(1);
+            let reach = self.width.min(r);
+            here[0] = (here[0] - dot(&before[..reach], &band[1..=reach])) / band[0];
+        }
+        vector.reverse();
+    }
+
+    /// The same for every row of `rows`, block after block of columns: what earlier columns
+    /// contribute is taken off, then the inverse of the block of `L` on the diagonal multiplies.
+    fn whiten(&self, rows: &mut DMatrix<f64>) {
+        let block = self.width.max(8);
+        let entry = |r: usize, column: usize| self.root[r * (self.width + 1) + r - column];
+        for start in (0..rows.ncols()).step_by(block) {
+            let count = block.min(rows.ncols() - start);
+            let reach = self.width.min(start);
+            let first = start - reach;
+            let mut inverse = DMatrix::zeros(count, count);
+            for i in 0..count {
+                inverse[(i, i)] = 1.0;
+                for k in i.saturating_sub(self.width)..i {
+                    let factor = entry(start + i, start + k);
+                    for j in 0..=k {
+                        let known = inverse[(j, k)];
+                        inverse[(j, i)] -= factor * known;
+                    }
+                }
+                for j in 0..=i {
+                    inverse[(j, i)] /= entry(start + i, start + i);
                 }
             }
-            here.iter_mut().for_each(|h| *h /= band[0]);
+            let columns = &rows.as_slice()[start * rows.nrows()..][..count * rows.nrows()];
+            let mut here = DMatrix::from_column_slice(rows.nrows(), count, columns);
+            if reach > 0 {
+                let mut left = DMatrix::zeros(reach, count);
+                for i in 0..count.min(self.width) {
+                    for k in (start + i).saturating_sub(self.width).max(first)..start {
+                        left[(k - first, i)] = entry(start + i, k);
+                    }
+                }
+                here.gemm(-1.0, &rows.columns(first, reach), &left, 1.0);
+            }
+            rows.columns_mut(start, count)
+                .gemm(1.0, &here, &inverse, 0.0);
         }
     }
 
@@ -269,7 +313,12 @@ mod tests {
                 0.7 * d + 0.2 * v[r]
             })
             .collect();
-        band.whiten(&mut product, 1);
+        let mut rows = DMatrix::from_fn(2, 9, |i, j| product[j] * (1.0 + i as f64));
+        band.whiten(&mut rows);
+        band.solve(&mut product);
+        for (j, expected) in product.iter().enumerate() {
+            assert!((rows[(1, j)] - 2.0 * expected).abs() < 1e-12);
+        }
         band.unwhiten_transposed(&mut product);
         for (found, expected) in product.iter().zip(&v) {
             assert!((found - expected).abs() < 1e-12);

@@ -10,7 +10,7 @@
 use crate::delay::Times;
 use crate::error::{Error, checked};
 use crate::errors_in_variables::Model;
-use crate::global_map::{Basis, FOLDS, regression};
+use crate::global_map::{Basis, FIRST_RIDGE, FOLDS, regression, set_target};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use scalar::random::Stream;
@@ -24,16 +24,24 @@ const ADDED: f64 = 0.003;
 const LARGEST: usize = 6;
 /// Longest delay in samples; of slower signals, means of successive samples are taken.
 const LONGEST_DELAY: usize = 7;
-/// Centres of the map, and fewest samples for each.
+/// Centres of the map of a signal of at most so many samples; of longer ones, more as the square
+/// root of the length, up to a largest number: more samples determine more weights.
 const CENTRES: usize = 150;
+const FOR_SAMPLES: usize = 10_000;
+const MOST_CENTRES: usize = 350;
+/// Fewest samples for each centre.
 const PER_CENTRE: usize = 12;
 /// Vectors and centres with which embeddings are compared first.
 const SCREENED: usize = 2500;
 const FEW_CENTRES: usize = 100;
-/// Embeddings compared by likelihood, samples for that, and passes of the fits.
+/// Embeddings compared by likelihood, and samples for that.
 const COMPARED: usize = 4;
 const TRIAL: usize = 4000;
+/// Passes of the fits: of those compared, of the likeliest, and of the second likeliest, which
+/// starts from the signal that the likeliest has found.
+const TRIAL_PASSES: usize = 1;
 const PASSES: usize = 3;
+const SECOND_PASSES: usize = 2;
 /// Blocks for the standard error over time.
 const BLOCKS: usize = 20;
 /// Two-sided 95 % quantile of Student's t for as many blocks.
@@ -88,7 +96,12 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let trial = &y[..y.len().min(TRIAL)];
     let mut tried: Vec<(f64, Embedding)> = embeddings
         .into_iter()
-        .filter_map(|e| Some((fitted(trial, trial, e, FEW_CENTRES)?.likelihood, e)))
+        .filter_map(|e| {
+            Some((
+                fitted(trial, trial, e, FEW_CENTRES, TRIAL_PASSES)?.likelihood,
+                e,
+            ))
+        })
         .collect();
     tried.sort_by(|a, b| b.0.total_cmp(&a.0));
     let unfit = Error::NoScalingRegion {
@@ -97,10 +110,12 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let Some(&(_, first)) = tried.first() else {
         return Err(unfit);
     };
-    let mut best = fitted(&y, &y, first, CENTRES).ok_or(unfit)?;
+    let longer = (y.len() as f64 / FOR_SAMPLES as f64).max(1.0).sqrt();
+    let centres = ((CENTRES as f64 * longer) as usize).min(MOST_CENTRES);
+    let mut best = fitted(&y, &y, first, centres, PASSES).ok_or(unfit)?;
     let mut other = tried
         .get(1)
-        .and_then(|(_, second)| fitted(&y, &best.signal, *second, CENTRES));
+        .and_then(|(_, second)| fitted(&y, &best.signal, *second, centres, SECOND_PASSES));
     if let Some(second) = &mut other
         && second.likelihood > best.likelihood
     {
@@ -162,10 +177,12 @@ fn screened(y: &[f64], delay: usize) -> Vec<Embedding> {
             let basis = Basis::new(y, dimension, delay, FEW_CENTRES.min(y.len() / PER_CENTRE));
             let count = basis.rows(y);
             let rows = (0..count).step_by(count.div_ceil(SCREENED));
-            let target: Vec<f64> = rows.clone().map(|r| y[basis.span() + r + 1]).collect();
-            let design = basis.design(y, rows);
-            if let Some(fit) = regression(&design, basis.size(), &target) {
-                found.push((fit.held_out, Embedding { dimension, delay }));
+            let mut ridge = FIRST_RIDGE;
+            let compared = rows.len() as f64;
+            let mut design = basis.design(y, rows.clone());
+            set_target(&mut design, rows.map(|r| y[basis.span() + r + 1]));
+            if let Some(error) = regression(&design, &mut ridge).and_then(|fit| fit.held_out()) {
+                found.push((error / compared, Embedding { dimension, delay }));
             }
         }
     }
@@ -173,9 +190,9 @@ fn screened(y: &[f64], delay: usize) -> Vec<Embedding> {
     found.into_iter().map(|(_, embedding)| embedding).collect()
 }
 
-fn fitted(y: &[f64], start: &[f64], e: Embedding, centres: usize) -> Option<Model> {
+fn fitted(y: &[f64], start: &[f64], e: Embedding, centres: usize, passes: usize) -> Option<Model> {
     let basis = Basis::new(y, e.dimension, e.delay, centres.min(y.len() / PER_CENTRE));
-    Model::fitted(basis, y, start, PASSES)
+    Model::fitted(basis, y, start, passes)
 }
 
 /// Mean growth of a tangent in nats per sample, with its standard errors.
@@ -187,9 +204,12 @@ struct Growth {
 
 impl Growth {
     fn new(model: &Model) -> Self {
+        let folds = model.fit.folds().unwrap_or_default();
         let mut maps: Vec<&[f64]> = vec![&model.fit.map];
-        maps.extend(model.fit.folds.iter().map(Vec::as_slice));
-        let mut growths = model.basis.along(&maps, &model.signal).into_iter();
+        maps.extend(folds.iter().map(Vec::as_slice));
+        let basis = &model.basis;
+        let design = basis.design(&model.signal, 0..basis.rows(&model.signal));
+        let mut growths = basis.along(&maps, &design).into_iter();
         let whole = growths.next().map_or(Vec::new(), |linear| linear.growth());
         let folds: Vec<f64> = growths.map(|linear| mean(&linear.growth())).collect();
         let blocks: Vec<f64> = whole

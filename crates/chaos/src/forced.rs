@@ -5,8 +5,9 @@
 //! the drive, part at once if the scatter is noise; they stay alike, and part at the rate of the
 //! exponent, if it is deterministic. The phase is a coordinate of the state of a driven system (Stark
 //! 1999), so only cycles at the same phase are compared; and a mean over all phases is a mean over the
-//! cycle. Noise as large as the distances of cycles that are alike hides part of their growth: then the
-//! rate is too low.
+//! cycle. A hundred cycles are rarely much alike, and fast growth fades soon: the rate at the start is
+//! extrapolated, and its interval says how far laws of fading differ. Noise as large as the distances
+//! of cycles that are alike hides part of their growth: then the rate is too low.
 
 use crate::delay;
 use crate::error::{Error, checked};
@@ -69,6 +70,13 @@ const LAGS: usize = 16;
 /// Blocks of the jackknife, and the two-sided 95 % quantile of Student's t for them.
 const BLOCKS: usize = 8;
 const QUANTILE: f64 = 2.365;
+/// How growth fades as distances approach saturation ([`rate`]): 1 after Lorenz (1982), 2 after Dalcher
+/// and Kalnay (1987), whose law is for squared distances; below 1 where small distances grow fastest
+/// (Aurell et al. 1997), as between parts that touch now and then. Distances that start near saturation
+/// do not tell which, so the interval spans 1/2 to 2. The best estimate's power is one at which it is
+/// neither low nor high on average on 23 chaotic compressors; on them the interval was chosen, too.
+const POWER: f64 = 0.7;
+const POWERS: [f64; 2] = [0.5, 2.0];
 
 /// The scatter of a signal with `per_cycle` samples in each cycle of its drive.
 pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
@@ -189,38 +197,44 @@ impl Parting {
         curve.map(|c| c / count)
     }
 
-    /// The rate, with the standard error of a jackknife over blocks of cycles. The saturation of the
-    /// distances is a model: half of what it changes widens the interval, and so does half of the
-    /// difference that it makes to look at half a cycle only.
+    /// The rate with its interval, from three differences: by chance (a jackknife over blocks of cycles),
+    /// with other powers, and over half and a quarter of a cycle.
     fn growth(&self) -> Growth {
         let curve = self.curve(None);
-        let value = rate(&curve, self.saturation);
+        let whole = |curve: &[f64]| rate(curve, self.saturation, POWER);
+        let value = whole(&curve);
         let deleted: f64 = (0..BLOCKS)
-            .map(|block| (rate(&self.curve(Some(block)), self.saturation) - value).powi(2))
+            .map(|block| (whole(&self.curve(Some(block))) - value).powi(2))
             .sum();
         let statistical = QUANTILE * (deleted * (BLOCKS - 1) as f64 / BLOCKS as f64).sqrt();
-        let straight = rate(&curve, f64::INFINITY);
-        let half = rate(&curve[..=LAGS / 2], self.saturation);
-        let width = statistical
-            .hypot((straight - value) / 2.0)
-            .hypot((half - value) / 2.0);
+        // How far other rates lie below and above.
+        let reach = |others: [f64; 2]| {
+            let below = others.iter().fold(0.0, |far: f64, x| far.max(value - x));
+            let above = others.iter().fold(0.0, |far: f64, x| far.max(x - value));
+            (below, above)
+        };
+        let law = reach(POWERS.map(|power| rate(&curve, self.saturation, power)));
+        let part = |last: usize| rate(&curve[..=last], self.saturation, POWER);
+        let stretch = reach([part(LAGS / 2), part(LAGS / 4)]);
         Growth {
             value,
-            low: value - width,
-            high: value + width,
+            low: value - statistical.hypot(law.0).hypot(stretch.0),
+            high: value + statistical.hypot(law.1).hypot(stretch.1),
         }
     }
 }
 
 /// Rate at the start of a growth that saturates: a small distance D grows as
-/// `d ln D / dt = rate (1 - D / D_saturated)` (Lorenz 1982), so `ln(D_saturated / D - 1)` falls in a
-/// straight line, fitted with weights for the error of `ln D`.
-fn rate(curve: &[f64], saturation: f64) -> f64 {
+/// `d ln D / dt = rate (1 - (D / D_saturated)^power)` (Stroe and Royer 1993; power 1: Lorenz 1982), so
+/// `ln((D_saturated / D)^power - 1)` falls in a straight line, fitted with weights for the error of
+/// `ln D`.
+fn rate(curve: &[f64], saturation: f64, power: f64) -> f64 {
     let (mut w, mut wt, mut wz, mut wtt, mut wtz) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (lag, y) in curve.iter().enumerate() {
         let t = lag as f64 / LAGS as f64;
-        // 1 - D / D_saturated; a distance above saturation says nothing.
-        let room = 1.0 - (y - saturation).exp();
+        let y = power * (y - saturation);
+        // A distance above saturation says nothing.
+        let room = 1.0 - y.exp();
         if room <= 0.0 {
             continue;
         }
@@ -234,7 +248,7 @@ fn rate(curve: &[f64], saturation: f64) -> f64 {
     }
     let spread = w * wtt - wt * wt;
     if spread > 0.0 {
-        -(w * wtz - wt * wz) / spread
+        -(w * wtz - wt * wz) / (spread * power)
     } else {
         0.0
     }
@@ -278,6 +292,19 @@ mod tests {
         let growth = found.growth;
         let truth = std::f64::consts::LN_2;
         assert!(growth.low < truth && truth < growth.high, "{growth:?}");
+    }
+
+    #[test]
+    fn the_rate_is_that_at_the_start_of_each_law() {
+        // The law's solution: D^-power - 1 falls as exp(-rate power t), saturation being 1.
+        for power in [0.5, 1.0, 2.0] {
+            let distance = |lag: usize| {
+                let t = lag as f64 / LAGS as f64;
+                (1.0 + 20.0 * (-3.0 * power * t).exp()).powf(-1.0 / power)
+            };
+            let curve: Vec<f64> = (0..=LAGS).map(|lag| distance(lag).ln()).collect();
+            assert!((rate(&curve, 0.0, power) - 3.0).abs() < 1e-9);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A smooth map from delay vectors to the next sample, fitted to the whole signal.
 
-use nalgebra::{Const, DMatrix, DVector, Dyn, MatrixView};
+use nalgebra::{DMatrix, DVector};
 
 /// Width of the basis functions in standard deviations of the signal: wide enough that a smooth
 /// map needs few of them (the flat limit of Fornberg and Driscoll 2002), narrow enough for double
@@ -90,30 +90,70 @@ impl Basis {
         out.iter_mut().for_each(|o| *o = 1.0 / o.sqrt());
     }
 
-    /// The functions at the vectors of `rows`, one vector after the other.
-    pub fn design(&self, x: &[f64], rows: impl ExactSizeIterator<Item = usize>) -> Vec<f64> {
-        let (m, size) = (self.dimension, self.size());
-        let mut design = vec![0.0; rows.len() * size];
-        for (row, out) in rows.zip(design.chunks_exact_mut(size)) {
-            out[0] = 1.0;
-            self.vector(x, row, &mut out[1..=m]);
-            let (z, rest) = out.split_at_mut(1 + m);
-            self.multiquadrics(&z[1..], rest);
-        }
+    /// A column for each vector of `rows`: the functions there, and 0 in place of the target.
+    pub fn design(&self, x: &[f64], rows: impl ExactSizeIterator<Item = usize>) -> DMatrix<f64> {
+        let mut design = DMatrix::zeros(self.size() + 1, rows.len());
+        self.redesign(&mut design, x, rows);
         design
     }
 
-    /// Along the signal `x`, the next sample by each map and its derivatives by the coordinates.
-    pub fn along(&self, maps: &[&[f64]], x: &[f64]) -> Vec<Linear> {
-        let mut z = vec![0.0; self.dimension];
-        let mut work = Work::new(self);
-        let rows = self.rows(x);
-        let mut found: Vec<Linear> = maps.iter().map(|_| Linear::new(self, rows)).collect();
-        for row in 0..rows {
-            self.vector(x, row, &mut z);
-            work.prepare(self, &z);
-            for (linear, map) in found.iter_mut().zip(maps) {
-                work.evaluate(self, map, linear);
+    /// The same in place of the design of another signal.
+    pub fn redesign(
+        &self,
+        design: &mut DMatrix<f64>,
+        x: &[f64],
+        rows: impl Iterator<Item = usize>,
+    ) {
+        let (m, size) = (self.dimension, self.size());
+        let columns = design.as_mut_slice().chunks_exact_mut(size + 1);
+        for (row, out) in rows.zip(columns) {
+            out[0] = 1.0;
+            self.vector(x, row, &mut out[1..=m]);
+            let (z, rest) = out[..size].split_at_mut(1 + m);
+            self.multiquadrics(&z[1..], rest);
+        }
+    }
+
+    /// At every vector of `design`, the next sample by each map and its derivatives by the
+    /// coordinates: with weights `a` and multiquadrics `v`, those of the sum of `a v` are
+    /// `-(z sum(a v^3) - sum(a c v^3)) / w^2`.
+    pub fn along(&self, maps: &[&[f64]], design: &DMatrix<f64>) -> Vec<Linear> {
+        let (m, size) = (self.dimension, self.size());
+        let mut found: Vec<Linear> = maps
+            .iter()
+            .map(|_| Linear::new(self, design.ncols()))
+            .collect();
+        // For each map the weights, and the weights times each coordinate of the centres. Products
+        // of fewer than six rows would be slow.
+        let mut moments = DMatrix::zeros((maps.len() * (1 + m)).max(6), self.count);
+        for (map, place) in maps.iter().zip((0..).step_by(1 + m)) {
+            for (j, weight) in map[1 + m..].iter().enumerate() {
+                moments[(place, j)] = *weight;
+                for axis in 0..m {
+                    moments[(place + 1 + axis, j)] = weight * self.centres[axis * self.count + j];
+                }
+            }
+        }
+        let mut cubes = DMatrix::zeros(self.count, BATCH);
+        let mut sums = DMatrix::zeros(moments.nrows(), BATCH);
+        for batch in design.as_slice().chunks(BATCH * (size + 1)) {
+            let columns = batch.chunks_exact(size + 1);
+            let cube_columns = cubes.as_mut_slice().chunks_exact_mut(self.count);
+            for (column, cubes) in columns.clone().zip(cube_columns) {
+                for (cube, v) in cubes.iter_mut().zip(&column[1 + m..]) {
+                    *cube = v * v * v;
+                }
+            }
+            sums.gemm(1.0, &moments, &cubes, 0.0);
+            for (column, sums) in columns.zip(sums.column_iter()) {
+                let pulls = sums.as_slice().chunks_exact(1 + m);
+                for ((linear, map), pull) in found.iter_mut().zip(maps).zip(pulls) {
+                    linear.values.push(dot(map, &column[..size]));
+                    for axis in 1..=m {
+                        let pull = column[axis] * pull[0] - pull[axis];
+                        linear.slopes.push(map[axis] - pull / (WIDTH * WIDTH));
+                    }
+                }
             }
         }
         found
@@ -169,54 +209,8 @@ impl Linear {
     }
 }
 
-/// What all maps of one basis share at a vector.
-struct Work {
-    z: Vec<f64>,
-    /// Multiquadrics, their cubes, and the cubes times each coordinate of the centre.
-    values: Vec<f64>,
-    cubes: Vec<f64>,
-    moments: Vec<f64>,
-}
-
-impl Work {
-    fn new(basis: &Basis) -> Self {
-        Self {
-            z: vec![0.0; basis.dimension],
-            values: vec![0.0; basis.count],
-            cubes: vec![0.0; basis.count],
-            moments: vec![0.0; basis.count * basis.dimension],
-        }
-    }
-
-    fn prepare(&mut self, basis: &Basis, z: &[f64]) {
-        self.z.copy_from_slice(z);
-        basis.multiquadrics(z, &mut self.values);
-        for (cube, v) in self.cubes.iter_mut().zip(&self.values) {
-            *cube = v * v * v;
-        }
-        let centres = basis.centres.chunks_exact(basis.count);
-        for (moments, centres) in self.moments.chunks_exact_mut(basis.count).zip(centres) {
-            for ((moment, cube), c) in moments.iter_mut().zip(&self.cubes).zip(centres) {
-                *moment = cube * c;
-            }
-        }
-    }
-
-    fn evaluate(&self, basis: &Basis, map: &[f64], out: &mut Linear) {
-        let (linear, weights) = map.split_at(1 + basis.dimension);
-        out.values
-            .push(linear[0] + dot(&linear[1..], &self.z) + dot(weights, &self.values));
-        let total = dot(weights, &self.cubes);
-        let moments = self.moments.chunks_exact(basis.count);
-        for ((slope, z), moments) in linear[1..].iter().zip(&self.z).zip(moments) {
-            let pull = z * total - dot(weights, moments);
-            out.slopes.push(slope - pull / (WIDTH * WIDTH));
-        }
-    }
-}
-
 /// Sum of products, in eight parts so that the machine can add them side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut parts = [0.0; 8];
     let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest: f64 = (a8.remainder().iter().zip(b8.remainder()))
@@ -234,110 +228,150 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 pub(crate) const FOLDS: usize = 5;
 /// Those on which the ridge is chosen.
 const CHOOSING: [usize; 2] = [1, 3];
-/// Powers of ten of the ridge, as a share of the mean square of a function.
-const RIDGES: std::ops::RangeInclusive<i32> = -12..=-3;
+/// Ridges, as shares of the mean square of a function, and the place where to look first.
+const RIDGES: [f64; 10] = [
+    1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3,
+];
+pub(crate) const FIRST_RIDGE: usize = 3;
 /// Largest increase of the held-out error for the sake of a larger ridge, in its standard errors.
 const TOLERATED: f64 = 0.3;
 /// Rows multiplied at a time.
 const BATCH: usize = 256;
+/// Rows of their products computed at a time.
+const STRIP: usize = 80;
 
 /// A map fitted by ridge regression.
 #[derive(Clone, Debug)]
 pub(crate) struct Fit {
     /// Weights of the functions.
     pub map: Vec<f64>,
-    /// The same, with each part of the signal left out in turn.
-    pub folds: Vec<Vec<f64>>,
-    /// Mean square error on the parts left out.
-    pub held_out: f64,
+    ridge: f64,
+    whole: Products,
+    parts: Vec<Products>,
 }
 
-/// Sums of products over some rows.
-#[derive(Clone)]
-struct Normal {
-    matrix: DMatrix<f64>,
-    right: DVector<f64>,
-    square: f64,
-}
+/// Sums of products of the functions and the target over some vectors.
+#[derive(Clone, Debug)]
+struct Products(DMatrix<f64>);
 
-impl Normal {
-    fn new(design: &[f64], size: usize, target: &[f64]) -> Self {
-        let mut normal = Self {
-            matrix: DMatrix::zeros(size, size),
-            right: DVector::zeros(size),
-            square: target.iter().map(|t| t * t).sum(),
-        };
-        for (rows, target) in design.chunks(BATCH * size).zip(target.chunks(BATCH)) {
-            let rows = DMatrix::from_column_slice(size, target.len(), rows);
-            let target: MatrixView<f64, Dyn, Const<1>> =
-                MatrixView::from_slice_generic(target, Dyn(target.len()), Const::<1>);
-            normal.right.gemv(1.0, &rows, &target, 1.0);
-            normal.matrix.gemm(1.0, &rows, &rows.transpose(), 1.0);
+impl Products {
+    fn new(columns: &[f64], size: usize) -> Self {
+        let mut sums = DMatrix::zeros(size, size);
+        for batch in columns.chunks(BATCH * size) {
+            let batch = DMatrix::from_column_slice(size, batch.len() / size, batch);
+            let transposed = batch.transpose();
+            // The lower triangle, in strips.
+            for start in (0..size).step_by(STRIP) {
+                let height = STRIP.min(size - start);
+                sums.view_mut((start, 0), (height, start + height)).gemm(
+                    1.0,
+                    &batch.rows(start, height),
+                    &transposed.columns(0, start + height),
+                    1.0,
+                );
+            }
         }
-        normal
+        sums.fill_upper_triangle_with_lower_triangle();
+        Self(sums)
     }
 
-    fn without(&self, other: &Self) -> Self {
-        Self {
-            matrix: &self.matrix - &other.matrix,
-            right: &self.right - &other.right,
-            square: self.square - other.square,
-        }
+    /// The weights with the least squared error; those of the target's own row are left out.
+    fn solve(&self, ridge: f64) -> Option<Vec<f64>> {
+        let size = self.0.nrows() - 1;
+        let mut matrix = DMatrix::zeros(size, size);
+        matrix.copy_from(&self.0.view((0, 0), (size, size)));
+        (0..size).for_each(|i| matrix[(i, i)] += ridge);
+        let mut map = DVector::from_column_slice(&self.0.as_slice()[size * (size + 1)..][..size]);
+        matrix.cholesky()?.solve_mut(&mut map);
+        Some(map.as_slice().to_vec())
     }
 
-    fn solve(&self, ridge: f64) -> Option<DVector<f64>> {
-        let mut matrix = self.matrix.clone();
-        (0..matrix.nrows()).for_each(|i| matrix[(i, i)] += ridge);
-        Some(matrix.cholesky()?.solve(&self.right))
-    }
-
-    /// Sum of squared errors of a map on these rows.
-    fn error(&self, map: &DVector<f64>) -> f64 {
-        self.square - 2.0 * map.dot(&self.right) + map.dot(&(&self.matrix * map))
+    /// Sum of squared errors of a map on these vectors.
+    fn error(&self, map: &[f64]) -> f64 {
+        let weights = |column: &[f64]| dot(&column[..map.len()], map) - column[map.len()];
+        let columns = self.0.as_slice().chunks_exact(map.len() + 1);
+        let sums: Vec<f64> = columns.map(weights).collect();
+        dot(&sums[..map.len()], map) - sums[map.len()]
     }
 }
 
-/// Ridge regression of `target` on the rows of `design`. The ridge is the largest whose held-out
-/// error is not significantly above the least (Breiman, Friedman, Olshen and Stone 1984).
-pub(crate) fn regression(design: &[f64], size: usize, target: &[f64]) -> Option<Fit> {
-    let count = target.len();
-    let part = count.div_ceil(FOLDS);
-    let parts: Vec<Normal> = (design.chunks(part * size).zip(target.chunks(part)))
-        .map(|(design, target)| Normal::new(design, size, target))
+impl Fit {
+    /// The maps with each part of the signal left out in turn.
+    pub fn folds(&self) -> Option<Vec<Vec<f64>>> {
+        let rests = self.parts.iter().map(|part| self.rest(part));
+        rests.map(|rest| rest.solve(self.ridge)).collect()
+    }
+
+    fn rest(&self, part: &Products) -> Products {
+        Products(&self.whole.0 - &part.0)
+    }
+
+    /// Sum of squared errors on the parts left out.
+    pub fn held_out(&self) -> Option<f64> {
+        let maps = self.folds()?;
+        let errors = self.parts.iter().zip(&maps);
+        Some(errors.map(|(part, map)| part.error(map)).sum())
+    }
+}
+
+/// Sets the target of every column of `design`.
+pub(crate) fn set_target(design: &mut DMatrix<f64>, target: impl Iterator<Item = f64>) {
+    let last = design.nrows() - 1;
+    design
+        .row_mut(last)
+        .iter_mut()
+        .zip(target)
+        .for_each(|(d, t)| *d = t);
+}
+
+/// Ridge regression on the columns of `design`, functions and target. The ridge is the largest whose
+/// held-out error is not significantly above the least (Breiman, Friedman, Olshen and Stone 1984),
+/// looked for from that at `place`, which becomes its place.
+pub(crate) fn regression(design: &DMatrix<f64>, place: &mut usize) -> Option<Fit> {
+    let (size, count) = design.shape();
+    let columns = design.as_slice();
+    let parts: Vec<Products> = columns
+        .chunks(count.div_ceil(FOLDS) * size)
+        .map(|part| Products::new(part, size))
         .collect();
-    let mut whole = parts[0].clone();
-    for other in &parts[1..] {
-        whole.matrix += &other.matrix;
-        whole.right += &other.right;
-        whole.square += other.square;
+    let mut whole = parts.first()?.clone();
+    parts[1..].iter().for_each(|part| whole.0 += &part.0);
+    let mut fit = Fit {
+        map: Vec::new(),
+        ridge: 0.0,
+        whole,
+        parts,
+    };
+    let chosen: Vec<(Products, &Products)> = CHOOSING
+        .iter()
+        .filter_map(|fold| fit.parts.get(*fold))
+        .map(|part| (fit.rest(part), part))
+        .collect();
+    let functions = size - 1;
+    let scale = (0..functions).map(|i| fit.whole.0[(i, i)]).sum::<f64>() / functions as f64;
+    let mut known = [None; RIDGES.len()];
+    let mut error = |place: usize| {
+        *known[place].get_or_insert_with(|| {
+            let held_out = chosen.iter().map(|(rest, part)| {
+                let map = rest.solve(scale * RIDGES[place]);
+                map.map_or(f64::INFINITY, |map| part.error(&map))
+            });
+            held_out.sum::<f64>()
+        })
+    };
+    // The error falls towards its least from both sides.
+    while *place > 0 && error(*place - 1) < error(*place) {
+        *place -= 1;
     }
-    let rests: Vec<Normal> = parts.iter().map(|p| whole.without(p)).collect();
-    let scale = whole.matrix.trace() / size as f64;
-    let mut errors = Vec::new();
-    for power in RIDGES.rev() {
-        let ridge = scale * 10.0_f64.powi(power);
-        let mut error = 0.0;
-        for fold in CHOOSING {
-            let map = rests.get(fold)?.solve(ridge);
-            error += map.map_or(f64::INFINITY, |map| parts[fold].error(&map));
-        }
-        errors.push((ridge, error));
+    let mut least = error(*place);
+    let tolerated = 1.0 + TOLERATED * (2.0 / count as f64).sqrt();
+    while *place + 1 < RIDGES.len() && error(*place + 1) <= least * tolerated {
+        *place += 1;
+        least = least.min(error(*place));
     }
-    let least = errors.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
-    let limit = least * (1.0 + TOLERATED * (2.0 / count as f64).sqrt());
-    let (ridge, _) = errors.iter().find(|(_, error)| *error <= limit)?;
-    let mut held_out = 0.0;
-    let mut folds = Vec::new();
-    for (rest, part) in rests.iter().zip(&parts) {
-        let map = rest.solve(*ridge)?;
-        held_out += part.error(&map) / count as f64;
-        folds.push(map.as_slice().to_vec());
-    }
-    Some(Fit {
-        map: whole.solve(*ridge)?.as_slice().to_vec(),
-        folds,
-        held_out,
-    })
+    fit.ridge = scale * RIDGES[*place];
+    fit.map = fit.whole.solve(fit.ridge)?;
+    Some(fit)
 }
 
 #[cfg(test)]
@@ -350,9 +384,10 @@ mod tests {
         // x(n+1) = 1 - 1.4 x(n)^2 + 0.3 x(n-1)
         let x = System::Henon.samples(2000, 1);
         let basis = Basis::new(&x, 2, 1, 60);
-        let design = basis.design(&x, 0..basis.rows(&x));
-        let fit = regression(&design, basis.size(), &x[2..]).unwrap();
-        let linear = &basis.along(&[&fit.map], &x)[0];
+        let mut design = basis.design(&x, 0..basis.rows(&x));
+        set_target(&mut design, x[2..].iter().copied());
+        let fit = regression(&design, &mut FIRST_RIDGE.clone()).unwrap();
+        let linear = &basis.along(&[&fit.map], &design)[0];
         for row in (0..basis.rows(&x)).step_by(97) {
             assert!((linear.values[row] - x[row + 2]).abs() < 0.02);
             assert!((linear.slopes[2 * row] + 2.8 * x[row + 1]).abs() < 0.25);

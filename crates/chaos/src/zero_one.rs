@@ -1,7 +1,6 @@
 //! The 0-1 test for chaos (Gottwald and Melbourne 2009, correlation method with the oscillating
 //! term removed).
 
-use crate::delay::Times;
 use crate::error::{Error, checked};
 use rand::{RngExt, SeedableRng};
 use scalar::random::Stream;
@@ -12,21 +11,23 @@ const FREQUENCIES: usize = 100;
 /// Most samples used, after thinning.
 const SAMPLES: usize = 5000;
 
-/// Near 1 for chaos (and for noise), near 0 for regular motion. A flow is thinned to one sample per
-/// delay, because finely sampled flows look regular to the test.
-pub fn zero_one(signal: &[f64], times: &Times) -> Result<f64, Error> {
+/// Near 1 for chaos (and for noise), near 0 for regular motion. Every `step`-th sample is used (0 counts
+/// as 1), because finely sampled flows look regular to the test: for a flow the delay of its
+/// embedding. Where a drive is known, `step` must divide its period. Otherwise the overtones of a
+/// wave with impacts fold back to frequencies all over the band, which few samples cannot
+/// resolve, and the wave looks like noise.
+pub fn zero_one(signal: &[f64], step: usize) -> Result<f64, Error> {
     let (mean, deviation) = checked(signal)?;
     let thinned: Vec<f64> = signal
         .iter()
-        .step_by(times.delay)
+        .step_by(step.max(1))
         .take(SAMPLES)
         .map(|x| (x - mean) / deviation)
         .collect();
     if thinned.len() < 100 {
-        let needed = 100 * times.delay;
         return Err(Error::TooShort {
             found: signal.len(),
-            needed,
+            needed: 100 * step.max(1),
         });
     }
     let mut generator = Stream::seed_from_u64(0);
@@ -85,19 +86,32 @@ fn pearson(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::delay::times;
-    use crate::test_systems::{Regular, System};
+    use crate::test_systems::{Regular, System, with_noise};
 
     #[test]
     fn chaos_is_one_and_order_is_zero() {
         for system in [System::Logistic, System::Henon, System::Lorenz] {
             let signal = system.samples(4000, 1);
-            let k = zero_one(&signal, &times(&signal).unwrap()).unwrap();
+            let k = zero_one(&signal, times(&signal).unwrap().delay).unwrap();
             assert!(k > 0.8, "{} {k}", system.name());
         }
         for regular in [Regular::Periodic, Regular::TwoTone] {
             let signal = regular.samples(4000, 1);
-            let k = zero_one(&signal, &times(&signal).unwrap()).unwrap();
+            let k = zero_one(&signal, times(&signal).unwrap().delay).unwrap();
             assert!(k < 0.2, "{regular:?} {k}");
         }
+    }
+
+    #[test]
+    fn impacts_that_a_drive_repeats_are_order() {
+        // A burst of 0.3 cycles a sample, in each period of 256, a little jittered by noise.
+        let wave = |i: usize| {
+            let since = (i % 256) as f64;
+            (-since / 40.0).exp() * (0.3 * 2.0 * PI * since).sin()
+        };
+        let clean: Vec<f64> = (0..25_600).map(wave).collect();
+        let signal = with_noise(&clean, 0.01, 1);
+        let k = zero_one(&signal, 16).unwrap();
+        assert!(k.abs() < 0.1, "{k}");
     }
 }

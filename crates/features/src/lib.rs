@@ -43,6 +43,8 @@ pub struct Definition {
     pub name: String,
     /// The feature alone, without channel and unit: `order_03`.
     pub feature: String,
+    /// What it belongs to.
+    pub group: Group,
     /// The unit written out, `m/s^2`; `1` for a pure number.
     pub unit: String,
     /// What it is, in a sentence.
@@ -51,6 +53,27 @@ pub struct Definition {
     pub formula: &'static str,
     /// Where it is defined.
     pub source: &'static str,
+}
+
+/// What features tell of a signal, in the order in which they are documented.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Group {
+    /// Of its samples, whatever their order.
+    Statistics,
+    /// Of its frequencies.
+    Spectrum,
+    /// Of the shaft's orders.
+    Orders,
+    /// Of velocity against acceleration.
+    Portrait,
+    /// Of impacts, by the envelope in the most impulsive band.
+    Envelope,
+    /// Of what differs within a revolution and between revolutions.
+    Revolutions,
+    /// Of the kind of motion.
+    Motion,
+    /// Why values are missing.
+    Reasons,
 }
 
 /// A stretch of a recording that is summed up as one row.
@@ -142,6 +165,7 @@ fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
     Definition {
         name: format!("{stem}.{}{}", line.name, ending(unit)),
         feature: line.name.clone(),
+        group: line.value.group(),
         unit: unit.to_owned(),
         description: line.description.clone(),
         formula: line.formula,

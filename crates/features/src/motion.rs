@@ -1,16 +1,16 @@
 //! What kind of motion a window shows: periodic, chaotic or neither, in numbers.
 //!
 //! One signal of the window is analysed: its first acceleration (m/s^2), else its first channel but the
-//! crank angle. Entropies, dimension, recurrence and the 0-1 test take it decimated, against aliasing,
-//! to at most [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period; what is still too
-//! long loses its end. Regime and exponent come from the same samples where no shaft is known, or
-//! where it repeats less than half of the signal; else from the signal over crank angle, with
+//! crank angle. Entropies, dimension and recurrence take it decimated, against aliasing, to at most
+//! [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period; what is still too long loses
+//! its end. Regime, exponent and 0-1 test come from the same samples where no shaft is known, or where
+//! it repeats less than half of the signal; else from the signal over crank angle, with
 //! [`PER_REVOLUTION`] samples a revolution, whose scatter from revolution to revolution is judged
 //! (crate chaos, module forced).
 
 use crate::reason::Reason;
 use crate::spectral::crank_angle;
-use crate::{Definition, Window, has_features};
+use crate::{Definition, Group, Window, has_features};
 use chaos::correlation_dimension::correlation_dimension;
 use chaos::delay::{Times, times};
 use chaos::dimension::unfolding;
@@ -29,6 +29,9 @@ const POINTS: usize = 10_000;
 const PER_PERIOD: f64 = 20.0;
 /// Samples of a revolution: orders to 100.
 const PER_REVOLUTION: usize = 256;
+/// Of these, one in so many for the 0-1 test: 16 a revolution. The tones of a revolution stay apart in
+/// a tenth of a hundred revolutions, which is how far the test looks.
+const ZERO_ONE_STEP: usize = PER_REVOLUTION / 16;
 /// Most coordinates tried for the dimension.
 const COORDINATES: usize = 8;
 /// Order of the permutation entropy, and scales of the multiscale entropy.
@@ -48,8 +51,8 @@ pub struct Motion {
     pub numbers: Vec<Result<f64, Reason>>,
 }
 
-const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) with saturation (Lorenz \
-    1982), or a map with errors in variables; crate chaos, modules forced and exponent";
+const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) with saturation (Stroe, \
+    Royer 1993), or a map with errors in variables; crate chaos, modules forced and exponent";
 const MARWAN: &str = "Marwan et al. 2007, Physics Reports 438, 237";
 
 /// The numbers that tell a motion; the same for every recording.
@@ -57,6 +60,7 @@ pub fn motion_definitions() -> Vec<Definition> {
     let line = |name: &str, unit: &str, description: &str, formula, source| Definition {
         name: name.to_owned(),
         feature: name.to_owned(),
+        group: Group::Motion,
         unit: unit.to_owned(),
         description: description.to_owned(),
         formula,
@@ -85,7 +89,7 @@ pub fn motion_definitions() -> Vec<Definition> {
             ROSENSTEIN,
         ),
         line(
-            "zero_one_k",
+            "zero_one_test",
             "1",
             "0-1 test: near 1 for chaos and noise, near 0 for regular motion",
             "median over c of corr(t, M_c(t))",
@@ -165,7 +169,10 @@ pub fn motion(window: &Window) -> Motion {
     let exponent = judged.clone().and_then(|judged| judged.exponent());
     let end = |value: fn(Growth) -> f64| exponent.clone().map(value);
     let mut numbers = vec![end(|e| e.value), end(|e| e.low), end(|e| e.high)];
-    numbers.push(zero_one(signal, times).map_err(Reason::from));
+    numbers.push(match &judged {
+        Ok(judged) => judged.zero_one.clone(),
+        Err(_) => zero_one(signal, times.delay).map_err(Reason::from),
+    });
     numbers.extend(entropies(signal, times));
     numbers.extend(states(signal, times));
     let finite = |number: f64| {
@@ -227,11 +234,12 @@ fn cut_off(signal: &[f64]) -> f64 {
     cut.map(<[f64]>::len).sum::<usize>() as f64 / signal.len() as f64
 }
 
-/// A verdict, and how many of its samples there are in a second.
+/// A verdict, how many of its samples there are in a second, and what the 0-1 test says of them.
 #[derive(Clone)]
 struct Judged {
     verdict: Verdict,
     sample_rate: f64,
+    zero_one: Result<f64, Reason>,
 }
 
 impl Judged {
@@ -260,12 +268,14 @@ fn judged(window: &Window, analysed: &Analysed) -> Result<Judged, Reason> {
             return Ok(Judged {
                 verdict,
                 sample_rate: per_second * PER_REVOLUTION as f64,
+                zero_one: zero_one(revolutions.samples(), ZERO_ONE_STEP).map_err(Reason::from),
             });
         }
     }
     Ok(Judged {
         verdict: verdict(&analysed.signal, &analysed.times)?,
         sample_rate: analysed.sample_rate,
+        zero_one: zero_one(&analysed.signal, analysed.times.delay).map_err(Reason::from),
     })
 }
 

@@ -35,7 +35,7 @@ pub enum Reason {
         percent: f64,
     },
     /// The motion is of a kind whose exponent a signal does not show.
-    #[error("the motion is {regime}; a signal shows the exponent of a chaotic one only")]
+    #[error("the motion is {regime}, not chaotic")]
     NotChaotic {
         /// Name of the regime.
         regime: &'static str,

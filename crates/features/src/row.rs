@@ -1,7 +1,7 @@
 //! The whole row of a window: what its channels hold, what kind of motion it is, and what is missing.
 
 use crate::{
-    Definition, Reason, Window, definitions, features, missing, motion, motion_definitions,
+    Definition, Group, Reason, Window, definitions, features, missing, motion, motion_definitions,
 };
 
 /// Fewest samples of a window that anything can be said about.
@@ -35,18 +35,21 @@ pub fn columns<'a>(
     let mut columns: Vec<_> = definitions(channels).into_iter().map(number).collect();
     if motion {
         columns.push(text(
+            Group::Motion,
             "regime",
             "Kind of motion: periodic, quasi-periodic, chaotic, stochastic or undecided",
             "crate chaos, module regime",
         ));
         columns.extend(motion_definitions().into_iter().map(number));
         columns.push(text(
+            Group::Motion,
             "lyapunov_reason",
             "Why lyapunov_per_s has no value",
             "crate features",
         ));
     }
     columns.push(text(
+        Group::Reasons,
         "missing",
         "Why features have no value, as `column: reason`, joined by `; `",
         "crate features",
@@ -54,10 +57,16 @@ pub fn columns<'a>(
     columns
 }
 
-fn text(name: &str, description: &str, source: &'static str) -> (Definition, Content) {
+fn text(
+    group: Group,
+    name: &str,
+    description: &str,
+    source: &'static str,
+) -> (Definition, Content) {
     let definition = Definition {
         name: name.to_owned(),
         feature: name.to_owned(),
+        group,
         unit: "1".to_owned(),
         description: description.to_owned(),
         formula: "text",

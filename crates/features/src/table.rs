@@ -2,6 +2,7 @@
 
 mod condition;
 
+use crate::Group;
 use crate::envelope::Envelope;
 use crate::reason::Reason;
 use crate::spectral::{BAND_EDGES_HZ, HIGHEST_ORDER};
@@ -51,6 +52,19 @@ pub(crate) enum Value {
     /// RMS in the crank-angle sector of this index.
     Sector(usize),
     Cepstrum,
+}
+
+impl Value {
+    pub(crate) fn group(&self) -> Group {
+        match self {
+            Self::Statistic(_) => Group::Statistics,
+            Self::Band(_) | Self::Shape(_) => Group::Spectrum,
+            Self::Order(_) | Self::OrderRms(_) | Self::Cepstrum => Group::Orders,
+            Self::Portrait(_) => Group::Portrait,
+            Self::Envelope(_) | Self::EnvelopeOrder(_) => Group::Envelope,
+            Self::Synchronous(_) | Self::Sector(_) => Group::Revolutions,
+        }
+    }
 }
 
 /// The features of a channel of this unit, in the order of their columns: statistics of every

@@ -279,7 +279,7 @@ fn a_knocking_wave_with_noise_is_periodic() {
     let row = motion_of(&acceleration(samples.map(|x| x as f32).collect()), 400.0);
     assert_eq!(cell(&row, "regime"), text("periodic"));
     assert_eq!(cell(&row, "lyapunov_per_s"), None);
-    let reason = "the motion is periodic; a signal shows the exponent of a chaotic one only";
+    let reason = "the motion is periodic, not chaotic";
     assert_eq!(cell(&row, "lyapunov_reason"), text(reason));
     let Some(features::Cell::Text(missing)) = cell(&row, "missing") else {
         panic!("{row:?}")

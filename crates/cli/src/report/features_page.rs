@@ -4,42 +4,21 @@ use super::dataset::Dataset;
 use crate::Failure;
 use ::report::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
 use ::report::text;
-use features::Definition;
+use features::{Definition, Group};
 
-/// Headings, and how the names of the features under them begin; the first is of all others.
-const GROUPS: [(&str, &[&str]); 7] = [
-    ("Statistics of the samples", &[]),
+/// The groups with their headings.
+const GROUPS: [(Group, &str); 8] = [
+    (Group::Statistics, "Statistics of the samples"),
+    (Group::Spectrum, "Frequency bands and spectral shape"),
+    (Group::Orders, "Orders of the shaft"),
+    (Group::Portrait, "Velocity-acceleration portrait"),
     (
-        "Frequency bands and spectral shape",
-        &["band_", "spectral_"],
-    ),
-    ("Orders of the shaft", &["order_", "cepstrum_"]),
-    ("Velocity-acceleration portrait", &["portrait_"]),
-    (
+        Group::Envelope,
         "Impacts: envelope in the most impulsive band",
-        &["envelope_"],
     ),
-    (
-        "Revolution by revolution",
-        &["residual_", "synchronous_", "sector_"],
-    ),
-    (
-        "Chaos",
-        &[
-            "lyapunov",
-            "regime",
-            "zero_one",
-            "correlation_",
-            "sample_entropy",
-            "permutation_",
-            "multiscale_",
-            "recurrence_",
-            "embedding_",
-            "surrogate_",
-            "delay_",
-            "dimension_",
-        ],
-    ),
+    (Group::Revolutions, "Revolution by revolution"),
+    (Group::Motion, "Kind of motion, chaos"),
+    (Group::Reasons, "Why values are missing"),
 ];
 
 /// # Errors
@@ -47,11 +26,10 @@ const GROUPS: [(&str, &[&str]); 7] = [
 pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Failure> {
     let channels = dataset.plan.channels();
     let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
-    let definitions = features::definitions(named);
-    let groups = GROUPS.iter().enumerate().map(|(at, (heading, _))| {
-        let own = definitions
-            .iter()
-            .filter(|definition| group(&definition.feature) == at);
+    let columns = features::columns(named, dataset.plan.chaos).into_iter();
+    let definitions: Vec<Definition> = columns.map(|(definition, _)| definition).collect();
+    let groups = GROUPS.iter().map(|(group, heading)| {
+        let own = definitions.iter().filter(|d| d.group == *group);
         FeatureGroup {
             heading: (*heading).to_owned(),
             features: entries(own),
@@ -64,13 +42,6 @@ pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Failure> {
         groups,
         columns: labels(dataset, &definitions)?,
     })
-}
-
-/// The group of a feature.
-fn group(feature: &str) -> usize {
-    let begins =
-        |(_, beginnings): &(&str, &[&str])| beginnings.iter().any(|b| feature.starts_with(b));
-    GROUPS.iter().position(begins).unwrap_or(0)
 }
 
 /// An entry for each feature, whatever the channels, and for each run of names that differ in
@@ -145,14 +116,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_feature_is_in_a_group_and_rows_of_them_are_one_entry() {
-        let definitions = features::definitions([("a_m_s2", "m/s^2"), ("p_pa", "Pa")]);
-        let orders: Vec<&Definition> = definitions
-            .iter()
-            .filter(|d| group(&d.feature) == 2)
-            .collect();
-        let entries = entries(orders.into_iter());
-        let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+    fn every_group_has_its_heading_and_rows_of_features_are_one_entry() {
+        let columns = features::columns([("a_m_s2", "m/s^2"), ("p_pa", "Pa")], true);
+        let definitions: Vec<Definition> = columns.into_iter().map(|(d, _)| d).collect();
+        for definition in &definitions {
+            let headed = GROUPS.iter().any(|(group, _)| *group == definition.group);
+            assert!(headed, "{} has no heading", definition.name);
+        }
+        let of = |group| {
+            let own = definitions.iter().filter(move |d| d.group == group);
+            entries(own)
+        };
+        let orders = of(Group::Orders);
+        let names: Vec<&str> = orders.iter().map(|entry| entry.name.as_str()).collect();
         assert_eq!(
             names,
             [
@@ -161,8 +137,11 @@ mod tests {
                 "cepstrum_revolution"
             ]
         );
-        assert_eq!(entries[0].units, ["m/s²", "Pa"]);
-        assert_eq!(entries[0].columns, ["a.order_01_m_s2", "p.order_01_pa"]);
-        assert_eq!(group("kurtosis"), 0);
+        assert_eq!(orders[0].units, ["m/s²", "Pa"]);
+        assert_eq!(orders[0].columns, ["a.order_01_m_s2", "p.order_01_pa"]);
+        let motion = of(Group::Motion);
+        for name in ["lyapunov_per_s", "lyapunov_reason", "regime", "determinism"] {
+            assert!(motion.iter().any(|entry| entry.name == name), "{name}");
+        }
     }
 }
