@@ -73,7 +73,12 @@ fn read(
     let wrong = |reason: String| Failure::input(format!("run {}: {reason}", run.id));
     let listed = |column: &str| run.channels.iter().any(|c| c.column == column);
     let options = Options {
-        columns: run.channels.iter().map(|c| c.column.clone()).collect(),
+        columns: run
+            .channels
+            .iter()
+            .filter(|c| c.unit != "s")
+            .map(|c| c.column.clone())
+            .collect(),
         sample_rate_hz: run.sample_rate_hz.map(|rate| rate.get()),
     };
     let mut file = MeasuredFile::open(&path, &options).map_err(|e| wrong(e.to_string()))?;
