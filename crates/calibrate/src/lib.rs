@@ -14,6 +14,7 @@
 
 pub mod error;
 pub mod fit;
+pub mod forecast;
 pub mod identifiability;
 pub mod likelihood;
 pub mod observation;
@@ -21,9 +22,13 @@ pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
 pub mod problem;
+pub mod relation;
+pub mod transfer;
 
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};
 pub use parameter::Parameter;
 pub use problem::Problem;
+pub use relation::{ClearJoint, Relation};
+pub use transfer::{Transfer, transfer};
