@@ -13,9 +13,11 @@
 //! Weights come from that noise alone.
 
 pub mod error;
+mod few_revolutions;
 pub mod fit;
 pub mod forecast;
 pub mod identifiability;
+pub mod indicator;
 pub mod likelihood;
 pub mod observation;
 pub mod optimiser;
@@ -23,6 +25,7 @@ pub mod parameter;
 pub mod prediction;
 pub mod problem;
 pub mod relation;
+pub mod run_condition;
 pub mod transfer;
 
 pub use error::Error;

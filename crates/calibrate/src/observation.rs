@@ -1,6 +1,7 @@
 //! A run as measured: its channels over the crank angle, and what in them repeats.
 
 use crate::error::Error;
+use crate::few_revolutions;
 use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
@@ -91,14 +92,19 @@ impl Observation {
             });
         };
         let angle = angle(run, first)?;
+        let short = few_revolutions::is_short(&angle);
         let grid = AngleGrid::new(&angle, POINTS);
+        let of_channel = |samples: &[f64]| {
+            if short && let Some(lines) = few_revolutions::lines(&angle, samples) {
+                return Ok(lines);
+            }
+            lines(grid.as_ref().map_err(Clone::clone)?, samples)
+        };
         let channels = chosen
             .into_iter()
             .map(|channel| {
                 not_clipped(run, channel)?;
-                let lines = grid
-                    .clone()
-                    .and_then(|grid| lines(&grid, &channel.samples))
+                let lines = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
                 let orders = orders(&lines);
                 if orders.len() <= LOW_ORDERS && !stands_out(&lines) {

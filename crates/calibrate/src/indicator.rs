@@ -1,0 +1,400 @@
+//! What a measured cylinder pressure tells by itself: the indicator diagram.
+//!
+//! While both valves are closed, ln p falls in a straight line over ln V, whose slope is the
+//! polytropic exponent. Where these lines meet the pressures of the suction and the discharge line,
+//! the valves open and close in effect: a valve that took no time and no pressure there would enclose
+//! the same gas. (The method is that of indicator cards, as old as the steam engine.)
+//!
+//! ```text
+//! ln p    discharge closes ┌────┐ discharge opens
+//!                           \    \
+//!                  expansion \    \ compression
+//!                             \    \
+//!                suction opens └────┘ suction closes      ln V
+//! ```
+
+use crate::observation::Run;
+use mechanism::{Machine, Throw};
+use simulate::{ChamberEnd, Measured};
+use std::f64::consts::{PI, TAU};
+
+/// Share of the way from suction to discharge, in ln p, that is left out at either end of a
+/// polytrope: there the valves do not open and close at once.
+const MARGIN: f64 = 0.15;
+/// Fewest samples of a polytrope.
+const FEWEST: usize = 8;
+/// Clearances that are tried, as shares of the stroke.
+const CLEARANCES: [f64; 2] = [0.01, 0.5];
+const STEPS: usize = 99;
+/// 95 % quantile of χ² with one degree of freedom.
+const CHI_SQUARED: f64 = 3.841_459;
+
+/// A chamber: how far its piston is from its cover. Volumes are lengths here, the area of the piston
+/// being the same throughout.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chamber {
+    /// Which end of the cylinder.
+    pub end: ChamberEnd,
+    /// Gap between piston and cover at the chamber's own dead centre, m.
+    pub clearance: f64,
+    crank_radius: f64,
+    rod_length: f64,
+    /// The throw's own crank angle, 0 at the head's dead centre, less that of the shaft.
+    phase: f64,
+}
+
+/// The effective angles at which valves open and close, of the crankshaft, rad in [0, 2π).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValveEvents {
+    /// The suction valve opens.
+    pub suction_opens: Event,
+    /// The suction valve closes.
+    pub suction_closes: Event,
+    /// The discharge valve opens.
+    pub discharge_opens: Event,
+    /// The discharge valve closes.
+    pub discharge_closes: Event,
+}
+
+/// An effective event of a valve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// Where the polytrope meets the pressure of the line, rad.
+    pub angle: f64,
+    /// Where it meets the line's quartiles, in the order of the revolution: the line's pressure is no
+    /// one number.
+    pub quartiles: [f64; 2],
+}
+
+/// The pressure of a valve's line, as the chamber shows it while the valve is open, Pa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// Median.
+    pub pressure: f64,
+    /// Lower and upper quartile.
+    pub quartiles: [f64; 2],
+}
+
+/// A straight piece of ln p over ln V.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polytrope {
+    /// Where it begins and ends, of the crankshaft, rad.
+    pub angles: [f64; 2],
+    /// The exponent n of p Vⁿ, at the chamber's clearance.
+    pub exponent: f64,
+    /// How much the exponent rises for every metre by which the clearance is taken larger.
+    pub exponent_per_clearance: f64,
+    /// Root mean square of ln p about the line.
+    pub scatter: f64,
+    /// ln p at ln V = 0, V in metres.
+    intercept: f64,
+    samples: Vec<usize>,
+}
+
+/// What the straightness of the polytropes tells about the clearance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Straightness {
+    /// The clearance at which they are straightest, m.
+    pub clearance: f64,
+    /// 95 % interval, m; as far as it was searched where an end of it was not found.
+    pub interval: [f64; 2],
+}
+
+/// The indicator diagram of a chamber over one revolution.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Indicator {
+    /// The chamber.
+    pub chamber: Chamber,
+    /// The suction line.
+    pub suction: Line,
+    /// The discharge line.
+    pub discharge: Line,
+    /// Compression.
+    pub compression: Polytrope,
+    /// Expansion of what stays in the clearance.
+    pub expansion: Polytrope,
+    /// When the valves open and close.
+    pub events: ValveEvents,
+    /// What the curve tells about the clearance.
+    pub straightness: Straightness,
+}
+
+impl Chamber {
+    /// The chamber of the machine that a pressure's column names; none where it names none.
+    pub fn of_column(machine: &Machine, column: &str) -> Option<Self> {
+        let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
+        let ends = [ChamberEnd::Head, ChamberEnd::Crank];
+        let mut all = (0..names.len()).flat_map(|throw| ends.map(|end| (throw, end)));
+        let (throw, end) = all.find(|&(throw, end)| {
+            Measured::CylinderPressure { throw, end }.column(&names) == column
+        })?;
+        Self::of_throw(&machine.throws[throw], end)
+    }
+
+    fn of_throw(throw: &Throw, end: ChamberEnd) -> Option<Self> {
+        let cylinder = &throw.cylinder;
+        Some(Self {
+            end,
+            clearance: match end {
+                ChamberEnd::Head => cylinder.head_clearance,
+                ChamberEnd::Crank => cylinder.crank_end.as_ref()?.clearance,
+            },
+            crank_radius: throw.crank_radius,
+            rod_length: throw.rod.length,
+            phase: throw.local_angle(0.0),
+        })
+    }
+
+    /// Twice the crank radius, m.
+    pub fn stroke(&self) -> f64 {
+        2.0 * self.crank_radius
+    }
+
+    /// How far the piston is from where it stands at the chamber's dead centre, m.
+    pub fn travel(&self, crank_angle: f64) -> f64 {
+        let (sine, cosine) = (crank_angle + self.phase).sin_cos();
+        let [r, l] = [self.crank_radius, self.rod_length];
+        let position = r * cosine + (l * l - (r * sine).powi(2)).sqrt();
+        match self.end {
+            ChamberEnd::Head => r + l - position,
+            ChamberEnd::Crank => position - (l - r),
+        }
+    }
+
+    /// Distance from piston to cover, m: the volume over the area.
+    pub fn distance(&self, crank_angle: f64) -> f64 {
+        self.clearance + self.travel(crank_angle)
+    }
+
+    /// Crank angle of the chamber's own dead centre, where it is smallest, in [0, 2π).
+    fn dead_centre(&self) -> f64 {
+        let own = match self.end {
+            ChamberEnd::Head => 0.0,
+            ChamberEnd::Crank => PI,
+        };
+        (own - self.phase).rem_euclid(TAU)
+    }
+
+    /// The angle after the dead centre at which the piston has the distance, within half a
+    /// revolution: bisection.
+    fn turned(&self, distance: f64) -> f64 {
+        let [mut low, mut high] = [0.0, PI];
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            // The mechanism is symmetric about its dead centres.
+            if self.distance(self.dead_centre() + middle) < distance {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}
+
+impl Indicator {
+    /// The diagram of one revolution of pressure, Pa, in `chamber`: its samples follow each other
+    /// at `angles`, rad. None where the pressure has no lines and polytropes: it is not that of a
+    /// compressor at work.
+    pub fn of(chamber: Chamber, angles: &[f64], pressure: &[f64]) -> Option<Self> {
+        if pressure.iter().any(|p| *p <= 0.0) {
+            return None;
+        }
+        let [suction, discharge] = lines(pressure)?;
+        let samples = |expanding| polytrope(&chamber, angles, pressure, [&suction, &discharge], expanding);
+        let [compressed, expanded] = [samples(false)?, samples(true)?];
+        let whole = [angles, pressure];
+        let compression = Polytrope::fit(&chamber, whole, &compressed);
+        let expansion = Polytrope::fit(&chamber, whole, &expanded);
+        let event = |polytrope: &Polytrope, line: &Line, expanding: bool| {
+            let angle = |pressure: f64| polytrope.angle(&chamber, pressure, expanding);
+            let [a, b] = line.quartiles.map(angle);
+            Event {
+                angle: angle(line.pressure),
+                // Pressure falls in the expansion and rises in the compression.
+                quartiles: if expanding { [b, a] } else { [a, b] },
+            }
+        };
+        Some(Self {
+            events: ValveEvents {
+                suction_opens: event(&expansion, &suction, true),
+                suction_closes: event(&compression, &suction, false),
+                discharge_opens: event(&compression, &discharge, false),
+                discharge_closes: event(&expansion, &discharge, true),
+            },
+            straightness: straightness(&chamber, whole, &[compressed, expanded]),
+            chamber,
+            suction,
+            discharge,
+            compression,
+            expansion,
+        })
+    }
+
+    /// The diagram of a run's first whole revolution; none where there is no crank angle, no such
+    /// channel, or no diagram.
+    pub fn of_run(machine: &Machine, run: &Run, column: &str) -> Option<Self> {
+        let chamber = Chamber::of_column(machine, column)?;
+        let channel = run.channels.iter().find(|c| c.column == column)?;
+        let angles = run.crank_angle.as_ref()?;
+        let turned = |i: usize| (angles[i] - angles[i - 1]).rem_euclid(TAU);
+        let mut sum = 0.0;
+        let count = (1..angles.len())
+            .find(|i| {
+                sum += turned(*i);
+                sum > TAU - 1e-9
+            })
+            .unwrap_or(angles.len());
+        Self::of(chamber, &angles[..count], channel.samples.get(..count)?)
+    }
+}
+
+impl Polytrope {
+    fn fit(chamber: &Chamber, [angles, pressure]: [&[f64]; 2], samples: &[usize]) -> Self {
+        let fitted = |chamber: &Chamber| {
+            let at = |i: &usize| (chamber.distance(angles[*i]).ln(), pressure[*i].ln());
+            straight_line(samples.iter().map(at))
+        };
+        let [intercept, slope, squares] = fitted(chamber);
+        let step = 1e-4 * chamber.stroke();
+        let wider = Chamber {
+            clearance: chamber.clearance + step,
+            ..*chamber
+        };
+        Self {
+            angles: [samples[0], samples[samples.len() - 1]].map(|i| angles[i]),
+            exponent: -slope,
+            exponent_per_clearance: (slope - fitted(&wider)[1]) / step,
+            scatter: (squares / samples.len() as f64).sqrt(),
+            intercept,
+            samples: samples.to_vec(),
+        }
+    }
+
+    /// ln p on the line where the piston is at `distance` from the cover.
+    pub fn log_pressure(&self, distance: f64) -> f64 {
+        self.intercept - self.exponent * distance.ln()
+    }
+
+    /// Where the line, prolonged, meets a pressure; a dead centre where it does so nowhere.
+    fn angle(&self, chamber: &Chamber, pressure: f64, expanding: bool) -> f64 {
+        let distance = ((self.intercept - pressure.ln()) / self.exponent).exp();
+        let turned = chamber.turned(distance);
+        let sign = if expanding { 1.0 } else { -1.0 };
+        (chamber.dead_centre() + sign * turned).rem_euclid(TAU)
+    }
+}
+
+/// Suction and discharge line: the samples below and above the middle of the pressure's range. Of
+/// the few that belong to a polytrope the medians and quartiles feel little.
+fn lines(pressure: &[f64]) -> Option<[Line; 2]> {
+    let least = pressure.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = pressure.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let middle = 0.5 * (least + greatest);
+    let line = |belongs: &dyn Fn(f64) -> bool| {
+        let mut values: Vec<f64> = pressure.iter().copied().filter(|p| belongs(*p)).collect();
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| values[(share * (values.len() - 1) as f64).round() as usize];
+        (!values.is_empty()).then(|| Line {
+            pressure: at(0.5),
+            quartiles: [at(0.25), at(0.75)],
+        })
+    };
+    Some([line(&|p| p < middle)?, line(&|p| p >= middle)?])
+}
+
+/// The samples of the compression or the expansion: the longest stretch on its stroke whose
+/// pressures lie between the lines.
+fn polytrope(
+    chamber: &Chamber,
+    angles: &[f64],
+    pressure: &[f64],
+    [suction, discharge]: [&Line; 2],
+    expanding: bool,
+) -> Option<Vec<usize>> {
+    let range = discharge.pressure / suction.pressure;
+    let [low, high] = [MARGIN, 1.0 - MARGIN].map(|share| suction.pressure * range.powf(share));
+    let belongs = |i: usize| {
+        let after = (angles[i] - chamber.dead_centre()).rem_euclid(TAU);
+        (after < PI) == expanding && (low..=high).contains(&pressure[i])
+    };
+    let count = angles.len();
+    // The revolution begins anywhere; a stretch may go on over its end.
+    let outside = (0..count).find(|i| !belongs(*i))?;
+    let mut longest = Vec::new();
+    let mut stretch = Vec::new();
+    for i in (outside..outside + count).map(|i| i % count) {
+        if belongs(i) {
+            stretch.push(i);
+        } else {
+            stretch.clear();
+        }
+        if stretch.len() > longest.len() {
+            longest.clone_from(&stretch);
+        }
+    }
+    (longest.len() >= FEWEST).then_some(longest)
+}
+
+/// The clearance at which both polytropes together are straightest. Its interval is where the sum of
+/// squares rises by no more than chance explains (a profile likelihood), the scatter about the lines
+/// being no white noise: neighbours that are alike count as one.
+fn straightness(
+    chamber: &Chamber,
+    [angles, pressure]: [&[f64]; 2],
+    polytropes: &[Vec<usize>; 2],
+) -> Straightness {
+    let logarithms = |clearance: f64, samples: &[usize]| -> Vec<(f64, f64)> {
+        let chamber = Chamber {
+            clearance,
+            ..*chamber
+        };
+        let at = |i: &usize| (chamber.distance(angles[*i]).ln(), pressure[*i].ln());
+        samples.iter().map(at).collect()
+    };
+    let squares = |clearance: f64| -> f64 {
+        let of = |samples: &Vec<usize>| straight_line(logarithms(clearance, samples).into_iter())[2];
+        polytropes.iter().map(of).sum()
+    };
+    let [first, last] = CLEARANCES.map(|share| share * chamber.stroke());
+    let clearance = |k: usize| first + (last - first) * k as f64 / STEPS as f64;
+    let profile: Vec<f64> = (0..=STEPS).map(|k| squares(clearance(k))).collect();
+    let best = (0..=STEPS)
+        .min_by(|a, b| profile[*a].total_cmp(&profile[*b]))
+        .unwrap_or(0);
+    let independent: f64 = polytropes
+        .iter()
+        .map(|samples| independent(&logarithms(clearance(best), samples)))
+        .sum();
+    let allowed = profile[best] * (1.0 + CHI_SQUARED / (independent - 5.0).max(1.0));
+    let inside = |k: &usize| profile[*k] <= allowed;
+    let low = (0..=best).find(inside).unwrap_or(best);
+    let high = (best..=STEPS).rev().find(inside).unwrap_or(best);
+    Straightness {
+        clearance: clearance(best),
+        interval: [low, high].map(clearance),
+    }
+}
+
+/// How many independent values the residuals of a line are worth: N (1 − ρ)/(1 + ρ) of N with the
+/// correlation ρ between neighbours (Bayley and Hammersley 1946).
+fn independent(points: &[(f64, f64)]) -> f64 {
+    let [intercept, slope, squares] = straight_line(points.iter().copied());
+    let residual = |(x, y): &(f64, f64)| y - intercept - slope * x;
+    let products = points.windows(2).map(|p| residual(&p[0]) * residual(&p[1]));
+    let correlation = (products.sum::<f64>() / squares.max(f64::MIN_POSITIVE)).clamp(0.0, 0.99);
+    points.len() as f64 * (1.0 - correlation) / (1.0 + correlation)
+}
+
+/// Intercept, slope and remaining sum of squares of a line through points, by least squares.
+fn straight_line(points: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 3] {
+    let count = points.clone().count() as f64;
+    let mean_x = points.clone().map(|p| p.0).sum::<f64>() / count;
+    let mean_y = points.clone().map(|p| p.1).sum::<f64>() / count;
+    let sum = |f: &dyn Fn(f64, f64) -> f64| -> f64 {
+        points.clone().map(|(x, y)| f(x - mean_x, y - mean_y)).sum()
+    };
+    let slope = sum(&|x, y| x * y) / sum(&|x, _| x * x).max(f64::MIN_POSITIVE);
+    let squares = sum(&|x, y| (y - slope * x).powi(2));
+    [mean_y - slope * mean_x, slope, squares]
+}
