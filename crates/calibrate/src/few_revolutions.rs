@@ -38,12 +38,21 @@ pub(crate) fn lines(angle: &CrankAngle, samples: &[f64]) -> Option<OrderLines> {
     }
     let [angles, samples] = [&angles[..count], &samples[..count]];
     let width = |i: usize| {
-        let after = if i + 1 < count { angles[i + 1] } else { angles[0] + period };
-        let before = if i > 0 { angles[i - 1] } else { angles[count - 1] - period };
+        let after = if i + 1 < count {
+            angles[i + 1]
+        } else {
+            angles[0] + period
+        };
+        let before = if i > 0 {
+            angles[i - 1]
+        } else {
+            angles[count - 1] - period
+        };
         0.5 * (after - before)
     };
     let of_order = |k: usize| -> Complex64 {
-        let turned = |i: usize| Complex64::from_polar(width(i) * samples[i], -(k as f64) * angles[i]);
+        let turned =
+            |i: usize| Complex64::from_polar(width(i) * samples[i], -(k as f64) * angles[i]);
         let sum: Complex64 = (0..count).map(turned).sum();
         sum * if k == 0 { 1.0 } else { 2.0 } / period
     };
@@ -51,9 +60,14 @@ pub(crate) fn lines(angle: &CrankAngle, samples: &[f64]) -> Option<OrderLines> {
     let highest = (0.5 * PASS_BAND * per_revolution) as usize;
     let amplitude: Vec<Complex64> = (0..=highest).map(of_order).collect();
     let first = (NOISE * highest as f64) as usize;
-    let mut powers: Vec<f64> = amplitude[first.max(1)..].iter().map(Complex64::norm_sqr).collect();
+    let mut powers: Vec<f64> = amplitude[first.max(1)..]
+        .iter()
+        .map(Complex64::norm_sqr)
+        .collect();
     powers.sort_by(f64::total_cmp);
-    let noise = powers.get(powers.len() / 2).map_or(0.0, |median| median / LN_2);
+    let noise = powers
+        .get(powers.len() / 2)
+        .map_or(0.0, |median| median / LN_2);
     let rounding = 4.0 / count as f64 * resolution(samples).powi(2) / 12.0;
     let variance = noise.max(rounding);
     Some(OrderLines {
@@ -70,7 +84,9 @@ fn resolution(samples: &[f64]) -> f64 {
     let mut values = samples.to_vec();
     values.sort_by(f64::total_cmp);
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let least = steps.filter(|step| *step > 0.0).fold(f64::INFINITY, f64::min);
+    let least = steps
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 

@@ -13,7 +13,6 @@
 //!                suction opens └────┘ suction closes      ln V
 //! ```
 
-use crate::observation::Run;
 use mechanism::{Machine, Throw};
 use simulate::{ChamberEnd, Measured};
 use std::f64::consts::{PI, TAU};
@@ -201,9 +200,9 @@ impl Indicator {
             return None;
         }
         let [suction, discharge] = lines(pressure)?;
-        let samples = |expanding| polytrope(&chamber, angles, pressure, [&suction, &discharge], expanding);
-        let [compressed, expanded] = [samples(false)?, samples(true)?];
         let whole = [angles, pressure];
+        let samples = |expanding| polytrope(&chamber, whole, [&suction, &discharge], expanding);
+        let [compressed, expanded] = [samples(false)?, samples(true)?];
         let compression = Polytrope::fit(&chamber, whole, &compressed);
         let expansion = Polytrope::fit(&chamber, whole, &expanded);
         let event = |polytrope: &Polytrope, line: &Line, expanding: bool| {
@@ -229,23 +228,6 @@ impl Indicator {
             compression,
             expansion,
         })
-    }
-
-    /// The diagram of a run's first whole revolution; none where there is no crank angle, no such
-    /// channel, or no diagram.
-    pub fn of_run(machine: &Machine, run: &Run, column: &str) -> Option<Self> {
-        let chamber = Chamber::of_column(machine, column)?;
-        let channel = run.channels.iter().find(|c| c.column == column)?;
-        let angles = run.crank_angle.as_ref()?;
-        let turned = |i: usize| (angles[i] - angles[i - 1]).rem_euclid(TAU);
-        let mut sum = 0.0;
-        let count = (1..angles.len())
-            .find(|i| {
-                sum += turned(*i);
-                sum > TAU - 1e-9
-            })
-            .unwrap_or(angles.len());
-        Self::of(chamber, &angles[..count], channel.samples.get(..count)?)
     }
 }
 
@@ -307,8 +289,7 @@ fn lines(pressure: &[f64]) -> Option<[Line; 2]> {
 /// pressures lie between the lines.
 fn polytrope(
     chamber: &Chamber,
-    angles: &[f64],
-    pressure: &[f64],
+    [angles, pressure]: [&[f64]; 2],
     [suction, discharge]: [&Line; 2],
     expanding: bool,
 ) -> Option<Vec<usize>> {
@@ -353,7 +334,8 @@ fn straightness(
         samples.iter().map(at).collect()
     };
     let squares = |clearance: f64| -> f64 {
-        let of = |samples: &Vec<usize>| straight_line(logarithms(clearance, samples).into_iter())[2];
+        let of =
+            |samples: &Vec<usize>| straight_line(logarithms(clearance, samples).into_iter())[2];
         polytropes.iter().map(of).sum()
     };
     let [first, last] = CLEARANCES.map(|share| share * chamber.stroke());
@@ -397,4 +379,115 @@ fn straight_line(points: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 3] {
     let slope = sum(&|x, y| x * y) / sum(&|x, _| x * x).max(f64::MIN_POSITIVE);
     let squares = sum(&|x, y| (y - slope * x).powi(2));
     [mean_y - slope * mean_x, slope, squares]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SUCTION: f64 = 1e5;
+    const DISCHARGE: f64 = 4e5;
+    /// A suction valve that is held open for so long after the dead centre, rad.
+    const LATE: f64 = 1.0;
+
+    fn chamber(end: ChamberEnd) -> Chamber {
+        Chamber {
+            end,
+            clearance: 0.03,
+            crank_radius: 0.12,
+            rod_length: 0.6,
+            phase: 0.3,
+        }
+    }
+
+    /// The pressure with exponents 1.3 and 1.1, and the angles after the dead centre at which the
+    /// suction valve opens, it closes, and the discharge valve opens.
+    fn late_closing(chamber: &Chamber, angles: &[f64]) -> (Vec<f64>, [f64; 3]) {
+        let start = chamber.dead_centre();
+        let enclosed = chamber.distance(start + PI + LATE);
+        let opens = chamber.clearance * (DISCHARGE / SUCTION).powf(1.0 / 1.1);
+        let raised = enclosed * (SUCTION / DISCHARGE).powf(1.0 / 1.3);
+        let pressure = |angle: &f64| {
+            let after = (angle - start).rem_euclid(TAU);
+            let distance = chamber.distance(*angle);
+            let gas = if after < PI {
+                DISCHARGE * (chamber.clearance / distance).powf(1.1)
+            } else if after < PI + LATE {
+                SUCTION
+            } else {
+                SUCTION * (enclosed / distance).powf(1.3)
+            };
+            gas.clamp(SUCTION, DISCHARGE)
+        };
+        let events = [
+            chamber.turned(opens),
+            PI + LATE,
+            TAU - chamber.turned(raised),
+        ];
+        (angles.iter().map(pressure).collect(), events)
+    }
+
+    #[test]
+    fn a_late_valve_and_both_exponents_are_read_off_exactly() {
+        let angles: Vec<f64> = (0..720).map(|i| TAU * f64::from(i) / 720.0).collect();
+        for end in [ChamberEnd::Head, ChamberEnd::Crank] {
+            let chamber = chamber(end);
+            let (pressure, expected) = late_closing(&chamber, &angles);
+            let found = Indicator::of(chamber, &angles, &pressure).unwrap();
+            assert!((found.compression.exponent - 1.3).abs() < 1e-9);
+            assert!((found.expansion.exponent - 1.1).abs() < 1e-9);
+            assert!(found.compression.scatter < 1e-9);
+            let events = &found.events;
+            let found_events = [
+                &events.suction_opens,
+                &events.suction_closes,
+                &events.discharge_opens,
+            ];
+            for (event, expected) in found_events.iter().zip(expected) {
+                let after = (event.angle - chamber.dead_centre()).rem_euclid(TAU);
+                assert!((after - expected).abs() < 1e-9, "{after} {expected}");
+            }
+            let closes = events.discharge_closes.angle - chamber.dead_centre();
+            assert!(closes.sin().abs() < 1e-6, "{closes}");
+            // Lines without scatter tell the clearance to the step of the search.
+            let step = (CLEARANCES[1] - CLEARANCES[0]) * chamber.stroke() / STEPS as f64;
+            let off = found.straightness.clearance - chamber.clearance;
+            assert!(off.abs() <= step, "{off}");
+        }
+    }
+
+    #[test]
+    fn a_wider_clearance_asks_for_a_greater_exponent_by_the_stated_slope() {
+        let angles: Vec<f64> = (0..720).map(|i| TAU * f64::from(i) / 720.0).collect();
+        let chamber = chamber(ChamberEnd::Head);
+        let (pressure, _) = late_closing(&chamber, &angles);
+        let found = Indicator::of(chamber, &angles, &pressure).unwrap();
+        let wider = Chamber {
+            clearance: chamber.clearance + 1e-3,
+            ..chamber
+        };
+        let other = Indicator::of(wider, &angles, &pressure).unwrap();
+        for (polytrope, other) in [
+            (&found.compression, &other.compression),
+            (&found.expansion, &other.expansion),
+        ] {
+            let rise = other.exponent - polytrope.exponent;
+            let expected = 1e-3 * polytrope.exponent_per_clearance;
+            assert!(rise > 0.0 && (rise / expected - 1.0).abs() < 0.05);
+        }
+    }
+
+    #[test]
+    fn what_is_no_cycle_has_no_diagram() {
+        let angles: Vec<f64> = (0..720).map(|i| TAU * f64::from(i) / 720.0).collect();
+        let chamber = chamber(ChamberEnd::Head);
+        for wave in [
+            |_: f64| 1e5,
+            |a: f64| a.sin(),
+            |a: f64| 1e5 + a.cos().signum(),
+        ] {
+            let pressure: Vec<f64> = angles.iter().map(|a| wave(*a)).collect();
+            assert!(Indicator::of(chamber, &angles, &pressure).is_none());
+        }
+    }
 }

@@ -23,6 +23,7 @@ pub mod observation;
 pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
+pub mod pressure_gap;
 pub mod problem;
 pub mod relation;
 pub mod run_condition;

@@ -40,6 +40,20 @@ pub struct Run {
     pub channels: Vec<Channel>,
 }
 
+impl Run {
+    /// The crank angles of the samples of the first whole revolution, or of all where there is none;
+    /// none where the angle is not known.
+    pub fn first_revolution(&self) -> Option<&[f64]> {
+        let angles = self.crank_angle.as_ref()?;
+        let first = *angles.first()?;
+        // From the second half of the revolution on, the next sample past the first ends it.
+        let turned = |a: &f64| (a - first).rem_euclid(TAU);
+        let half = angles.iter().position(|a| turned(a) > 0.5 * TAU)?;
+        let rest = angles[half..].iter().position(|a| turned(a) < 0.5 * TAU);
+        Some(&angles[..rest.map_or(angles.len(), |rest| half + rest)])
+    }
+}
+
 /// A measured channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {

@@ -48,7 +48,10 @@ impl Problem {
     pub(crate) fn crank_angle_offset(&self, run: &Observation, x: &[f64]) -> (f64, Vec<f64>) {
         let each = self.parameters.iter().zip(x).map(|(parameter, x)| {
             match parameter.is_crank_angle_offset() && parameter.holds_in(&run.id) {
-                true => (parameter.value(*x), parameter.value(x + 1.0) - parameter.value(*x)),
+                true => (
+                    parameter.value(*x),
+                    parameter.value(x + 1.0) - parameter.value(*x),
+                ),
                 false => (0.0, 0.0),
             }
         });
