@@ -22,11 +22,10 @@ use std::f64::consts::{PI, TAU};
 const MARGIN: f64 = 0.15;
 /// Fewest samples of a polytrope.
 const FEWEST: usize = 8;
-/// Clearances that are tried, as shares of the stroke.
-const CLEARANCES: [f64; 2] = [0.01, 0.5];
-const STEPS: usize = 99;
-/// 95 % quantile of χ² with one degree of freedom.
-const CHI_SQUARED: f64 = 3.841_459;
+/// Exponents that the expansion of a gas may have: isothermal, and isentropic of a monatomic gas.
+const EXPONENTS: [f64; 2] = [1.0, 5.0 / 3.0];
+/// Clearances among which those that go with them are looked for, as shares of the stroke.
+const CLEARANCES: [f64; 2] = [1e-3, 1.0];
 
 /// A chamber: how far its piston is from its cover. Volumes are lengths here, the area of the piston
 /// being the same throughout.
@@ -90,13 +89,18 @@ pub struct Polytrope {
     samples: Vec<usize>,
 }
 
-/// What the straightness of the polytropes tells about the clearance.
+/// The same curve read with another clearance.
+///
+/// A wider clearance asks for greater exponents, and both polytropes stay nearly as straight: the
+/// curve tells the two together, and neither alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Straightness {
-    /// The clearance at which they are straightest, m.
+pub struct Alternative {
+    /// The clearance, m.
     pub clearance: f64,
-    /// 95 % interval, m; as far as it was searched where an end of it was not found.
-    pub interval: [f64; 2],
+    /// Exponents of compression and expansion.
+    pub exponents: [f64; 2],
+    /// Root mean square of ln p about both lines.
+    pub scatter: f64,
 }
 
 /// The indicator diagram of a chamber over one revolution.
@@ -114,8 +118,9 @@ pub struct Indicator {
     pub expansion: Polytrope,
     /// When the valves open and close.
     pub events: ValveEvents,
-    /// What the curve tells about the clearance.
-    pub straightness: Straightness,
+    /// What the curve leaves open: the readings at which the expansion is isothermal, and isentropic
+    /// of a monatomic gas.
+    pub alternatives: [Alternative; 2],
 }
 
 impl Chamber {
@@ -221,7 +226,8 @@ impl Indicator {
                 discharge_opens: event(&compression, &discharge, false),
                 discharge_closes: event(&expansion, &discharge, true),
             },
-            straightness: straightness(&chamber, whole, &[compressed, expanded]),
+            alternatives: EXPONENTS
+                .map(|exponent| alternative(&chamber, whole, [&compressed, &expanded], exponent)),
             chamber,
             suction,
             discharge,
@@ -317,55 +323,39 @@ fn polytrope(
     (longest.len() >= FEWEST).then_some(longest)
 }
 
-/// The clearance at which both polytropes together are straightest. Its interval is where the sum of
-/// squares rises by no more than chance explains (a profile likelihood), the scatter about the lines
-/// being no white noise: neighbours that are alike count as one.
-fn straightness(
+/// The reading whose expansion has this exponent: bisection, as exponents grow with the clearance.
+fn alternative(
     chamber: &Chamber,
     [angles, pressure]: [&[f64]; 2],
-    polytropes: &[Vec<usize>; 2],
-) -> Straightness {
-    let logarithms = |clearance: f64, samples: &[usize]| -> Vec<(f64, f64)> {
+    polytropes: [&[usize]; 2],
+    exponent: f64,
+) -> Alternative {
+    let lines = |clearance: f64| {
         let chamber = Chamber {
             clearance,
             ..*chamber
         };
         let at = |i: &usize| (chamber.distance(angles[*i]).ln(), pressure[*i].ln());
-        samples.iter().map(at).collect()
+        polytropes.map(|samples| straight_line(samples.iter().map(at)))
     };
-    let squares = |clearance: f64| -> f64 {
-        let of =
-            |samples: &Vec<usize>| straight_line(logarithms(clearance, samples).into_iter())[2];
-        polytropes.iter().map(of).sum()
-    };
-    let [first, last] = CLEARANCES.map(|share| share * chamber.stroke());
-    let clearance = |k: usize| first + (last - first) * k as f64 / STEPS as f64;
-    let profile: Vec<f64> = (0..=STEPS).map(|k| squares(clearance(k))).collect();
-    let best = (0..=STEPS)
-        .min_by(|a, b| profile[*a].total_cmp(&profile[*b]))
-        .unwrap_or(0);
-    let independent: f64 = polytropes
-        .iter()
-        .map(|samples| independent(&logarithms(clearance(best), samples)))
-        .sum();
-    let allowed = profile[best] * (1.0 + CHI_SQUARED / (independent - 5.0).max(1.0));
-    let inside = |k: &usize| profile[*k] <= allowed;
-    let low = (0..=best).find(inside).unwrap_or(best);
-    let high = (best..=STEPS).rev().find(inside).unwrap_or(best);
-    Straightness {
-        clearance: clearance(best),
-        interval: [low, high].map(clearance),
+    let [mut low, mut high] = CLEARANCES.map(|share| share * chamber.stroke());
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        let [_, [_, slope, _]] = lines(middle);
+        if -slope < exponent {
+            low = middle;
+        } else {
+            high = middle;
+        }
     }
-}
-
-/// How many independent values the residuals of a line are worth: N (1 − ρ)/(1 + ρ) of N with the
-/// correlation ρ between neighbours (Bayley and Hammersley 1946).
-fn independent(points: &[(f64, f64)]) -> f64 {
-    let [intercept, slope, squares] = straight_line(points.iter().copied());
-    let residual = |(x, y): &(f64, f64)| y - intercept - slope * x;
-    let products = points.windows(2).map(|p| residual(&p[0]) * residual(&p[1]));
-    let correlation = (products.sum::<f64>() / squares.max(f64::MIN_POSITIVE)).clamp(0.0, 0.99);
-    points.len() as f64 * (1.0 - correlation) / (1.0 + correlation)
+    let clearance = 0.5 * (low + high);
+    let lines = lines(clearance);
+    let count: usize = polytropes.iter().map(|samples| samples.len()).sum();
+    Alternative {
+        clearance,
+        exponents: lines.map(|line| -line[1]),
+        scatter: (lines.iter().map(|line| line[2]).sum::<f64>() / count as f64).sqrt(),
+    }
 }
 
 /// Intercept, slope and remaining sum of squares of a line through points, by least squares.
@@ -449,10 +439,12 @@ mod tests {
             }
             let closes = events.discharge_closes.angle - chamber.dead_centre();
             assert!(closes.sin().abs() < 1e-6, "{closes}");
-            // Lines without scatter tell the clearance to the step of the search.
-            let step = (CLEARANCES[1] - CLEARANCES[0]) * chamber.stroke() / STEPS as f64;
-            let off = found.straightness.clearance - chamber.clearance;
-            assert!(off.abs() <= step, "{off}");
+            let [isothermal, isentropic] = found.alternatives;
+            assert!((isothermal.exponents[1] - 1.0).abs() < 1e-9);
+            assert!((isentropic.exponents[1] - 5.0 / 3.0).abs() < 1e-9);
+            assert!(isothermal.clearance < 0.03 && isentropic.clearance > 0.03);
+            // Over so wide a range the lines bend by little, and the exact one does not at all.
+            assert!(isothermal.scatter < 3e-3 && isentropic.scatter < 1e-2);
         }
     }
 

@@ -95,21 +95,24 @@ fn the_suction_valves_close_as_late_as_their_source_says() {
         let simulated = gap.fitted_indicator.as_ref().unwrap();
         let angle = simulated.events.suction_closes.angle;
         assert!(angle.sin().abs() < 0.02, "{}", degrees(angle));
-        // Straightness does not tell the clearance: its interval spans more than a factor of 2.
-        let [low, high] = indicator.straightness.interval;
-        eprintln!("{} clearance {low:.4} to {high:.4} m", gap.run);
-        assert!(high > 2.0 * low);
+        // Clearance and exponents are not told apart: between isothermal and isentropic expansion the
+        // clearance changes by 60 % or more, and the lines stay as straight to 0.2 % of the pressure.
+        let [isothermal, isentropic] = indicator.alternatives;
+        eprintln!("{} {isothermal:.4?} {isentropic:.4?}", gap.run);
+        assert!(isentropic.clearance > 1.6 * isothermal.clearance);
+        assert!((isentropic.scatter - isothermal.scatter).abs() < 2e-3);
         let phases = gap.phases();
         let shares: f64 = phases.iter().map(|phase| phase.share).sum();
         assert!((shares - 1.0).abs() < 1e-9, "{phases:?}");
     }
 }
 
-/// Root mean square misfits and parameters found by a search of Nelder and Mead's over the closed
-/// form of an ideal-valve cycle at these samples, in another language: 22.14 psi at the head end,
-/// 18.63 psi at the crank end, exponents at their bounds.
+/// Root mean square misfits by a search of Nelder and Mead's over the closed form of an ideal-valve
+/// cycle at these samples, in another language: 22.30 psi at the head end and 18.78 psi at the crank
+/// end with both exponents free, at their bounds 1 and 5/3; 23.556 psi and 19.947 psi with the
+/// nominal exponent of expansion, which the recordings do not tell.
 #[test]
-fn the_best_ideal_valves_leave_a_tenth_of_the_pressure_range() {
+fn ideal_valves_leave_what_their_closed_form_leaves() {
     let exponent = Some([1.0, 5.0 / 3.0]);
     let length = Some([0.003, 0.16]);
     let (problem, runs) = problem(&[
@@ -127,6 +130,7 @@ fn the_best_ideal_valves_leave_a_tenth_of_the_pressure_range() {
         seed: 0,
         evaluations: 500,
         held_out: Vec::new(),
+        start: None,
     };
     let fit = calibrate(&problem, &settings, |_| ControlFlow::Continue(())).unwrap();
     for estimate in &fit.estimates {
@@ -142,7 +146,7 @@ fn the_best_ideal_valves_leave_a_tenth_of_the_pressure_range() {
     for (gap, expected) in pressure_gaps(&problem, &runs, &x)
         .unwrap()
         .iter()
-        .zip([22.14, 18.63])
+        .zip([23.556, 19.947])
     {
         let [nominal, fitted] = gap.rms().map(|rms| rms / PSI);
         eprintln!("{}: {nominal:.2} to {fitted:.2} psi RMS", gap.run);
@@ -152,6 +156,6 @@ fn the_best_ideal_valves_leave_a_tenth_of_the_pressure_range() {
             eprintln!("  {name} {from:.0} to {to:.0}: {rms:.1} psi, {share:.2}");
         }
         assert!(fitted < nominal);
-        assert!((fitted / expected - 1.0).abs() < 0.03, "{fitted}");
+        assert!((fitted / expected - 1.0).abs() < 1e-3, "{fitted}");
     }
 }

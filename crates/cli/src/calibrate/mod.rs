@@ -3,6 +3,7 @@
 mod arguments;
 mod contradiction;
 mod earlier;
+pub mod gas;
 pub mod output;
 mod problem;
 mod progress;

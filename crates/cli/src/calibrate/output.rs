@@ -1,6 +1,6 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
-use super::Task;
+use super::{Task, gas};
 use crate::Failure;
 use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
@@ -36,7 +36,12 @@ pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
     let machine = calibrated(&task.problem, found.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let results = calibration(found, &task.settings);
+    let gaps = gas::gaps(task, found.fit)?;
+    let mut results = calibration(found, &task.settings);
+    if !gaps.is_empty() {
+        results["gas"] = gas::results(&gaps);
+        gas::write(folder, &gaps)?;
+    }
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())?;
     Ok(results)
@@ -67,6 +72,7 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
             "high": high,
             "nominal": estimate.parameter.nominal,
             "identifiable": estimate.interval.is_some(),
+            "at_bound": estimate.at_bound(),
         });
         parameters.insert(path.clone(), content);
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);
@@ -122,7 +128,13 @@ pub fn summary(results: &Value) {
     for (path, estimate) in results["parameters"].as_object().into_iter().flatten() {
         let value = number(&estimate["value"]);
         match [&estimate["low"], &estimate["high"]].map(Value::as_f64) {
-            [Some(low), Some(high)] => println!("{path}: {value:.4e} ({low:.4e} to {high:.4e})"),
+            [Some(low), Some(high)] => {
+                let stuck = match estimate["at_bound"] == true {
+                    true => ": at its bound, and the recordings ask for more",
+                    false => "",
+                };
+                println!("{path}: {value:.4e} ({low:.4e} to {high:.4e}){stuck}");
+            }
             _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
         }
     }
@@ -137,6 +149,7 @@ pub fn summary(results: &Value) {
             number(&run["nominal"])
         );
     }
+    gas::summary(&results["gas"]);
 }
 
 fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
