@@ -179,9 +179,14 @@ impl Chamber {
         (own - self.phase).rem_euclid(TAU)
     }
 
-    /// The angle after the dead centre at which the piston has the distance, within half a
-    /// revolution: bisection.
+    /// The angle after the dead centre at which the piston has the distance, from 0 to π: bisection.
     fn turned(&self, distance: f64) -> f64 {
+        if distance <= self.clearance {
+            return 0.0;
+        }
+        if distance >= self.clearance + self.stroke() {
+            return PI;
+        }
         let [mut low, mut high] = [0.0, PI];
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
