@@ -3,6 +3,7 @@
 mod output;
 mod problem;
 mod progress;
+mod relation;
 
 use crate::Failure;
 use ::calibrate::fit::{FitSettings, Optimiser};
@@ -17,7 +18,7 @@ use std::time::Instant;
 #[command(after_help = "\
 BUNDLE is a folder with recordings.yaml. What is fitted are paths of the machine file; without
 --parameter the contact stiffness, damping and friction of every joint that is clear in some run.
-Every fourth run is held out and predicted, where there are four.
+Of every four runs one is held out and predicted: the last whose clearances a fitted run has.
 
 Examples:
   crosshead calibrate my-bundle --out calibrated
@@ -37,6 +38,11 @@ pub struct Arguments {
     /// A path of the machine file to be fitted; may be repeated
     #[arg(long, value_name = "PATH")]
     parameter: Vec<String>,
+    /// How contact parameters follow the clearance [default: as the machine file says; where the
+    /// bundle's machine section says nothing, eq5, or fitted if the fitted runs have several
+    /// clearances]
+    #[arg(long, value_name = "RELATION")]
+    relation: Option<relation::Name>,
     /// Predict this run and do not fit to it; may be repeated
     #[arg(long, value_name = "RUN")]
     hold_out: Vec<String>,
@@ -85,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let bundle = Bundle::read(&arguments.bundle)?;
-    let problem = problem::problem(arguments, &bundle)?;
+    let (problem, held_out) = problem::problem(arguments, &bundle)?;
     let settings = FitSettings {
         optimiser: match arguments.optimiser {
             Search::Default => Optimiser::Default,
@@ -95,13 +101,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         seed: arguments.seed,
         evaluations: arguments.evaluations,
-        held_out: problem::held_out(arguments, &problem)?,
+        held_out,
     };
     let start = Instant::now();
     let fit = progress::search(&problem, &settings)?;
     let seconds = start.elapsed().as_secs_f64();
-    output::write(&arguments.out, &problem, &fit, &settings, seconds)?;
+    let transfer = ::calibrate::transfer(&problem, &fit).map_err(Failure::work)?;
+    let results = output::Results {
+        fit: &fit,
+        settings: &settings,
+        seconds,
+        relation: relation::stated(arguments, &problem)?,
+        transfer: &transfer,
+    };
+    output::write(&arguments.out, &problem, &results)?;
     output::summary(&fit);
+    output::relations(&transfer);
     println!("{}", machine.display());
     Ok(())
 }

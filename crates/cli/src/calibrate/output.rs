@@ -1,8 +1,9 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
 use crate::Failure;
-use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::transfer::Basis;
+use ::calibrate::{Problem, Relation, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -14,22 +15,29 @@ pub const MACHINE: &str = "machine.yaml";
 /// Name of the file of results.
 pub const RESULTS: &str = "calibration.json";
 
+/// What a calibration found.
+pub struct Results<'a> {
+    /// The fit.
+    pub fit: &'a Fit,
+    /// How it was made.
+    pub settings: &'a FitSettings,
+    /// How long it took.
+    pub seconds: f64,
+    /// The relation between clearances that it was made under.
+    pub relation: Value,
+    /// What every relation comes to.
+    pub transfer: &'a Transfer,
+}
+
 /// Writes the calibrated machine, and last, as what makes the folder whole, the results.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(
-    folder: &Path,
-    problem: &Problem,
-    fit: &Fit,
-    settings: &FitSettings,
-    seconds: f64,
-) -> Result<(), Failure> {
+pub fn write(folder: &Path, problem: &Problem, results: &Results) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    let machine = calibrated(problem, fit)?;
+    let machine = calibrated(problem, results.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let results = calibration(fit, settings, seconds);
-    let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
+    let text = serde_json::to_string_pretty(&calibration(results)).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())
 }
 
@@ -45,7 +53,8 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
-fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
+fn calibration(results: &Results) -> Value {
+    let Results { fit, settings, .. } = results;
     let mut parameters = Map::new();
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
@@ -85,7 +94,7 @@ fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
     json!({
         "optimiser": settings.optimiser.name(),
         "evaluations": fit.evaluations,
-        "seconds": seconds,
+        "seconds": results.seconds,
         "complete": fit.complete,
         "parameters": parameters,
         "correlations": correlations,
@@ -99,6 +108,12 @@ fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
         },
         "runs": runs,
         "heldout_runs": settings.held_out,
+        "relation": results.relation,
+        "relations": {
+            "decision": results.transfer.decision,
+            "compared": results.transfer.relations,
+        },
+        "predictions": results.transfer.predictions,
     })
 }
 
@@ -126,6 +141,29 @@ pub fn summary(fit: &Fit) {
             run.id, run.calibrated, run.nominal
         );
     }
+}
+
+/// Prints how the relations between clearances compare.
+pub fn relations(transfer: &Transfer) {
+    let names = |relations: &[Relation]| {
+        let names: Vec<&str> = relations.iter().map(|r| r.name()).collect();
+        names.join(" or ")
+    };
+    if transfer.decision.runs == Basis::None {
+        println!("relation between clearances: one clearance does not tell it");
+        return;
+    }
+    for hypothesis in &transfer.relations {
+        let predicted = hypothesis.held_out;
+        println!(
+            "relation {}: {:.2} times the noise fitted{}",
+            hypothesis.relation.name(),
+            hypothesis.fitted,
+            predicted.map_or(String::new(), |p| format!(", {p:.2} predicted"))
+        );
+    }
+    let left = names(&transfer.decision.relations);
+    println!("relation between clearances: the recordings are for {left}");
 }
 
 fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {

@@ -1,21 +1,22 @@
 //! From a bundle of recordings to what is to be fitted to what.
 
-use super::Arguments;
+use super::{Arguments, relation};
 use crate::{Failure, bundle};
 use ::calibrate::problem::columns;
-use ::calibrate::{Observation, Parameter, Problem};
+use ::calibrate::relation::clearances;
+use ::calibrate::{ClearJoint, Observation, Parameter, Problem, Run};
 use input::bundle::Bundle;
 use input::{MachineFile, paths};
 use serde_json::Value;
 
-/// One run in so many is held out.
+/// Of so many runs one is held out.
 const HELD_OUT: usize = 4;
 
-/// The problem that the arguments state of this bundle.
+/// The problem that the arguments state of this bundle, and the runs that are held out of the fit.
 ///
 /// # Errors
 /// A machine or run that cannot be used, or a path that the machine does not have.
-pub fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<Problem, Failure> {
+pub fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<(Problem, Vec<String>), Failure> {
     let mut tree = bundle::machine(bundle, arguments.machine.as_deref())?;
     let runs = bundle::runs(bundle, &tree, &arguments.leave_out)?;
     let Some(first) = runs.first() else {
@@ -25,6 +26,8 @@ pub fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<Problem, Failur
     for (path, value) in &first.settings {
         paths::set(&mut tree, path, value.clone())?;
     }
+    let held_out = held_out(arguments, &tree, &runs)?;
+    let exponents = relation::set(arguments, &mut tree, &runs, &held_out)?;
     let machine = MachineFile::from_tree(&tree)?.resolve()?;
     let columns = columns(&machine);
     let clear = |path: &String, value: &Value| path.ends_with(".clearance") && value != "ideal";
@@ -50,33 +53,44 @@ pub fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<Problem, Failur
             })
             .collect();
     }
-    let parameters = fitted
+    let mut parameters = fitted
         .iter()
         .map(|path| Parameter::of(&tree, path))
-        .collect::<Result<_, _>>()
+        .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::input)?;
+    parameters.extend(exponents);
     let runs = runs
         .iter()
         .map(|run| Observation::of(run, &columns))
         .collect::<Result<_, _>>()
         .map_err(Failure::input)?;
-    Ok(Problem {
+    let problem = Problem {
         tree,
         parameters,
         runs,
-    })
+    };
+    Ok((problem, held_out))
 }
 
-/// The runs to be predicted: those asked for, else every fourth.
-///
-/// # Errors
-/// A name that no run has.
-pub fn held_out(arguments: &Arguments, problem: &Problem) -> Result<Vec<String>, Failure> {
-    let ids: Vec<&str> = problem.runs.iter().map(|run| run.id.as_str()).collect();
+/// The runs to be predicted: those asked for, else of every four the last whose clearances a run has
+/// that is fitted.
+fn held_out(arguments: &Arguments, tree: &Value, runs: &[Run]) -> Result<Vec<String>, Failure> {
+    let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
     bundle::known_runs("--hold-out", &arguments.hold_out, &ids)?;
     if !arguments.hold_out.is_empty() {
         return Ok(arguments.hold_out.clone());
     }
-    let each = ids.iter().skip(HELD_OUT - 1).step_by(HELD_OUT);
-    Ok(each.map(|id| (*id).to_owned()).collect())
+    let settings = runs.iter().map(|run| &run.settings[..]);
+    let joints = ClearJoint::of(tree, settings).map_err(Failure::input)?;
+    let states = runs.iter().map(|r| clearances(tree, &joints, &r.settings));
+    let states: Vec<_> = states.collect::<Result<_, _>>().map_err(Failure::input)?;
+    let mut held_out: Vec<usize> = Vec::new();
+    for last in (HELD_OUT - 1..runs.len()).step_by(HELD_OUT) {
+        let shared = |i: &usize| {
+            (0..runs.len()).any(|j| j != *i && states[j] == states[*i] && !held_out.contains(&j))
+        };
+        let group = last + 1 - HELD_OUT..=last;
+        held_out.extend(group.rev().find(shared));
+    }
+    Ok(held_out.into_iter().map(|i| runs[i].id.clone()).collect())
 }
