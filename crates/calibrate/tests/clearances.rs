@@ -4,7 +4,7 @@ use calibrate::fit::{FitSettings, Optimiser};
 use calibrate::observation::Observed;
 use calibrate::prediction::predict;
 use calibrate::relation::exponents;
-use calibrate::transfer::Basis;
+use calibrate::transfer::{Basis, Hypothesis};
 use calibrate::{
     ClearJoint, Fit, Observation, Parameter, Problem, Relation, Transfer, calibrate, transfer,
 };
@@ -113,7 +113,7 @@ fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit
     (fit, transfer)
 }
 
-fn hypothesis(transfer: &Transfer, relation: Relation) -> &calibrate::transfer::Hypothesis {
+fn hypothesis(transfer: &Transfer, relation: Relation) -> &Hypothesis {
     let mut all = transfer.relations.iter();
     all.find(|h| h.relation == relation).unwrap()
 }
@@ -132,7 +132,7 @@ fn two_clearances_tell_the_exponents() {
         .iter()
         .map(|e| (e.parameter.path.as_str(), e.value))
         .collect();
-    let expected = [
+    let expected: [(&str, f64); 4] = [
         (STIFFNESS, 15e9),
         (DAMPING, 26e3),
         ("joints.*.contact.relation.stiffness", 0.0),
@@ -140,7 +140,7 @@ fn two_clearances_tell_the_exponents() {
     ];
     for ((path, value), (expected_path, expected)) in found.into_iter().zip(expected) {
         assert_eq!(path, expected_path);
-        let within = 1e-3 * expected.abs().max(1.0);
+        let within = 1e-3 * f64::max(expected.abs(), 1.0);
         assert!((value - expected).abs() < within, "{path}: {value}");
     }
     assert_eq!(transfer.decision.runs, Basis::Fitted);
