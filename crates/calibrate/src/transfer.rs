@@ -14,7 +14,7 @@ use crate::forecast::{Forecast, forecast};
 use crate::identifiability::information;
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
-use crate::optimiser::{LeastSquares, levenberg_marquardt};
+use crate::optimiser::{LeastSquares, Progress, Watch, levenberg_marquardt};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
@@ -106,11 +106,22 @@ pub(crate) struct Fitted {
 
 /// Compares the relations for a calibrated machine, and predicts what it shows where each clear
 /// bearing in turn has three times its normal clearance, at the conditions of each fitted run
-/// without wear, and in the runs held out that have other clearances than the fitted ones.
+/// without wear, and in the runs held out that have other clearances than the fitted ones. `watch` is
+/// told of each step of the fits; none where it stops one.
 ///
 /// # Errors
 /// A machine that is none under some relation, or a run that cannot be simulated.
-pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
+pub fn transfer(
+    problem: &Problem,
+    fit: &Fit,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Option<Transfer>, Error> {
+    let mut stopped = false;
+    let mut watch = |progress: &Progress| {
+        let answer = watch(progress);
+        stopped |= answer.is_break();
+        answer
+    };
     let settings = problem.runs.iter().map(|run| &run.settings[..]);
     let joints = ClearJoint::of(&problem.tree, settings)?;
     let held_out = |run: &Observation| fit.runs.iter().any(|r| r.id == run.id && r.held_out);
@@ -136,9 +147,12 @@ pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
         }
         let start = under(problem, fit, relation, &joints)?;
         machines.push(match basis {
-            Basis::Fitted => refitted(start, &held_out)?,
+            Basis::Fitted => refitted(start, &held_out, &mut watch)?,
             _ => start,
         });
+    }
+    if stopped {
+        return Ok(None);
     }
     let compared = machines.iter().map(|m| hypothesis(m, &held_out, basis));
     let mut compared: Vec<(Hypothesis, Evidence)> = compared.collect();
@@ -162,11 +176,11 @@ pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
         let hypothesis = all.find(|h| h.relation == prediction.relation);
         prediction.misfit = hypothesis.and_then(|h| h.runs.get(&prediction.run).copied());
     }
-    Ok(Transfer {
+    Ok(Some(Transfer {
         relations,
         decision,
         predictions,
-    })
+    }))
 }
 
 /// The calibrated machine with another relation in its place.
@@ -227,7 +241,11 @@ fn covariance(intervals: &[[f64; 2]], correlations: &DMatrix<f64>) -> DMatrix<f6
 }
 
 /// The machine fitted again from where it stands; what the recordings did not tell stays.
-fn refitted(start: Fitted, held_out: &impl Fn(&Observation) -> bool) -> Result<Fitted, Error> {
+fn refitted(
+    start: Fitted,
+    held_out: &impl Fn(&Observation) -> bool,
+    watch: Watch,
+) -> Result<Fitted, Error> {
     let told =
         |i: &usize| is_exponent(&start.problem.parameters[*i]) || start.covariance[(*i, *i)] > 0.0;
     let free: Vec<usize> = (0..start.x.len()).filter(told).collect();
@@ -236,8 +254,7 @@ fn refitted(start: Fitted, held_out: &impl Fn(&Observation) -> bool) -> Result<F
     let fitted = problem.with_runs(|run| !held_out(run));
     let likelihood = Likelihood::new(&fitted);
     let from: Vec<f64> = free.iter().map(|i| start.x[*i]).collect();
-    let mut go = |_: &_| ControlFlow::Continue(());
-    let found = levenberg_marquardt(&likelihood, &from, EVALUATIONS, &mut go)?;
+    let found = levenberg_marquardt(&likelihood, &from, EVALUATIONS, watch)?;
     let information = information(&likelihood, &found.x);
     Ok(Fitted {
         relation: start.relation,

@@ -107,9 +107,12 @@ fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit
         seed: 0,
         evaluations: 200,
         held_out: held_out.iter().map(|id| (*id).to_owned()).collect(),
+        start: None,
     };
     let fit = calibrate(&problem, &settings, |_| ControlFlow::Continue(())).unwrap();
-    let transfer = transfer(&problem, &fit).unwrap();
+    let transfer = transfer(&problem, &fit, |_| ControlFlow::Continue(()))
+        .unwrap()
+        .unwrap();
     (fit, transfer)
 }
 

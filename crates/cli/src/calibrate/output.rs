@@ -1,9 +1,9 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
+use super::{Task, relation};
 use crate::Failure;
 use ::calibrate::fit::{Fit, FitSettings};
-use ::calibrate::transfer::Basis;
-use ::calibrate::{Problem, Relation, Transfer};
+use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -16,29 +16,33 @@ pub const MACHINE: &str = "machine.yaml";
 pub const RESULTS: &str = "calibration.json";
 
 /// What a calibration found.
-pub struct Results<'a> {
+pub struct Found<'a> {
     /// The fit.
     pub fit: &'a Fit,
-    /// How it was made.
-    pub settings: &'a FitSettings,
-    /// How long it took.
+    /// What it comes to at other clearances; none where the search was stopped.
+    pub transfer: Option<&'a Transfer>,
+    /// What tells its inputs from others.
+    pub fingerprint: &'a str,
+    /// Evaluations of the model, those before an interruption included.
+    pub evaluations: u64,
+    /// How long they took.
     pub seconds: f64,
-    /// The relation between clearances that it was made under.
-    pub relation: Value,
-    /// What every relation comes to.
-    pub transfer: &'a Transfer,
 }
 
-/// Writes the calibrated machine, and last, as what makes the folder whole, the results.
+/// Writes the calibrated machine, and last, as what makes the folder whole, the results, which it
+/// gives back.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(folder: &Path, problem: &Problem, results: &Results) -> Result<(), Failure> {
+pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    let machine = calibrated(problem, results.fit)?;
+    let machine = calibrated(&task.problem, found.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let text = serde_json::to_string_pretty(&calibration(results)).map_err(Failure::work)?;
-    write_file(&folder.join(RESULTS), text.as_bytes())
+    let mut results = calibration(found, &task.settings);
+    results["relation"] = relation::stated(&task.problem)?;
+    let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
+    write_file(&folder.join(RESULTS), text.as_bytes())?;
+    Ok(results)
 }
 
 /// The machine file with what was found, as YAML.
@@ -53,8 +57,8 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
-fn calibration(results: &Results) -> Value {
-    let Results { fit, settings, .. } = results;
+fn calibration(found: &Found, settings: &FitSettings) -> Value {
+    let fit = found.fit;
     let mut parameters = Map::new();
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
@@ -93,9 +97,10 @@ fn calibration(results: &Results) -> Value {
         .collect();
     json!({
         "optimiser": settings.optimiser.name(),
-        "evaluations": fit.evaluations,
-        "seconds": results.seconds,
+        "evaluations": found.evaluations,
+        "seconds": found.seconds,
         "complete": fit.complete,
+        "fingerprint": found.fingerprint,
         "parameters": parameters,
         "correlations": correlations,
         "fit": {
@@ -108,62 +113,62 @@ fn calibration(results: &Results) -> Value {
         },
         "runs": runs,
         "heldout_runs": settings.held_out,
-        "relation": results.relation,
-        "relations": {
-            "decision": results.transfer.decision,
-            "compared": results.transfer.relations,
-        },
-        "predictions": results.transfer.predictions,
+        "relation": Value::Null,
+        "relations": found.transfer.map(|transfer| json!({
+            "decision": transfer.decision,
+            "compared": transfer.relations,
+        })),
+        "predictions": found.transfer.map(|transfer| &transfer.predictions),
     })
 }
 
-/// Prints what was found.
-pub fn summary(fit: &Fit) {
-    if !fit.complete {
+/// Prints what was found: the content of `calibration.json`.
+pub fn summary(results: &Value) {
+    if results["complete"] == false {
         println!("stopped; the best so far:");
     }
-    for estimate in &fit.estimates {
-        let path = &estimate.parameter.path;
-        match estimate.interval {
-            Some([low, high]) => {
-                println!("{path}: {:.4e} ({low:.4e} to {high:.4e})", estimate.value);
-            }
-            None => println!(
-                "{path}: the recordings do not tell it; it stays {:.4e}",
-                estimate.value
-            ),
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    for (path, estimate) in results["parameters"].as_object().into_iter().flatten() {
+        let value = number(&estimate["value"]);
+        match [&estimate["low"], &estimate["high"]].map(Value::as_f64) {
+            [Some(low), Some(high)] => println!("{path}: {value:.4e} ({low:.4e} to {high:.4e})"),
+            _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
         }
     }
-    for run in &fit.runs {
-        let kind = if run.held_out { "predicted" } else { "fitted" };
+    for (id, run) in results["runs"].as_object().into_iter().flatten() {
+        let kind = match run["held_out"] == true {
+            true => "predicted",
+            false => "fitted",
+        };
         println!(
-            "{} {kind}: {:.2} times its noise, {:.2} before",
-            run.id, run.calibrated, run.nominal
+            "{id} {kind}: {:.2} times its noise, {:.2} before",
+            number(&run["calibrated"]),
+            number(&run["nominal"])
         );
     }
+    relations(&results["relations"]);
 }
 
-/// Prints how the relations between clearances compare.
-pub fn relations(transfer: &Transfer) {
-    let names = |relations: &[Relation]| {
-        let names: Vec<&str> = relations.iter().map(|r| r.name()).collect();
-        names.join(" or ")
-    };
-    if transfer.decision.runs == Basis::None {
-        println!("relation between clearances: one clearance does not tell it");
+/// Prints how the relations between clearances compare, where the recordings tell them apart.
+fn relations(results: &Value) {
+    let decided = results["decision"]["relations"].as_array();
+    let Some(decided) = decided.filter(|relations| !relations.is_empty()) else {
         return;
-    }
-    for hypothesis in &transfer.relations {
-        let predicted = hypothesis.held_out;
+    };
+    for compared in results["compared"].as_array().into_iter().flatten() {
+        let held_out = compared["held_out"].as_f64();
         println!(
             "relation {}: {:.2} times the noise fitted{}",
-            hypothesis.relation.name(),
-            hypothesis.fitted,
-            predicted.map_or(String::new(), |p| format!(", {p:.2} predicted"))
+            compared["relation"].as_str().unwrap_or_default(),
+            compared["fitted"].as_f64().unwrap_or(f64::NAN),
+            held_out.map_or(String::new(), |misfit| format!(", {misfit:.2} predicted"))
         );
     }
-    let left = names(&transfer.decision.relations);
-    println!("relation between clearances: the recordings are for {left}");
+    let decided: Vec<&str> = decided.iter().filter_map(Value::as_str).collect();
+    println!(
+        "relation that the recordings are for: {}",
+        decided.join(" or ")
+    );
 }
 
 fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
