@@ -328,9 +328,9 @@ mod tests {
         assert!(refused(&tree, "name").contains("'"));
         assert!(refused(&tree, "joints.*.contact.stifness").contains("stiffness"));
         assert!(refused(&tree, "rod").contains("no quantity"));
-        paths::set(&mut tree, "cylinder.back_pressure", json!("0 Pa")).unwrap();
-        assert!(refused(&tree, "cylinder.back_pressure").contains("bounds"));
-        let within = |bounds| Parameter::within(&tree, "cylinder.back_pressure", bounds);
+        paths::set(&mut tree, "cylinder.back", json!("0 Pa")).unwrap();
+        assert!(refused(&tree, "cylinder.back").contains("bounds"));
+        let within = |bounds| Parameter::within(&tree, "cylinder.back", bounds);
         assert_eq!(within([-1e5, 1e5]).unwrap().value(0.5), 5e4);
         let refused = within([1e5, 2e5]).unwrap_err().to_string();
         assert!(refused.contains("100000 and 200000"), "{refused}");

@@ -1,9 +1,9 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
-use super::{Task, gas};
+use super::{Task, gas, relation};
 use crate::Failure;
-use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -19,6 +19,8 @@ pub const RESULTS: &str = "calibration.json";
 pub struct Found<'a> {
     /// The fit.
     pub fit: &'a Fit,
+    /// What it comes to at other clearances; none where the search was stopped.
+    pub transfer: Option<&'a Transfer>,
     /// What tells its inputs from others.
     pub fingerprint: &'a str,
     /// Evaluations of the model, those before an interruption included.
@@ -36,8 +38,9 @@ pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
     let machine = calibrated(&task.problem, found.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let gaps = gas::gaps(task, found.fit)?;
     let mut results = calibration(found, &task.settings);
+    results["relation"] = relation::stated(&task.problem)?;
+    let gaps = gas::gaps(task, found.fit)?;
     if !gaps.is_empty() {
         results["gas"] = gas::results(&gaps);
         gas::write(folder, &gaps)?;
@@ -116,6 +119,12 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
         },
         "runs": runs,
         "heldout_runs": settings.held_out,
+        "relation": Value::Null,
+        "relations": found.transfer.map(|transfer| json!({
+            "decision": transfer.decision,
+            "compared": transfer.relations,
+        })),
+        "predictions": found.transfer.map(|transfer| &transfer.predictions),
     })
 }
 
@@ -150,6 +159,29 @@ pub fn summary(results: &Value) {
         );
     }
     gas::summary(&results["gas"]);
+    relations(&results["relations"]);
+}
+
+/// Prints how the relations between clearances compare, where the recordings tell them apart.
+fn relations(results: &Value) {
+    let decided = results["decision"]["relations"].as_array();
+    let Some(decided) = decided.filter(|relations| !relations.is_empty()) else {
+        return;
+    };
+    for compared in results["compared"].as_array().into_iter().flatten() {
+        let held_out = compared["held_out"].as_f64();
+        println!(
+            "relation {}: {:.2} times the noise fitted{}",
+            compared["relation"].as_str().unwrap_or_default(),
+            compared["fitted"].as_f64().unwrap_or(f64::NAN),
+            held_out.map_or(String::new(), |misfit| format!(", {misfit:.2} predicted"))
+        );
+    }
+    let decided: Vec<&str> = decided.iter().filter_map(Value::as_str).collect();
+    println!(
+        "relation that the recordings are for: {}",
+        decided.join(" or ")
+    );
 }
 
 fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
