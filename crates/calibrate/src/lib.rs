@@ -21,9 +21,11 @@ pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
 pub mod problem;
+pub mod replay;
 
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};
 pub use parameter::Parameter;
 pub use problem::Problem;
+pub use replay::{Replay, replay};
