@@ -12,6 +12,7 @@
 //! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
 //! Weights come from that noise alone.
 
+pub mod comparison;
 pub mod error;
 pub mod fit;
 pub mod identifiability;
@@ -23,6 +24,7 @@ pub mod prediction;
 pub mod problem;
 pub mod replay;
 
+pub use comparison::{Comparison, compare};
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};

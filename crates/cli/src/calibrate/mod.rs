@@ -1,10 +1,11 @@
 //! `crosshead calibrate`: a machine's parameters from recordings of it.
 
-mod output;
+pub(crate) mod output;
+pub(crate) mod pictures;
 mod problem;
 mod progress;
 
-use crate::Failure;
+use crate::{Failure, bundle, report};
 use ::calibrate::fit::{FitSettings, Optimiser};
 use ::calibrate::optimiser::Genetic;
 use clap::{Args, ValueEnum};
@@ -31,7 +32,7 @@ pub struct Arguments {
     /// The machine file [default: the machine section of the bundle]
     #[arg(long, value_name = "MACHINE.yaml")]
     machine: Option<PathBuf>,
-    /// Folder to write into: machine.yaml, calibration.json
+    /// Folder to write into: machine.yaml, calibration.json, report.html
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// A path of the machine file to be fitted; may be repeated
@@ -101,7 +102,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let fit = progress::search(&problem, &settings)?;
     let seconds = start.elapsed().as_secs_f64();
     output::write(&arguments.out, &problem, &fit, &settings, seconds)?;
+    let runs = bundle::runs(&bundle, &problem.tree, &arguments.leave_out)?;
+    pictures::write(&arguments.out, &problem, &runs, &fit)?;
+    let page = report::write_calibration(&arguments.out, &arguments.out.join("report.html"))?;
     output::summary(&fit);
     println!("{}", machine.display());
+    println!("{}", page.display());
     Ok(())
 }

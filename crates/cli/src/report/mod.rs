@@ -1,5 +1,6 @@
-//! `crosshead report`: the HTML pages of a dataset.
+//! `crosshead report`: the HTML pages of a dataset, or of a calibration.
 
+mod calibration;
 mod chaos;
 mod columns;
 mod counts;
@@ -29,13 +30,14 @@ use windows::{Case, Windows};
 Examples:
   crosshead report datasets/paper2
   crosshead report datasets/bearing-faults --out bearing-faults.html
+  crosshead report calibrated
 
-Beside the page stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
+A calibration has one page. Beside that of a dataset stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
 feature is) and figures/, every figure as an SVG file.
 
 Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
-    /// Folder of a dataset, as gen-dataset writes it
+    /// Folder of a dataset or of a calibration, as gen-dataset or calibrate writes it
     dir: PathBuf,
     /// The page [default: DIR/report.html]
     #[arg(long, value_name = "FILE.html")]
@@ -48,6 +50,12 @@ pub struct Arguments {
 /// # Errors
 /// A folder that is no whole dataset, or a page that cannot be made or written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if calibration::is_at(&arguments.dir) {
+        let out = arguments.out.clone();
+        let out = out.unwrap_or_else(|| arguments.dir.join("report.html"));
+        println!("{}", write_calibration(&arguments.dir, &out)?.display());
+        return Ok(());
+    }
     let contents = Contents::read(&arguments.dir)?;
     let page = contents.dataset_page()?;
     let place = Place {
@@ -76,6 +84,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print!("\n{}", grid.claims_markdown());
     }
     Ok(())
+}
+
+/// Writes the page of the calibration in `folder` to the file `out`, and says where that is.
+///
+/// # Errors
+/// A folder that is no calibration, or a page that cannot be made or written.
+pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+    let page = calibration::page(folder)?.render().map_err(Failure::work)?;
+    pages::write(out, &page.html)?;
+    Ok(out.to_owned())
 }
 
 /// What the page of the dataset in `folder` tells.
