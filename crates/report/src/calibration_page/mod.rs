@@ -7,6 +7,7 @@
 mod misfits;
 mod page;
 mod parameters;
+mod transfers;
 mod verdict;
 mod waveforms;
 mod words;
@@ -37,6 +38,59 @@ pub struct CalibrationPage {
     pub correlations: Vec<Vec<f64>>,
     /// The runs.
     pub runs: Vec<Run>,
+    /// What the relations between clearances come to, where that was asked.
+    pub transfer: Option<Transfer>,
+}
+
+/// What a machine that was calibrated at some clearances shows at others, under each relation
+/// between contact parameters and clearance. Relations are `eq5`, `conformal`, `constant`, `fitted`.
+#[derive(Clone, Debug, Default)]
+pub struct Transfer {
+    /// The relations that the recordings leave, the best first; none where they have no say.
+    pub left: Vec<String>,
+    /// True where runs that were held out decide, and not the fitted ones.
+    pub by_held_out: bool,
+    /// Each relation held against the recordings.
+    pub relations: Vec<Hypothesis>,
+    /// What each shows elsewhere.
+    pub forecasts: Vec<Forecast>,
+}
+
+/// A relation against the recordings.
+#[derive(Clone, Debug, Default)]
+pub struct Hypothesis {
+    /// The relation.
+    pub relation: String,
+    /// Exponents that were fitted: path, value and its 95 % interval.
+    pub exponents: Vec<(String, Bounded)>,
+    /// Misfit of the fitted runs.
+    pub fitted: f64,
+    /// Misfit of those held out.
+    pub held_out: Option<f64>,
+    /// Schwarz's criterion less that of the best relation.
+    pub criterion: Option<f64>,
+}
+
+/// What the machine shows in a run under a relation.
+#[derive(Clone, Debug, Default)]
+pub struct Forecast {
+    /// The run whose speed and pressures hold.
+    pub run: String,
+    /// The relation.
+    pub relation: String,
+    /// The clearances that are not the fitted ones, m, by the joint's path.
+    pub clearances: Vec<(String, f64)>,
+    /// Its channels: column, greatest magnitude over a revolution, and that of the recording.
+    pub peaks: Vec<(String, Bounded, Option<f64>)>,
+}
+
+/// A value with its 95 % interval, where that is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bounded {
+    /// The value.
+    pub value: f64,
+    /// The interval.
+    pub interval: Option<[f64; 2]>,
 }
 
 /// A misfit before and after.

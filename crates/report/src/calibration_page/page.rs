@@ -1,6 +1,9 @@
 //! The page itself.
 
-use super::{CalibrationPage, Estimate, misfits, parameters, verdict, waveforms, words};
+use super::{
+    CalibrationPage, Estimate, Hypothesis, Transfer, misfits, parameters, transfers, verdict,
+    waveforms, words,
+};
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
 use askama::Template;
@@ -17,6 +20,7 @@ struct View<'a> {
     misfits: Vec<(usize, Plate)>,
     intervals: Vec<(usize, Plate)>,
     correlations: Vec<(usize, Plate)>,
+    transfers: Vec<(usize, Plate)>,
     runs: Vec<(usize, Plate)>,
 }
 
@@ -44,10 +48,17 @@ impl CalibrationPage {
             misfits: numbered(misfits::plate(self).into_iter().collect()),
             intervals: numbered(parameters::intervals(self).into_iter().collect()),
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
+            transfers: numbered(transfers::plates(self)),
             runs: numbered(waveforms::plates(self)),
         };
         let html = view.render()?;
-        let plates = [view.misfits, view.intervals, view.correlations, view.runs];
+        let plates = [
+            view.misfits,
+            view.intervals,
+            view.correlations,
+            view.transfers,
+            view.runs,
+        ];
         let figures = plates
             .into_iter()
             .flatten()
@@ -113,6 +124,26 @@ impl View<'_> {
         let change = 100.0 * (estimate.value / estimate.nominal - 1.0);
         let sign = if change > 0.0 { "+" } else { "" };
         format!("{sign}{}\u{a0}%", text::decimal(change, 1))
+    }
+
+    fn decision(transfer: &Transfer) -> String {
+        transfers::decision(transfer)
+    }
+
+    fn relation(name: &str) -> &str {
+        transfers::words(name)
+    }
+
+    fn exponents(hypothesis: &Hypothesis) -> String {
+        transfers::exponents(hypothesis)
+    }
+
+    fn misfit(value: &f64) -> String {
+        verdict::size(*value)
+    }
+
+    fn optional(value: &Option<f64>) -> String {
+        value.map_or_else(String::new, verdict::size)
     }
 
     fn left_out(&self) -> String {
