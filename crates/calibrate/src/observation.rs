@@ -15,8 +15,12 @@ const CLIPPED: usize = 4;
 const SPEED: f64 = 0.02;
 /// Orders that always count; higher ones do where they stand out of the noise.
 const LOW_ORDERS: usize = 20;
-/// Power over noise from which an order stands out.
+/// Power over noise from which one order stands out: in noise alone one of fifty does.
 const STANDS_OUT: f64 = 4.0;
+/// Orders of a band, and mean power over noise from which a band stands out: noise alone has a mean
+/// of 1 with a standard deviation of a third.
+const BAND: usize = 10;
+const BAND_STANDS_OUT: f64 = 2.5;
 
 /// A run of the machine, as a bundle of recordings has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -180,17 +184,24 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
     Ok(())
 }
 
-fn stands(lines: &OrderLines, order: usize) -> bool {
-    lines.amplitude[order].norm_sqr() > STANDS_OUT * lines.variance[order]
-}
-
 fn stands_out(lines: &OrderLines) -> bool {
-    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1)).any(|k| stands(lines, k))
+    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1))
+        .any(|k| lines.amplitude[k].norm_sqr() > STANDS_OUT * lines.variance[k])
 }
 
-/// The mean of an acceleration is its sensor's, not the machine's; pressures have an order 0.
+/// All orders up to the last [`BAND`] whose mean power stands out of the noise: choosing them one by
+/// one would choose those in which the noise happens to be great. The mean of an acceleration is its
+/// sensor's, not the machine's; pressures have an order 0.
 fn orders(lines: &OrderLines) -> Vec<usize> {
-    (0..lines.amplitude.len())
-        .filter(|&k| k <= LOW_ORDERS || stands(lines, k))
-        .collect()
+    let over_noise: Vec<f64> = lines
+        .amplitude
+        .iter()
+        .zip(&lines.variance)
+        .map(|(c, variance)| c.norm_sqr() / variance.max(f64::MIN_POSITIVE))
+        .collect();
+    let last = over_noise
+        .windows(BAND)
+        .rposition(|band| band.iter().sum::<f64>() > BAND_STANDS_OUT * BAND as f64)
+        .map_or(0, |first| first + BAND - 1);
+    (0..=last.max(LOW_ORDERS).min(lines.amplitude.len() - 1)).collect()
 }
