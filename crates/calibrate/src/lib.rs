@@ -15,6 +15,7 @@
 pub mod comparison;
 pub mod error;
 pub mod fit;
+pub mod forecast;
 pub mod identifiability;
 pub mod likelihood;
 pub mod observation;
@@ -22,7 +23,9 @@ pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
 pub mod problem;
+pub mod relation;
 pub mod replay;
+pub mod transfer;
 
 pub use comparison::{Comparison, compare};
 pub use error::Error;
@@ -30,4 +33,6 @@ pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};
 pub use parameter::Parameter;
 pub use problem::Problem;
+pub use relation::{ClearJoint, Relation};
 pub use replay::{Replay, replay};
+pub use transfer::{Transfer, transfer};

@@ -4,7 +4,8 @@ use crate::Failure;
 use crate::calibrate::output::{MACHINE, RESULTS};
 use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
 use ::report::calibration_page::{
-    CalibrationPage, Channel, Estimate, Misfit, OrderResidual, Point, Run,
+    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
+    Point, Run, Transfer,
 };
 use input::paths;
 use input::unit::{self, Dimension};
@@ -12,6 +13,9 @@ use recordings::Table;
 use recordings::formats::parquet::read_table;
 use serde_json::Value;
 use std::path::Path;
+
+/// Key of what the relations between clearances come to.
+const TRANSFER: &str = "transfer";
 
 /// Whether a calibration has written into `folder`.
 pub(crate) fn is_at(folder: &Path) -> bool {
@@ -67,6 +71,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         correlations: parameters.iter().map(|(path, _)| row(path)).collect(),
         parameters: estimates,
         runs: runs(folder, &results)?,
+        transfer: transfer(&results.content[TRANSFER]),
     })
 }
 
@@ -123,6 +128,53 @@ impl<'a> Results<'a> {
             },
             reason: content["reason"].as_str().unwrap_or_default().to_owned(),
         })
+    }
+}
+
+/// What the relations between clearances come to; none where it was not asked.
+fn transfer(content: &Value) -> Option<Transfer> {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
+    let decision = &content["decision"];
+    let hypothesis = |content: &Value| Hypothesis {
+        relation: text(&content["relation"]),
+        exponents: entries(&content["exponents"])
+            .into_iter()
+            .map(|(path, value)| (path, bounded(&value)))
+            .collect(),
+        fitted: content["fitted"].as_f64().unwrap_or(f64::NAN),
+        held_out: content["held_out"].as_f64(),
+        criterion: content["criterion"].as_f64(),
+    };
+    let forecast = |content: &Value| Forecast {
+        run: text(&content["run"]),
+        relation: text(&content["relation"]),
+        clearances: entries(&content["clearance_m"])
+            .into_iter()
+            .map(|(path, value)| (path, value.as_f64().unwrap_or(f64::NAN)))
+            .collect(),
+        peaks: entries(&content["channels"])
+            .into_iter()
+            .map(|(column, shown)| {
+                let recorded = shown["recorded"][1].as_f64();
+                (column, bounded(&shown["peak"]), recorded)
+            })
+            .collect(),
+    };
+    content.is_object().then(|| Transfer {
+        left: list(&decision["relations"]).iter().map(text).collect(),
+        by_held_out: decision["runs"] == "held_out",
+        relations: list(&content["relations"]).iter().map(hypothesis).collect(),
+        forecasts: list(&content["predictions"]).iter().map(forecast).collect(),
+    })
+}
+
+fn bounded(content: &Value) -> Bounded {
+    let ends = content["low"].as_f64().zip(content["high"].as_f64());
+    Bounded {
+        value: content["value"].as_f64().unwrap_or(f64::NAN),
+        interval: ends.map(|(low, high)| [low, high]),
     }
 }
 
