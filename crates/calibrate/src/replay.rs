@@ -225,7 +225,8 @@ impl Instants {
                     change: SETTLED,
                     at_most: AT_MOST,
                 },
-                revolutions: (length / revolution).ceil() as u32,
+                // One to spare: rounding must not lose the last sample.
+                revolutions: (length / revolution).ceil() as u32 + 1,
                 sample_rate: run.sample_rate,
                 tolerance: TOLERANCE,
             },
