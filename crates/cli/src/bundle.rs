@@ -10,7 +10,7 @@ use std::path::Path;
 /// Samples that are read at a time.
 const BLOCK: usize = 1 << 16;
 /// The column of the crank angle.
-pub(crate) const CRANK_ANGLE: &str = "crank_angle_rad";
+const CRANK_ANGLE: &str = "crank_angle_rad";
 
 /// The machine file's content that the bundle in `folder` is held against: that of `machine`, or the
 /// bundle's own machine section.

@@ -4,8 +4,9 @@ use crate::{Failure, bundle};
 use ::calibrate::problem::columns;
 use ::calibrate::{Observation, Problem, Replay, Run};
 use clap::Args;
-use input::bundle::{self as bundle_file, Bundle};
-use input::{MachineFile, paths};
+use input::bundle::{Bundle, Channel as Listed};
+use input::bundle_channel::{self, Meaning};
+use input::{MachineFile, Resolved, paths};
 use rayon::prelude::*;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
@@ -53,7 +54,8 @@ pub struct Arguments {
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bundle = Bundle::read(&arguments.bundle)?;
-    let (problem, runs) = problem(arguments, &bundle)?;
+    let (problem, runs, machine) = problem(arguments, &bundle)?;
+    let channels = listed(&bundle, &runs, &machine)?;
     let results = arguments.out.join("replay.json");
     let files = runs
         .iter()
@@ -75,11 +77,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::work)?;
     std::fs::create_dir_all(&arguments.out)
         .map_err(|error| Failure::unwritten(&arguments.out, error))?;
-    for ((run, replay), path) in runs.iter().zip(&replays).zip(&files) {
-        let listed = bundle.runs.iter().find(|listed| listed.id == run.id);
-        let listed = listed.map_or(&[][..], |listed| listed.channels.as_slice());
-        let table = table(run, replay, listed).map_err(Failure::work)?;
-        write_whole(path, |file| {
+    for (i, (run, replay)) in runs.iter().zip(&replays).enumerate() {
+        let table = table(run, replay, &channels[i]).map_err(Failure::work)?;
+        write_whole(&files[i], |file| {
             parquet::write_table(file, &table, ROWS_PER_GROUP)
         })?;
     }
@@ -94,7 +94,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<(Problem, Vec<Run>), Failure> {
+fn problem(
+    arguments: &Arguments,
+    bundle: &Bundle,
+) -> Result<(Problem, Vec<Run>, Resolved), Failure> {
     let mut tree = bundle::machine(bundle, arguments.machine.as_deref())?;
     let runs = bundle::runs(bundle, &tree, &arguments.leave_out)?;
     let Some(first) = runs.first() else {
@@ -116,7 +119,7 @@ fn problem(arguments: &Arguments, bundle: &Bundle) -> Result<(Problem, Vec<Run>)
         parameters: Vec::new(),
         runs: observations,
     };
-    Ok((problem, runs))
+    Ok((problem, runs, machine))
 }
 
 /// The file of a run, whose name must be one of a file.
@@ -129,34 +132,69 @@ fn file_of(folder: &Path, id: &str) -> Result<PathBuf, Failure> {
     Ok(folder.join(format!("{id}.parquet")))
 }
 
-/// The replay in the columns of the recording; what the model does not have is null.
+/// The replay in the columns of the recording and in their units; what the model does not have is
+/// null.
 fn table(
     run: &Run,
     replay: &Replay,
-    listed: &[bundle_file::Channel],
+    listed: &[(&Listed, Meaning)],
 ) -> Result<Table, recordings::Error> {
     let count = replay.crank_angle.len();
     let mut columns = Vec::new();
     let mut data = Vec::new();
-    for channel in listed {
-        let simulated = replay.channels.iter().find(|c| c.column == channel.column);
-        let (values, about): (Vec<Option<f64>>, &str) = if channel.unit == "s" {
-            let times = (0..count).map(|i| Some(i as f64 / run.sample_rate));
-            (times.collect(), "time since the first sample")
-        } else if channel.column == bundle::CRANK_ANGLE {
-            let angles = replay.crank_angle.iter().copied().map(Some);
-            (angles.collect(), "simulated crank angle")
-        } else if let Some(simulated) = simulated {
-            let samples = simulated.samples.iter().copied().map(Some);
-            (samples.collect(), "simulated, without noise")
-        } else {
-            (vec![None; count], "not simulated")
+    for (channel, meaning) in listed {
+        let (values, about): (Vec<Option<f64>>, &str) = match meaning {
+            Meaning::Time => {
+                let times = (0..count).map(|i| Some(i as f64 / run.sample_rate));
+                (times.collect(), "time since the first sample")
+            }
+            Meaning::CrankAngle(to_si) => {
+                let angles = replay.crank_angle.iter();
+                let angles = angles.map(|angle| Some(to_si.back(*angle)));
+                (angles.collect(), "simulated crank angle")
+            }
+            Meaning::Measured { column, to_si } => {
+                let simulated = replay.channels.iter().find(|c| c.column == *column);
+                let values = match simulated {
+                    Some(channel) => {
+                        let samples = channel.samples.iter();
+                        samples.map(|x| Some(to_si.back(*x))).collect()
+                    }
+                    None => vec![None; count],
+                };
+                (values, "simulated, without noise")
+            }
+            Meaning::Tacho { .. } | Meaning::Other => (vec![None; count], "not simulated"),
         };
         let column = Column::new(&channel.column, Kind::Real, about);
         columns.push(column.unit(&channel.unit).optional());
         data.push(Data::Real(values));
     }
     Table::from_columns(Schema::new(columns)?, data)
+}
+
+/// The channels of each of `runs` as the bundle lists them, with what they are in `machine`.
+fn listed<'a>(
+    bundle: &'a Bundle,
+    runs: &[Run],
+    machine: &Resolved,
+) -> Result<Vec<Vec<(&'a Listed, Meaning)>>, Failure> {
+    let throws = &machine.machine.throws;
+    let throws: Vec<&str> = throws.iter().map(|throw| throw.name.as_str()).collect();
+    let mut all = Vec::new();
+    for run in runs {
+        let Some(i) = bundle.runs.iter().position(|listed| listed.id == run.id) else {
+            continue;
+        };
+        let channels = bundle.runs[i].channels.iter().enumerate();
+        let channels = channels.map(|(j, channel)| {
+            let meaning = bundle_channel::meaning(channel, &throws)
+                .map_err(|e| bundle.locate(e.under(format!("runs.{i}.channels.{j}"))))?;
+            Ok((channel, meaning))
+        });
+        all.push(channels.collect::<Result<_, Failure>>()?);
+    }
+    Ok(all)
 }
 
 fn told(runs: &[Run], replays: &[Replay]) -> Value {
