@@ -49,7 +49,7 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
             Series::new(
                 "after calibration",
                 AFTER,
-                Mark::Points,
+                Mark::Discs,
                 at(|misfit| misfit.after),
             ),
         ],

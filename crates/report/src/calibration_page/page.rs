@@ -87,31 +87,34 @@ impl View<'_> {
         format!("{told} of {}", all.len())
     }
 
-    fn evaluations(&self) -> String {
-        text::count(usize::try_from(self.page.evaluations).unwrap_or(usize::MAX))
-    }
-
-    fn seconds(&self) -> String {
-        match self.page.seconds {
+    fn effort(&self) -> String {
+        let evaluations = usize::try_from(self.page.evaluations).unwrap_or(usize::MAX);
+        let time = match self.page.seconds {
             s if s < 120.0 => text::quantity(s, "s"),
             s => text::quantity(s / 60.0, "min"),
-        }
+        };
+        format!("{} evaluations, {time}", text::count(evaluations))
     }
 
     fn name(estimate: &Estimate) -> String {
         text::capitalised(&words::path(&estimate.path))
     }
 
-    fn value(value: f64, estimate: &Estimate) -> String {
-        verdict::quantity(value, &estimate.unit)
+    fn value(value: &f64, estimate: &Estimate) -> String {
+        let (scale, _) = text::readable_unit(estimate.nominal, &estimate.unit);
+        text::number(value * scale, 4)
+    }
+
+    fn unit(estimate: &Estimate) -> String {
+        text::unit(text::readable_unit(estimate.nominal, &estimate.unit).1)
     }
 
     fn interval(estimate: &Estimate) -> String {
         match estimate.interval {
             Some([low, high]) => format!(
                 "{} to {}",
-                Self::value(low, estimate),
-                Self::value(high, estimate)
+                Self::value(&low, estimate),
+                Self::value(&high, estimate)
             ),
             None => "not told".to_owned(),
         }

@@ -10,8 +10,6 @@ use crate::text;
 const MOST: usize = 60;
 /// With more parameters than this their correlations are not written into the map.
 const WRITTEN: usize = 16;
-/// What the recordings do not tell.
-const UNTOLD: Colour = Colour::Tint(0.12);
 
 /// The names of the parameters, from the last to the first, as an upright axis has them.
 fn names(estimates: &[Estimate], numbered: bool) -> Vec<String> {
@@ -74,13 +72,13 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
             Series::new(
                 named(&told, "found, with its 95 % interval"),
                 AFTER,
-                Mark::Points,
+                Mark::Discs,
                 told,
             ),
             Series::new(
                 named(&untold, "not told: the nominal value stays"),
-                UNTOLD,
-                Mark::Points,
+                Colour::Ink,
+                Mark::Rings,
                 untold,
             ),
         ],
@@ -118,7 +116,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
         };
         Field {
             at: [j as f64, (count - 1 - i) as f64],
-            fill: Colour::Tint(if both { r.abs() } else { 0.0 }),
+            fill: Colour::Tint(if both && i != j { r.abs() } else { 0.0 }),
             letters,
         }
     };
@@ -134,7 +132,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
     Some(Plate {
         heading: "Correlations".to_owned(),
         caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 the recordings tell \
-                  only a combination of the two: if one is wrong, so is the other. A dash stands beside what is not told."
+                  only a combination of the two: if one is wrong, so is the other. A dash stands for a parameter that is not told."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],

@@ -152,7 +152,7 @@ fn panel(transfer: &Transfer, forecasts: &[&Forecast], runs: &[&str], column: &s
         series.push(Series::new(
             words(&hypothesis.relation),
             colour,
-            Mark::Points,
+            Mark::Discs,
             points,
         ));
     }

@@ -82,9 +82,9 @@ pub(super) fn found(estimates: &[Estimate]) -> Vec<String> {
         let holds = low.min(high) <= estimate.nominal && estimate.nominal <= low.max(high);
         let percent = percent(change(estimate.value).abs());
         let said = match change(estimate.value) {
-            _ if holds => "as designed, as far as the recordings tell".to_owned(),
-            up if up > 0.0 => format!("{percent} above its design value"),
-            _ => format!("{percent} below its design value"),
+            _ if holds => "its nominal value, as far as the recordings tell".to_owned(),
+            up if up > 0.0 => format!("{percent} above its nominal value"),
+            _ => format!("{percent} below its nominal value"),
         };
         let half = (high - low).abs() / 2.0 / estimate.value.abs();
         Some(format!(
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_found_is_said_against_the_design() {
+    fn what_was_found_is_said_against_the_nominal_values() {
         let of = |value: f64, interval| Estimate {
             path: "joints.big_end.contact.stiffness".into(),
             unit: "N/m^1.5".into(),
@@ -213,14 +213,14 @@ mod tests {
         assert_eq!(
             found,
             [
-                "Big end: contact stiffness: 20\u{a0}% below its design value, known to ±6.3\u{a0}%.",
-                "Big end: contact stiffness: as designed, as far as the recordings tell, known to ±9.5\u{a0}%.",
+                "Big end contact stiffness: 20\u{a0}% below its nominal value, known to ±6.3\u{a0}%.",
+                "Big end contact stiffness: its nominal value, as far as the recordings tell, known to ±9.5\u{a0}%.",
             ]
         );
         let untold = untold(&[of(2e10, None)]);
         assert!(
             untold[0].starts_with(
-                "Big end: contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: the"
+                "Big end contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: the"
             ),
             "{}",
             untold[0]

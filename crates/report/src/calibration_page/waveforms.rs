@@ -81,11 +81,7 @@ fn panels(channel: &Channel) -> Vec<Panel> {
     let waveform = Panel {
         title: "Over the crank angle".to_owned(),
         x: Axis::crank_angle(),
-        y: Axis::linear(if unit.is_empty() {
-            String::new()
-        } else {
-            format!("({unit})")
-        }),
+        y: Axis::linear(text::with_unit("mean", unit)),
         series: vec![
             band("measured revolutions", &|p| p.measured, &|p| p.scatter),
             line("before", BEFORE, Mark::Line, &|p| p.before),
@@ -97,13 +93,11 @@ fn panels(channel: &Channel) -> Vec<Panel> {
     let difference = Panel {
         title: "Simulated less measured".to_owned(),
         x: Axis::crank_angle(),
-        y: waveform.y.clone(),
+        y: Axis::linear(text::with_unit("difference", unit)),
         series: vec![
-            line("before", BEFORE, Mark::Line, &|p| p.before - p.measured),
-            band("measured revolutions", &|_| 0.0, &|p| p.noise),
-            line("after calibration", AFTER, Mark::Line, &|p| {
-                p.after - p.measured
-            }),
+            line("", BEFORE, Mark::Line, &|p| p.before - p.measured),
+            band("", &|_| 0.0, &|p| p.noise),
+            line("", AFTER, Mark::Line, &|p| p.after - p.measured),
         ],
         ..Panel::default()
     };
@@ -128,13 +122,13 @@ fn residuals(orders: &[OrderResidual]) -> Panel {
         y: Axis::log("difference over noise"),
         series: vec![
             Series::new(
-                "noise floor",
+                "",
                 Colour::Ink,
                 Mark::Line,
                 [[-highest, 1.0], [2.0 * highest, 1.0]],
             ),
-            Series::new("before", BEFORE, mark, points(|o| o.before)),
-            Series::new("after calibration", AFTER, mark, points(|o| o.after)),
+            Series::new("", BEFORE, mark, points(|o| o.before)),
+            Series::new("", AFTER, mark, points(|o| o.after)),
         ],
         note: if orders.is_empty() {
             "no orders".to_owned()

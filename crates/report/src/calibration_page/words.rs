@@ -2,23 +2,14 @@
 
 use crate::text;
 
-/// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end: contact
+/// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
 pub(super) fn path(path: &str) -> String {
     let parts: Vec<&str> = path
         .split('.')
         .filter(|part| !matches!(*part, "joints" | "throws"))
         .collect();
-    let of_what = match parts.as_slice() {
-        [.., "contact" | "friction", _] => 2,
-        _ => 1,
-    };
-    let (place, what) = parts.split_at(parts.len().saturating_sub(of_what));
-    let what = text::words(&what.join(" "));
-    if place.is_empty() {
-        return what;
-    }
-    format!("{}: {what}", text::words(&place.join(" ")))
+    text::words(&parts.join(" "))
 }
 
 /// A column as its quantity and unit: `throw1.cylinder_pressure_pa` is «throw1 cylinder pressure» in
@@ -46,17 +37,17 @@ mod tests {
         for (given, said) in [
             (
                 "joints.big_end.contact.stiffness",
-                "big end: contact stiffness",
+                "big end contact stiffness",
             ),
             (
                 "throws.throw2.joints.small_end.friction.coefficient",
-                "throw2 small end: friction coefficient",
+                "throw2 small end friction coefficient",
             ),
             (
                 "throws.throw1.cylinder.head_clearance",
-                "throw1 cylinder: head clearance",
+                "throw1 cylinder head clearance",
             ),
-            ("joints.big_end.clearance", "big end: clearance"),
+            ("joints.big_end.clearance", "big end clearance"),
             ("speed", "speed"),
             ("", ""),
         ] {
