@@ -27,7 +27,8 @@ pub(crate) fn is_at(folder: &Path) -> bool {
 /// # Errors
 /// A file that cannot be read, or is none that a calibration writes.
 pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
-    let results = Results::read(&folder.join(RESULTS))?;
+    let path = folder.join(RESULTS);
+    let results = Results::read(&path)?;
     let machine = input::machine_file::read(&folder.join(MACHINE))?;
     let tree = machine.to_tree();
     let number = |key: &str| results.number(&results.content["fit"], &format!("fit.{key}"), key);
