@@ -1,112 +1,137 @@
 //! `crosshead calibrate`: a machine's parameters from recordings of it.
 
-pub(crate) mod output;
+mod arguments;
+mod contradiction;
+mod earlier;
+pub mod output;
 pub(crate) mod pictures;
 mod problem;
 mod progress;
 
-use crate::{Failure, bundle, report};
-use ::calibrate::fit::{FitSettings, Optimiser};
-use ::calibrate::optimiser::Genetic;
-use clap::{Args, ValueEnum};
-use input::bundle::Bundle;
-use std::path::PathBuf;
+use crate::{Failure, report};
+use input::calibration::Calibration;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Arguments of `crosshead calibrate`.
-#[derive(Args, Debug)]
-#[command(after_help = "\
-BUNDLE is a folder with recordings.yaml. What is fitted are paths of the machine file; without
---parameter the contact stiffness, damping and friction of every joint that is clear in some run.
-Every fourth run is held out and predicted, where there are four.
+pub use arguments::Arguments;
+pub use problem::Task;
 
-Examples:
-  crosshead calibrate my-bundle --out calibrated
-  crosshead calibrate my-bundle --machine machine.yaml --parameter cylinder.exponent \\
-      --parameter cylinder.head_clearance --hold-out run07 --out calibrated
-
-Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
-pub struct Arguments {
-    /// Folder of recordings
-    bundle: PathBuf,
-    /// The machine file [default: the machine section of the bundle]
-    #[arg(long, value_name = "MACHINE.yaml")]
-    machine: Option<PathBuf>,
-    /// Folder to write into: machine.yaml, calibration.json, report.html
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-    /// A path of the machine file to be fitted; may be repeated
-    #[arg(long, value_name = "PATH")]
-    parameter: Vec<String>,
-    /// Predict this run and do not fit to it; may be repeated
-    #[arg(long, value_name = "RUN")]
-    hold_out: Vec<String>,
-    /// Do not use this run at all; may be repeated
-    #[arg(long, value_name = "RUN")]
-    leave_out: Vec<String>,
-    /// How the best fit is searched
-    #[arg(long, default_value = "default")]
-    optimiser: Search,
-    /// Most evaluations of the model, all runs being one
-    #[arg(long, default_value_t = 5000)]
-    evaluations: u64,
-    /// Seed of a random search
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    /// Replace the files of an earlier calibration
-    #[arg(long)]
-    overwrite: bool,
+/// What is calibrated, and how.
+pub struct Settings<'a> {
+    /// The settings as a file has them.
+    pub calibration: &'a Calibration,
+    /// The folder from which their paths start.
+    pub base: &'a Path,
+    /// Gives a mistake in the settings the place where they stand.
+    pub locate: &'a dyn Fn(input::Error) -> input::Error,
 }
 
-/// How the best fit is searched.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Search {
-    /// Levenberg-Marquardt from several points; CMA-ES where that leaves more than noise
-    Default,
-    /// CMA-ES
-    CmaEs,
-    /// A genetic algorithm
-    Genetic,
-    /// Levenberg-Marquardt from the nominal values
-    LevenbergMarquardt,
+/// What becomes of a calibration that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It is left alone, and that is an error.
+    Refuse,
+    /// It is kept where it is complete and goes on where it is not; one of other recordings,
+    /// another machine or other settings is an error.
+    Resume,
+    /// The same, but one that was made from something else is made anew.
+    Renew,
+    /// It is made anew.
+    Overwrite,
 }
 
-/// Calibrates, and writes what was found.
+/// A calibration that is on the disk.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    /// The calibrated machine file.
+    pub machine: PathBuf,
+    /// The content of `calibration.json`.
+    pub results: Value,
+    /// True where it was there before, and nothing was to be done.
+    pub reused: bool,
+}
+
+/// Calibrates from a settings file or from arguments, and tells what was found.
 ///
 /// # Errors
 /// A bundle or machine that is none, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let [machine, results] = [output::MACHINE, output::RESULTS].map(|f| arguments.out.join(f));
-    if let Some(path) = [&machine, &results].into_iter().find(|p| p.exists())
-        && !arguments.overwrite
-    {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            path.display()
+    let (calibration, base, document) = arguments.settings()?;
+    let locate = |error| match &document {
+        Some(document) => document.locate(error),
+        None => error,
+    };
+    let settings = Settings {
+        calibration: &calibration,
+        base: &base,
+        locate: &locate,
+    };
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let out = arguments.out();
+    let done = into_folder(&settings, out, arguments.existing(), &cancel)?;
+    if done.reused {
+        println!("nothing has changed since this was found:");
+    }
+    output::summary(&done.results);
+    println!("{}", done.machine.display());
+    println!("{}", out.join(report::PAGE).display());
+    if done.results["complete"] == false {
+        return Err(Failure::work(format!(
+            "stopped before the end: {} has the best so far; --resume goes on from there",
+            out.display()
         )));
     }
-    let bundle = Bundle::read(&arguments.bundle)?;
-    let problem = problem::problem(arguments, &bundle)?;
-    let settings = FitSettings {
-        optimiser: match arguments.optimiser {
-            Search::Default => Optimiser::Default,
-            Search::CmaEs => Optimiser::CmaEs,
-            Search::Genetic => Optimiser::Genetic(Genetic::default()),
-            Search::LevenbergMarquardt => Optimiser::LevenbergMarquardt,
-        },
-        seed: arguments.seed,
-        evaluations: arguments.evaluations,
-        held_out: problem::held_out(arguments, &problem)?,
-    };
-    let start = Instant::now();
-    let fit = progress::search(&problem, &settings)?;
-    let seconds = start.elapsed().as_secs_f64();
-    output::write(&arguments.out, &problem, &fit, &settings, seconds)?;
-    let runs = bundle::runs(&bundle, &problem.tree, &arguments.leave_out)?;
-    pictures::write(&arguments.out, &problem, &runs, &fit)?;
-    let page = report::write_calibration(&arguments.out, &arguments.out.join("report.html"))?;
-    output::summary(&fit);
-    println!("{}", machine.display());
-    println!("{}", page.display());
     Ok(())
+}
+
+/// Calibrates into the folder `out`. `cancel` stops the search at its next step, and what was best
+/// so far is written, marked as incomplete. Everything that can be wrong with the input is found
+/// before the search begins, and nothing is written then.
+///
+/// # Errors
+/// Settings, a bundle, a machine or recordings that cannot be used or contradict each other, a
+/// folder that is in the way, or files that cannot be written.
+pub fn into_folder(
+    settings: &Settings,
+    out: &Path,
+    existing: Existing,
+    cancel: &AtomicBool,
+) -> Result<Calibrated, Failure> {
+    earlier::check_folder(out, existing)?;
+    let mut task = problem::task(settings)?;
+    let fingerprint = task.fingerprint();
+    let machine = out.join(output::MACHINE);
+    let (mut evaluations, mut seconds) = (0, 0.0);
+    if let Some(earlier) = earlier::look(out, existing, &fingerprint)? {
+        if earlier.is_complete() {
+            return Ok(Calibrated {
+                machine,
+                results: earlier.results,
+                reused: true,
+            });
+        }
+        task.settings.start = Some(earlier.start(&task.problem));
+        (evaluations, seconds) = earlier.spent();
+    }
+    let start = Instant::now();
+    let fit = progress::search(&mut task, cancel)?;
+    let found = output::Found {
+        fit: &fit,
+        fingerprint: &fingerprint,
+        evaluations: evaluations + fit.evaluations,
+        seconds: seconds + start.elapsed().as_secs_f64(),
+    };
+    pictures::write(out, &task.problem, &task.runs, &fit)?;
+    let results = output::write(out, &task, &found)?;
+    report::write_calibration(out, &out.join(report::PAGE))?;
+    Ok(Calibrated {
+        machine,
+        results,
+        reused: false,
+    })
 }

@@ -1,5 +1,6 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
+use super::Task;
 use crate::Failure;
 use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
@@ -14,23 +15,31 @@ pub const MACHINE: &str = "machine.yaml";
 /// Name of the file of results.
 pub const RESULTS: &str = "calibration.json";
 
-/// Writes the calibrated machine, and last, as what makes the folder whole, the results.
+/// What a calibration found.
+pub struct Found<'a> {
+    /// The fit.
+    pub fit: &'a Fit,
+    /// What tells its inputs from others.
+    pub fingerprint: &'a str,
+    /// Evaluations of the model, those before an interruption included.
+    pub evaluations: u64,
+    /// How long they took.
+    pub seconds: f64,
+}
+
+/// Writes the calibrated machine, and last, as what makes the folder whole, the results, which it
+/// gives back.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(
-    folder: &Path,
-    problem: &Problem,
-    fit: &Fit,
-    settings: &FitSettings,
-    seconds: f64,
-) -> Result<(), Failure> {
+pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    let machine = calibrated(problem, fit)?;
+    let machine = calibrated(&task.problem, found.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let results = calibration(fit, settings, seconds);
+    let results = calibration(found, &task.settings);
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
-    write_file(&folder.join(RESULTS), text.as_bytes())
+    write_file(&folder.join(RESULTS), text.as_bytes())?;
+    Ok(results)
 }
 
 /// The machine file with what was found, as YAML.
@@ -45,7 +54,8 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
-fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
+fn calibration(found: &Found, settings: &FitSettings) -> Value {
+    let fit = found.fit;
     let mut parameters = Map::new();
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
@@ -84,9 +94,10 @@ fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
         .collect();
     json!({
         "optimiser": settings.optimiser.name(),
-        "evaluations": fit.evaluations,
-        "seconds": seconds,
+        "evaluations": found.evaluations,
+        "seconds": found.seconds,
         "complete": fit.complete,
+        "fingerprint": found.fingerprint,
         "parameters": parameters,
         "correlations": correlations,
         "fit": {
@@ -102,28 +113,28 @@ fn calibration(fit: &Fit, settings: &FitSettings, seconds: f64) -> Value {
     })
 }
 
-/// Prints what was found.
-pub fn summary(fit: &Fit) {
-    if !fit.complete {
+/// Prints what was found: the content of `calibration.json`.
+pub fn summary(results: &Value) {
+    if results["complete"] == false {
         println!("stopped; the best so far:");
     }
-    for estimate in &fit.estimates {
-        let path = &estimate.parameter.path;
-        match estimate.interval {
-            Some([low, high]) => {
-                println!("{path}: {:.4e} ({low:.4e} to {high:.4e})", estimate.value);
-            }
-            None => println!(
-                "{path}: the recordings do not tell it; it stays {:.4e}",
-                estimate.value
-            ),
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    for (path, estimate) in results["parameters"].as_object().into_iter().flatten() {
+        let value = number(&estimate["value"]);
+        match [&estimate["low"], &estimate["high"]].map(Value::as_f64) {
+            [Some(low), Some(high)] => println!("{path}: {value:.4e} ({low:.4e} to {high:.4e})"),
+            _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
         }
     }
-    for run in &fit.runs {
-        let kind = if run.held_out { "predicted" } else { "fitted" };
+    for (id, run) in results["runs"].as_object().into_iter().flatten() {
+        let kind = match run["held_out"] == true {
+            true => "predicted",
+            false => "fitted",
+        };
         println!(
-            "{} {kind}: {:.2} times its noise, {:.2} before",
-            run.id, run.calibrated, run.nominal
+            "{id} {kind}: {:.2} times its noise, {:.2} before",
+            number(&run["calibrated"]),
+            number(&run["nominal"])
         );
     }
 }

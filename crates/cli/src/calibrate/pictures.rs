@@ -22,6 +22,7 @@ pub fn write(folder: &Path, problem: &Problem, runs: &[Run], fit: &Fit) -> Resul
     let coordinate = |e: &::calibrate::fit::Estimate| e.parameter.coordinate(e.value);
     let x: Vec<f64> = fit.estimates.iter().map(coordinate).collect();
     let comparisons = compare(problem, runs, &x).map_err(Failure::work)?;
+    std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
     for (name, table) in [
         (WAVEFORMS, waveforms(&comparisons)),
         (ORDERS, orders(&comparisons)),

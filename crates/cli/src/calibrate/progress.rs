@@ -1,38 +1,66 @@
-//! The search as its user sees it: a bar with the misfit, and Ctrl-C, which keeps the best so far.
+//! The search as its user sees it: evaluations, their rate and the misfit; nothing where standard
+//! error is no terminal.
 
+use super::Task;
 use crate::Failure;
-use ::calibrate::Problem;
-use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::fit::Fit;
 use ::calibrate::optimiser::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
-/// Searches the best fit.
+/// How often the clock of the bar goes on between two steps.
+const TICK: Duration = Duration::from_millis(500);
+
+/// Searches the best fit until `cancel` is set. Runs whose crank angle was not recorded are aligned
+/// anew with the fitted machine, and fitted again.
 ///
 /// # Errors
 /// Where the machine cannot be simulated.
-pub fn search(problem: &Problem, settings: &FitSettings) -> Result<Fit, Failure> {
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
-    let bar = ProgressBar::new(settings.evaluations);
-    bar.set_draw_target(ProgressDrawTarget::stderr());
-    if let Ok(style) =
-        ProgressStyle::with_template("{wide_bar} {pos} evaluations, {elapsed}, misfit {msg}")
-    {
+pub fn search(task: &mut Task, cancel: &AtomicBool) -> Result<Fit, Failure> {
+    let bar = ProgressBar::with_draw_target(
+        Some(task.settings.evaluations),
+        ProgressDrawTarget::stderr(),
+    );
+    let template =
+        "{spinner} {pos} evaluations of at most {len}, {per_sec}, {elapsed}, misfit {msg}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
-    let fit = ::calibrate::calibrate(problem, settings, |progress: &Progress| {
-        bar.set_position(progress.evaluations);
-        bar.set_message(format!("{:.3}", progress.misfit()));
-        if cancel.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
+    bar.set_message("–");
+    bar.enable_steady_tick(TICK);
+    let mut spent = 0;
+    let outcome = loop {
+        let found = ::calibrate::calibrate(&task.problem, &task.settings, |progress: &Progress| {
+            bar.set_position(spent + progress.evaluations);
+            bar.set_message(format!("{:.3}", progress.misfit()));
+            match cancel.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        let mut fit = match found.map_err(Failure::work) {
+            Ok(fit) => fit,
+            Err(failure) => break Err(failure),
+        };
+        spent += fit.evaluations;
+        let x: Vec<f64> = fit
+            .estimates
+            .iter()
+            .map(|e| e.parameter.coordinate(e.value))
+            .collect();
+        match task.align(&x) {
+            Ok(true) if fit.complete && spent < task.settings.evaluations => {
+                task.settings.start = Some(x);
+            }
+            Ok(_) => {
+                fit.evaluations = spent;
+                break Ok(fit);
+            }
+            Err(failure) => break Err(failure),
         }
-    });
+    };
     bar.finish_and_clear();
-    fit.map_err(Failure::work)
+    outcome
 }

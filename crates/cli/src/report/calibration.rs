@@ -14,9 +14,6 @@ use recordings::formats::parquet::read_table;
 use serde_json::Value;
 use std::path::Path;
 
-/// Key of what the relations between clearances come to.
-const TRANSFER: &str = "transfer";
-
 /// Whether a calibration has written into `folder`.
 pub(crate) fn is_at(folder: &Path) -> bool {
     folder.join(RESULTS).is_file()
@@ -72,7 +69,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         correlations: parameters.iter().map(|(path, _)| row(path)).collect(),
         parameters: estimates,
         runs: runs(folder, &results)?,
-        transfer: transfer(&results.content[TRANSFER]),
+        transfer: transfer(&results.content),
     })
 }
 
@@ -137,7 +134,8 @@ fn transfer(content: &Value) -> Option<Transfer> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
     let entries = |value: &Value| value.as_object().cloned().unwrap_or_default();
-    let decision = &content["decision"];
+    let relations = &content["relations"];
+    let decision = &relations["decision"];
     let hypothesis = |content: &Value| Hypothesis {
         relation: text(&content["relation"]),
         exponents: entries(&content["exponents"])
@@ -163,10 +161,13 @@ fn transfer(content: &Value) -> Option<Transfer> {
             })
             .collect(),
     };
-    content.is_object().then(|| Transfer {
+    relations.is_object().then(|| Transfer {
         left: list(&decision["relations"]).iter().map(text).collect(),
         by_held_out: decision["runs"] == "held_out",
-        relations: list(&content["relations"]).iter().map(hypothesis).collect(),
+        relations: list(&relations["compared"])
+            .iter()
+            .map(hypothesis)
+            .collect(),
         forecasts: list(&content["predictions"]).iter().map(forecast).collect(),
     })
 }

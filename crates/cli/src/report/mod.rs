@@ -24,6 +24,9 @@ use pages::Place;
 use std::path::{Path, PathBuf};
 use windows::{Case, Windows};
 
+/// Name of the page in its folder.
+pub(crate) const PAGE: &str = "report.html";
+
 /// Arguments of `crosshead report`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -52,7 +55,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if calibration::is_at(&arguments.dir) {
         let out = arguments.out.clone();
-        let out = out.unwrap_or_else(|| arguments.dir.join("report.html"));
+        let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
         println!("{}", write_calibration(&arguments.dir, &out)?.display());
         return Ok(());
     }
@@ -62,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         dataset: arguments
             .out
             .clone()
-            .unwrap_or_else(|| arguments.dir.join("report.html")),
+            .unwrap_or_else(|| arguments.dir.join(PAGE)),
     };
     place.write(&[
         (
