@@ -13,6 +13,7 @@
 //! Weights come from that noise alone.
 
 pub mod alignment;
+pub mod comparison;
 pub mod error;
 mod few_revolutions;
 pub mod fit;
@@ -27,13 +28,16 @@ pub mod prediction;
 pub mod pressure_gap;
 pub mod problem;
 pub mod relation;
+pub mod replay;
 pub mod run_condition;
 pub mod transfer;
 
+pub use comparison::{Comparison, compare};
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};
 pub use parameter::Parameter;
 pub use problem::Problem;
 pub use relation::{ClearJoint, Relation};
+pub use replay::{Replay, replay};
 pub use transfer::{Transfer, transfer};

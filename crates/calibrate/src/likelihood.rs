@@ -12,7 +12,7 @@ use signal::order_lines::OrderLines;
 
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
-const ACCURACY: f64 = 2e-5;
+pub(crate) const ACCURACY: f64 = 2e-5;
 /// Residual that stands in for every one of a run that cannot be simulated.
 const FAILED: f64 = 1e3;
 
@@ -117,7 +117,8 @@ fn residual_count(run: &Observation) -> usize {
     channels.map(|channel| channel.orders.len() * 2).sum()
 }
 
-fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
+/// The residuals of a run, channel by channel.
+pub(crate) fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
     let mut all = Vec::with_capacity(residual_count(run));
     for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
         let weights = weights(observed, predicted, accuracy);

@@ -156,7 +156,8 @@ fn signal_error(run: &Run, channel: &Channel, source: signal::Error) -> Error {
     }
 }
 
-fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
+/// The crank angle of every sample of a run, recorded or from its speed.
+pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
     let error = |source| Error::Signal {
         run: run.id.clone(),
         channel: "crank_angle_rad".into(),

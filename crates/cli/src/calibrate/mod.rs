@@ -5,11 +5,12 @@ mod contradiction;
 mod earlier;
 pub mod gas;
 pub mod output;
+pub(crate) mod pictures;
 mod problem;
 mod progress;
 mod relation;
 
-use crate::Failure;
+use crate::{Failure, report};
 use ::calibrate::optimiser::Progress;
 use input::calibration::Calibration;
 use serde_json::Value;
@@ -82,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     output::summary(&done.results);
     println!("{}", done.machine.display());
+    println!("{}", out.join(report::PAGE).display());
     if done.results["complete"] == false {
         return Err(Failure::work(format!(
             "stopped before the end: {} has the best so far; --resume goes on from there",
@@ -138,7 +140,9 @@ pub fn into_folder(
         evaluations: evaluations + fit.evaluations,
         seconds: seconds + start.elapsed().as_secs_f64(),
     };
+    pictures::write(out, &task.problem, &task.runs, &fit)?;
     let results = output::write(out, &task, &found)?;
+    report::write_calibration(out, &out.join(report::PAGE))?;
     Ok(Calibrated {
         machine,
         results,
