@@ -1,8 +1,10 @@
 //! The page of a calibration, from what `crosshead calibrate` has written.
 
+use super::gas;
 use crate::Failure;
 use crate::calibrate::output::{MACHINE, RESULTS};
 use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
+use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::report::calibration_page::{
     Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
     Point, Run, Transfer,
@@ -69,6 +71,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         correlations: parameters.iter().map(|(path, _)| row(path)).collect(),
         parameters: estimates,
         runs: runs(folder, &results)?,
+        gas: gas::chambers(folder, &results.content["gas"])?,
         transfer: transfer(&results.content),
     })
 }
@@ -182,7 +185,15 @@ fn bounded(content: &Value) -> Bounded {
 
 /// The unit of a value of the machine file; empty for a pure number.
 fn unit_of(tree: &Value, path: &str) -> String {
-    let value = paths::get(tree, path).ok().flatten();
+    let offset = format!(".{path}");
+    if offset.ends_with(&format!(".{CRANK_ANGLE_OFFSET}")) {
+        return "rad".to_owned();
+    }
+    // A value of one run alone stands behind the run's name.
+    let names = offset.match_indices('.').map(|(i, _)| &offset[i + 1..]);
+    let value = names
+        .filter_map(|name| paths::get(tree, name).ok().flatten())
+        .next();
     let measure = value
         .and_then(Value::as_str)
         .and_then(|text| unit::parse(text).ok());

@@ -8,6 +8,7 @@ mod dataset;
 mod examples;
 mod features;
 mod features_page;
+mod gas;
 mod grid;
 mod labels;
 mod pages;

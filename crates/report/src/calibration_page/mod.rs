@@ -4,6 +4,7 @@
 //! [`CalibrationPage::render`] is one file with its styles and figures inside. Its size is bounded
 //! whatever the calibration.
 
+mod gas;
 mod misfits;
 mod page;
 mod parameters;
@@ -11,6 +12,8 @@ mod transfers;
 mod verdict;
 mod waveforms;
 mod words;
+
+pub use gas::{Chamber, Diagram, Phase, Pressure};
 
 /// All that the page tells. Numbers are SI; misfits are in units of the recordings' noise, so that 1
 /// is noise alone.
@@ -38,6 +41,8 @@ pub struct CalibrationPage {
     pub correlations: Vec<Vec<f64>>,
     /// The runs.
     pub runs: Vec<Run>,
+    /// The gas of each chamber whose pressure was recorded.
+    pub gas: Vec<Chamber>,
     /// What the relations between clearances come to, where that was asked.
     pub transfer: Option<Transfer>,
 }

@@ -1,8 +1,8 @@
 //! The page itself.
 
 use super::{
-    CalibrationPage, Estimate, Hypothesis, Transfer, misfits, parameters, transfers, verdict,
-    waveforms, words,
+    CalibrationPage, Estimate, Hypothesis, Phase, Transfer, gas, misfits, parameters, transfers,
+    verdict, waveforms, words,
 };
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
@@ -21,6 +21,7 @@ struct View<'a> {
     intervals: Vec<(usize, Plate)>,
     correlations: Vec<(usize, Plate)>,
     transfers: Vec<(usize, Plate)>,
+    gas: Vec<(usize, Plate)>,
     runs: Vec<(usize, Plate)>,
 }
 
@@ -49,6 +50,7 @@ impl CalibrationPage {
             intervals: numbered(parameters::intervals(self).into_iter().collect()),
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
             transfers: numbered(transfers::plates(self)),
+            gas: numbered(gas::plates(&self.gas)),
             runs: numbered(waveforms::plates(self)),
         };
         let html = view.render()?;
@@ -57,6 +59,7 @@ impl CalibrationPage {
             view.intervals,
             view.correlations,
             view.transfers,
+            view.gas,
             view.runs,
         ];
         let figures = plates
@@ -139,6 +142,19 @@ impl View<'_> {
 
     fn exponents(hypothesis: &Hypothesis) -> String {
         transfers::exponents(hypothesis)
+    }
+
+    fn range(phase: &Phase) -> String {
+        let [from, to] = phase.crank_angle_deg.map(|a| text::decimal(a, 0));
+        format!("{from}° to {to}°")
+    }
+
+    fn kilopascal(phase: &Phase) -> String {
+        text::number(phase.rms_pa / 1e3, 3)
+    }
+
+    fn share(phase: &Phase) -> String {
+        text::decimal(100.0 * phase.share, 0)
     }
 
     fn misfit(value: &f64) -> String {

@@ -6,8 +6,8 @@ use report::calibration_page::{CalibrationPage, Channel, Estimate, Misfit, Run};
 #[test]
 fn every_section_is_there_and_every_figure_is_well_formed() {
     let page = calibration::page().render().unwrap();
-    // Misfits, intervals, correlations, two sets of clearances, five runs.
-    assert_eq!(page.figures.len(), 3 + 2 + 5);
+    // Misfits, intervals, correlations, two sets of clearances, a chamber, five runs.
+    assert_eq!(page.figures.len(), 3 + 2 + 1 + 5);
     for file in &page.figures {
         assert!(page.html.contains(&file.svg), "{}", file.name);
         roxmltree::Document::parse(&file.svg).unwrap();
@@ -18,6 +18,7 @@ fn every_section_is_there_and_every_figure_is_well_formed() {
         "untold",
         "correlations",
         "clearances",
+        "gas",
         "runs",
         "reading",
     ] {
@@ -43,6 +44,9 @@ fn the_numbers_are_those_of_the_calibration() {
         "<dd>5 of 6</dd>",
         "<td class=\"n\">24</td>",
         "run04 (held out)",
+        "62\u{a0}% of the squared difference lies in the compression (250° to 290°), where it is 340\u{a0}kPa.",
+        "a clearance of 10.0\u{a0}% of the stroke goes with exponents of 1.20 and 1.00",
+        "<td>suction closes</td><td class=\"n\">250.0°</td><td class=\"n\">248.0° to 253.0°</td><td class=\"n\">180.0°</td><td class=\"n\">−70.0°</td>",
     ] {
         assert!(html.contains(said), "{said}");
     }

@@ -2,8 +2,8 @@
 
 use super::Uniform;
 use report::calibration_page::{
-    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
-    Point, Run, Transfer,
+    Bounded, CalibrationPage, Chamber, Channel, Diagram, Estimate, Forecast, Hypothesis, Misfit,
+    OrderResidual, Phase, Point, Pressure, Run, Transfer,
 };
 use std::f64::consts::TAU;
 
@@ -46,7 +46,61 @@ pub fn page() -> CalibrationPage {
             .map(|i| (0..count).map(|j| correlation(i, j)).collect())
             .collect(),
         runs,
+        gas: vec![chamber()],
         transfer: Some(transfer()),
+    }
+}
+
+/// A double-acting cylinder's head end whose suction valve closes 70° late.
+fn chamber() -> Chamber {
+    let points = (0..720).map(|i| {
+        let angle = f64::from(i) / 2.0;
+        let distance = 0.047 + 0.16 * (1.0 - angle.to_radians().cos());
+        let gas = |enclosed: f64| (1.7 * (enclosed / distance).powf(1.3)).clamp(1.7, 3.0);
+        let pressure = |closes: f64, enclosed: f64| match angle {
+            a if a < 180.0 => gas(0.047 * (3.0_f64 / 1.7).powf(1.0 / 1.3)),
+            a if a < closes => 1.7,
+            _ => gas(enclosed),
+        };
+        Pressure {
+            crank_angle_deg: angle,
+            distance_m: [distance, 1.1 * distance],
+            measured_pa: 1e6 * pressure(250.0, 0.26),
+            simulated_pa: [1e6 * pressure(180.0, 0.367), 1e6 * pressure(180.0, 0.35)],
+        }
+    });
+    let events = |closes: f64| {
+        [
+            ("suction_opens", 30.0),
+            ("suction_closes", closes),
+            ("discharge_opens", 290.0),
+        ]
+        .map(|(name, angle)| (name.to_owned(), angle, [angle - 2.0, angle + 3.0]))
+        .to_vec()
+    };
+    let diagram = |closes: f64| Diagram {
+        clearance: 0.147,
+        exponents: [1.3, 1.3],
+        polytropes: [[260.0, 285.0], [4.0, 25.0]],
+        events: events(closes),
+        alternatives: vec![(0.1, [1.2, 1.0], 0.004), (0.18, [1.4, 1.667], 0.005)],
+    };
+    Chamber {
+        run: "run1".into(),
+        column: "cylinder_pressure_pa".into(),
+        rms_pa: Misfit {
+            before: 3e5,
+            after: 1.5e5,
+        },
+        phases: vec![Phase {
+            name: "compression".into(),
+            crank_angle_deg: [250.0, 290.0],
+            rms_pa: 3.4e5,
+            share: 0.62,
+        }],
+        measured: Some(diagram(250.0)),
+        calibrated: Some(diagram(180.0)),
+        points: points.collect(),
     }
 }
 

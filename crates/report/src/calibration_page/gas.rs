@@ -1,0 +1,258 @@
+//! The gas: indicator diagrams, where in the cycle the fit fails, and when the valves work.
+
+use super::misfits::{AFTER, BEFORE};
+use super::{Misfit, words};
+use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
+use crate::text;
+
+/// At most so many chambers have a picture, the first.
+const MOST: usize = 16;
+/// The recording.
+const MEASURED: Colour = Colour::Ink;
+
+/// The gas of a chamber in a run.
+#[derive(Clone, Debug, Default)]
+pub struct Chamber {
+    /// The run.
+    pub run: String,
+    /// Column of its pressure.
+    pub column: String,
+    /// Root mean square of simulated less measured pressure, Pa.
+    pub rms_pa: Misfit,
+    /// The parts of the cycle.
+    pub phases: Vec<Phase>,
+    /// The measured pressure by itself; none where it shows no cycle.
+    pub measured: Option<Diagram>,
+    /// The calibrated pressure, read in the same way.
+    pub calibrated: Option<Diagram>,
+    /// One revolution of pressures.
+    pub points: Vec<Pressure>,
+}
+
+/// A part of the cycle: where it is, and how far the fit is off in it.
+#[derive(Clone, Debug, Default)]
+pub struct Phase {
+    /// Its name.
+    pub name: String,
+    /// Where it begins and ends.
+    pub crank_angle_deg: [f64; 2],
+    /// Root mean square of calibrated less measured pressure, Pa.
+    pub rms_pa: f64,
+    /// Share of the squared differences.
+    pub share: f64,
+}
+
+/// What a pressure tells by itself, at a given clearance.
+#[derive(Clone, Debug, Default)]
+pub struct Diagram {
+    /// Clearance over stroke.
+    pub clearance: f64,
+    /// Exponents of compression and expansion.
+    pub exponents: [f64; 2],
+    /// The two lines: where they begin and end, deg.
+    pub polytropes: [[f64; 2]; 2],
+    /// Effective valve events: name, angle, and the angles at the quartiles of the line, deg.
+    pub events: Vec<(String, f64, [f64; 2])>,
+    /// Other readings of the same curve: clearance over stroke, exponents, scatter of ln p.
+    pub alternatives: Vec<(f64, [f64; 2], f64)>,
+}
+
+/// The pressures at a crank angle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pressure {
+    /// Crank angle.
+    pub crank_angle_deg: f64,
+    /// Piston to cover at the nominal clearance, and at the calibrated one, m.
+    pub distance_m: [f64; 2],
+    /// As recorded.
+    pub measured_pa: f64,
+    /// With the nominal and the calibrated parameters.
+    pub simulated_pa: [f64; 2],
+}
+
+/// An event of a valve, as the table has it.
+pub(super) struct Row {
+    pub(super) what: String,
+    pub(super) measured: String,
+    pub(super) range: String,
+    pub(super) calibrated: String,
+    pub(super) apart: String,
+}
+
+impl Chamber {
+    pub(super) fn name(&self) -> String {
+        format!("{}, {}", self.run, words::column(&self.column).0)
+    }
+
+    /// What the fit cannot follow, in a sentence.
+    pub(super) fn verdict(&self) -> String {
+        let kilo = |pa: f64| text::quantity(pa / 1e3, "kPa");
+        let worst = self
+            .phases
+            .iter()
+            .max_by(|a, b| a.share.total_cmp(&b.share));
+        let place = worst.map_or(String::new(), |phase| {
+            let [from, to] = phase.crank_angle_deg.map(|a| text::decimal(a, 0));
+            let share = text::decimal(100.0 * phase.share, 0);
+            format!(
+                " {share}\u{a0}% of the squared difference lies in the {} ({from}° to {to}°), where it is {}.",
+                phase.name,
+                kilo(phase.rms_pa)
+            )
+        });
+        format!(
+            "{} from the recording, root mean square over the revolution; {} with the nominal parameters.{place}",
+            kilo(self.rms_pa.after),
+            kilo(self.rms_pa.before)
+        )
+    }
+
+    /// What the curve leaves open about clearance and exponents; empty where that is not known.
+    pub(super) fn open(&self) -> String {
+        let Some(diagram) = &self.measured else {
+            return String::new();
+        };
+        let [Some(first), Some(last)] = [diagram.alternatives.first(), diagram.alternatives.last()]
+        else {
+            return String::new();
+        };
+        let share = |value: f64| format!("{}\u{a0}%", text::decimal(100.0 * value, 1));
+        let exponents =
+            |[a, b]: [f64; 2]| format!("{} and {}", text::decimal(a, 2), text::decimal(b, 2));
+        format!(
+            "Clearance and exponents are told only together: a clearance of {} of the stroke goes with exponents of {} \
+             (compression, expansion), one of {} with {}, and the lines are straight to {} and {} of the pressure.",
+            share(first.0),
+            exponents(first.1),
+            share(last.0),
+            exponents(last.1),
+            share(first.2),
+            share(last.2)
+        )
+    }
+
+    pub(super) fn rows(&self) -> Vec<Row> {
+        let (Some(measured), Some(calibrated)) = (&self.measured, &self.calibrated) else {
+            return Vec::new();
+        };
+        let degrees = |angle: f64| format!("{}°", text::decimal(angle, 1));
+        let pairs = measured.events.iter().zip(&calibrated.events);
+        pairs
+            .map(|((what, angle, [low, high]), (_, fitted, _))| {
+                // The shorter way round.
+                let apart = (fitted - angle + 180.0).rem_euclid(360.0) - 180.0;
+                Row {
+                    what: text::words(what),
+                    measured: degrees(*angle),
+                    range: format!("{} to {}", degrees(*low), degrees(*high)),
+                    calibrated: degrees(*fitted),
+                    apart: degrees(apart),
+                }
+            })
+            .collect()
+    }
+}
+
+/// A picture per chamber.
+pub(super) fn plates(chambers: &[Chamber]) -> Vec<Plate> {
+    chambers.iter().take(MOST).map(plate).collect()
+}
+
+fn plate(chamber: &Chamber) -> Plate {
+    Plate {
+        heading: format!("Indicator diagram: {}", chamber.name()),
+        caption: "Left: pressure over the distance from piston to cover, which is the volume over the piston's area. \
+                  Middle: the same on logarithmic axes, where a gas that is closed in follows a straight line whose slope is \
+                  its exponent; bold where the exponents are read off. Right: calibrated less measured pressure over the \
+                  crank angle."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![
+                over_distance(chamber, false),
+                over_distance(chamber, true),
+                difference(chamber),
+            ]],
+            row_height: 260.0,
+            ..Figure::default()
+        }
+        .svg(),
+    }
+}
+
+/// Measured and nominal pressure stand at the nominal clearance, the calibrated one at its own.
+fn over_distance(chamber: &Chamber, logarithmic: bool) -> Panel {
+    let points = &chamber.points;
+    let curve = |of: &dyn Fn(&Pressure) -> [f64; 2]| -> Vec<[f64; 2]> {
+        let at = points.iter().map(|p| {
+            let [distance, pressure] = of(p);
+            [1e3 * distance, 1e-6 * pressure]
+        });
+        // The end of the revolution is its beginning.
+        let first: Vec<[f64; 2]> = at.clone().take(1).collect();
+        at.chain(first).collect()
+    };
+    let mut series = vec![
+        Series::new(
+            "before",
+            BEFORE,
+            Mark::Line,
+            curve(&|p| [p.distance_m[0], p.simulated_pa[0]]),
+        ),
+        Series::new(
+            "after calibration",
+            AFTER,
+            Mark::Line,
+            curve(&|p| [p.distance_m[1], p.simulated_pa[1]]),
+        ),
+        Series::new(
+            "measured",
+            MEASURED,
+            Mark::Line,
+            curve(&|p| [p.distance_m[0], p.measured_pa]),
+        ),
+    ];
+    if logarithmic && let Some(diagram) = &chamber.measured {
+        for [from, to] in diagram.polytropes {
+            let length = (to - from).rem_euclid(360.0);
+            let inside = |p: &&Pressure| (p.crank_angle_deg - from).rem_euclid(360.0) <= length;
+            let line = points.iter().filter(inside);
+            let line = line.map(|p| [1e3 * p.distance_m[0], 1e-6 * p.measured_pa]);
+            series.push(Series::new("closed in", MEASURED, Mark::BoldLine, line));
+        }
+    }
+    let axis = |label: &str| match logarithmic {
+        true => Axis::log(label),
+        false => Axis::linear(label),
+    };
+    Panel {
+        title: match logarithmic {
+            true => "Logarithmic",
+            false => "Pressure over volume",
+        }
+        .to_owned(),
+        x: axis("piston to cover (mm)"),
+        y: axis("pressure (MPa)"),
+        series,
+        ..Panel::default()
+    }
+}
+
+fn difference(chamber: &Chamber) -> Panel {
+    let points = chamber.points.iter();
+    let at = points.map(|p| {
+        [
+            p.crank_angle_deg,
+            1e-3 * (p.simulated_pa[1] - p.measured_pa),
+        ]
+    });
+    let mut at: Vec<[f64; 2]> = at.collect();
+    at.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Panel {
+        title: "Calibrated less measured".to_owned(),
+        x: Axis::crank_angle(),
+        y: Axis::linear("(kPa)"),
+        series: vec![Series::new("after calibration", AFTER, Mark::Line, at)],
+        ..Panel::default()
+    }
+}
