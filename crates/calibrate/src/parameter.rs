@@ -81,7 +81,7 @@ impl Parameter {
             };
             let mut bounds = [nominal / factor, nominal * factor];
             // An exponent of 1 is a limit that no law goes below.
-            if last == "exponent" {
+            if last.ends_with("exponent") {
                 bounds[0] = bounds[0].max(1.01);
             }
             bounds.sort_by(f64::total_cmp);

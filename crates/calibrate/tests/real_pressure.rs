@@ -6,6 +6,7 @@ use calibrate::problem::columns;
 use calibrate::{Channel, Observation, Parameter, Problem, Run, calibrate};
 use input::bundle::Bundle;
 use input::{MachineFile, paths};
+use rustfft::num_complex::Complex64;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -158,4 +159,42 @@ fn ideal_valves_leave_what_their_closed_form_leaves() {
         assert!(fitted < nominal);
         assert!((fitted / expected - 1.0).abs() < 1e-3, "{fitted}");
     }
+}
+
+/// An encoder that is 1.2° ahead at one end is found there, with the derivative that the search uses.
+#[test]
+fn an_offset_of_the_crank_angle_is_found_where_it_is() {
+    let path = "runs.crank_end.crank_angle_offset";
+    let (mut problem, _) = problem(&[(path, None)]);
+    let offset = 1.2_f64.to_radians();
+    // What the model shows takes the place of the recordings, later by the offset in one of them.
+    let plain = problem.with_parameters(&[]);
+    for run in &mut problem.runs {
+        let shown = calibrate::prediction::predict(&plain, run, &[]).unwrap();
+        for (channel, shown) in run.channels.iter_mut().zip(shown.lines) {
+            let ahead = if run.id == "crank_end" { offset } else { 0.0 };
+            let lines = channel.lines.amplitude.iter_mut().zip(&shown.amplitude);
+            for (k, (line, shown)) in lines.enumerate() {
+                *line = shown * Complex64::from_polar(1.0, -(k as f64) * ahead);
+            }
+        }
+    }
+    let settings = FitSettings {
+        optimiser: Optimiser::LevenbergMarquardt,
+        seed: 0,
+        evaluations: 100,
+        held_out: Vec::new(),
+        start: None,
+    };
+    let fit = calibrate(&problem, &settings, |_| ControlFlow::Continue(())).unwrap();
+    let found = &fit.estimates[0];
+    assert!((found.value - offset).abs() < 1e-6, "{found:?}");
+    assert!(found.interval.is_some() && !found.at_bound());
+    // The machine file has no such place, and stays as it is.
+    assert_eq!(
+        problem
+            .fitted(&[found.parameter.coordinate(found.value)])
+            .unwrap(),
+        problem.tree
+    );
 }

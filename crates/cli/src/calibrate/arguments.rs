@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 What is fitted are paths of the machine file; without --parameter the contact stiffness, damping and
-friction of every joint that is clear in some run. Of every four runs one is held out and predicted,
+friction of every joint that is clear in some run, or, where pressures alone were recorded, exponent,
+clearance and pressures of the gas. Of every four runs one is held out and predicted,
 the last whose clearances a fitted run has. Options override the settings file.
 
 Examples:

@@ -15,6 +15,7 @@ use input::unit::Dimension;
 use input::{MachineFile, paths};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Of so many runs one is held out.
@@ -285,7 +286,13 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
     Ok(parameters)
 }
 
+/// What is fitted where nothing is asked for: the contact of the joints that are clear; the gas where
+/// pressures are all that was recorded.
 fn defaults(runs: &[Run]) -> Vec<String> {
+    let columns = || runs.iter().flat_map(|run| &run.channels).map(|c| &c.column);
+    if columns().all(|column| column.contains("cylinder_pressure")) {
+        return gas_defaults(runs);
+    }
     let clear = |(path, value): &&(String, Value)| path.ends_with(".clearance") && value != "ideal";
     let settings = runs.iter().flat_map(|run| &run.settings).filter(clear);
     let mut joints: Vec<&str> = settings
@@ -300,6 +307,31 @@ fn defaults(runs: &[Run]) -> Vec<String> {
     ];
     let of_joint = |joint: &&str| keys.map(|key| format!("{joint}.{key}"));
     joints.iter().flat_map(of_joint).collect()
+}
+
+/// The exponent and the clearance of every chamber with a pressure, and the pressures of the lines
+/// in each run.
+fn gas_defaults(runs: &[Run]) -> Vec<String> {
+    let mut paths = BTreeSet::new();
+    for run in runs {
+        for channel in &run.channels {
+            let (throw, name) = match channel.column.split_once('.') {
+                Some((throw, name)) => (format!("throws.{throw}."), name),
+                None => (String::new(), channel.column.as_str()),
+            };
+            let clearance = match name.contains("crank_end") {
+                true => "crank_end.clearance",
+                false => "head_clearance",
+            };
+            for value in ["exponent", clearance] {
+                paths.insert(format!("{throw}cylinder.{value}"));
+            }
+            for line in ["suction", "discharge"] {
+                paths.insert(format!("runs.{}.{throw}cylinder.{line}", run.id));
+            }
+        }
+    }
+    paths.into_iter().collect()
 }
 
 fn fit_settings(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<FitSettings, Failure> {
