@@ -1,7 +1,7 @@
 //! From a problem to a calibrated machine.
 
 use crate::error::Error;
-use crate::identifiability::{Information, information};
+use crate::identifiability::{Information, information, widening};
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, Genetic, LeastSquares, Progress};
 use crate::parameter::Parameter;
@@ -56,6 +56,9 @@ impl Optimiser {
 /// A misfit below this is taken for noise, and no better fit is looked for.
 const NOISE: f64 = 1.15;
 
+/// A value this near to a bound, as a share of the range, is at it.
+const AT_BOUND: f64 = 1e-3;
+
 /// Points from which the search starts again.
 const STARTS: usize = 8;
 
@@ -97,6 +100,16 @@ pub struct Estimate {
     pub value: f64,
     /// Its 95 % interval, SI; none where the recordings do not tell it.
     pub interval: Option<[f64; 2]>,
+}
+
+impl Estimate {
+    /// Whether the best fit lies at a bound of the parameter: the bound says where it ends, and the
+    /// recordings ask for more.
+    pub fn at_bound(&self) -> bool {
+        let [low, high] = self.parameter.box_bounds();
+        let x = self.parameter.coordinate(self.value);
+        self.interval.is_some() && (x - low).min(high - x) < AT_BOUND * (high - low)
+    }
 }
 
 /// How far a run is from its prediction, in units of its noise.
@@ -155,8 +168,19 @@ pub fn calibrate(
         };
         let found = search(&likelihood, &start, settings, &mut watch)?;
         evaluations += found.evaluations;
-        let information = information(&likelihood, &found.x);
+        let mut information = information(&likelihood, &found.x);
         evaluations += 1 + optimiser::DERIVATIVES + 2 * free.len() as u64;
+        let simple = free.len() == nominal.len() && found.misfit() < NOISE;
+        if information.untold.is_none() && !simple {
+            let whole = Likelihood::new(&fitted);
+            let mut x = nominal.clone();
+            for (i, value) in free.iter().zip(&found.x) {
+                x[*i] = *value;
+            }
+            let factors = widening(&whole, &x, &free);
+            information = information.widened(&factors, &found.x);
+            evaluations += 1 + optimiser::DERIVATIVES;
+        }
         match information.untold {
             // What the recordings do not tell keeps its nominal value, and the rest is fitted again.
             Some(untold) if complete => {
@@ -271,7 +295,14 @@ fn estimates(
         let interval = place.zip(told).map(|(place, told)| told.intervals[place]);
         Estimate {
             value: parameter.value(x[i]),
-            interval: interval.map(|interval| interval.map(|x| parameter.value(x))),
+            // Beyond its bounds a parameter cannot lie.
+            interval: interval.map(|interval| {
+                interval.map(|x| {
+                    parameter
+                        .value(x)
+                        .clamp(parameter.bounds[0], parameter.bounds[1])
+                })
+            }),
             parameter: parameter.clone(),
         }
     };

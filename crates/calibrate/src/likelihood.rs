@@ -178,7 +178,9 @@ fn weights(observed: &Observed, predicted: &OrderLines, accuracy: f64) -> Vec<f6
         .iter()
         .map(|k| {
             let variance = of(&observed.lines, *k) + of(predicted, *k) + accuracy;
-            (2.0 / variance).sqrt()
+            // The mean has no imaginary part, and all of its noise is in the real one.
+            let parts = if *k == 0 { 1.0 } else { 2.0 };
+            (parts / variance).sqrt()
         })
         .collect()
 }

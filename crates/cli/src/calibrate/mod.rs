@@ -3,14 +3,18 @@
 mod arguments;
 mod contradiction;
 mod earlier;
+pub mod gas;
 pub mod output;
 pub(crate) mod pictures;
 mod problem;
 mod progress;
+mod relation;
 
 use crate::{Failure, report};
+use ::calibrate::optimiser::Progress;
 use input::calibration::Calibration;
 use serde_json::Value;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -120,8 +124,18 @@ pub fn into_folder(
     }
     let start = Instant::now();
     let fit = progress::search(&mut task, cancel)?;
+    let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    // A search that was stopped is not compared with others.
+    let transfer = match fit.complete {
+        true => ::calibrate::transfer(&task.problem, &fit, watch).map_err(Failure::work)?,
+        false => None,
+    };
     let found = output::Found {
         fit: &fit,
+        transfer: transfer.as_ref(),
         fingerprint: &fingerprint,
         evaluations: evaluations + fit.evaluations,
         seconds: seconds + start.elapsed().as_secs_f64(),
