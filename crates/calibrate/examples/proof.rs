@@ -213,6 +213,7 @@ fn settings(optimiser: Optimiser, seed: u64, problem: &Problem) -> FitSettings {
         seed,
         evaluations: 20_000,
         held_out: problem.runs.iter().skip(3).step_by(4).map(|r| r.id.clone()).collect(),
+        start: None,
     }
 }
 

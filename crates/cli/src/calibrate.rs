@@ -108,6 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: arguments.seed,
         evaluations: arguments.evaluations,
         held_out,
+        start: None,
     };
     let start = Instant::now();
     let fit = search(&problem, &settings)?;
