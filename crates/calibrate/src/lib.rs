@@ -21,6 +21,7 @@ pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
 pub mod problem;
+mod search;
 
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
