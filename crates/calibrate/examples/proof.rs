@@ -230,6 +230,7 @@ fn settings(optimiser: Optimiser, seed: u64, problem: &Problem) -> FitSettings {
             .step_by(4)
             .map(|r| r.id.clone())
             .collect(),
+        start: None,
     }
 }
 

@@ -30,6 +30,7 @@ pub mod problem;
 pub mod relation;
 pub mod replay;
 pub mod run_condition;
+mod search;
 pub mod transfer;
 
 pub use comparison::{Comparison, compare};

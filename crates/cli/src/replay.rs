@@ -1,16 +1,18 @@
 //! `crosshead replay`: the runs of a bundle, simulated in place of their recordings.
 
 use crate::{Failure, bundle};
+use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
-use ::calibrate::{Observation, Problem, Replay, Run};
+use ::calibrate::{Observation, Problem, Replay, Run, alignment};
 use clap::Args;
-use input::bundle::{Bundle, Channel as Listed};
-use input::bundle_channel::{self, Meaning};
-use input::{MachineFile, Resolved, paths};
+use input::bundle::{Bundle, Channel};
+use input::bundle_channel::Meaning;
+use input::{MachineFile, paths};
 use rayon::prelude::*;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use serde_json::{Map, Value, json};
+use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -54,12 +56,13 @@ pub struct Arguments {
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bundle = Bundle::read(&arguments.bundle)?;
-    let (problem, runs, machine) = problem(arguments, &bundle)?;
-    let channels = listed(&bundle, &runs, &machine)?;
+    let tree = bundle::machine(&bundle, arguments.machine.as_deref())?;
+    let mut listed = listed(arguments, &bundle, &tree)?;
+    let problem = problem(tree, &mut listed)?;
     let results = arguments.out.join("replay.json");
-    let files = runs
+    let files = listed
         .iter()
-        .map(|run| file_of(&arguments.out, &run.id))
+        .map(|listed| file_of(&arguments.out, &listed.run.id))
         .collect::<Result<Vec<_>, _>>()?;
     if let Some(path) = files.iter().chain([&results]).find(|path| path.exists())
         && !arguments.overwrite
@@ -69,57 +72,108 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             path.display()
         )));
     }
-    let replays = runs
+    let replays = listed
         .par_iter()
         .zip(&problem.runs)
-        .map(|(run, observation)| ::calibrate::replay(&problem, run, observation, &[]))
+        .map(|(listed, observation)| ::calibrate::replay(&problem, &listed.run, observation, &[]))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::work)?;
     std::fs::create_dir_all(&arguments.out)
         .map_err(|error| Failure::unwritten(&arguments.out, error))?;
-    for (i, (run, replay)) in runs.iter().zip(&replays).enumerate() {
-        let table = table(run, replay, &channels[i]).map_err(Failure::work)?;
+    for (i, (listed, replay)) in listed.iter().zip(&replays).enumerate() {
+        let table = table(&listed.run, replay, &listed.channels).map_err(Failure::work)?;
         write_whole(&files[i], |file| {
             parquet::write_table(file, &table, ROWS_PER_GROUP)
         })?;
     }
-    let text = serde_json::to_string_pretty(&told(&runs, &replays)).map_err(Failure::work)?;
+    let text = serde_json::to_string_pretty(&told(&listed, &replays)).map_err(Failure::work)?;
     write_whole(&results, |mut file| {
         file.write_all(text.as_bytes())
             .map_err(recordings::Error::Write)?;
         Ok(file)
     })?;
-    summary(&runs, &replays);
+    summary(&listed, &replays);
     println!("{}", results.display());
     Ok(())
 }
 
-fn problem(
+/// A run, and its channels as the bundle lists them.
+struct Listed<'a> {
+    run: Run,
+    channels: Vec<(&'a Channel, Meaning)>,
+}
+
+impl Listed<'_> {
+    /// Whether the crank angle was recorded with its zero.
+    fn is_zeroed(&self) -> bool {
+        let mut meanings = self.channels.iter().map(|(_, meaning)| meaning);
+        meanings.any(|meaning| {
+            matches!(
+                meaning,
+                Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) }
+            )
+        })
+    }
+}
+
+/// The runs that are not left out.
+fn listed<'a>(
     arguments: &Arguments,
-    bundle: &Bundle,
-) -> Result<(Problem, Vec<Run>, Resolved), Failure> {
-    let mut tree = bundle::machine(bundle, arguments.machine.as_deref())?;
-    let runs = bundle::runs(bundle, &tree, &arguments.leave_out)?;
-    let Some(first) = runs.first() else {
+    bundle: &'a Bundle,
+    tree: &Value,
+) -> Result<Vec<Listed<'a>>, Failure> {
+    let throws = bundle::throws(tree);
+    let mut all = Vec::new();
+    for run in bundle::runs(bundle, tree, &arguments.leave_out)? {
+        let i = bundle.runs.iter().position(|listed| listed.id == run.id);
+        let i = i.unwrap_or_default();
+        let meanings = bundle::meanings(bundle, i, &throws)?;
+        let channels = bundle.runs[i].channels.iter().zip(meanings).collect();
+        all.push(Listed { run, channels });
+    }
+    if all.is_empty() {
         return Err(Failure::input("every run is left out"));
-    };
+    }
+    Ok(all)
+}
+
+/// The runs as the machine of the file's content `tree` is held against them. What they lack of the
+/// crank angle is made up: its speed from the waveform, its zero from what the machine shows.
+fn problem(mut tree: Value, runs: &mut [Listed]) -> Result<Problem, Failure> {
     // The machine stands at the conditions of the first run where it has none of its own.
-    for (path, value) in &first.settings {
+    for (path, value) in runs.iter().take(1).flat_map(|listed| &listed.run.settings) {
         paths::set(&mut tree, path, value.clone())?;
     }
-    let machine = MachineFile::from_tree(&tree)?.resolve()?;
-    let columns = columns(&machine);
-    let observations = runs
-        .iter()
-        .map(|run| Observation::of(run, &columns))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::input)?;
-    let problem = Problem {
+    let columns = columns(&MachineFile::from_tree(&tree)?.resolve()?);
+    let observe = |run: &Run| {
+        Observation::of(run, &columns).map_err(|e| bundle::unusable(&run.id, &e.to_string()))
+    };
+    let mut problem = Problem {
         tree,
         parameters: Vec::new(),
-        runs: observations,
+        runs: Vec::new(),
     };
-    Ok((problem, runs, machine))
+    for listed in runs {
+        let zeroed = listed.is_zeroed();
+        let run = &mut listed.run;
+        if run.crank_angle.is_none() {
+            let step = TAU * alignment::speed(run) / 60.0 / run.sample_rate;
+            let samples = run.channels.first().map_or(0, |c| c.samples.len());
+            let angles = (0..samples).map(|i| (step * i as f64).rem_euclid(TAU));
+            run.crank_angle = Some(angles.collect());
+        }
+        let mut observed = observe(run)?;
+        if !zeroed {
+            let predicted = predict(&problem, &observed, &[]).map_err(Failure::work)?;
+            let shift = alignment::phase(&observed, &predicted);
+            for angle in run.crank_angle.iter_mut().flatten() {
+                *angle = (*angle + shift).rem_euclid(TAU);
+            }
+            observed = observe(run)?;
+        }
+        problem.runs.push(observed);
+    }
+    Ok(problem)
 }
 
 /// The file of a run, whose name must be one of a file.
@@ -137,7 +191,7 @@ fn file_of(folder: &Path, id: &str) -> Result<PathBuf, Failure> {
 fn table(
     run: &Run,
     replay: &Replay,
-    listed: &[(&Listed, Meaning)],
+    listed: &[(&Channel, Meaning)],
 ) -> Result<Table, recordings::Error> {
     let count = replay.crank_angle.len();
     let mut columns = Vec::new();
@@ -173,32 +227,8 @@ fn table(
     Table::from_columns(Schema::new(columns)?, data)
 }
 
-/// The channels of each of `runs` as the bundle lists them, with what they are in `machine`.
-fn listed<'a>(
-    bundle: &'a Bundle,
-    runs: &[Run],
-    machine: &Resolved,
-) -> Result<Vec<Vec<(&'a Listed, Meaning)>>, Failure> {
-    let throws = &machine.machine.throws;
-    let throws: Vec<&str> = throws.iter().map(|throw| throw.name.as_str()).collect();
-    let mut all = Vec::new();
-    for run in runs {
-        let Some(i) = bundle.runs.iter().position(|listed| listed.id == run.id) else {
-            continue;
-        };
-        let channels = bundle.runs[i].channels.iter().enumerate();
-        let channels = channels.map(|(j, channel)| {
-            let meaning = bundle_channel::meaning(channel, &throws)
-                .map_err(|e| bundle.locate(e.under(format!("runs.{i}.channels.{j}"))))?;
-            Ok((channel, meaning))
-        });
-        all.push(channels.collect::<Result<_, Failure>>()?);
-    }
-    Ok(all)
-}
-
-fn told(runs: &[Run], replays: &[Replay]) -> Value {
-    let of_run = |(run, replay): (&Run, &Replay)| {
+fn told(runs: &[Listed], replays: &[Replay]) -> Value {
+    let of_run = |(listed, replay): (&Listed, &Replay)| {
         let channels: Map<String, Value> = replay
             .channels
             .iter()
@@ -221,7 +251,7 @@ fn told(runs: &[Run], replays: &[Replay]) -> Value {
             "misfit": replay.misfit,
             "channels": channels,
         });
-        (run.id.clone(), content)
+        (listed.run.id.clone(), content)
     };
     let runs: Map<String, Value> = runs.iter().zip(replays).map(of_run).collect();
     json!({
@@ -236,16 +266,20 @@ fn told(runs: &[Run], replays: &[Replay]) -> Value {
     })
 }
 
-fn summary(runs: &[Run], replays: &[Replay]) {
+fn summary(runs: &[Listed], replays: &[Replay]) {
     let names = replays.iter().flat_map(|replay| &replay.channels);
     let wide = names.map(|c| c.column.len()).max().unwrap_or(0).max(7);
-    let long = runs.iter().map(|run| run.id.len()).max().unwrap_or(0);
+    let long = runs
+        .iter()
+        .map(|listed| listed.run.id.len())
+        .max()
+        .unwrap_or(0);
     let long = long.max("run".len());
     println!(
         "{:long$}  {:wide$}  {:>10}  {:>11}  {:>7}",
         "run", "channel", "difference", "noise floor", "misfit"
     );
-    for (run, replay) in runs.iter().zip(replays) {
+    for (Listed { run, .. }, replay) in runs.iter().zip(replays) {
         for channel in &replay.channels {
             let percent = |value: f64| 100.0 * value / channel.recording_rms;
             println!(
@@ -261,7 +295,7 @@ fn summary(runs: &[Run], replays: &[Replay]) {
     println!(
         "difference: of the synchronous means over the recording's RMS; misfit: 1 is noise alone"
     );
-    for (run, replay) in runs.iter().zip(replays) {
+    for (Listed { run, .. }, replay) in runs.iter().zip(replays) {
         let faster = replay.simulated_rpm / replay.recorded_rpm - 1.0;
         if faster.abs() > SPEED {
             println!(
