@@ -100,7 +100,7 @@ fn points(path: &Path, chambers: &mut [Chamber]) -> Result<(), Failure> {
         .map(|name| table.values::<f64>(name))
         .collect::<Result<Vec<_>, _>>()
         .map_err(wrong)?;
-    for (i, (run, column)) in runs.iter().zip(&columns).enumerate() {
+    for (i, (run, column)) in runs.iter().zip(columns).enumerate() {
         let of =
             |c: &&mut Chamber| Some(&c.run) == run.as_ref() && Some(&c.column) == column.as_ref();
         let at = |c: usize| values[c][i].unwrap_or(f64::NAN);
