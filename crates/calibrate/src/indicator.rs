@@ -215,6 +215,10 @@ impl Indicator {
         let [compressed, expanded] = [samples(false)?, samples(true)?];
         let compression = Polytrope::fit(&chamber, whole, &compressed);
         let expansion = Polytrope::fit(&chamber, whole, &expanded);
+        // A gas that is closed in loses pressure as its volume grows; what does not is another's.
+        if compression.exponent <= 0.0 || expansion.exponent <= 0.0 {
+            return None;
+        }
         let event = |polytrope: &Polytrope, line: &Line, expanding: bool| {
             let angle = |pressure: f64| polytrope.angle(&chamber, pressure, expanding);
             let [a, b] = line.quartiles.map(angle);

@@ -99,8 +99,9 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
     let known = known(throws);
     let exact = known.iter().find(|(column, ..)| *column == channel.column);
     let spoken = [&channel.name, &channel.column].map(|text| words(text));
-    let said = |names: &[String]| names.iter().any(|name| spoken.contains(name));
-    let found = exact.or_else(|| known.iter().find(|(_, names, _)| said(names)));
+    // The name says more than the column: a crank end's pressure may stand in a column `pressure`.
+    let said = |text: &String| known.iter().find(|(_, names, _)| names.contains(text));
+    let found = exact.or_else(|| spoken.iter().find_map(said));
     let Some((column, _, kind)) = found else {
         let all = known.iter().flat_map(|(_, names, _)| names.first());
         let all: Vec<&str> = all.map(String::as_str).collect();
@@ -338,7 +339,7 @@ mod tests {
             ("", "pressure_kPa", "kPa", &one, "cylinder_pressure_pa", 1e3),
             (
                 "crank-end cylinder pressure",
-                "p2",
+                "pressure_psi",
                 "psi",
                 &one,
                 "cylinder_pressure_crank_end_pa",
