@@ -45,6 +45,12 @@ pub enum Error {
         /// Identifier of this sweep's plan.
         expected: String,
     },
+    /// The output folder holds a dataset that was begun with another calibration.
+    #[error(
+        "`{}` holds a dataset of another calibration (recordings, machine, settings or version \
+         have changed): --overwrite replaces it, or choose another folder", .0.display()
+    )]
+    OtherCalibration(PathBuf),
     /// Another process writes to the output folder.
     #[error("`{}` is being written by another process ({by})", path.display())]
     InUse {
@@ -56,6 +62,14 @@ pub enum Error {
     /// The output folder cannot be made or written to.
     #[error("cannot write to `{}`: {source}", path.display())]
     Unwritable {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A file that was just written cannot be read.
+    #[error("cannot read `{}`: {source}", path.display())]
+    Unreadable {
         /// The file or folder.
         path: PathBuf,
         /// The reason.
@@ -137,6 +151,7 @@ impl Error {
                 | Error::Exists(_)
                 | Error::NotOurs(_)
                 | Error::OtherPlan { .. }
+                | Error::OtherCalibration(_)
                 | Error::InUse { .. }
                 | Error::Unwritable { .. }
         )

@@ -4,6 +4,8 @@
 //! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
 //! process at work. The operating system unlocks it when that process ends, however it ends.
+//! A sweep that calibrates its machine first keeps what it found in `calibration/`, and
+//! `_sweep/calibration.json` says that it is finished.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -13,6 +15,7 @@ use recordings::{FileRecord, Manifest, WholeFile};
 use serde::{Deserialize, Serialize};
 
 use super::commit::create_only;
+use super::kept;
 use crate::{Error, Plan};
 
 /// What to do with a folder that has something in it.
@@ -25,6 +28,15 @@ pub enum Existing {
     Resume,
     /// Replace it, if it is a dataset of this program.
     Overwrite,
+}
+
+/// An output folder that this process has locked, before it is known which plan it is for.
+#[derive(Debug)]
+pub struct Claim {
+    output: Output,
+    existing: Existing,
+    /// Whether the calibration in the folder is that of the dataset.
+    pub(super) calibrated: bool,
 }
 
 /// A locked output folder.
@@ -50,13 +62,13 @@ const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
 const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
 const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
 
-impl Output {
-    /// Makes the folder ready for the dataset of `plan`, and locks it.
+impl Claim {
+    /// Locks the folder `root`.
     ///
     /// # Errors
     /// Where the folder has something in it that `existing` does not allow for, another process
     /// writes to it, or it cannot be written to. It is then as it was.
-    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
+    pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
         let (empty, ours) = look(root)?;
         match existing {
             _ if empty => {}
@@ -67,16 +79,54 @@ impl Output {
         for folder in ["_sweep/commits", "_sweep/tmp"] {
             make(&root.join(folder))?;
         }
-        let output = Self {
+        let output = Output {
             lock: lock(root)?,
             root: root.to_owned(),
         };
-        if existing == Existing::Overwrite {
-            output.clear()?;
-        }
         // What an interrupted process left: nobody else writes here now.
         remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
         make(&output.path("_sweep/tmp"))?;
+        Ok(Self {
+            output,
+            existing,
+            calibrated: false,
+        })
+    }
+
+    /// The folder.
+    pub(super) fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// Makes room for a calibration that is not there yet: a dataset that is to be replaced goes.
+    ///
+    /// # Errors
+    /// Where a dataset was begun with another calibration, or the folder cannot be written to.
+    pub(super) fn make_room(&self) -> Result<(), Error> {
+        match self.existing {
+            Existing::Overwrite => self.output.clear(false),
+            _ if self.begun() => Err(Error::OtherCalibration(self.output.root.clone())),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a dataset has been begun here.
+    fn begun(&self) -> bool {
+        self.output.path("_sweep/plan.json").exists()
+    }
+
+    /// Makes the folder ready for the dataset of `plan`.
+    ///
+    /// # Errors
+    /// Where it holds the dataset of another plan, or cannot be written to.
+    pub fn open(self, plan: &Plan) -> Result<Output, Error> {
+        let begun = self.begun();
+        let output = self.output;
+        if self.existing == Existing::Overwrite {
+            output.clear(self.calibrated)?;
+        } else if !begun && !self.calibrated {
+            output.clear_calibration()?;
+        }
         output.record(plan)?;
         let folders: &[&str] = match plan.format {
             crate::sweep_file::Format::Parquet => &["signals", "features"],
@@ -84,9 +134,20 @@ impl Output {
         };
         let diagrams = Some("bifurcations").filter(|_| !plan.diagrams.is_empty());
         for folder in folders.iter().copied().chain(diagrams) {
-            make(&root.join(folder))?;
+            make(&output.path(folder))?;
         }
         Ok(output)
+    }
+}
+
+impl Output {
+    /// Makes the folder ready for the dataset of `plan`, and locks it.
+    ///
+    /// # Errors
+    /// Where the folder has something in it that `existing` does not allow for, another process
+    /// writes to it, or it cannot be written to. It is then as it was.
+    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
+        Claim::new(root, existing)?.open(plan)
     }
 
     /// The folder.
@@ -113,8 +174,8 @@ impl Output {
         Ok(file.commit()?)
     }
 
-    /// Removes a dataset, and nothing else.
-    fn clear(&self) -> Result<(), Error> {
+    /// Removes a dataset, and nothing else; its calibration stays where it `is_kept`.
+    fn clear(&self, is_kept: bool) -> Result<(), Error> {
         // The manifest goes first: without it the folder is not a complete dataset.
         for file in FILES
             .into_iter()
@@ -128,7 +189,16 @@ impl Output {
             remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
         }
         self.clear_figures()?;
+        if !is_kept {
+            self.clear_calibration()?;
+        }
         make(&self.path("_sweep/commits"))
+    }
+
+    /// Removes a calibration; its record goes first.
+    fn clear_calibration(&self) -> Result<(), Error> {
+        remove(&self.path(kept::RECORD), |path| fs::remove_file(path))?;
+        remove(&self.path(kept::FOLDER), |path| fs::remove_dir_all(path))
     }
 
     /// Removes the figures of a report; whatever else is in their folder stays.
@@ -195,21 +265,23 @@ fn look(root: &Path) -> Result<(bool, bool), Error> {
     };
     let ours = root.join("_sweep/plan.json").is_file()
         || Manifest::read(&root.join("manifest.json")).is_ok();
-    // A crash between making the folder and writing the plan leaves only work files.
+    // A crash before the plan is written leaves only work files, and perhaps a calibration.
     let begun = !empty && only_work_files(root).map_err(unwritable)?;
     Ok((empty || begun, ours))
 }
 
 fn only_work_files(root: &Path) -> io::Result<bool> {
     for entry in fs::read_dir(root)? {
-        if entry?.file_name() != "_sweep" {
+        let name = entry?.file_name();
+        if name != "_sweep" && name != kept::FOLDER {
             return Ok(false);
         }
     }
-    Ok(!root.join("_sweep/plan.json").exists())
+    let work = root.join("_sweep");
+    Ok(work.exists() && !work.join("plan.json").exists())
 }
 
-fn make(folder: &Path) -> Result<(), Error> {
+pub(super) fn make(folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
         path: folder.to_owned(),
         source,
