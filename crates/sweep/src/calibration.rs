@@ -9,17 +9,13 @@ use std::path::{Path, PathBuf};
 use input::bundle::Bundle;
 use input::choice::Or;
 use input::yaml::Document;
-use input::{Error, Problem, paths};
+use input::{Error, paths};
 use scalar::elementary::exp;
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
-use sha2::{Digest, Sha256};
 
 use crate::Plan;
+use crate::dataset::CALIBRATION;
 use crate::sweep_file::{Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
-
-/// Changes when the same recordings would give another calibration.
-const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", calibration 1");
 
 /// A sweep file that has been read, but not planned yet.
 #[derive(Clone, Debug)]
@@ -30,7 +26,7 @@ pub struct Sweep {
 }
 
 /// A calibrated machine, and what is not known of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// The tree of its machine file.
     pub machine: Value,
@@ -41,7 +37,7 @@ pub struct Calibration {
 }
 
 /// A fitted value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Its path in the machine file.
     pub path: String,
@@ -91,30 +87,30 @@ impl Sweep {
         self.document.locate(error.under("calibrate"))
     }
 
-    /// The folders of the recordings.
-    pub fn bundles(&self) -> Vec<PathBuf> {
-        let bundles = self.calibrate().map(|c| c.settings.bundles());
-        let bundles = bundles.unwrap_or_default().iter();
-        bundles.map(|bundle| self.folder.join(bundle)).collect()
-    }
-
-    /// The tree of the machine file before any calibration: the sweep's own machine, or the
-    /// bundle's machine section at the conditions of its first run.
+    /// The tree of the sweep's own machine file, where it names one.
     ///
     /// # Errors
-    /// A machine or bundle that cannot be read, or neither.
-    pub fn nominal_machine(&self) -> Result<Value, Error> {
-        match &self.file.machine {
-            Some(Or::Section(_)) => Ok(self.document.tree["machine"].clone()),
+    /// A machine file that cannot be read.
+    pub fn machine(&self) -> Result<Option<Value>, Error> {
+        Ok(match &self.file.machine {
+            None => None,
+            Some(Or::Section(_)) => Some(self.document.tree["machine"].clone()),
             Some(Or::Scalar(path)) => {
                 let machine = input::machine_file::read(&self.folder.join(path))?;
-                Ok(machine.to_tree().clone())
+                Some(machine.to_tree().clone())
             }
-            None => match self.bundles().first() {
-                None => Err(self.document.locate(Error::missing("machine"))),
-                Some(bundle) => machine_of(&Bundle::read(bundle)?),
-            },
+        })
+    }
+
+    /// The machine before any calibration: the sweep's own, or the bundle's machine section at the
+    /// conditions of its first run.
+    fn nominal_machine(&self) -> Result<Value, Error> {
+        if let Some(machine) = self.machine()? {
+            return Ok(machine);
         }
+        let bundle = self.calibrate().and_then(|c| c.settings.bundles().first());
+        let bundle = bundle.ok_or_else(|| self.document.locate(Error::missing("machine")))?;
+        machine_of(&Bundle::read(&self.folder.join(bundle))?)
     }
 
     /// The plan of a sweep without a calibration; of one with it, the plan with the nominal machine.
@@ -158,6 +154,7 @@ impl Sweep {
         if let Some(sweep) = document.tree.as_object_mut() {
             sweep.shift_remove("calibrate");
             sweep.insert("machine".into(), machine);
+            sweep.insert("calibrated".into(), CALIBRATION.into());
             if !alone.is_empty() {
                 let vary = sweep.entry("vary").or_insert_with(|| json!({}));
                 vary.as_object_mut().into_iter().for_each(|v| v.extend(alone.clone()));
@@ -168,40 +165,6 @@ impl Sweep {
             }
         }
         Plan::new(&document, &self.folder)
-    }
-
-    /// What the calibration follows from, as SHA-256 in hexadecimal: the recordings, the nominal
-    /// machine, the settings and the version. What becomes of the uncertainty is not among it.
-    ///
-    /// # Errors
-    /// A machine or recording that cannot be read.
-    pub fn fingerprint(&self) -> Result<String, Error> {
-        let mut digest = Sha256::new();
-        let mut add = |part: &[u8]| {
-            digest.update((part.len() as u64).to_le_bytes());
-            digest.update(part);
-        };
-        add(WRITER.as_bytes());
-        add(self.nominal_machine()?.to_string().as_bytes());
-        let mut settings = self.document.tree["calibrate"].clone();
-        if let Some(section) = settings.as_object_mut() {
-            section.retain(|key, _| !["uncertainty", "undetermined"].contains(&key.as_str()));
-        }
-        add(settings.to_string().as_bytes());
-        for folder in self.bundles() {
-            let bundle = Bundle::read(&folder)?;
-            let recordings = bundle.runs.iter().map(|run| bundle.path_of(run));
-            let described = bundle.folder.join(input::bundle::FILE);
-            for path in std::iter::once(described).chain(recordings) {
-                let content = std::fs::read(&path).map_err(|error| {
-                    let problem = Problem::Unreadable(error.to_string());
-                    Error::new("", problem).in_file(&path.display().to_string())
-                })?;
-                add(&content);
-            }
-        }
-        let digest = digest.finalize();
-        Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
     }
 }
 

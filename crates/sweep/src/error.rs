@@ -67,14 +67,6 @@ pub enum Error {
         /// The reason.
         source: io::Error,
     },
-    /// A file that was just written cannot be read.
-    #[error("cannot read `{}`: {source}", path.display())]
-    Unreadable {
-        /// The file or folder.
-        path: PathBuf,
-        /// The reason.
-        source: io::Error,
-    },
     /// A file of the dataset could not be read or written.
     #[error(transparent)]
     File(#[from] recordings::Error),

@@ -168,7 +168,7 @@ pub(super) fn create_only(
     Ok(Some(fs::read_to_string(&destination).map_err(io)?))
 }
 
-pub(super) fn text(record: &impl Serialize) -> Result<String, Error> {
+fn text(record: &impl Serialize) -> Result<String, Error> {
     let json = serde_json::to_string_pretty(record).map_err(|e| {
         let message = e.to_string();
         recordings::Error::Write(std::io::Error::other(message))

@@ -13,8 +13,7 @@ mod tables;
 pub use commit::Commit;
 pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::finalize;
-pub use kept::{FOLDER as CALIBRATION, kept_calibration};
-pub use output::{Claim, Existing, Output};
+pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use tables::{Tables, feature_column};
 
 use std::path::Path;

@@ -4,8 +4,8 @@
 //! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
 //! process at work. The operating system unlocks it when that process ends, however it ends.
-//! A sweep that calibrates its machine first keeps what it found in `calibration/`, and
-//! `_sweep/calibration.json` says that it is finished.
+//! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
+//! sweep names that folder, and whoever runs it gets a copy.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -15,7 +15,6 @@ use recordings::{FileRecord, Manifest, WholeFile};
 use serde::{Deserialize, Serialize};
 
 use super::commit::create_only;
-use super::kept;
 use crate::{Error, Plan};
 
 /// What to do with a folder that has something in it.
@@ -35,8 +34,8 @@ pub enum Existing {
 pub struct Claim {
     output: Output,
     existing: Existing,
-    /// Whether the calibration in the folder is that of the dataset.
-    pub(super) calibrated: bool,
+    /// Whether the dataset begins with the calibration in the folder.
+    calibrated: bool,
 }
 
 /// A locked output folder.
@@ -58,6 +57,8 @@ struct PlanRecord {
 /// What a dataset has at its top, apart from `_sweep`.
 const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
+/// The folder of the calibration that a dataset begins with.
+pub const CALIBRATION: &str = "calibration";
 /// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
 const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
 const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
@@ -93,21 +94,23 @@ impl Claim {
         })
     }
 
-    /// The folder.
-    pub(super) fn output(&self) -> &Output {
-        &self.output
-    }
-
-    /// Makes room for a calibration that is not there yet: a dataset that is to be replaced goes.
+    /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
+    /// already. Where it is not, a dataset that is to be replaced goes first.
     ///
     /// # Errors
     /// Where a dataset was begun with another calibration, or the folder cannot be written to.
-    pub(super) fn make_room(&self) -> Result<(), Error> {
-        match self.existing {
-            Existing::Overwrite => self.output.clear(false),
-            _ if self.begun() => Err(Error::OtherCalibration(self.output.root.clone())),
-            _ => Ok(()),
+    pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
+        self.calibrated = true;
+        if !is_kept {
+            match self.existing {
+                Existing::Overwrite => self.output.clear(self.calibrated)?,
+                _ if self.begun() => {
+                    return Err(Error::OtherCalibration(self.output.root.clone()));
+                }
+                _ => {}
+            }
         }
+        Ok(self.output.path(CALIBRATION))
     }
 
     /// Whether a dataset has been begun here.
@@ -122,12 +125,18 @@ impl Claim {
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
         let begun = self.begun();
         let output = self.output;
+        let own = output.path(CALIBRATION);
+        let is_own = |from: &PathBuf| fs::canonicalize(from).ok() == fs::canonicalize(&own).ok();
+        let has_it = self.calibrated || plan.calibrated.as_ref().is_some_and(is_own);
         if self.existing == Existing::Overwrite {
-            output.clear(self.calibrated)?;
-        } else if !begun && !self.calibrated {
+            output.clear(has_it)?;
+        } else if !begun && !has_it {
             output.clear_calibration()?;
         }
         output.record(plan)?;
+        if let Some(from) = plan.calibrated.as_ref().filter(|_| !has_it) {
+            output.copy_calibration(from)?;
+        }
         let folders: &[&str] = match plan.format {
             crate::sweep_file::Format::Parquet => &["signals", "features"],
             crate::sweep_file::Format::Mcap => &["mcap", "features"],
@@ -174,8 +183,8 @@ impl Output {
         Ok(file.commit()?)
     }
 
-    /// Removes a dataset, and nothing else; its calibration stays where it `is_kept`.
-    fn clear(&self, is_kept: bool) -> Result<(), Error> {
+    /// Removes a dataset, and nothing else; its calibration stays where that is asked for.
+    fn clear(&self, keep_calibration: bool) -> Result<(), Error> {
         // The manifest goes first: without it the folder is not a complete dataset.
         for file in FILES
             .into_iter()
@@ -189,16 +198,14 @@ impl Output {
             remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
         }
         self.clear_figures()?;
-        if !is_kept {
+        if !keep_calibration {
             self.clear_calibration()?;
         }
         make(&self.path("_sweep/commits"))
     }
 
-    /// Removes a calibration; its record goes first.
     fn clear_calibration(&self) -> Result<(), Error> {
-        remove(&self.path(kept::RECORD), |path| fs::remove_file(path))?;
-        remove(&self.path(kept::FOLDER), |path| fs::remove_dir_all(path))
+        remove(&self.path(CALIBRATION), |path| fs::remove_dir_all(path))
     }
 
     /// Removes the figures of a report; whatever else is in their folder stays.
@@ -273,7 +280,7 @@ fn look(root: &Path) -> Result<(bool, bool), Error> {
 fn only_work_files(root: &Path) -> io::Result<bool> {
     for entry in fs::read_dir(root)? {
         let name = entry?.file_name();
-        if name != "_sweep" && name != kept::FOLDER {
+        if name != "_sweep" && name != CALIBRATION {
             return Ok(false);
         }
     }
@@ -281,7 +288,7 @@ fn only_work_files(root: &Path) -> io::Result<bool> {
     Ok(work.exists() && !work.join("plan.json").exists())
 }
 
-pub(super) fn make(folder: &Path) -> Result<(), Error> {
+fn make(folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
         path: folder.to_owned(),
         source,

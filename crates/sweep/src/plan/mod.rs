@@ -17,7 +17,7 @@ pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
 
 use std::f64::consts::TAU;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use input::choice::Or;
 use input::yaml::Document;
@@ -75,6 +75,8 @@ pub struct Plan {
     pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
+    /// The folder of the calibration that the machine comes from, where there is one.
+    pub calibrated: Option<PathBuf>,
     throws: Vec<String>,
     tree: Value,
     blocks: Vec<Block>,
@@ -129,7 +131,8 @@ impl Plan {
                 .map_err(|e| document.locate(e.under("machine")))?,
         };
         let plan = Self::build(&file, machine.to_tree(), resolved, &document.tree);
-        let plan = plan.map_err(|error| document.locate(error))?;
+        let mut plan = plan.map_err(|error| document.locate(error))?;
+        plan.calibrated = file.calibrated.as_ref().map(|path| folder.join(path));
         plan.try_cases(document)?;
         Ok(plan)
     }
@@ -166,6 +169,7 @@ impl Plan {
             diagrams: Vec::new(),
             throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
             base,
+            calibrated: None,
             tree: tree.clone(),
             blocks: Vec::new(),
             vary: Vec::new(),

@@ -46,6 +46,10 @@ pub struct SweepFile {
     /// The machine is calibrated to recordings of it before the first case.
     #[serde(default)]
     pub calibrate: Option<Calibrate>,
+    /// The folder of the calibration that the machine comes from, from the folder of this file: it
+    /// is copied into the dataset. A dataset's own sweep.yaml has it.
+    #[serde(default)]
+    pub calibrated: Option<String>,
     /// What all random numbers follow from; 0 where it is left out.
     #[serde(default)]
     pub seed: Option<Count<0, { u32::MAX }>>,
