@@ -157,11 +157,15 @@ impl Sweep {
             sweep.insert("calibrated".into(), CALIBRATION.into());
             if !alone.is_empty() {
                 let vary = sweep.entry("vary").or_insert_with(|| json!({}));
-                vary.as_object_mut().into_iter().for_each(|v| v.extend(alone.clone()));
+                if let Some(vary) = vary.as_object_mut() {
+                    vary.extend(alone);
+                }
             }
             if let Some(entry) = together {
                 let list = sweep.entry("vary_together").or_insert_with(|| json!([]));
-                list.as_array_mut().into_iter().for_each(|l| l.push(entry.clone()));
+                if let Some(list) = list.as_array_mut() {
+                    list.push(entry);
+                }
             }
         }
         Plan::new(&document, &self.folder)

@@ -192,12 +192,11 @@ impl Plan {
         for (position, entry) in file.vary_together.iter().enumerate() {
             let key = format!("vary_together.{position}");
             let together = Together::new(entry, &plan.tree).map_err(|e| e.under(&key))?;
-            let mut drawn = together.paths();
-            if let Some(path) = drawn.find(|path| plan.varied().any(|(_, other)| other == *path)) {
+            let varies = |path: &&str| plan.varied().any(|(_, other)| other == *path);
+            if let Some(path) = together.paths().find(varies) {
                 let key = format!("{key}.parameters.{path}");
                 return Err(Error::found(key, "an unknown that varies already", "it once"));
             }
-            drop(drawn);
             plan.together.push(together);
         }
         for (position, file) in file.bifurcations.iter().enumerate() {
@@ -225,7 +224,8 @@ impl Plan {
 
     /// What varies: the section of the sweep file, and the path.
     fn varied(&self) -> impl Iterator<Item = (String, &str)> {
-        let alone = self.vary.iter().map(|(path, _)| ("vary".into(), path.as_str()));
+        let alone = self.vary.iter();
+        let alone = alone.map(|(path, _)| (String::from("vary"), path.as_str()));
         let together = self.together.iter().enumerate().flat_map(|(i, together)| {
             let paths = together.paths();
             paths.map(move |path| (format!("vary_together.{i}.parameters"), path))

@@ -56,12 +56,13 @@ impl Together {
             .iter()
             .map(|_| quantile(unit(random.next_u64())))
             .collect();
-        let value = |(parameter, row): (&'_ (String, Gaussian, Scale), &Vec<f64>)| {
-            let (path, gaussian, scale) = parameter;
-            let deviate = row.iter().zip(&independent).map(|(l, z)| l * z).sum();
-            (path.as_str(), scale.value(gaussian.value(deviate)))
-        };
-        self.parameters.iter().zip(&self.root).map(value).collect()
+        let parameters = self.parameters.iter().zip(&self.root);
+        parameters
+            .map(|((path, gaussian, scale), row)| {
+                let deviate = row.iter().zip(&independent).map(|(l, z)| l * z).sum();
+                (path.as_str(), scale.value(gaussian.value(deviate)))
+            })
+            .collect()
     }
 }
 
