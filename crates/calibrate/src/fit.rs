@@ -22,6 +22,8 @@ pub struct FitSettings {
     pub evaluations: u64,
     /// Runs that are not fitted to, but predicted.
     pub held_out: Vec<String>,
+    /// The coordinates from which the search starts; the nominal ones where there are none.
+    pub start: Option<Vec<f64>>,
 }
 
 /// How the best fit is searched.
@@ -132,7 +134,7 @@ pub fn calibrate(
     let nominal = vec![0.0; problem.parameters.len()];
     let before = Likelihood::new(problem).by_run(&nominal)?;
     let mut free: Vec<usize> = (0..nominal.len()).collect();
-    let mut start = nominal.clone();
+    let mut start = settings.start.clone().unwrap_or_else(|| nominal.clone());
     let mut evaluations = 0;
     let mut complete = true;
     let (x, told) = loop {

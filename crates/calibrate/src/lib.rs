@@ -12,6 +12,7 @@
 //! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
 //! Weights come from that noise alone.
 
+pub mod alignment;
 pub mod error;
 pub mod fit;
 pub mod identifiability;
