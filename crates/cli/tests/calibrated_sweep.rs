@@ -168,7 +168,14 @@ fn a_sweep_calibrates_first_and_its_bytes_follow_from_the_recordings() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("another calibration"), "{message}");
     assert_eq!(written(), before);
-    let output = case.run(&["simulate", "sweep.yaml", "--case", "case-000002", "--out", "c"]);
+    let output = case.run(&[
+        "simulate",
+        "sweep.yaml",
+        "--case",
+        "case-000002",
+        "--out",
+        "c",
+    ]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("its own sweep.yaml"), "{message}");
 
@@ -176,7 +183,10 @@ fn a_sweep_calibrates_first_and_its_bytes_follow_from_the_recordings() {
     // included.
     std::fs::remove_dir_all(case.path("bundle")).unwrap();
     case.generate(&["datasets/worn/sweep.yaml", "--out", "again"]);
-    assert!(one == case.bytes("again"), "the resolved sweep gives other bytes");
+    assert!(
+        one == case.bytes("again"),
+        "the resolved sweep gives other bytes"
+    );
     for name in ["manifest.json", "calibration/calibration.json"] {
         let content = |root: &str| std::fs::read(case.path(root).join(name)).unwrap();
         assert!(content("datasets/worn") == content("again"), "{name}");

@@ -87,6 +87,13 @@ impl Sweep {
         self.document.locate(error.under("calibrate"))
     }
 
+    /// The folders of the recordings.
+    pub fn bundles(&self) -> Vec<PathBuf> {
+        let bundles = self.calibrate().map(|c| c.settings.bundles());
+        let bundles = bundles.unwrap_or_default().iter();
+        bundles.map(|bundle| self.folder.join(bundle)).collect()
+    }
+
     /// The tree of the sweep's own machine file, where it names one.
     ///
     /// # Errors
@@ -108,9 +115,10 @@ impl Sweep {
         if let Some(machine) = self.machine()? {
             return Ok(machine);
         }
-        let bundle = self.calibrate().and_then(|c| c.settings.bundles().first());
-        let bundle = bundle.ok_or_else(|| self.document.locate(Error::missing("machine")))?;
-        machine_of(&Bundle::read(&self.folder.join(bundle))?)
+        match self.bundles().first() {
+            None => Err(self.document.locate(Error::missing("machine"))),
+            Some(bundle) => machine_of(&Bundle::read(bundle)?),
+        }
     }
 
     /// The plan of a sweep without a calibration; of one with it, the plan with the nominal machine.
@@ -204,7 +212,12 @@ impl Calibration {
             .collect();
         let correlations: Vec<Vec<f64>> = drawn
             .iter()
-            .map(|(i, ..)| drawn.iter().map(|(j, ..)| self.correlations[*i][*j]).collect())
+            .map(|(i, ..)| {
+                drawn
+                    .iter()
+                    .map(|(j, ..)| self.correlations[*i][*j])
+                    .collect()
+            })
             .collect();
         let entry = json!({"parameters": parameters, "correlations": correlations});
         (!drawn.is_empty()).then_some(entry)
@@ -215,7 +228,11 @@ impl Calibration {
         let open = self.estimates.iter().filter(|e| e.deviation.is_none());
         open.filter(|estimate| !varied(&estimate.path))
             .map(|estimate| {
-                let rule = if estimate.logarithmic { "log_uniform" } else { "uniform" };
+                let rule = if estimate.logarithmic {
+                    "log_uniform"
+                } else {
+                    "uniform"
+                };
                 (estimate.path.clone(), json!({rule: estimate.bounds}))
             })
             .collect()

@@ -55,7 +55,12 @@ fn found(sweep: &Sweep) -> Calibration {
     Calibration {
         machine,
         estimates: vec![
-            estimate(STIFFNESS, gigas(19.5), [gigas(2.4), gigas(240.0)], Some(0.1)),
+            estimate(
+                STIFFNESS,
+                gigas(19.5),
+                [gigas(2.4), gigas(240.0)],
+                Some(0.1),
+            ),
             estimate(DAMPING, json!("2e4 N s/m"), damping, None),
             estimate(FRICTION, json!(0.05), [json!(0.005), json!(0.5)], Some(0.2)),
         ],
@@ -111,7 +116,10 @@ fn uncertainty_is_drawn_only_on_request_and_where_the_sweep_does_not_vary_itself
     let plan = sweep.calibrated(&found(&sweep)).unwrap();
     assert!(plan.sweep().get("vary_together").is_none());
     assert_eq!(value(&plan.case(3).unwrap(), STIFFNESS), 19.5e9);
-    assert_eq!(value(&sweep.nominal().unwrap().case(3).unwrap(), STIFFNESS), 24e9);
+    assert_eq!(
+        value(&sweep.nominal().unwrap().case(3).unwrap(), STIFFNESS),
+        24e9
+    );
 
     let own = format!("{SWEEP}  {FRICTION}: {{uniform: [0.04, 0.05]}}\n");
     let sweep = Sweep::read(&write(folder.path(), &own)).unwrap();
@@ -148,14 +156,24 @@ fn mistakes_in_the_section_tell_their_line() {
             "{bundle: bundle, uncertainty: sampled, undetermined: prior}",
             section,
         );
-        let error = Sweep::read(&write(folder.path(), &text)).unwrap_err().to_string();
+        let error = Sweep::read(&write(folder.path(), &text))
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(expected), "{error}");
     }
     // Its plan alone would be that of a machine that is not calibrated.
-    let error = Plan::read(&write(folder.path(), SWEEP)).unwrap_err().to_string();
-    assert!(error.contains("calibrate: found a calibration to be made"), "{error}");
+    let error = Plan::read(&write(folder.path(), SWEEP))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("calibrate: found a calibration to be made"),
+        "{error}"
+    );
     let bare = "name: test\nrun: {revolutions: 2}\ncases: []\n";
-    let error = Sweep::read(&write(folder.path(), bare)).unwrap().nominal().unwrap_err();
+    let error = Sweep::read(&write(folder.path(), bare))
+        .unwrap()
+        .nominal()
+        .unwrap_err();
     assert!(error.to_string().ends_with("machine: missing"), "{error}");
 }
 
@@ -165,7 +183,10 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
     let sweep = Sweep::read(&write(folder.path(), SWEEP)).unwrap();
     let root = folder.path().join("out");
     let cancel = AtomicBool::new(false);
-    let plain: String = SWEEP.split_inclusive('\n').filter(|line| !line.contains("calibrate")).collect();
+    let plain: String = SWEEP
+        .split_inclusive('\n')
+        .filter(|line| !line.contains("calibrate"))
+        .collect();
     let machine = sweep.machine().unwrap().unwrap();
     let plain = plain.replace("MACHINE", &machine.to_string());
     fs::write(folder.path().join("plain.yaml"), plain).unwrap();
@@ -199,7 +220,10 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
     let copy = folder.path().join("copy");
     let claim = Claim::new(&copy, Existing::Refuse).unwrap();
     generate(claim, Existing::Refuse, &resolved).unwrap();
-    assert_eq!(manifest(), fs::read_to_string(copy.join("manifest.json")).unwrap());
+    assert_eq!(
+        manifest(),
+        fs::read_to_string(copy.join("manifest.json")).unwrap()
+    );
     assert!(copy.join("calibration/calibration.json").exists());
     // Replaced by itself, it stays.
     let claim = Claim::new(&root, Existing::Overwrite).unwrap();

@@ -4,6 +4,7 @@ use super::Task;
 use crate::Failure;
 use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::parameter::Scale;
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -67,6 +68,8 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
             "high": high,
             "nominal": estimate.parameter.nominal,
             "identifiable": estimate.interval.is_some(),
+            "bounds": estimate.parameter.bounds,
+            "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
         });
         parameters.insert(path.clone(), content);
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);

@@ -2,8 +2,10 @@
 
 use crate::Failure;
 use crate::calibrate::{self, Calibrated, Prepared, Settings, output};
+use input::bundle::Bundle;
 use input::{Error, paths};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use sweep::calibration::{Calibration, Estimate, Sweep};
@@ -28,7 +30,9 @@ pub fn plan(
 ) -> Result<(Claim, Plan), Failure> {
     let prepared = prepare(sweep, root)?;
     let mut claim = Claim::new(root, existing).map_err(super::failed)?;
-    let folder = claim.calibration(prepared.is_done()).map_err(super::failed)?;
+    let folder = claim
+        .calibration(prepared.is_done())
+        .map_err(super::failed)?;
     let done = prepared.finish(cancel)?;
     tell(&done, &folder);
     if done.results["complete"] == false {
@@ -76,7 +80,30 @@ fn tell(done: &Calibrated, folder: &Path) {
 }
 
 fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {
-    Ok(sweep.calibrated(&read(folder)?)?)
+    let mut calibration = read(folder)?;
+    if let Some(own) = sweep.machine()? {
+        let fitted = |path: &str| calibration.estimates.iter().any(|e| e.path == path);
+        let mut machine = calibration.machine.clone();
+        for path in conditions(sweep, &own)?.iter().filter(|path| !fitted(path)) {
+            let value = paths::get(&own, path)?.cloned();
+            paths::set(&mut machine, path, value.unwrap_or_else(|| "ideal".into()))?;
+        }
+        calibration.machine = machine;
+    }
+    Ok(sweep.calibrated(&calibration)?)
+}
+
+/// What the runs set in the machine file: speed, pressures, clearances. A sweep's own machine keeps
+/// its own; a joint of which it says nothing is ideal.
+fn conditions(sweep: &Sweep, machine: &Value) -> Result<BTreeSet<String>, Failure> {
+    let mut conditions = BTreeSet::new();
+    for folder in sweep.bundles() {
+        for run in Bundle::read(&folder)?.runs {
+            let settings = input::run_settings(&run.section, machine)?;
+            conditions.extend(settings.into_iter().map(|(path, _)| path));
+        }
+    }
+    Ok(conditions)
 }
 
 /// The calibration in `folder`.
@@ -125,7 +152,7 @@ fn estimate(machine: &Value, place: &str, found: &Value) -> Option<Estimate> {
         let si = si.as_f64()?;
         Some(Amount { si, dimension }.to_value())
     };
-    let logarithmic = found["scale"] == "logarithmic";
+    let logarithmic = found["logarithmic"].as_bool()?;
     let interval = match found["identifiable"].as_bool()? {
         true => Some([found["low"].as_f64()?, found["high"].as_f64()?]),
         false => None,

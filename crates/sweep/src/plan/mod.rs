@@ -117,9 +117,16 @@ impl Plan {
         let file: SweepFile = document.read()?;
         if file.calibrate.is_some() {
             let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
-            return Err(document.locate(Error::found("calibrate", "a calibration to be made", expected)));
+            return Err(document.locate(Error::found(
+                "calibrate",
+                "a calibration to be made",
+                expected,
+            )));
         }
-        let machine = file.machine.as_ref().ok_or_else(|| Error::missing("machine"));
+        let machine = file
+            .machine
+            .as_ref()
+            .ok_or_else(|| Error::missing("machine"));
         let (machine, resolved) = match machine.map_err(|e| document.locate(e))? {
             Or::Scalar(path) => {
                 let machine = input::machine_file::read(&folder.join(path))?;
@@ -195,7 +202,11 @@ impl Plan {
             let varies = |path: &&str| plan.varied().any(|(_, other)| other == *path);
             if let Some(path) = together.paths().find(varies) {
                 let key = format!("{key}.parameters.{path}");
-                return Err(Error::found(key, "an unknown that varies already", "it once"));
+                return Err(Error::found(
+                    key,
+                    "an unknown that varies already",
+                    "it once",
+                ));
             }
             plan.together.push(together);
         }

@@ -27,7 +27,8 @@ impl Together {
     pub(super) fn new(entry: &sweep_file::Together, machine: &Value) -> Result<Self, Error> {
         let mut parameters = Vec::new();
         for (path, spread) in &entry.parameters.0 {
-            let given = paths::get(machine, path).map_err(|e| Error::new(path, e.problem().clone()));
+            let given =
+                paths::get(machine, path).map_err(|e| Error::new(path, e.problem().clone()));
             let read = given.and_then(|given| gaussian(spread, given).map_err(|e| e.under(path)));
             let (gaussian, scale) = read.map_err(|e| e.under("parameters"))?;
             parameters.push((path.clone(), gaussian, scale));
@@ -69,9 +70,8 @@ impl Together {
 /// Checks that the rows are a symmetric matrix with ones on its diagonal.
 fn check(rows: &[Vec<f64>], count: usize) -> Result<(), Error> {
     let wrong = |key: String, found: String| {
-        let expected = format_args!(
-            "a symmetric matrix with ones on its diagonal, {count} rows of {count}"
-        );
+        let expected =
+            format_args!("a symmetric matrix with ones on its diagonal, {count} rows of {count}");
         Err(Error::found(key, found, expected))
     };
     if rows.len() != count {
@@ -82,7 +82,11 @@ fn check(rows: &[Vec<f64>], count: usize) -> Result<(), Error> {
             return wrong(i.to_string(), format!("{} numbers", row.len()));
         }
         for (j, value) in row.iter().enumerate() {
-            let expected = if i == j { 1.0 } else { rows[j].get(i).copied().unwrap_or(*value) };
+            let expected = if i == j {
+                1.0
+            } else {
+                rows[j].get(i).copied().unwrap_or(*value)
+            };
             if (value - expected).abs() > ROUNDING {
                 return wrong(format!("{i}.{j}"), value.to_string());
             }
