@@ -47,7 +47,10 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     let asked = settings.calibration;
     let bundles = bundles(settings)?;
     let machine = asked.machine.as_ref().map(|path| settings.base.join(path));
-    let mut tree = bundle::machine(&bundles[0].bundle, machine.as_deref())?;
+    let mut tree = match settings.machine {
+        Some(tree) => tree.clone(),
+        None => bundle::machine(&bundles[0].bundle, machine.as_deref())?,
+    };
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
     for listed in &bundles {
