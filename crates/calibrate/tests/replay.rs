@@ -1,6 +1,7 @@
 //! Runs simulated in place of recordings that were themselves simulated: they must come back.
 
 use calibrate::problem::columns;
+use calibrate::replay::Replayed;
 use calibrate::{Channel, Observation, Problem, Replay, Run, replay};
 use input::{MachineFile, machine_file, paths};
 use serde_json::Value;
