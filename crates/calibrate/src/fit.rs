@@ -22,7 +22,8 @@ pub struct FitSettings {
     pub evaluations: u64,
     /// Runs that are not fitted to, but predicted.
     pub held_out: Vec<String>,
-    /// The coordinates from which the search starts; the nominal ones where there are none.
+    /// Coordinates from which the search goes on, as [`Progress`] told them; without them it starts
+    /// at the nominal values.
     pub start: Option<Vec<f64>>,
 }
 
@@ -134,7 +135,7 @@ pub fn calibrate(
     let nominal = vec![0.0; problem.parameters.len()];
     let before = Likelihood::new(problem).by_run(&nominal)?;
     let mut free: Vec<usize> = (0..nominal.len()).collect();
-    let mut start = settings.start.clone().unwrap_or_else(|| nominal.clone());
+    let mut start = start(problem, settings)?;
     let mut evaluations = 0;
     let mut complete = true;
     let (x, told) = loop {
@@ -190,6 +191,26 @@ pub fn calibrate(
         evaluations,
         complete,
     })
+}
+
+/// Where the search starts, within the bounds.
+fn start(problem: &Problem, settings: &FitSettings) -> Result<Vec<f64>, Error> {
+    let count = problem.parameters.len();
+    let Some(start) = &settings.start else {
+        return Ok(vec![0.0; count]);
+    };
+    if start.len() != count || start.iter().any(|x| !x.is_finite()) {
+        return Err(Error::Optimiser(format!(
+            "the start must be {count} finite coordinates, one per parameter; it is {start:?}"
+        )));
+    }
+    let parameters = problem.parameters.iter().zip(start);
+    Ok(parameters
+        .map(|(parameter, x)| {
+            let [low, high] = parameter.box_bounds();
+            x.clamp(low, high)
+        })
+        .collect())
 }
 
 /// The best fit by the optimiser of the settings, from `start`.

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 pub use arguments::Arguments;
-pub use problem::Task;
+pub use problem::{Task, task};
 
 /// What is calibrated, and how.
 pub struct Settings<'a> {
@@ -101,7 +101,7 @@ pub fn into_folder(
     cancel: &AtomicBool,
 ) -> Result<Calibrated, Failure> {
     earlier::check_folder(out, existing)?;
-    let mut task = problem::task(settings)?;
+    let mut task = task(settings)?;
     let fingerprint = task.fingerprint();
     let machine = out.join(output::MACHINE);
     let (mut evaluations, mut seconds) = (0, 0.0);
