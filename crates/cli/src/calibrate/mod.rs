@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 pub use arguments::Arguments;
-pub use problem::Task;
+pub use problem::{Task, task};
 
 /// What is calibrated, and how.
 pub struct Settings<'a> {
