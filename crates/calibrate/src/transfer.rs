@@ -146,9 +146,12 @@ pub fn transfer(
             continue;
         }
         let start = under(problem, fit, relation, &joints)?;
-        machines.push(match basis {
-            Basis::Fitted => refitted(start, &held_out, &mut watch)?,
-            _ => start,
+        let parameters = &start.problem.parameters;
+        let as_fitted = start.problem.tree == problem.tree && *parameters == problem.parameters;
+        machines.push(if basis == Basis::Fitted && !as_fitted {
+            refitted(start, &held_out, &mut watch)?
+        } else {
+            start
         });
     }
     if stopped {
