@@ -18,6 +18,7 @@ use crate::optimiser::{LeastSquares, Progress, Watch, levenberg_marquardt};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
+use crate::search;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -257,7 +258,7 @@ fn refitted(
     let fitted = problem.with_runs(|run| !held_out(run));
     let likelihood = Likelihood::new(&fitted);
     let from: Vec<f64> = free.iter().map(|i| start.x[*i]).collect();
-    let found = levenberg_marquardt(&likelihood, &from, EVALUATIONS, watch)?;
+    let found = levenberg_marquardt(&likelihood, &from, search::CHANGE, EVALUATIONS, watch)?;
     let information = information(&likelihood, &found.x);
     Ok(Fitted {
         relation: start.relation,

@@ -31,7 +31,7 @@ pub struct Arguments {
     /// The machine file [default: the machine section of the bundle]
     #[arg(long, value_name = "MACHINE.yaml")]
     machine: Option<PathBuf>,
-    /// Folder to write into: machine.yaml, calibration.json
+    /// Folder to write into: machine.yaml, calibration.json, report.html
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// A path of the machine file to be fitted; may be repeated

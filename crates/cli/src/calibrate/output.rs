@@ -1,8 +1,9 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
-use super::{Task, relation};
+use super::{Task, gas, relation};
 use crate::Failure;
 use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::parameter::Scale;
 use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
@@ -40,6 +41,11 @@ pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
     let mut results = calibration(found, &task.settings);
     results["relation"] = relation::stated(&task.problem)?;
+    let gaps = gas::gaps(task, found.fit)?;
+    if !gaps.is_empty() {
+        results["gas"] = gas::results(&gaps);
+        gas::write(folder, &gaps)?;
+    }
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())?;
     Ok(results)
@@ -70,6 +76,9 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
             "high": high,
             "nominal": estimate.parameter.nominal,
             "identifiable": estimate.interval.is_some(),
+            "at_bound": estimate.at_bound(),
+            "bounds": estimate.parameter.bounds,
+            "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
         });
         parameters.insert(path.clone(), content);
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);
@@ -131,7 +140,13 @@ pub fn summary(results: &Value) {
     for (path, estimate) in results["parameters"].as_object().into_iter().flatten() {
         let value = number(&estimate["value"]);
         match [&estimate["low"], &estimate["high"]].map(Value::as_f64) {
-            [Some(low), Some(high)] => println!("{path}: {value:.4e} ({low:.4e} to {high:.4e})"),
+            [Some(low), Some(high)] => {
+                let stuck = match estimate["at_bound"] == true {
+                    true => ": at its bound, and the recordings ask for more",
+                    false => "",
+                };
+                println!("{path}: {value:.4e} ({low:.4e} to {high:.4e}){stuck}");
+            }
             _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
         }
     }
@@ -146,6 +161,7 @@ pub fn summary(results: &Value) {
             number(&run["nominal"])
         );
     }
+    gas::summary(&results["gas"]);
     relations(&results["relations"]);
 }
 

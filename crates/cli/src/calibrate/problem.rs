@@ -47,7 +47,10 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     let asked = settings.calibration;
     let bundles = bundles(settings)?;
     let machine = asked.machine.as_ref().map(|path| settings.base.join(path));
-    let mut tree = bundle::machine(&bundles[0].bundle, machine.as_deref())?;
+    let mut tree = match settings.machine {
+        Some(tree) => tree.clone(),
+        None => bundle::machine(&bundles[0].bundle, machine.as_deref())?,
+    };
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
     for listed in &bundles {
@@ -258,11 +261,8 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
             input::Problem::Other(reason),
         )))
     };
-    let of = |path: &str, bounds: Option<[f64; 2]>| match bounds {
-        None => Parameter::of(tree, path).map_err(|e| refuse(path, e.to_string())),
-        Some(bounds) => {
-            Parameter::within(tree, path, bounds).map_err(|e| refuse(path, e.to_string()))
-        }
+    let of = |path: &str, bounds: Option<[f64; 2]>| {
+        Parameter::named(tree, runs, path, bounds).map_err(|e| refuse(path, e.to_string()))
     };
     if asked.is_empty() {
         return defaults(runs).iter().map(|path| of(path, None)).collect();
