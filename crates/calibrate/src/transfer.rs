@@ -31,8 +31,9 @@ const WORN: f64 = 3.0;
 const STRONG: f64 = 6.0;
 /// Standard deviations that bound 95 % of a normal distribution.
 const QUANTILE: f64 = 1.959_964;
-/// Most evaluations of the model for a fit under another relation.
-const EVALUATIONS: u64 = 200;
+/// Most evaluations of the model for a fit under another relation: some ten steps. One that needs
+/// more is far off.
+const EVALUATIONS: u64 = 80;
 
 /// What the relations between clearances come to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
