@@ -20,9 +20,9 @@ const TOLERANCE: f64 = 1e-9;
 /// it is given.
 const SETTLED: f64 = 1e-7;
 const AT_MOST: u32 = 100;
-/// Share of a signal's mean square that does not repeat every revolution, above which a settled
-/// motion has a longer period; resampling leaves 1e-8.
-const LONGER_PERIOD: f64 = 1e-6;
+/// Share of a signal's mean square up to which what does not repeat every revolution is passed over;
+/// resampling leaves 1e-8.
+const SAME: f64 = 1e-6;
 /// Longest period of a settled motion, revolutions.
 const LONGEST_PERIOD: u32 = 4;
 
@@ -116,7 +116,9 @@ pub fn replay(
         AngleGrid::new(&angle, POINTS)
     };
     let mut grid = grid_of(&chosen).map_err(analysis)?;
-    if chosen.settled && has_longer_period(&grid, &chosen.series).map_err(analysis)? {
+    let mut same = repeats(&grid, &chosen.series).map_err(analysis)?;
+    if chosen.settled && !same {
+        same = true;
         let revolution = TAU / speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
         let mut least = apart(&chosen.series, &recordings);
         for shift in 1..LONGEST_PERIOD {
@@ -138,7 +140,7 @@ pub fn replay(
                 channels: vec![observed.clone()],
                 ..observation.clone()
             };
-            let prediction = prediction(vec![lines.clone()], chosen.settled);
+            let prediction = prediction(vec![lines.clone()], same);
             let has_mean = !observed.column.contains("acceleration");
             let replayed = Replayed {
                 column: observed.column.clone(),
@@ -153,12 +155,12 @@ pub fn replay(
         .collect::<Result<_, _>>()
         .map_err(analysis)?;
     let (channels, lines): (Vec<Replayed>, Vec<OrderLines>) = channels.into_iter().unzip();
-    let prediction = prediction(lines, chosen.settled);
+    let prediction = prediction(lines, same);
     let simulated = speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
     Ok(Replay {
         angle_difference: angle_difference(&chosen.crank_angle, recorded.angles()),
         channels,
-        periodic: chosen.settled,
+        periodic: same,
         recorded_rpm: place.speed * 60.0 / TAU,
         simulated_rpm: simulated * 60.0 / TAU,
         misfit: misfit(&residuals(observation, &prediction, ACCURACY)),
@@ -291,19 +293,20 @@ fn speed(wrapped: &[f64], sample_rate: f64) -> Result<f64, signal::Error> {
     Ok(Place::of(&CrankAngle::from_encoder(wrapped)?, sample_rate).speed)
 }
 
-fn has_longer_period(grid: &AngleGrid, series: &[Vec<f64>]) -> Result<bool, signal::Error> {
+/// Whether every revolution is like the next.
+fn repeats(grid: &AngleGrid, series: &[Vec<f64>]) -> Result<bool, signal::Error> {
     for samples in series {
         let revolutions: Revolutions = grid.resample(samples)?;
         if revolutions.count() < 2 {
-            return Ok(false);
+            return Ok(true);
         }
         // A channel that does not move at all has no period.
         let share = SynchronousAverage::new(&revolutions)?.synchronous_share();
-        if share.is_ok_and(|share| share < 1.0 - LONGER_PERIOD) {
-            return Ok(true);
+        if share.is_ok_and(|share| share < 1.0 - SAME) {
+            return Ok(false);
         }
     }
-    Ok(false)
+    Ok(true)
 }
 
 /// Mean square of the difference of each channel over that of the recording, added up.
