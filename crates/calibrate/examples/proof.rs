@@ -17,7 +17,7 @@ use input::{MachineFile, paths};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
-use simulate::{Chain, ChamberEnd, Measured, Noise, NoiseLevel, Sensor, Settings, Transient};
+use simulate::{Chain, ChamberEnd, Measured, Sensor, Settings, Transient};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -230,6 +230,7 @@ fn settings(optimiser: Optimiser, seed: u64, problem: &Problem) -> FitSettings {
             .step_by(4)
             .map(|r| r.id.clone())
             .collect(),
+        start: None,
     }
 }
 

@@ -81,8 +81,8 @@ fn channels(case: &Case, machine: &Fitted) -> Result<BTreeMap<String, ChannelFor
             let reach = QUANTILE * variance.max(0.0).sqrt();
             Bounded {
                 value,
-                low: Some(value - reach),
-                high: Some(value + reach),
+                low: value - reach,
+                high: value + reach,
             }
         };
         channels.insert(

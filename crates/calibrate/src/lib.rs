@@ -15,17 +15,22 @@
 pub mod alignment;
 pub mod comparison;
 pub mod error;
+mod few_revolutions;
 pub mod fit;
 pub mod forecast;
 pub mod identifiability;
+pub mod indicator;
 pub mod likelihood;
 pub mod observation;
 pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
+pub mod pressure_gap;
 pub mod problem;
 pub mod relation;
 pub mod replay;
+pub mod run_condition;
+mod search;
 pub mod transfer;
 
 pub use comparison::{Comparison, compare};

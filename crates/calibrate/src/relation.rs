@@ -125,21 +125,47 @@ impl ClearJoint {
         Ok(paths::get(tree, &self.keys()[0])?)
     }
 
-    /// Its clearance in a run with these settings, m; none where it is ideal there.
+    /// The clearance from which its relation leads, m; none where the machine file has none.
     ///
     /// # Errors
     /// A clearance that is no length.
-    pub fn clearance_in(
-        &self,
-        tree: &Value,
-        settings: &[(String, Value)],
-    ) -> Result<Option<f64>, Error> {
-        Ok(clearance(tree, settings, &self.path)?.map(|(clearance, _)| clearance))
+    pub fn at_clearance(&self, tree: &Value) -> Result<Option<f64>, Error> {
+        let [_, key] = self.keys();
+        let text = paths::get(tree, &key)?.and_then(Value::as_str);
+        text.map(|text| length(&key, text)).transpose()
+    }
+
+    /// The path of its clearance.
+    pub fn clearance_path(&self) -> String {
+        format!("{}.clearance", self.path)
     }
 
     fn keys(&self) -> [String; 2] {
         ["relation", "at_clearance"].map(|key| format!("{}.contact.{key}", self.path))
     }
+}
+
+/// The clearances of `joints` in a run with these settings, m; none for one that is ideal there.
+///
+/// # Errors
+/// A clearance that is no length.
+pub fn clearances(
+    tree: &Value,
+    joints: &[ClearJoint],
+    settings: &[(String, Value)],
+) -> Result<Vec<Option<f64>>, Error> {
+    let of = |joint: &ClearJoint| Ok(clearance(tree, settings, &joint.path)?.map(|(c, _)| c));
+    joints.iter().map(of).collect()
+}
+
+/// Whether some joint has several clearances in these runs, each as [`clearances`] gives it.
+pub fn several(runs: &[Vec<Option<f64>>]) -> bool {
+    let joints = runs.first().map_or(0, Vec::len);
+    (0..joints).any(|joint| {
+        let mut clear = runs.iter().filter_map(|run| run[joint]);
+        let first = clear.next();
+        clear.any(|c| Some(c) != first)
+    })
 }
 
 /// The parameters of [`Relation::Fitted`]: the exponents of stiffness and damping that the joints
@@ -179,11 +205,17 @@ fn clearance(
     match value.and_then(Value::as_str) {
         None | Some("ideal") => Ok(None),
         Some(text) => {
-            let measure = unit::parse(text).map_err(|error| Error::Parameter {
-                path: key,
-                reason: format!("'{text}': {error}"),
-            })?;
-            Ok((measure.si > 0.0).then(|| (measure.si, text.to_owned())))
+            let clearance = length(&key, text)?;
+            Ok((clearance > 0.0).then(|| (clearance, text.to_owned())))
         }
     }
+}
+
+/// The length that stands at `key`, m.
+fn length(key: &str, text: &str) -> Result<f64, Error> {
+    let measure = unit::parse(text).map_err(|error| Error::Parameter {
+        path: key.to_owned(),
+        reason: format!("'{text}': {error}"),
+    })?;
+    Ok(measure.si)
 }

@@ -14,10 +14,11 @@ use crate::forecast::{Forecast, forecast};
 use crate::identifiability::information;
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
-use crate::optimiser::levenberg_marquardt;
+use crate::optimiser::{LeastSquares, Progress, Watch, levenberg_marquardt};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
-use crate::relation::{ClearJoint, Relation, exponents};
+use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
+use crate::search;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -32,8 +33,6 @@ const STRONG: f64 = 6.0;
 const QUANTILE: f64 = 1.959_964;
 /// Most evaluations of the model for a fit under another relation.
 const EVALUATIONS: u64 = 200;
-/// Relative difference up to which two clearances are the same.
-const SAME: f64 = 1e-6;
 
 /// What the relations between clearances come to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -68,10 +67,10 @@ pub struct Hypothesis {
 pub struct Bounded {
     /// The value.
     pub value: f64,
-    /// Its lower bound; none where the recordings do not tell it.
-    pub low: Option<f64>,
+    /// Its lower bound.
+    pub low: f64,
     /// Its upper bound.
-    pub high: Option<f64>,
+    pub high: f64,
 }
 
 /// What the recordings say about the relation.
@@ -108,19 +107,35 @@ pub(crate) struct Fitted {
 
 /// Compares the relations for a calibrated machine, and predicts what it shows where each clear
 /// bearing in turn has three times its normal clearance, at the conditions of each fitted run
-/// without wear, and in the runs held out that have other clearances than the fitted ones.
+/// without wear, and in the runs held out that have other clearances than the fitted ones. `watch` is
+/// told of each step of the fits; none where it stops one.
 ///
 /// # Errors
 /// A machine that is none under some relation, or a run that cannot be simulated.
-pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
+pub fn transfer(
+    problem: &Problem,
+    fit: &Fit,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Option<Transfer>, Error> {
+    let mut stopped = false;
+    let mut watch = |progress: &Progress| {
+        let answer = watch(progress);
+        stopped |= answer.is_break();
+        answer
+    };
     let settings = problem.runs.iter().map(|run| &run.settings[..]);
     let joints = ClearJoint::of(&problem.tree, settings)?;
     let held_out = |run: &Observation| fit.runs.iter().any(|r| r.id == run.id && r.held_out);
-    let states = |held: bool| clearances(problem, &joints, |run| held_out(run) == held);
-    let (fitted_states, held_states) = (states(false)?, states(true)?);
-    let basis = if several(&fitted_states) {
+    let in_run = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
+    let states: Vec<_> = problem.runs.iter().map(in_run).collect::<Result<_, _>>()?;
+    let of_fitted = problem.runs.iter().zip(&states);
+    let of_fitted: Vec<Vec<Option<f64>>> = of_fitted
+        .filter(|(run, _)| !held_out(run))
+        .map(|(_, state)| state.clone())
+        .collect();
+    let basis = if several(&of_fitted) {
         Basis::Fitted
-    } else if several(&[&fitted_states[..], &held_states].concat()) {
+    } else if several(&states) {
         Basis::HeldOut
     } else {
         Basis::None
@@ -133,15 +148,22 @@ pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
         }
         let start = under(problem, fit, relation, &joints)?;
         machines.push(match basis {
-            Basis::Fitted => refitted(start, &held_out)?,
+            Basis::Fitted => refitted(start, &held_out, &mut watch)?,
             _ => start,
         });
     }
+    if stopped {
+        return Ok(None);
+    }
     let compared = machines.iter().map(|m| hypothesis(m, &held_out, basis));
-    let mut compared = compared.collect::<Result<Vec<_>, _>>()?;
+    let mut compared: Vec<(Hypothesis, Evidence)> = compared.collect();
     let decision = decide(&mut compared, basis);
     let relations: Vec<Hypothesis> = compared.into_iter().map(|(h, _)| h).collect();
-    let cases = cases(problem, &joints, &held_out, &fitted_states)?;
+    let runs: Vec<(&Observation, &Vec<Option<f64>>)> = problem.runs.iter().zip(&states).collect();
+    // A clearance that was fitted stands in every run, whatever the run's own.
+    let places = || problem.parameters.iter().flat_map(|p| &p.places);
+    let fixed = |joint: &ClearJoint| places().any(|place| *place == joint.clearance_path());
+    let cases = cases(&runs, &joints, held_out, fixed, &of_fitted);
     let pairs: Vec<(&Case, &Fitted)> = cases
         .iter()
         .flat_map(|case| machines.iter().map(move |machine| (case, machine)))
@@ -155,43 +177,11 @@ pub fn transfer(problem: &Problem, fit: &Fit) -> Result<Transfer, Error> {
         let hypothesis = all.find(|h| h.relation == prediction.relation);
         prediction.misfit = hypothesis.and_then(|h| h.runs.get(&prediction.run).copied());
     }
-    Ok(Transfer {
+    Ok(Some(Transfer {
         relations,
         decision,
         predictions,
-    })
-}
-
-/// The clearances of `joints` in each of the chosen runs; none for a joint that is ideal.
-fn clearances(
-    problem: &Problem,
-    joints: &[ClearJoint],
-    chosen: impl Fn(&Observation) -> bool,
-) -> Result<Vec<Vec<Option<f64>>>, Error> {
-    let runs = problem.runs.iter().filter(|run| chosen(run));
-    let in_run = |run: &Observation| {
-        let joints = joints.iter();
-        joints
-            .map(|joint| joint.clearance_in(&problem.tree, &run.settings))
-            .collect()
-    };
-    runs.map(in_run).collect()
-}
-
-/// Whether some joint has several clearances above 0.
-fn several(states: &[Vec<Option<f64>>]) -> bool {
-    let Some(first) = states.first() else {
-        return false;
-    };
-    (0..first.len()).any(|joint| {
-        let mut clear = states.iter().filter_map(|state| state[joint]);
-        let first = clear.next();
-        clear.any(|c| first.is_some_and(|first| !same(c, first)))
-    })
-}
-
-fn same(a: f64, b: f64) -> bool {
-    (a / b - 1.0).abs() < SAME
+    }))
 }
 
 /// The calibrated machine with another relation in its place.
@@ -252,21 +242,20 @@ fn covariance(intervals: &[[f64; 2]], correlations: &DMatrix<f64>) -> DMatrix<f6
 }
 
 /// The machine fitted again from where it stands; what the recordings did not tell stays.
-fn refitted(start: Fitted, held_out: &impl Fn(&Observation) -> bool) -> Result<Fitted, Error> {
+fn refitted(
+    start: Fitted,
+    held_out: &impl Fn(&Observation) -> bool,
+    watch: Watch,
+) -> Result<Fitted, Error> {
     let told =
         |i: &usize| is_exponent(&start.problem.parameters[*i]) || start.covariance[(*i, *i)] > 0.0;
     let free: Vec<usize> = (0..start.x.len()).filter(told).collect();
-    let mut problem = start.problem.clone();
     // What is not told keeps the value that the file has.
-    problem.parameters = free
-        .iter()
-        .map(|i| start.problem.parameters[*i].clone())
-        .collect();
+    let problem = start.problem.with_parameters(&free);
     let fitted = problem.with_runs(|run| !held_out(run));
     let likelihood = Likelihood::new(&fitted);
     let from: Vec<f64> = free.iter().map(|i| start.x[*i]).collect();
-    let mut go = |_: &_| ControlFlow::Continue(());
-    let found = levenberg_marquardt(&likelihood, &from, EVALUATIONS, &mut go)?;
+    let found = levenberg_marquardt(&likelihood, &from, search::CHANGE, EVALUATIONS, watch)?;
     let information = information(&likelihood, &found.x);
     Ok(Fitted {
         relation: start.relation,
@@ -280,10 +269,12 @@ fn hypothesis(
     machine: &Fitted,
     held_out: &impl Fn(&Observation) -> bool,
     basis: Basis,
-) -> Result<(Hypothesis, Evidence), Error> {
-    let residuals = Likelihood::new(&machine.problem).by_run(&machine.x)?;
-    let runs: Vec<(&Observation, &Vec<f64>)> =
-        machine.problem.runs.iter().zip(&residuals).collect();
+) -> (Hypothesis, Evidence) {
+    let runs = machine.problem.runs.par_iter().map(|run| {
+        let alone = machine.problem.with_runs(|other| other.id == run.id);
+        (run, Likelihood::new(&alone).residuals(&machine.x))
+    });
+    let runs: Vec<(&Observation, Vec<f64>)> = runs.collect();
     let of = |held: bool| {
         let chosen = runs.iter().filter(|(run, _)| held_out(run) == held);
         let squares: Vec<f64> = chosen.map(|(_, r)| misfit(r).powi(2)).collect();
@@ -295,12 +286,7 @@ fn hypothesis(
         if is_exponent(parameter) {
             let [value, low, high] = [0.0, -QUANTILE, QUANTILE]
                 .map(|q| parameter.value(machine.x[i] + q * machine.covariance[(i, i)].sqrt()));
-            let bounded = Bounded {
-                value,
-                low: Some(low),
-                high: Some(high),
-            };
-            exponents.insert(parameter.path.clone(), bounded);
+            exponents.insert(parameter.path.clone(), Bounded { value, low, high });
         }
     }
     let decides = |run: &Observation| held_out(run) == (basis == Basis::HeldOut);
@@ -322,7 +308,7 @@ fn hypothesis(
             .collect(),
         criterion: None,
     };
-    Ok((hypothesis, evidence))
+    (hypothesis, evidence)
 }
 
 /// What the criterion is made of.
@@ -370,34 +356,33 @@ pub(crate) struct Case {
     pub recorded: bool,
 }
 
+/// The runs that are predicted: those held out whose clearances no fitted run has, and each fitted
+/// run without wear with each joint worn in turn.
 fn cases(
-    problem: &Problem,
+    runs: &[(&Observation, &Vec<Option<f64>>)],
     joints: &[ClearJoint],
-    held_out: &impl Fn(&Observation) -> bool,
-    fitted_states: &[Vec<Option<f64>>],
-) -> Result<Vec<Case>, Error> {
+    held_out: impl Fn(&Observation) -> bool,
+    fixed: impl Fn(&ClearJoint) -> bool,
+    of_fitted: &[Vec<Option<f64>>],
+) -> Vec<Case> {
     let mut cases = Vec::new();
-    let states = clearances(problem, joints, |_| true)?;
-    for (run, state) in problem.runs.iter().zip(states) {
-        let is_worn = |(joint, clearance): (&ClearJoint, &Option<f64>)| {
-            clearance.is_some_and(|c| !same(c, joint.clearance))
-        };
-        if held_out(run) {
-            if !fitted_states.contains(&state) {
-                let all = joints.iter().zip(&state);
-                let clear = all.filter_map(|(j, c)| c.map(|c| (j.path.clone(), c)));
-                cases.push(Case {
-                    run: run.clone(),
-                    clearances: clear.collect(),
-                    recorded: true,
-                });
+    for (run, state) in runs {
+        let clear = joints.iter().zip(*state);
+        let clear = clear.filter_map(|(joint, c)| c.map(|c| (joint, c)));
+        if !held_out(run) {
+            if clear.clone().all(|(joint, c)| c == joint.clearance) {
+                let wearing = clear.filter(|(joint, _)| !fixed(joint));
+                cases.extend(wearing.map(|(joint, _)| worn(run, joint)));
             }
-        } else if !joints.iter().zip(&state).any(is_worn) {
-            let clear = joints.iter().zip(&state).filter(|(_, c)| c.is_some());
-            cases.extend(clear.map(|(joint, _)| worn(run, joint)));
+        } else if !of_fitted.contains(state) {
+            cases.push(Case {
+                run: (*run).clone(),
+                clearances: clear.map(|(j, c)| (j.path.clone(), c)).collect(),
+                recorded: true,
+            });
         }
     }
-    Ok(cases)
+    cases
 }
 
 /// A run with one joint worn.

@@ -88,7 +88,7 @@ fn mean_speed_rpm(wrapped: &[f64]) -> f64 {
 
 /// Largest RMS difference of a channel, over the recording's RMS about its mean.
 fn worst(run: &Run, replay: &Replay) -> f64 {
-    let of_channel = |(channel, replayed): (&Channel, &calibrate::replay::Replayed)| {
+    let of_channel = |(channel, replayed): (&Channel, &Replayed)| {
         assert_eq!(channel.column, replayed.column);
         assert_eq!(channel.samples.len(), replayed.samples.len());
         let both = channel.samples.iter().zip(&replayed.samples);
