@@ -1,11 +1,12 @@
 //! The page of a calibration, from what `crosshead calibrate` has written.
 
 use crate::Failure;
+use crate::calibrate::gas::INDICATOR;
 use crate::calibrate::output::{MACHINE, RESULTS};
 use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
 use ::report::calibration_page::{
-    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
-    Point, Run, Transfer,
+    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Indicator, Misfit,
+    OrderResidual, Point, Run, Transfer,
 };
 use input::paths;
 use input::unit::{self, Dimension};
@@ -70,6 +71,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         parameters: estimates,
         runs: runs(folder, &results)?,
         transfer: transfer(&results.content),
+        indicators: indicators(folder, &results.content["gas"])?,
     })
 }
 
@@ -124,6 +126,7 @@ impl<'a> Results<'a> {
                 true => Some([number("low")?, number("high")?]),
                 false => None,
             },
+            at_bound: content["at_bound"] == true,
             reason: content["reason"].as_str().unwrap_or_default().to_owned(),
         })
     }
@@ -170,6 +173,69 @@ fn transfer(content: &Value) -> Option<Transfer> {
             .collect(),
         forecasts: list(&content["predictions"]).iter().map(forecast).collect(),
     })
+}
+
+/// The indicator diagrams, where their file is there.
+fn indicators(folder: &Path, gas: &Value) -> Result<Vec<Indicator>, Failure> {
+    let path = folder.join(INDICATOR);
+    let mut all: Vec<Indicator> = Vec::new();
+    if !path.is_file() {
+        return Ok(all);
+    }
+    let wrong = |error: recordings::Error| Failure::input(format!("{}: {error}", path.display()));
+    let table = read_table(&path).map_err(wrong)?;
+    let texts = |name: &str| table.values::<String>(name).map_err(wrong);
+    let reals = |name: &str| table.values::<f64>(name).map_err(wrong);
+    let [runs, columns] = [texts("run")?, texts("channel")?];
+    let [distance, fitted] = [reals("distance_m")?, reals("fitted_distance_m")?];
+    let [measured, nominal, calibrated] = [
+        reals("measured_pa")?,
+        reals("nominal_pa")?,
+        reals("calibrated_pa")?,
+    ];
+    for i in 0..table.rows() {
+        let (Some(run), Some(column)) = (&runs[i], &columns[i]) else {
+            continue;
+        };
+        // The rows of a diagram stand together.
+        if all
+            .last()
+            .is_none_or(|last| last.run != *run || last.column != *column)
+        {
+            all.push(indicator(run, column, &gas[run][column]));
+        }
+        if let Some(last) = all.last_mut() {
+            let point =
+                |x: Option<f64>, p: Option<f64>| [x.unwrap_or(f64::NAN), p.unwrap_or(f64::NAN)];
+            last.measured.push(point(distance[i], measured[i]));
+            last.before.push(point(distance[i], nominal[i]));
+            last.after.push(point(fitted[i], calibrated[i]));
+        }
+    }
+    // A chamber without a distance has no diagram.
+    all.retain(|indicator| indicator.measured.iter().any(|p| p[0].is_finite()));
+    Ok(all)
+}
+
+/// A diagram without its points.
+fn indicator(run: &str, column: &str, content: &Value) -> Indicator {
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let phases = content["where"].as_array().into_iter().flatten();
+    Indicator {
+        run: run.to_owned(),
+        column: column.to_owned(),
+        rms_pa: Misfit {
+            before: number(&content["rms_pa"]["nominal"]),
+            after: number(&content["rms_pa"]["calibrated"]),
+        },
+        shares: phases
+            .filter_map(|phase| {
+                let share = number(&phase["share"]);
+                Some((phase["phase"].as_str()?.to_owned(), share))
+            })
+            .collect(),
+        ..Indicator::default()
+    }
 }
 
 fn bounded(content: &Value) -> Bounded {

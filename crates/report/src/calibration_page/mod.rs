@@ -4,6 +4,7 @@
 //! [`CalibrationPage::render`] is one file with its styles and figures inside. Its size is bounded
 //! whatever the calibration.
 
+mod indicators;
 mod misfits;
 mod page;
 mod parameters;
@@ -40,6 +41,27 @@ pub struct CalibrationPage {
     pub runs: Vec<Run>,
     /// What the relations between clearances come to, where that was asked.
     pub transfer: Option<Transfer>,
+    /// The cylinder pressures over the way of the piston.
+    pub indicators: Vec<Indicator>,
+}
+
+/// An indicator diagram: the pressure in a cylinder over the distance of the piston from its cover.
+#[derive(Clone, Debug, Default)]
+pub struct Indicator {
+    /// The run.
+    pub run: String,
+    /// Column of the pressure.
+    pub column: String,
+    /// Distance at the nominal clearance, m, with recorded pressure, Pa.
+    pub measured: Vec<[f64; 2]>,
+    /// The same with the pressure of the nominal parameters.
+    pub before: Vec<[f64; 2]>,
+    /// Distance at the calibrated clearance, with the pressure of the calibrated parameters.
+    pub after: Vec<[f64; 2]>,
+    /// RMS of the simulated pressure's difference from the recorded one, Pa.
+    pub rms_pa: Misfit,
+    /// Part of the cycle, and which share of the squared difference stands there after calibration.
+    pub shares: Vec<(String, f64)>,
 }
 
 /// What a machine that was calibrated at some clearances shows at others, under each relation
@@ -115,6 +137,8 @@ pub struct Estimate {
     pub value: f64,
     /// 95 % interval; none where the recordings do not tell the parameter.
     pub interval: Option<[f64; 2]>,
+    /// Whether the value lies at the edge of its search range.
+    pub at_bound: bool,
     /// Why it is not told, in words; empty where that is not known, or where it is told.
     pub reason: String,
 }

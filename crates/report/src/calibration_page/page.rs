@@ -1,8 +1,8 @@
 //! The page itself.
 
 use super::{
-    CalibrationPage, Estimate, Hypothesis, Transfer, misfits, parameters, transfers, verdict,
-    waveforms, words,
+    CalibrationPage, Estimate, Hypothesis, Transfer, indicators, misfits, parameters, transfers,
+    verdict, waveforms, words,
 };
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
@@ -21,6 +21,8 @@ struct View<'a> {
     intervals: Vec<(usize, Plate)>,
     correlations: Vec<(usize, Plate)>,
     transfers: Vec<(usize, Plate)>,
+    gas: Vec<String>,
+    indicators: Vec<(usize, Plate)>,
     runs: Vec<(usize, Plate)>,
 }
 
@@ -49,6 +51,8 @@ impl CalibrationPage {
             intervals: numbered(parameters::intervals(self).into_iter().collect()),
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
             transfers: numbered(transfers::plates(self)),
+            gas: indicators::sentences(self),
+            indicators: numbered(indicators::plate(self).into_iter().collect()),
             runs: numbered(waveforms::plates(self)),
         };
         let html = view.render()?;
@@ -57,6 +61,7 @@ impl CalibrationPage {
             view.intervals,
             view.correlations,
             view.transfers,
+            view.indicators,
             view.runs,
         ];
         let figures = plates

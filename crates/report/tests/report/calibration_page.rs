@@ -6,8 +6,8 @@ use report::calibration_page::{CalibrationPage, Channel, Estimate, Misfit, Run};
 #[test]
 fn every_section_is_there_and_every_figure_is_well_formed() {
     let page = calibration::page().render().unwrap();
-    // Misfits, intervals, correlations, two sets of clearances, five runs.
-    assert_eq!(page.figures.len(), 3 + 2 + 5);
+    // Misfits, intervals, correlations, two sets of clearances, a diagram, five runs.
+    assert_eq!(page.figures.len(), 3 + 2 + 1 + 5);
     for file in &page.figures {
         assert!(page.html.contains(&file.svg), "{}", file.name);
         roxmltree::Document::parse(&file.svg).unwrap();
@@ -18,6 +18,7 @@ fn every_section_is_there_and_every_figure_is_well_formed() {
         "untold",
         "correlations",
         "clearances",
+        "gas",
         "runs",
         "reading",
     ] {

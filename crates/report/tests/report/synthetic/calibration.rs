@@ -2,8 +2,8 @@
 
 use super::Uniform;
 use report::calibration_page::{
-    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
-    Point, Run, Transfer,
+    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Indicator, Misfit,
+    OrderResidual, Point, Run, Transfer,
 };
 use std::f64::consts::TAU;
 
@@ -47,6 +47,7 @@ pub fn page() -> CalibrationPage {
             .collect(),
         runs,
         transfer: Some(transfer()),
+        indicators: vec![indicator()],
     }
 }
 
@@ -64,7 +65,7 @@ fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> Estimat
         nominal,
         value,
         interval: half.map(|half| [value * (1.0 - half), value * (1.0 + half)]),
-        reason: String::new(),
+        ..Estimate::default()
     }
 }
 
@@ -107,6 +108,23 @@ fn run(number: usize, random: &mut Uniform) -> Run {
             channel("crosshead_acceleration_m_s2", 240.0, 0.0),
             channel("cylinder_pressure_pa", 1.2e5, 2.5e5),
         ],
+    }
+}
+
+/// Corners of a cycle without any rounding.
+fn indicator() -> Indicator {
+    let cycle = |high: f64| vec![[0.02, high], [0.26, 1e5], [0.1, 1e5], [0.05, high]];
+    Indicator {
+        run: "run01".into(),
+        column: "cylinder_pressure_pa".into(),
+        measured: cycle(4.1e5),
+        before: cycle(3.9e5),
+        after: cycle(4e5),
+        rms_pa: Misfit {
+            before: 2.4e4,
+            after: 8e3,
+        },
+        shares: vec![("suction".into(), 0.6), ("compression".into(), 0.4)],
     }
 }
 
