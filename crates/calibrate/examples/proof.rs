@@ -17,7 +17,7 @@ use input::{MachineFile, paths};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
-use simulate::{Chain, ChamberEnd, Measured, Noise, NoiseLevel, Sensor, Settings, Transient};
+use simulate::{Chain, ChamberEnd, Measured, Sensor, Settings, Transient};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;

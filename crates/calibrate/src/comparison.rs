@@ -1,6 +1,7 @@
 //! Measured beside simulated, before and after: what a picture of a calibration shows.
 
 use crate::error::Error;
+use crate::few_revolutions;
 use crate::likelihood::{ACCURACY, Likelihood, residuals};
 use crate::observation::{self, Observation, Observed, POINTS, Run};
 use crate::prediction::Prediction;
@@ -29,7 +30,7 @@ pub struct Comparison {
 pub struct Means {
     /// Mean of the measured revolutions.
     pub measured: f64,
-    /// Standard deviation from revolution to revolution; 0 where there is one only.
+    /// Standard deviation from revolution to revolution; 0 where there are too few.
     pub scatter: f64,
     /// Standard deviation of the measured mean.
     pub noise: f64,
@@ -66,9 +67,15 @@ pub fn compare(problem: &Problem, recordings: &[Run], x: &[f64]) -> Result<Vec<C
         for (i, channel) in run.channels.iter().enumerate() {
             let scatter = match recording {
                 Some(recording) => scatter(recording, channel)?,
-                None => vec![0.0; POINTS],
+                None => None,
             };
-            comparisons.push(of_channel(run, channel, &scatter, [before, after], i));
+            comparisons.push(of_channel(
+                run,
+                channel,
+                scatter.as_deref(),
+                [before, after],
+                i,
+            ));
         }
     }
     Ok(comparisons)
@@ -77,7 +84,7 @@ pub fn compare(problem: &Problem, recordings: &[Run], x: &[f64]) -> Result<Vec<C
 fn of_channel(
     run: &Observation,
     channel: &Observed,
-    scatter: &[f64],
+    scatter: Option<&[f64]>,
     predictions: [&Prediction; 2],
     index: usize,
 ) -> Comparison {
@@ -88,6 +95,10 @@ fn of_channel(
     let has_mean = !channel.column.contains("acceleration");
     let measured = wave(&channel.lines, has_mean);
     let root = (channel.lines.revolutions as f64).sqrt();
+    // Where revolutions cannot be compared, the noise of the orders stands for all angles alike.
+    let variance = channel.lines.variance.iter().skip(1).sum::<f64>() / 2.0;
+    let scatter_at = |i: usize| scatter.map_or(0.0, |scatter| scatter[i]);
+    let noise_at = |i: usize| scatter.map_or(variance.sqrt(), |scatter| scatter[i] / root);
     let [before, after] = predictions.map(|prediction| {
         let lines = prediction.lines[index].clone();
         let wave = wave(&lines, has_mean);
@@ -116,8 +127,8 @@ fn of_channel(
         means: (0..POINTS)
             .map(|i| Means {
                 measured: measured[i],
-                scatter: scatter[i],
-                noise: scatter[i] / root,
+                scatter: scatter_at(i),
+                noise: noise_at(i),
                 before: before.0[i],
                 after: after.0[i],
             })
@@ -139,8 +150,9 @@ fn wave(lines: &OrderLines, has_mean: bool) -> Vec<f64> {
     (0..POINTS).map(at).collect()
 }
 
-/// Standard deviation from revolution to revolution at [`POINTS`] crank angles.
-fn scatter(run: &Run, channel: &Observed) -> Result<Vec<f64>, Error> {
+/// Standard deviation from revolution to revolution at [`POINTS`] crank angles; none where there are
+/// too few.
+fn scatter(run: &Run, channel: &Observed) -> Result<Option<Vec<f64>>, Error> {
     let error = |source| Error::Signal {
         run: run.id.clone(),
         channel: channel.column.clone(),
@@ -148,9 +160,12 @@ fn scatter(run: &Run, channel: &Observed) -> Result<Vec<f64>, Error> {
     };
     let recorded = run.channels.iter().find(|c| c.column == channel.column);
     let Some(recorded) = recorded else {
-        return Ok(vec![0.0; POINTS]);
+        return Ok(None);
     };
     let angle = observation::angle(run, recorded)?;
+    if few_revolutions::is_short(&angle) {
+        return Ok(None);
+    }
     let grid = AngleGrid::new(&angle, POINTS).map_err(error)?;
     let revolutions = grid.resample(&recorded.samples).map_err(error)?;
     let mean = revolutions.synchronous_mean();
@@ -163,7 +178,8 @@ fn scatter(run: &Run, channel: &Observed) -> Result<Vec<f64>, Error> {
         }
     }
     let free = revolutions.count().saturating_sub(1).max(1) as f64;
-    Ok(squares.into_iter().map(|sum| (sum / free).sqrt()).collect())
+    let scatter = squares.into_iter().map(|sum| (sum / free).sqrt());
+    Ok(Some(scatter.collect()))
 }
 
 #[cfg(test)]

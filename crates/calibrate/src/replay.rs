@@ -1,13 +1,14 @@
 //! A run simulated in place of its recording: at the same instants, the crank where it was.
 
 use crate::error::Error;
+use crate::few_revolutions;
 use crate::likelihood::{ACCURACY, misfit, residuals};
 use crate::observation::{self, Observation, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
 use input::Resolved;
 use mechanism::drive::{Drive, GivenSpeed};
-use signal::angle_resampling::{AngleGrid, Revolutions};
+use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::{CrankAngle, unwrap};
 use signal::order_lines::OrderLines;
 use signal::synchronous_average::SynchronousAverage;
@@ -20,9 +21,9 @@ const TOLERANCE: f64 = 1e-9;
 /// it is given.
 const SETTLED: f64 = 1e-7;
 const AT_MOST: u32 = 100;
-/// Share of a signal's mean square that does not repeat every revolution, above which a settled
-/// motion has a longer period; resampling leaves 1e-8.
-const LONGER_PERIOD: f64 = 1e-6;
+/// Share of a signal's mean square up to which what does not repeat every revolution is passed over;
+/// resampling leaves 1e-8.
+const SAME: f64 = 1e-6;
 /// Longest period of a settled motion, revolutions.
 const LONGEST_PERIOD: u32 = 4;
 
@@ -111,12 +112,10 @@ pub fn replay(
         .iter()
         .map(|c| wanted(&c.column))
         .collect();
-    let grid_of = |shown: &Shown| {
-        let angle = CrankAngle::from_encoder(&shown.crank_angle)?;
-        AngleGrid::new(&angle, POINTS)
-    };
-    let mut grid = grid_of(&chosen).map_err(analysis)?;
-    if chosen.settled && has_longer_period(&grid, &chosen.series).map_err(analysis)? {
+    let mut seen = Seen::of(&chosen).map_err(analysis)?;
+    let mut same = seen.repeats(&chosen.series).map_err(analysis)?;
+    if chosen.settled && !same {
+        same = true;
         let revolution = TAU / speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
         let mut least = apart(&chosen.series, &recordings);
         for shift in 1..LONGEST_PERIOD {
@@ -127,18 +126,18 @@ pub fn replay(
                 (least, chosen) = (difference, other);
             }
         }
-        grid = grid_of(&chosen).map_err(analysis)?;
+        seen = Seen::of(&chosen).map_err(analysis)?;
     }
     let channels = observation.channels.iter().zip(chosen.series);
     let channels: Vec<(Replayed, OrderLines)> = channels
         .zip(recordings)
         .map(|((observed, samples), recording)| {
-            let lines = observation::lines(&grid, &samples)?;
+            let lines = seen.lines(&samples)?;
             let alone = Observation {
                 channels: vec![observed.clone()],
                 ..observation.clone()
             };
-            let prediction = prediction(vec![lines.clone()], chosen.settled);
+            let prediction = prediction(vec![lines.clone()], same);
             let has_mean = !observed.column.contains("acceleration");
             let replayed = Replayed {
                 column: observed.column.clone(),
@@ -153,12 +152,12 @@ pub fn replay(
         .collect::<Result<_, _>>()
         .map_err(analysis)?;
     let (channels, lines): (Vec<Replayed>, Vec<OrderLines>) = channels.into_iter().unzip();
-    let prediction = prediction(lines, chosen.settled);
+    let prediction = prediction(lines, same);
     let simulated = speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
     Ok(Replay {
         angle_difference: angle_difference(&chosen.crank_angle, recorded.angles()),
         channels,
-        periodic: chosen.settled,
+        periodic: same,
         recorded_rpm: place.speed * 60.0 / TAU,
         simulated_rpm: simulated * 60.0 / TAU,
         misfit: misfit(&residuals(observation, &prediction, ACCURACY)),
@@ -291,19 +290,51 @@ fn speed(wrapped: &[f64], sample_rate: f64) -> Result<f64, signal::Error> {
     Ok(Place::of(&CrankAngle::from_encoder(wrapped)?, sample_rate).speed)
 }
 
-fn has_longer_period(grid: &AngleGrid, series: &[Vec<f64>]) -> Result<bool, signal::Error> {
-    for samples in series {
-        let revolutions: Revolutions = grid.resample(samples)?;
-        if revolutions.count() < 2 {
-            return Ok(false);
+/// A simulated run over its crank angle.
+enum Seen {
+    /// Revolutions that can be compared.
+    Revolutions(AngleGrid),
+    /// Too few for that.
+    Few(CrankAngle),
+}
+
+impl Seen {
+    fn of(shown: &Shown) -> Result<Self, signal::Error> {
+        let angle = CrankAngle::from_encoder(&shown.crank_angle)?;
+        if few_revolutions::is_short(&angle) {
+            return Ok(Self::Few(angle));
         }
-        // A channel that does not move at all has no period.
-        let share = SynchronousAverage::new(&revolutions)?.synchronous_share();
-        if share.is_ok_and(|share| share < 1.0 - LONGER_PERIOD) {
-            return Ok(true);
+        Ok(Self::Revolutions(AngleGrid::new(&angle, POINTS)?))
+    }
+
+    fn lines(&self, samples: &[f64]) -> Result<OrderLines, signal::Error> {
+        match self {
+            Self::Revolutions(grid) => observation::lines(grid, samples),
+            Self::Few(angle) => {
+                let lines = few_revolutions::lines(angle, samples);
+                let got = angle.revolutions();
+                lines.ok_or(signal::Error::TooFewRevolutions { needed: 1, got })
+            }
         }
     }
-    Ok(false)
+
+    /// Whether every revolution is like the next.
+    fn repeats(&self, series: &[Vec<f64>]) -> Result<bool, signal::Error> {
+        let Self::Revolutions(grid) = self else {
+            return Ok(true);
+        };
+        for samples in series {
+            // A channel that does not move at all has no period.
+            let split = SynchronousAverage::new(&grid.resample(samples)?)?;
+            if split
+                .synchronous_share()
+                .is_ok_and(|share| share < 1.0 - SAME)
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
 }
 
 /// Mean square of the difference of each channel over that of the recording, added up.

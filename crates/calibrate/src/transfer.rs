@@ -31,8 +31,9 @@ const WORN: f64 = 3.0;
 const STRONG: f64 = 6.0;
 /// Standard deviations that bound 95 % of a normal distribution.
 const QUANTILE: f64 = 1.959_964;
-/// Most evaluations of the model for a fit under another relation.
-const EVALUATIONS: u64 = 200;
+/// Most evaluations of the model for a fit under another relation: some ten steps. One that needs
+/// more is far off.
+const EVALUATIONS: u64 = 80;
 
 /// What the relations between clearances come to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -147,9 +148,12 @@ pub fn transfer(
             continue;
         }
         let start = under(problem, fit, relation, &joints)?;
-        machines.push(match basis {
-            Basis::Fitted => refitted(start, &held_out, &mut watch)?,
-            _ => start,
+        let parameters = &start.problem.parameters;
+        let as_fitted = start.problem.tree == problem.tree && *parameters == problem.parameters;
+        machines.push(if basis == Basis::Fitted && !as_fitted {
+            refitted(start, &held_out, &mut watch)?
+        } else {
+            start
         });
     }
     if stopped {

@@ -1,6 +1,7 @@
 //! Runs simulated in place of recordings that were themselves simulated: they must come back.
 
 use calibrate::problem::columns;
+use calibrate::replay::Replayed;
 use calibrate::{Channel, Observation, Problem, Replay, Run, replay};
 use input::{MachineFile, machine_file, paths};
 use serde_json::Value;
@@ -88,7 +89,7 @@ fn mean_speed_rpm(wrapped: &[f64]) -> f64 {
 
 /// Largest RMS difference of a channel, over the recording's RMS about its mean.
 fn worst(run: &Run, replay: &Replay) -> f64 {
-    let of_channel = |(channel, replayed): (&Channel, &calibrate::replay::Replayed)| {
+    let of_channel = |(channel, replayed): (&Channel, &Replayed)| {
         assert_eq!(channel.column, replayed.column);
         assert_eq!(channel.samples.len(), replayed.samples.len());
         let both = channel.samples.iter().zip(&replayed.samples);

@@ -35,11 +35,15 @@ impl Earlier {
     }
 }
 
-/// Checks that the folder may be written into, before any work.
+/// Checks that the folder may be written into, before any work. One that is renewed is known to be
+/// ours.
 ///
 /// # Errors
 /// A calibration that is not to be touched, or a folder with something else in it.
 pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
+    if existing == Existing::Renew {
+        return Ok(());
+    }
     if folder.join(output::RESULTS).is_file() {
         return match existing {
             Existing::Refuse => Err(Failure::input(format!(

@@ -12,6 +12,7 @@ mod relation;
 
 use crate::{Failure, report};
 use ::calibrate::optimiser::Progress;
+use earlier::Earlier;
 use input::calibration::Calibration;
 use serde_json::Value;
 use std::ops::ControlFlow;
@@ -21,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 pub use arguments::Arguments;
-pub use problem::Task;
+pub use problem::{Task, task};
 
 /// What is calibrated, and how.
 pub struct Settings<'a> {
@@ -29,6 +30,8 @@ pub struct Settings<'a> {
     pub calibration: &'a Calibration,
     /// The folder from which their paths start.
     pub base: &'a Path,
+    /// The tree of the machine file, in the place of the file that the settings name.
+    pub machine: Option<&'a Value>,
     /// Gives a mistake in the settings the place where they stand.
     pub locate: &'a dyn Fn(input::Error) -> input::Error,
 }
@@ -71,6 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let settings = Settings {
         calibration: &calibration,
         base: &base,
+        machine: None,
         locate: &locate,
     };
     let cancel = Arc::new(AtomicBool::new(false));
@@ -93,59 +97,101 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Calibrates into the folder `out`. `cancel` stops the search at its next step, and what was best
-/// so far is written, marked as incomplete. Everything that can be wrong with the input is found
-/// before the search begins, and nothing is written then.
+/// Calibrates into the folder `out`: [`prepare`], then [`Prepared::finish`].
 ///
 /// # Errors
-/// Settings, a bundle, a machine or recordings that cannot be used or contradict each other, a
-/// folder that is in the way, or files that cannot be written.
+/// As those.
 pub fn into_folder(
     settings: &Settings,
     out: &Path,
     existing: Existing,
     cancel: &AtomicBool,
 ) -> Result<Calibrated, Failure> {
+    prepare(settings, out, existing)?.finish(cancel)
+}
+
+/// A calibration whose input has been read and found to be usable.
+pub struct Prepared {
+    task: Task,
+    fingerprint: String,
+    out: PathBuf,
+    earlier: Option<Earlier>,
+}
+
+/// Reads everything that a calibration into the folder `out` needs, and what is there of it already.
+/// Nothing is written.
+///
+/// # Errors
+/// Settings, a bundle, a machine or recordings that cannot be used or contradict each other, or a
+/// folder that is in the way.
+pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Prepared, Failure> {
     earlier::check_folder(out, existing)?;
-    let mut task = problem::task(settings)?;
+    let task = problem::task(settings)?;
     let fingerprint = task.fingerprint();
-    let machine = out.join(output::MACHINE);
-    let (mut evaluations, mut seconds) = (0, 0.0);
-    if let Some(earlier) = earlier::look(out, existing, &fingerprint)? {
-        if earlier.is_complete() {
-            return Ok(Calibrated {
-                machine,
-                results: earlier.results,
-                reused: true,
-            });
-        }
-        task.settings.start = Some(earlier.start(&task.problem));
-        (evaluations, seconds) = earlier.spent();
-    }
-    let start = Instant::now();
-    let fit = progress::search(&mut task, cancel)?;
-    let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    };
-    // A search that was stopped is not compared with others.
-    let transfer = match fit.complete {
-        true => ::calibrate::transfer(&task.problem, &fit, watch).map_err(Failure::work)?,
-        false => None,
-    };
-    let found = output::Found {
-        fit: &fit,
-        transfer: transfer.as_ref(),
-        fingerprint: &fingerprint,
-        evaluations: evaluations + fit.evaluations,
-        seconds: seconds + start.elapsed().as_secs_f64(),
-    };
-    pictures::write(out, &task.problem, &task.runs, &fit)?;
-    let results = output::write(out, &task, &found)?;
-    report::write_calibration(out, &out.join(report::PAGE))?;
-    Ok(Calibrated {
-        machine,
-        results,
-        reused: false,
+    Ok(Prepared {
+        earlier: earlier::look(out, existing, &fingerprint)?,
+        task,
+        fingerprint,
+        out: out.to_owned(),
     })
+}
+
+impl Prepared {
+    /// Whether it is there already, complete.
+    pub fn is_done(&self) -> bool {
+        self.earlier.as_ref().is_some_and(Earlier::is_complete)
+    }
+
+    /// Searches, unless it is done. `cancel` stops the search at its next step, and what was best so
+    /// far is written, marked as incomplete.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated, or files that cannot be written.
+    pub fn finish(self, cancel: &AtomicBool) -> Result<Calibrated, Failure> {
+        let Prepared {
+            mut task,
+            fingerprint,
+            out,
+            earlier,
+        } = self;
+        let machine = out.join(output::MACHINE);
+        let (mut evaluations, mut seconds) = (0, 0.0);
+        if let Some(earlier) = earlier {
+            if earlier.is_complete() {
+                return Ok(Calibrated {
+                    machine,
+                    results: earlier.results,
+                    reused: true,
+                });
+            }
+            task.settings.start = Some(earlier.start(&task.problem));
+            (evaluations, seconds) = earlier.spent();
+        }
+        let start = Instant::now();
+        let fit = progress::search(&mut task, cancel)?;
+        let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        // A search that was stopped is not compared with others.
+        let transfer = match fit.complete {
+            true => ::calibrate::transfer(&task.problem, &fit, watch).map_err(Failure::work)?,
+            false => None,
+        };
+        let found = output::Found {
+            fit: &fit,
+            transfer: transfer.as_ref(),
+            fingerprint: &fingerprint,
+            evaluations: evaluations + fit.evaluations,
+            seconds: seconds + start.elapsed().as_secs_f64(),
+        };
+        pictures::write(&out, &task.problem, &task.runs, &fit)?;
+        let results = output::write(&out, &task, &found)?;
+        report::write_calibration(&out, &out.join(report::PAGE))?;
+        Ok(Calibrated {
+            machine,
+            results,
+            reused: false,
+        })
+    }
 }

@@ -3,6 +3,7 @@
 use super::{Task, gas, relation};
 use crate::Failure;
 use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::parameter::Scale;
 use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
@@ -76,6 +77,8 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
             "nominal": estimate.parameter.nominal,
             "identifiable": estimate.interval.is_some(),
             "at_bound": estimate.at_bound(),
+            "bounds": estimate.parameter.bounds,
+            "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
         });
         parameters.insert(path.clone(), content);
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);

@@ -15,6 +15,7 @@ use input::unit::Dimension;
 use input::{MachineFile, paths};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
+use signal::crank_angle::CrankAngle;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
@@ -25,6 +26,10 @@ const EVALUATIONS: u32 = 5000;
 /// Change of a run's zero of the crank angle that is worth another fit, rad: a tenth of the noise of
 /// usual lines.
 const ALIGNED: f64 = 1e-5;
+
+/// Relative difference from which a measured speed takes the place of the stated one: an encoder
+/// tells it better than a recording's other errors.
+const SPEED: f64 = 2e-5;
 
 /// What a calibration works on.
 pub struct Task {
@@ -48,13 +53,20 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     let asked = settings.calibration;
     let bundles = bundles(settings)?;
     let machine = asked.machine.as_ref().map(|path| settings.base.join(path));
-    let mut tree = bundle::machine(&bundles[0].bundle, machine.as_deref())?;
+    let mut tree = match settings.machine {
+        Some(tree) => tree.clone(),
+        None => bundle::machine(&bundles[0].bundle, machine.as_deref())?,
+    };
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
     for listed in &bundles {
         let (own, own_zeroed) = listed.runs(settings, &tree)?;
         runs.extend(own);
         zeroed.extend(own_zeroed);
+    }
+    let free = tree["crank"]["drive"]["free"].is_object();
+    for run in &mut runs {
+        turn(run, free)?;
     }
     let Some(first) = runs.first() else {
         return Err(Failure::input("every run is left out"));
@@ -65,7 +77,10 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     }
     let fit_settings = fit_settings(settings, &tree, &runs)?;
     let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
-    let resolved = MachineFile::from_tree(&tree)?.resolve()?;
+    let source = machine.unwrap_or_else(|| bundles[0].bundle.folder.join(input::bundle::FILE));
+    let resolved = MachineFile::from_tree(&tree).and_then(|file| file.resolve());
+    let resolved =
+        resolved.map_err(|error| Failure::input(format!("{}: {error}", source.display())))?;
     let mut parameters = parameters(settings, &tree, &runs)?;
     for exponent in exponents {
         let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
@@ -91,16 +106,6 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
 impl Task {
     /// Looks at all runs, and holds them against the nominal machine.
     fn observe(&mut self) -> Result<(), Failure> {
-        for run in &mut self.runs {
-            if run.crank_angle.is_none() {
-                let measured = alignment::speed(run);
-                contradiction::speed(run, measured)?;
-                let step = TAU * measured / 60.0 / run.sample_rate;
-                let samples = run.channels.first().map_or(0, |c| c.samples.len());
-                let angles = (0..samples).map(|i| (step * i as f64).rem_euclid(TAU));
-                run.crank_angle = Some(angles.collect());
-            }
-        }
         let seen = self.runs.iter().map(|run| observe(run, &self.columns));
         self.problem.runs = seen.collect::<Result<_, _>>()?;
         let nominal = vec![0.0; self.problem.parameters.len()];
@@ -170,6 +175,33 @@ impl Task {
         }
         format!("{:x}", hash.finalize())
     }
+}
+
+/// Gives a run the speed at which it turns, and a crank angle of that speed where it has none.
+fn turn(run: &mut Run, free: bool) -> Result<(), Failure> {
+    let measured = match &run.crank_angle {
+        Some(angle) => {
+            let angle = CrankAngle::from_encoder(angle);
+            let angle = angle.map_err(|error| bundle::unusable(&run.id, &error.to_string()))?;
+            60.0 * run.sample_rate / angle.samples_per_revolution()
+        }
+        None => alignment::speed(run),
+    };
+    contradiction::speed(run, measured)?;
+    if run.crank_angle.is_none() {
+        let step = TAU * measured / 60.0 / run.sample_rate;
+        let samples = run.channels.first().map_or(0, |c| c.samples.len());
+        let angles = (0..samples).map(|i| (step * i as f64).rem_euclid(TAU));
+        run.crank_angle = Some(angles.collect());
+    }
+    // A free crank's setting is another speed, that of its motor's torque.
+    if !free && (measured / run.speed_rpm - 1.0).abs() > SPEED {
+        run.speed_rpm = measured;
+        for (_, value) in run.settings.iter_mut().filter(|(path, _)| path == "speed") {
+            *value = format!("{measured} rpm").into();
+        }
+    }
+    Ok(())
 }
 
 fn observe(run: &Run, columns: &[String]) -> Result<Observation, Failure> {

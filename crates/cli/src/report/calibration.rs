@@ -127,6 +127,7 @@ impl<'a> Results<'a> {
                 true => Some([number("low")?, number("high")?]),
                 false => None,
             },
+            at_bound: content["at_bound"] == true,
             reason: content["reason"].as_str().unwrap_or_default().to_owned(),
         })
     }

@@ -120,6 +120,8 @@ pub struct Estimate {
     pub value: f64,
     /// 95 % interval; none where the recordings do not tell the parameter.
     pub interval: Option<[f64; 2]>,
+    /// Whether the value lies at the edge of its search range.
+    pub at_bound: bool,
     /// Why it is not told, in words; empty where that is not known, or where it is told.
     pub reason: String,
 }

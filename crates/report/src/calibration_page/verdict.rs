@@ -87,10 +87,12 @@ pub(super) fn found(estimates: &[Estimate]) -> Vec<String> {
             _ => format!("{percent} below its nominal value"),
         };
         let half = (high - low).abs() / 2.0 / estimate.value.abs();
-        Some(format!(
-            "{name}: {said}, known to ±{}.",
-            self::percent(half)
-        ))
+        let edge = match estimate.at_bound {
+            true => " It lies at the edge of its search range: give it wider bounds.",
+            false => "",
+        };
+        let half = self::percent(half);
+        Some(format!("{name}: {said}, known to ±{half}.{edge}"))
     };
     estimates.iter().filter_map(say).collect()
 }
@@ -203,7 +205,7 @@ mod tests {
             nominal: 2e10,
             value,
             interval,
-            reason: String::new(),
+            ..Estimate::default()
         };
         let found = found(&[
             of(1.6e10, Some([1.5e10, 1.7e10])),

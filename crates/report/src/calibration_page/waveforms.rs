@@ -13,6 +13,8 @@ const MOST_RUNS: usize = 40;
 const HALF: f64 = 1.96;
 /// Points, beyond which dots stand for orders.
 const MANY: usize = 60;
+/// Residuals below this share of the noise are not shown: they are as small by chance.
+const LOWEST: f64 = 0.1;
 /// The recording.
 const MEASURED: Colour = Colour::Ink;
 
@@ -95,9 +97,9 @@ fn panels(channel: &Channel) -> Vec<Panel> {
         x: Axis::crank_angle(),
         y: Axis::linear(text::with_unit("difference", unit)),
         series: vec![
-            line("", BEFORE, Mark::Line, &|p| p.before - p.measured),
+            line("", BEFORE, Mark::HairLine, &|p| p.before - p.measured),
             band("", &|_| 0.0, &|p| p.noise),
-            line("", AFTER, Mark::Line, &|p| p.after - p.measured),
+            line("", AFTER, Mark::HairLine, &|p| p.after - p.measured),
         ],
         ..Panel::default()
     };
@@ -106,6 +108,8 @@ fn panels(channel: &Channel) -> Vec<Panel> {
 
 fn residuals(orders: &[OrderResidual]) -> Panel {
     let highest = orders.iter().map(|o| o.order).fold(1.0, f64::max);
+    let both = orders.iter().flat_map(|o| [o.before, o.after]);
+    let greatest = both.filter(|r| r.is_finite()).fold(2.0, f64::max);
     let mark = match orders.len() {
         0..MANY => Mark::Points,
         _ => Mark::Dots,
@@ -119,7 +123,10 @@ fn residuals(orders: &[OrderResidual]) -> Panel {
             range: Some((-0.02 * highest, 1.02 * highest)),
             ..Axis::linear("order")
         },
-        y: Axis::log("difference over noise"),
+        y: Axis {
+            range: Some((LOWEST, 1.5 * greatest)),
+            ..Axis::log("difference over noise")
+        },
         series: vec![
             Series::new(
                 "",

@@ -80,6 +80,9 @@ pub struct Normal {
     pub mean: Option<Amount>,
     /// Standard deviation.
     pub deviation: Amount,
+    /// Least and greatest value; a draw beyond gets the nearer of them.
+    #[serde(default)]
+    pub range: Option<[Amount; 2]>,
 }
 
 /// A lognormal distribution.
@@ -91,6 +94,9 @@ pub struct Lognormal {
     pub median: Option<Amount>,
     /// 68 % of the values lie between median / factor and median × factor.
     pub factor: Number<FromOne>,
+    /// Least and greatest value; a draw beyond gets the nearer of them.
+    #[serde(default)]
+    pub range: Option<[Amount; 2]>,
 }
 
 /// One of several values.

@@ -118,7 +118,7 @@ fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> Estimat
         nominal,
         value,
         interval: half.map(|half| [value * (1.0 - half), value * (1.0 + half)]),
-        reason: String::new(),
+        ..Estimate::default()
     }
 }
 
