@@ -1,14 +1,13 @@
 //! From a problem to a calibrated machine.
 
 use crate::error::Error;
-use crate::identifiability::{Information, information};
+use crate::identifiability::{Information, information, widening};
 use crate::likelihood::{Likelihood, misfit};
-use crate::optimiser::{self, Genetic, LeastSquares, Progress};
+use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
+use crate::search::{self, NOISE};
 use nalgebra::DMatrix;
-use rand::RngExt;
-use scalar::random::{Purpose, stream};
 use std::ops::ControlFlow;
 
 /// How a calibration is made.
@@ -22,15 +21,16 @@ pub struct FitSettings {
     pub evaluations: u64,
     /// Runs that are not fitted to, but predicted.
     pub held_out: Vec<String>,
-    /// The coordinates from which the search starts; the nominal ones where there are none.
+    /// Coordinates from which the search goes on, as [`Progress`] told them; without them it starts
+    /// at the nominal values.
     pub start: Option<Vec<f64>>,
 }
 
 /// How the best fit is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Optimiser {
-    /// Levenberg and Marquardt from the nominal values; where that leaves more than noise, from
-    /// other values too, then CMA-ES, and Levenberg and Marquardt again from where it ends.
+    /// Levenberg and Marquardt from the nominal values; where that leaves more than noise, with the
+    /// great lines first and from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
     /// CMA-ES alone.
@@ -53,11 +53,8 @@ impl Optimiser {
     }
 }
 
-/// A misfit below this is taken for noise, and no better fit is looked for.
-const NOISE: f64 = 1.15;
-
-/// Points from which the search starts again.
-const STARTS: usize = 8;
+/// A value this near to a bound, as a share of the range, is at it.
+const AT_BOUND: f64 = 1e-3;
 
 /// A calibrated machine.
 #[derive(Clone, Debug)]
@@ -99,6 +96,16 @@ pub struct Estimate {
     pub interval: Option<[f64; 2]>,
 }
 
+impl Estimate {
+    /// Whether the best fit lies at a bound of the parameter: the bound says where it ends, and the
+    /// recordings ask for more.
+    pub fn at_bound(&self) -> bool {
+        let [low, high] = self.parameter.box_bounds();
+        let x = self.parameter.coordinate(self.value);
+        self.interval.is_some() && (x - low).min(high - x) < AT_BOUND * (high - low)
+    }
+}
+
 /// How far a run is from its prediction, in units of its noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunFit {
@@ -134,7 +141,7 @@ pub fn calibrate(
     let nominal = vec![0.0; problem.parameters.len()];
     let before = Likelihood::new(problem).by_run(&nominal)?;
     let mut free: Vec<usize> = (0..nominal.len()).collect();
-    let mut start = settings.start.clone().unwrap_or_else(|| nominal.clone());
+    let mut start = start(problem, settings)?;
     let mut evaluations = 0;
     let mut complete = true;
     let (x, told) = loop {
@@ -153,10 +160,21 @@ pub fn calibrate(
             complete &= answer.is_continue();
             answer
         };
-        let found = search(&likelihood, &start, settings, &mut watch)?;
+        let found = search(&part, &start, settings, &mut watch)?;
         evaluations += found.evaluations;
-        let information = information(&likelihood, &found.x);
+        let mut information = information(&likelihood, &found.x);
         evaluations += 1 + optimiser::DERIVATIVES + 2 * free.len() as u64;
+        let simple = free.len() == nominal.len() && found.misfit() < NOISE;
+        if information.untold.is_none() && !simple {
+            let whole = Likelihood::new(&fitted);
+            let mut x = nominal.clone();
+            for (i, value) in free.iter().zip(&found.x) {
+                x[*i] = *value;
+            }
+            let factors = widening(&whole, &x, &free);
+            information = information.widened(&factors, &found.x);
+            evaluations += 1 + optimiser::DERIVATIVES;
+        }
         match information.untold {
             // What the recordings do not tell keeps its nominal value, and the rest is fitted again.
             Some(untold) if complete => {
@@ -192,72 +210,44 @@ pub fn calibrate(
     })
 }
 
+/// Where the search starts, within the bounds.
+fn start(problem: &Problem, settings: &FitSettings) -> Result<Vec<f64>, Error> {
+    let count = problem.parameters.len();
+    let Some(start) = &settings.start else {
+        return Ok(vec![0.0; count]);
+    };
+    if start.len() != count || start.iter().any(|x| !x.is_finite()) {
+        return Err(Error::Optimiser(format!(
+            "the start must be {count} finite coordinates, one per parameter; it is {start:?}"
+        )));
+    }
+    let parameters = problem.parameters.iter().zip(start);
+    Ok(parameters
+        .map(|(parameter, x)| {
+            let [low, high] = parameter.box_bounds();
+            x.clamp(low, high)
+        })
+        .collect())
+}
+
 /// The best fit by the optimiser of the settings, from `start`.
 fn search(
-    likelihood: &Likelihood,
+    problem: &Problem,
     start: &[f64],
     settings: &FitSettings,
     watch: optimiser::Watch,
 ) -> Result<Progress, Error> {
     let most = settings.evaluations;
     let seed = settings.seed;
+    let likelihood = Likelihood::new(problem);
     match settings.optimiser {
+        Optimiser::Default => search::search(problem, start, seed, most, watch),
         Optimiser::LevenbergMarquardt => {
-            optimiser::levenberg_marquardt(likelihood, start, most, watch)
+            optimiser::levenberg_marquardt(&likelihood, start, search::CHANGE, most, watch)
         }
-        Optimiser::CmaEs => optimiser::cma_es(likelihood, start, seed, most, watch),
-        Optimiser::Genetic(genetic) => optimiser::genetic(likelihood, &genetic, seed, most, watch),
-        Optimiser::Default => {
-            let mut best = optimiser::levenberg_marquardt(likelihood, start, most, watch)?;
-            let mut spent = best.evaluations;
-            let starts = other_starts(start, &likelihood.bounds(), seed);
-            for start in starts {
-                if best.misfit() < NOISE || spent >= most {
-                    break;
-                }
-                let left = most - spent;
-                let found = optimiser::levenberg_marquardt(likelihood, &start, left, watch)?;
-                spent += found.evaluations;
-                best = better(best, found);
-            }
-            if best.misfit() >= NOISE && spent < most {
-                let left = most - spent;
-                let far = optimiser::cma_es(likelihood, &best.x, seed, left, watch)?;
-                spent += far.evaluations;
-                let left = most.saturating_sub(spent).max(1);
-                let found = optimiser::levenberg_marquardt(likelihood, &far.x, left, watch)?;
-                spent += found.evaluations;
-                best = better(best, better(far, found));
-            }
-            Ok(Progress {
-                evaluations: spent,
-                ..best
-            })
-        }
+        Optimiser::CmaEs => optimiser::cma_es(&likelihood, start, seed, most, watch),
+        Optimiser::Genetic(genetic) => optimiser::genetic(&likelihood, &genetic, seed, most, watch),
     }
-}
-
-fn better(a: Progress, b: Progress) -> Progress {
-    if b.cost < a.cost { b } else { a }
-}
-
-/// Points around `start`, spread evenly over a quarter of the bounds to either side of it: a Latin
-/// hypercube (McKay, Beckman and Conover 1979).
-fn other_starts(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
-    let mut random = stream(seed, 0, Purpose::Design);
-    let mut starts = vec![start.to_vec(); STARTS];
-    for (i, bound) in bounds.iter().enumerate() {
-        let mut places: Vec<usize> = (0..STARTS).collect();
-        for last in (1..STARTS).rev() {
-            places.swap(last, random.random_range(0..=last));
-        }
-        for (point, place) in starts.iter_mut().zip(places) {
-            let share = (place as f64 + 0.5) / STARTS as f64 - 0.5;
-            let moved = point[i] + 0.5 * share * (bound[1] - bound[0]);
-            point[i] = moved.clamp(bound[0], bound[1]);
-        }
-    }
-    starts
 }
 
 fn estimates(
@@ -271,7 +261,14 @@ fn estimates(
         let interval = place.zip(told).map(|(place, told)| told.intervals[place]);
         Estimate {
             value: parameter.value(x[i]),
-            interval: interval.map(|interval| interval.map(|x| parameter.value(x))),
+            // Beyond its bounds a parameter cannot lie.
+            interval: interval.map(|interval| {
+                interval.map(|x| {
+                    parameter
+                        .value(x)
+                        .clamp(parameter.bounds[0], parameter.bounds[1])
+                })
+            }),
             parameter: parameter.clone(),
         }
     };

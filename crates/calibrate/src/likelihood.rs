@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Prediction, predict, predict_with_derivatives};
+use crate::prediction::{Prediction, prediction};
 use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use signal::order_lines::OrderLines;
 
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
-const ACCURACY: f64 = 2e-5;
+pub(crate) const ACCURACY: f64 = 2e-5;
 /// Residual that stands in for every one of a run that cannot be simulated.
 const FAILED: f64 = 1e3;
 
@@ -42,13 +42,28 @@ impl<'a> Likelihood<'a> {
         Self { problem, accuracy }
     }
 
+    fn prediction(
+        &self,
+        run: &Observation,
+        x: &[f64],
+        derivatives: bool,
+    ) -> Result<Prediction, Error> {
+        // Below the usual accuracy the integration keeps to its own.
+        let coarse = if self.accuracy > ACCURACY {
+            self.accuracy
+        } else {
+            0.0
+        };
+        prediction(self.problem, run, x, derivatives, coarse)
+    }
+
     /// The predictions of all runs.
     ///
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn predictions(&self, x: &[f64]) -> Result<Vec<Prediction>, Error> {
         let runs = self.problem.runs.par_iter();
-        runs.map(|run| predict(self.problem, run, x)).collect()
+        runs.map(|run| self.prediction(run, x, false)).collect()
     }
 
     /// The residuals of each run.
@@ -80,7 +95,7 @@ impl LeastSquares for Likelihood<'_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<Vec<f64>> = runs
-            .map(|run| match predict(self.problem, run, x) {
+            .map(|run| match self.prediction(run, x, false) {
                 Ok(prediction) => residuals(run, &prediction, self.accuracy),
                 Err(_) => vec![FAILED; residual_count(run)],
             })
@@ -91,7 +106,7 @@ impl LeastSquares for Likelihood<'_> {
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<DMatrix<f64>> = runs
-            .map(|run| match predict_with_derivatives(self.problem, run, x) {
+            .map(|run| match self.prediction(run, x, true) {
                 Ok(prediction) => derivatives(run, &prediction, x.len(), self.accuracy),
                 Err(_) => DMatrix::zeros(residual_count(run), x.len()),
             })
@@ -117,7 +132,8 @@ fn residual_count(run: &Observation) -> usize {
     channels.map(|channel| channel.orders.len() * 2).sum()
 }
 
-fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
+/// The residuals of a run, channel by channel.
+pub(crate) fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
     let mut all = Vec::with_capacity(residual_count(run));
     for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
         let weights = weights(observed, predicted, accuracy);
@@ -177,7 +193,9 @@ fn weights(observed: &Observed, predicted: &OrderLines, accuracy: f64) -> Vec<f6
         .iter()
         .map(|k| {
             let variance = of(&observed.lines, *k) + of(predicted, *k) + accuracy;
-            (2.0 / variance).sqrt()
+            // The mean has no imaginary part, and all of its noise is in the real one.
+            let parts = if *k == 0 { 1.0 } else { 2.0 };
+            (parts / variance).sqrt()
         })
         .collect()
 }

@@ -1,6 +1,7 @@
 //! A run as measured: its channels over the crank angle, and what in them repeats.
 
 use crate::error::Error;
+use crate::few_revolutions;
 use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
@@ -15,8 +16,12 @@ const CLIPPED: usize = 4;
 const SPEED: f64 = 0.02;
 /// Orders that always count; higher ones do where they stand out of the noise.
 const LOW_ORDERS: usize = 20;
-/// Power over noise from which an order stands out.
+/// Power over noise from which one order stands out: in noise alone one of fifty does.
 const STANDS_OUT: f64 = 4.0;
+/// Orders of a band, and mean power over noise from which a band stands out: noise alone has a mean
+/// of 1 with a standard deviation of a third.
+const BAND: usize = 10;
+const BAND_STANDS_OUT: f64 = 2.5;
 
 /// A run of the machine, as a bundle of recordings has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +38,20 @@ pub struct Run {
     pub crank_angle: Option<Vec<f64>>,
     /// What was measured.
     pub channels: Vec<Channel>,
+}
+
+impl Run {
+    /// The crank angles of the samples of the first whole revolution, or of all where there is none;
+    /// none where the angle is not known.
+    pub fn first_revolution(&self) -> Option<&[f64]> {
+        let angles = self.crank_angle.as_ref()?;
+        let first = *angles.first()?;
+        // From the second half of the revolution on, the next sample past the first ends it.
+        let turned = |a: &f64| (a - first).rem_euclid(TAU);
+        let half = angles.iter().position(|a| turned(a) > 0.5 * TAU)?;
+        let rest = angles[half..].iter().position(|a| turned(a) < 0.5 * TAU);
+        Some(&angles[..rest.map_or(angles.len(), |rest| half + rest)])
+    }
 }
 
 /// A measured channel.
@@ -87,14 +106,19 @@ impl Observation {
             });
         };
         let angle = angle(run, first)?;
+        let short = few_revolutions::is_short(&angle);
         let grid = AngleGrid::new(&angle, POINTS);
+        let of_channel = |samples: &[f64]| {
+            if short && let Some(lines) = few_revolutions::lines(&angle, samples) {
+                return Ok(lines);
+            }
+            lines(grid.as_ref().map_err(Clone::clone)?, samples)
+        };
         let channels = chosen
             .into_iter()
             .map(|channel| {
                 not_clipped(run, channel)?;
-                let lines = grid
-                    .clone()
-                    .and_then(|grid| lines(&grid, &channel.samples))
+                let lines = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
                 let orders = orders(&lines);
                 if orders.len() <= LOW_ORDERS && !stands_out(&lines) {
@@ -132,7 +156,8 @@ fn signal_error(run: &Run, channel: &Channel, source: signal::Error) -> Error {
     }
 }
 
-fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
+/// The crank angle of every sample of a run, recorded or from its speed.
+pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
     let error = |source| Error::Signal {
         run: run.id.clone(),
         channel: "crank_angle_rad".into(),
@@ -179,17 +204,24 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
     Ok(())
 }
 
-fn stands(lines: &OrderLines, order: usize) -> bool {
-    lines.amplitude[order].norm_sqr() > STANDS_OUT * lines.variance[order]
-}
-
 fn stands_out(lines: &OrderLines) -> bool {
-    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1)).any(|k| stands(lines, k))
+    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1))
+        .any(|k| lines.amplitude[k].norm_sqr() > STANDS_OUT * lines.variance[k])
 }
 
-/// The mean of an acceleration is its sensor's, not the machine's; pressures have an order 0.
+/// All orders up to the last [`BAND`] whose mean power stands out of the noise: choosing them one by
+/// one would choose those in which the noise happens to be great. The mean of an acceleration is its
+/// sensor's, not the machine's; pressures have an order 0.
 fn orders(lines: &OrderLines) -> Vec<usize> {
-    (0..lines.amplitude.len())
-        .filter(|&k| k <= LOW_ORDERS || stands(lines, k))
-        .collect()
+    let over_noise: Vec<f64> = lines
+        .amplitude
+        .iter()
+        .zip(&lines.variance)
+        .map(|(c, variance)| c.norm_sqr() / variance.max(f64::MIN_POSITIVE))
+        .collect();
+    let last = over_noise
+        .windows(BAND)
+        .rposition(|band| band.iter().sum::<f64>() > BAND_STANDS_OUT * BAND as f64)
+        .map_or(0, |first| first + BAND - 1);
+    (0..=last.max(LOW_ORDERS).min(lines.amplitude.len() - 1)).collect()
 }

@@ -12,7 +12,10 @@ pub struct Parameter {
     /// `joints.*.friction.coefficient`.
     pub path: String,
     /// The places that hold it.
+    /// There is none for the offset of the crank angle.
     pub places: Vec<String>,
+    /// The run that it is a condition of; none where it holds for the machine.
+    pub run: Option<String>,
     /// Its value there, SI.
     pub nominal: f64,
     /// Its unit; none for a bare number.
@@ -130,11 +133,40 @@ impl Parameter {
         self.bounds.map(|bound| self.coordinate(bound))
     }
 
-    /// Writes a value into a machine file, at every place.
+    /// Writes a value into a machine file, at every place. A condition of a run is none of the
+    /// machine's, and is not written.
     ///
     /// # Errors
     /// Where the file does not have a place.
     pub fn write(&self, tree: &mut Value, value: f64) -> Result<(), Error> {
+        match self.run {
+            Some(_) => Ok(()),
+            None => self.write_everywhere(tree, value),
+        }
+    }
+
+    /// Writes a value into the machine file of a run, if it holds there.
+    ///
+    /// # Errors
+    /// Where the file does not have a place.
+    pub fn write_for(&self, run: &str, tree: &mut Value, value: f64) -> Result<(), Error> {
+        match self.holds_in(run) {
+            true => self.write_everywhere(tree, value),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether it holds in a run.
+    pub fn holds_in(&self, run: &str) -> bool {
+        self.run.as_ref().is_none_or(|of| of == run)
+    }
+
+    /// Whether it is by how much the recorded crank angle is ahead of the crank.
+    pub fn is_crank_angle_offset(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    fn write_everywhere(&self, tree: &mut Value, value: f64) -> Result<(), Error> {
         let written = match self.dimension {
             Some(dimension) => Measure {
                 si: value,
@@ -185,6 +217,7 @@ impl Found {
         Parameter {
             path: path.to_owned(),
             places: self.places,
+            run: None,
             nominal: self.nominal,
             dimension: self.dimension,
             scale: if bounds[0] > 0.0 {
@@ -295,9 +328,9 @@ mod tests {
         assert!(refused(&tree, "name").contains("'"));
         assert!(refused(&tree, "joints.*.contact.stifness").contains("stiffness"));
         assert!(refused(&tree, "rod").contains("no quantity"));
-        paths::set(&mut tree, "cylinder.back_pressure", json!("0 Pa")).unwrap();
-        assert!(refused(&tree, "cylinder.back_pressure").contains("bounds"));
-        let within = |bounds| Parameter::within(&tree, "cylinder.back_pressure", bounds);
+        paths::set(&mut tree, "cylinder.back", json!("0 Pa")).unwrap();
+        assert!(refused(&tree, "cylinder.back").contains("bounds"));
+        let within = |bounds| Parameter::within(&tree, "cylinder.back", bounds);
         assert_eq!(within([-1e5, 1e5]).unwrap().value(0.5), 5e4);
         let refused = within([1e5, 2e5]).unwrap_err().to_string();
         assert!(refused.contains("100000 and 200000"), "{refused}");

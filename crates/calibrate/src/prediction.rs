@@ -3,11 +3,13 @@
 use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
 use crate::problem::Problem;
+use input::Resolved;
+use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::OrderLines;
-use simulate::{Settings, Transient, sensitivities};
+use simulate::{Moved, Sensitivities, Settings, Transient, sensitivities};
 
 /// Relative local error of the integration; far below the noise of any sensor.
 const TOLERANCE: f64 = 1e-7;
@@ -15,6 +17,10 @@ const TOLERANCE: f64 = 1e-7;
 /// it is given.
 const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
+/// How much finer than the lines' accuracy the motion must be.
+const FINER: f64 = 1e-3;
+/// Derivatives that are integrated together.
+const TANGENTS: usize = 8;
 /// Revolutions recorded: those of a motion of period 1, 2 or 4, with one to spare for a free crank
 /// that turns more slowly than its reference speed; and of a motion that never repeats.
 const PERIODIC: u32 = 4;
@@ -36,7 +42,7 @@ pub struct Prediction {
 /// # Errors
 /// A machine that is none, or that cannot be integrated.
 pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
-    prediction(problem, run, x, false)
+    prediction(problem, run, x, false, 0.0)
 }
 
 /// The same with the derivatives by the coordinates. On a motion that does not repeat itself they
@@ -49,14 +55,17 @@ pub fn predict_with_derivatives(
     run: &Observation,
     x: &[f64],
 ) -> Result<Prediction, Error> {
-    prediction(problem, run, x, true)
+    prediction(problem, run, x, true, 0.0)
 }
 
-fn prediction(
+/// The prediction, with or without derivatives, of lines that are trusted to the share `accuracy` of
+/// the greatest only: the integration need not be finer than a thousandth of that.
+pub(crate) fn prediction(
     problem: &Problem,
     run: &Observation,
     x: &[f64],
     derivatives: bool,
+    accuracy: f64,
 ) -> Result<Prediction, Error> {
     let machine = problem.machine(run, x)?;
     let speed = machine.speed.abs();
@@ -69,20 +78,19 @@ fn prediction(
     };
     let mut settings = Settings {
         transient: Transient::Settled {
-            change: SETTLED,
+            change: SETTLED.max(FINER * accuracy),
             at_most: AT_MOST,
         },
         revolutions: PERIODIC + u32::from(free),
         sample_rate,
-        tolerance: TOLERANCE,
+        tolerance: TOLERANCE.max(FINER * TOLERANCE / SETTLED * accuracy),
     };
     let moved = if derivatives {
         problem.moved(run, x)?
     } else {
         Vec::new()
     };
-    let mut record =
-        sensitivities(&machine.machine, &machine.sensors, &moved, &settings).map_err(failed)?;
+    let mut record = in_parallel(&machine, &moved, &settings).map_err(failed)?;
     let periodic = record.settled;
     if !periodic {
         settings.transient = Transient::Revolutions(AT_MOST / 3);
@@ -102,11 +110,12 @@ fn prediction(
     let angle = CrankAngle::from_encoder(angle).map_err(analysis)?;
     let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
     let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
+    let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
     let lines = series
         .iter()
-        .map(|s| lines_of(s))
-        .collect::<Result<Vec<_>, _>>()?;
-    let derivatives = record
+        .map(|s| Ok(later(lines_of(s)?, offset)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let mut derivatives = record
         .derivatives
         .iter()
         .map(|of_parameter| {
@@ -117,18 +126,54 @@ fn prediction(
             channels
                 .map(|(derivative, x)| {
                     let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
-                    let lines = lines_of(&at_angle)?;
+                    let lines = later(lines_of(&at_angle)?, offset);
                     let per_coordinate = |c: &Complex64| c / problem.step();
                     Ok(lines.amplitude.iter().map(per_coordinate).collect())
                 })
                 .collect()
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
+    for (of_parameter, slope) in derivatives.iter_mut().zip(&offset_slopes) {
+        for (of_channel, lines) in of_parameter.iter_mut().zip(&lines) {
+            for (k, (d, c)) in of_channel.iter_mut().zip(&lines.amplitude).enumerate() {
+                *d -= Complex64::I * (k as f64 * slope) * c;
+            }
+        }
+    }
     Ok(Prediction {
         lines,
         derivatives,
         periodic,
     })
+}
+
+/// The lines over a crank angle that reads `offset` more than the crank has turned.
+fn later(mut lines: OrderLines, offset: f64) -> OrderLines {
+    for (k, c) in lines.amplitude.iter_mut().enumerate() {
+        *c *= Complex64::from_polar(1.0, -(k as f64) * offset);
+    }
+    lines
+}
+
+/// The record with its derivatives, eight of them at a time.
+fn in_parallel(
+    machine: &Resolved,
+    moved: &[Moved],
+    settings: &Settings,
+) -> Result<Sensitivities, simulate::Error> {
+    let of = |moved: &[Moved]| sensitivities(&machine.machine, &machine.sensors, moved, settings);
+    let chunks = moved.len().div_ceil(TANGENTS);
+    if chunks < 2 {
+        return of(moved);
+    }
+    let parts = moved.par_chunks(moved.len().div_ceil(chunks)).map(of);
+    let mut parts = parts.collect::<Result<Vec<_>, _>>()?.into_iter();
+    let mut all = parts.next().map_or_else(|| of(&[]), Ok)?;
+    for part in parts {
+        all.settled &= part.settled;
+        all.derivatives.extend(part.derivatives);
+    }
+    Ok(all)
 }
 
 /// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle

@@ -44,10 +44,13 @@ pub struct Calibration {
     /// How the best fit is searched.
     #[serde(default)]
     pub optimiser: Optimiser,
-    /// How contact parameters follow the clearance; as the machine file has it where it is left out.
+    /// How contact parameters follow the clearance. Where it is left out, as the machine file has
+    /// it; where a bundle's machine section says nothing, fitted if the fitted runs have several
+    /// clearances, else eq5.
     #[serde(default)]
     pub relation: Option<Relation>,
-    /// Runs that are predicted and not fitted to; every fourth where it is left out.
+    /// Runs that are predicted and not fitted to. Where it is left out, of every four the last whose
+    /// clearances a fitted run has.
     #[serde(default)]
     pub hold_out: Option<Vec<String>>,
     /// Runs that are not used at all.

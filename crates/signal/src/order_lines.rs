@@ -5,16 +5,14 @@ use crate::error::Error;
 use crate::fft;
 use rustfft::num_complex::Complex64;
 
-/// Bins to either side of an order that its noise is judged from, at most.
-const NEIGHBOURS: usize = 8;
-
 /// The lines of a channel over the crank angle: index `k` holds order `k`, from 0 on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderLines {
     /// c_k of the crank-angle synchronous mean, x̄(θ) = Re Σ c_k e^(ikθ); c_0 is the mean.
     pub amplitude: Vec<Complex64>,
     /// Variance of |c_k| about its expectation: of real and imaginary part together. Whatever is not
-    /// synchronous with the shaft, noise or chaos, counts.
+    /// synchronous with the shaft, noise or chaos, counts. It is an estimate, and widened for that:
+    /// the mean of |c_k − E c_k|² over it is 1.
     pub variance: Vec<f64>,
     /// Revolutions that were averaged over.
     pub revolutions: usize,
@@ -23,9 +21,11 @@ pub struct OrderLines {
 /// The lines up to order `highest`.
 ///
 /// Over R revolutions the discrete Fourier transform has R − 1 bins between two orders. A signal
-/// that repeats every revolution has nothing there, so the mean power of the bins next to an order
-/// is that of the noise in it, whatever the noise's colour. With fewer than three revolutions
-/// there are no such bins, and the variance is 0.
+/// that repeats every revolution has nothing there, so the mean power of the bins around an order,
+/// half-way to the next ones, is that of the noise in it, whatever the noise's colour. B bins have
+/// 2B degrees of freedom, and the ratio of a power to the mean of B others has the mean
+/// 2B/(2B − 2) (an F distribution's), by which the variance is widened. With fewer than three
+/// revolutions there are no such bins, and the variance is 0.
 ///
 /// # Errors
 /// `highest` not below half the points per revolution.
@@ -42,7 +42,13 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
     let mut work = x.samples().to_vec();
     let scale = 2.0 / work.len() as f64;
     let spectrum = fft::forward(&mut work);
-    let reach = NEIGHBOURS.min((count - 1) / 2);
+    let reach = (count - 1) / 2;
+    let degrees = (4 * reach) as f64;
+    let widened = if reach > 0 {
+        degrees / (degrees - 2.0)
+    } else {
+        0.0
+    };
     let noise = |bin: usize| {
         let power = |offset: usize| {
             // Below order 0 the spectrum is its own mirror image.
@@ -50,7 +56,7 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
             below + spectrum[bin + offset].norm_sqr()
         };
         let powers = (1..=reach).map(power);
-        powers.sum::<f64>() / (2 * reach).max(1) as f64
+        widened * powers.sum::<f64>() / (2 * reach).max(1) as f64
     };
     let of_order = |k: usize| {
         let scale = if k == 0 { 0.5 * scale } else { scale };

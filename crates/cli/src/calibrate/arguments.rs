@@ -4,7 +4,7 @@ use super::Existing;
 use crate::Failure;
 use clap::{Args, ValueEnum};
 use input::bundle::Bundle;
-use input::calibration::{Calibration, Optimiser, Parameters};
+use input::calibration::{Calibration, Optimiser, Parameters, Relation};
 use input::choice::Count;
 use input::yaml::Document;
 use std::path::{Path, PathBuf};
@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 What is fitted are paths of the machine file; without --parameter the contact stiffness, damping and
-friction of every joint that is clear in some run. Every fourth run is held out and predicted, where
-there are four. Options override the settings file.
+friction of every joint that is clear in some run. Of every four runs one is held out and predicted,
+the last whose clearances a fitted run has. Options override the settings file.
 
 Examples:
   crosshead calibrate my-bundle --out calibrated
@@ -31,12 +31,17 @@ pub struct Arguments {
     /// The machine file [default: the machine section of the bundle]
     #[arg(long, value_name = "MACHINE.yaml")]
     machine: Option<PathBuf>,
-    /// Folder to write into: machine.yaml, calibration.json
+    /// Folder to write into: machine.yaml, calibration.json, report.html
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// A path of the machine file to be fitted; may be repeated
     #[arg(long, value_name = "PATH")]
     parameter: Vec<String>,
+    /// How contact parameters follow the clearance [default: as the machine file says; where the
+    /// bundle's machine section says nothing, fitted if the fitted runs have several clearances, else
+    /// eq5]
+    #[arg(long, value_name = "RELATION")]
+    relation: Option<Law>,
     /// Predict this run and do not fit to it; may be repeated
     #[arg(long, value_name = "RUN")]
     hold_out: Vec<String>,
@@ -71,6 +76,19 @@ enum Search {
     Genetic,
     /// Levenberg-Marquardt from the nominal values
     LevenbergMarquardt,
+}
+
+/// How contact parameters follow the clearance.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Law {
+    /// Stiffness by Eq. (5) of the papers, damping with the patch of contact
+    Eq5,
+    /// Stiffness by the conformal form of Hertz's formula; the restitution stays
+    Conformal,
+    /// Not at all
+    Constant,
+    /// By powers that are fitted: it takes recordings at two clearances or more
+    Fitted,
 }
 
 impl Arguments {
@@ -110,6 +128,14 @@ impl Arguments {
                 Search::Genetic => Optimiser::Genetic(None),
                 Search::LevenbergMarquardt => Optimiser::LevenbergMarquardt,
             };
+        }
+        if let Some(law) = self.relation {
+            settings.relation = Some(match law {
+                Law::Eq5 => Relation::Eq5,
+                Law::Conformal => Relation::Conformal,
+                Law::Constant => Relation::Constant,
+                Law::Fitted => Relation::Fitted,
+            });
         }
         settings.evaluations = self
             .evaluations

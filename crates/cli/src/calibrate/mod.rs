@@ -3,14 +3,19 @@
 mod arguments;
 mod contradiction;
 mod earlier;
+pub mod gas;
 pub mod output;
+pub(crate) mod pictures;
 mod problem;
 mod progress;
+mod relation;
 
-use crate::Failure;
+use crate::{Failure, report};
+use ::calibrate::optimiser::Progress;
 use earlier::Earlier;
 use input::calibration::Calibration;
 use serde_json::Value;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -82,6 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     output::summary(&done.results);
     println!("{}", done.machine.display());
+    println!("{}", out.join(report::PAGE).display());
     if done.results["complete"] == false {
         return Err(Failure::work(format!(
             "stopped before the end: {} has the best so far; --resume goes on from there",
@@ -163,13 +169,25 @@ impl Prepared {
         }
         let start = Instant::now();
         let fit = progress::search(&mut task, cancel)?;
+        let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        // A search that was stopped is not compared with others.
+        let transfer = match fit.complete {
+            true => ::calibrate::transfer(&task.problem, &fit, watch).map_err(Failure::work)?,
+            false => None,
+        };
         let found = output::Found {
             fit: &fit,
+            transfer: transfer.as_ref(),
             fingerprint: &fingerprint,
             evaluations: evaluations + fit.evaluations,
             seconds: seconds + start.elapsed().as_secs_f64(),
         };
+        pictures::write(&out, &task.problem, &task.runs, &fit)?;
         let results = output::write(&out, &task, &found)?;
+        report::write_calibration(&out, &out.join(report::PAGE))?;
         Ok(Calibrated {
             machine,
             results,

@@ -1,10 +1,10 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
-use super::Task;
+use super::{Task, gas, relation};
 use crate::Failure;
-use ::calibrate::Problem;
 use ::calibrate::fit::{Fit, FitSettings};
 use ::calibrate::parameter::Scale;
+use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -20,6 +20,8 @@ pub const RESULTS: &str = "calibration.json";
 pub struct Found<'a> {
     /// The fit.
     pub fit: &'a Fit,
+    /// What it comes to at other clearances; none where the search was stopped.
+    pub transfer: Option<&'a Transfer>,
     /// What tells its inputs from others.
     pub fingerprint: &'a str,
     /// Evaluations of the model, those before an interruption included.
@@ -37,7 +39,13 @@ pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
     let machine = calibrated(&task.problem, found.fit)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
-    let results = calibration(found, &task.settings);
+    let mut results = calibration(found, &task.settings);
+    results["relation"] = relation::stated(&task.problem)?;
+    let gaps = gas::gaps(task, found.fit)?;
+    if !gaps.is_empty() {
+        results["gas"] = gas::results(&gaps);
+        gas::write(folder, &gaps)?;
+    }
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())?;
     Ok(results)
@@ -68,6 +76,7 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
             "high": high,
             "nominal": estimate.parameter.nominal,
             "identifiable": estimate.interval.is_some(),
+            "at_bound": estimate.at_bound(),
             "bounds": estimate.parameter.bounds,
             "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
         });
@@ -113,6 +122,12 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
         },
         "runs": runs,
         "heldout_runs": settings.held_out,
+        "relation": Value::Null,
+        "relations": found.transfer.map(|transfer| json!({
+            "decision": transfer.decision,
+            "compared": transfer.relations,
+        })),
+        "predictions": found.transfer.map(|transfer| &transfer.predictions),
     })
 }
 
@@ -125,7 +140,13 @@ pub fn summary(results: &Value) {
     for (path, estimate) in results["parameters"].as_object().into_iter().flatten() {
         let value = number(&estimate["value"]);
         match [&estimate["low"], &estimate["high"]].map(Value::as_f64) {
-            [Some(low), Some(high)] => println!("{path}: {value:.4e} ({low:.4e} to {high:.4e})"),
+            [Some(low), Some(high)] => {
+                let stuck = match estimate["at_bound"] == true {
+                    true => ": at its bound, and the recordings ask for more",
+                    false => "",
+                };
+                println!("{path}: {value:.4e} ({low:.4e} to {high:.4e}){stuck}");
+            }
             _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
         }
     }
@@ -140,6 +161,30 @@ pub fn summary(results: &Value) {
             number(&run["nominal"])
         );
     }
+    gas::summary(&results["gas"]);
+    relations(&results["relations"]);
+}
+
+/// Prints how the relations between clearances compare, where the recordings tell them apart.
+fn relations(results: &Value) {
+    let decided = results["decision"]["relations"].as_array();
+    let Some(decided) = decided.filter(|relations| !relations.is_empty()) else {
+        return;
+    };
+    for compared in results["compared"].as_array().into_iter().flatten() {
+        let held_out = compared["held_out"].as_f64();
+        println!(
+            "relation {}: {:.2} times the noise fitted{}",
+            compared["relation"].as_str().unwrap_or_default(),
+            compared["fitted"].as_f64().unwrap_or(f64::NAN),
+            held_out.map_or(String::new(), |misfit| format!(", {misfit:.2} predicted"))
+        );
+    }
+    let decided: Vec<&str> = decided.iter().filter_map(Value::as_str).collect();
+    println!(
+        "relation that the recordings are for: {}",
+        decided.join(" or ")
+    );
 }
 
 fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {

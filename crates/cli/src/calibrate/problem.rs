@@ -1,12 +1,13 @@
 //! From settings to what is to be fitted to what.
 
-use super::{Settings, contradiction};
+use super::{Settings, contradiction, relation};
 use crate::{Failure, bundle};
 use ::calibrate::fit::{FitSettings, Optimiser};
 use ::calibrate::optimiser::Genetic;
 use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
-use ::calibrate::{Observation, Parameter, Problem, Run, alignment};
+use ::calibrate::relation::clearances;
+use ::calibrate::{ClearJoint, Observation, Parameter, Problem, Run, alignment};
 use input::bundle::Bundle;
 use input::bundle_channel::Meaning;
 use input::calibration;
@@ -16,7 +17,7 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::f64::consts::TAU;
 
-/// One run in so many is held out.
+/// Of so many runs one is held out.
 const HELD_OUT: usize = 4;
 /// Most evaluations of the model.
 const EVALUATIONS: u32 = 5000;
@@ -64,11 +65,18 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     for (path, value) in &first.settings {
         paths::set(&mut tree, path, value.clone())?;
     }
+    let fit_settings = fit_settings(settings, &tree, &runs)?;
+    let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
     let resolved = MachineFile::from_tree(&tree)?.resolve()?;
-    let parameters = parameters(settings, &tree, &runs)?;
-    let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
+    let mut parameters = parameters(settings, &tree, &runs)?;
+    for exponent in exponents {
+        let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
+        if !exponent.places.iter().any(free) {
+            parameters.push(exponent);
+        }
+    }
     let mut task = Task {
-        settings: fit_settings(settings, &ids)?,
+        settings: fit_settings,
         problem: Problem {
             tree,
             parameters,
@@ -253,11 +261,8 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
             input::Problem::Other(reason),
         )))
     };
-    let of = |path: &str, bounds: Option<[f64; 2]>| match bounds {
-        None => Parameter::of(tree, path).map_err(|e| refuse(path, e.to_string())),
-        Some(bounds) => {
-            Parameter::within(tree, path, bounds).map_err(|e| refuse(path, e.to_string()))
-        }
+    let of = |path: &str, bounds: Option<[f64; 2]>| {
+        Parameter::named(tree, runs, path, bounds).map_err(|e| refuse(path, e.to_string()))
     };
     if asked.is_empty() {
         return defaults(runs).iter().map(|path| of(path, None)).collect();
@@ -300,16 +305,14 @@ fn defaults(runs: &[Run]) -> Vec<String> {
     joints.iter().flat_map(of_joint).collect()
 }
 
-fn fit_settings(settings: &Settings, ids: &[&str]) -> Result<FitSettings, Failure> {
+fn fit_settings(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<FitSettings, Failure> {
     let asked = settings.calibration;
+    let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
     let held_out = match &asked.hold_out {
-        None => {
-            let each = ids.iter().skip(HELD_OUT - 1).step_by(HELD_OUT);
-            each.map(|id| (*id).to_owned()).collect()
-        }
+        None => held_out(tree, runs)?,
         Some(named) => {
             if let Some(unknown) = named.iter().find(|id| !ids.contains(&id.as_str())) {
-                let error = input::Error::unknown_name("hold_out", unknown, ids);
+                let error = input::Error::unknown_name("hold_out", unknown, &ids);
                 return Err((settings.locate)(error).into());
             }
             if ids.iter().all(|id| named.iter().any(|held| held == id)) {
@@ -327,6 +330,25 @@ fn fit_settings(settings: &Settings, ids: &[&str]) -> Result<FitSettings, Failur
         held_out,
         start: None,
     })
+}
+
+/// Of every four runs the last whose clearances a run has that is fitted: what the parameters are at
+/// other clearances is another question.
+fn held_out(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Failure> {
+    let joints = ClearJoint::of(tree, runs.iter().map(|run| &run.settings[..]));
+    let joints = joints.map_err(Failure::input)?;
+    let states = runs.iter().map(|r| clearances(tree, &joints, &r.settings));
+    let states: Vec<_> = states.collect::<Result<_, _>>().map_err(Failure::input)?;
+    let mut held_out: Vec<usize> = Vec::new();
+    for last in (HELD_OUT - 1..runs.len()).step_by(HELD_OUT) {
+        let shared = |i: &usize| {
+            let mut others = (0..runs.len()).filter(|j| j != i && !held_out.contains(j));
+            others.any(|j| states[j] == states[*i])
+        };
+        let group = last + 1 - HELD_OUT..=last;
+        held_out.extend(group.rev().find(shared));
+    }
+    Ok(held_out.into_iter().map(|i| runs[i].id.clone()).collect())
 }
 
 fn optimiser(asked: calibration::Optimiser) -> Optimiser {

@@ -1,0 +1,223 @@
+//! The default search: descents that begin with the greatest lines, from several points.
+//!
+//! The high orders of an acceleration are the ringing of the contacts. Their phases turn several
+//! times within the bounds of a stiffness, so that the sum of squares has many local minima; the
+//! great lines have few. A descent therefore trusts lines at first only to a share of their
+//! channel's greatest, and then to smaller and smaller ones, each time from where the last ended:
+//! a continuation from low frequencies, as in the inversion of seismic waves (Bunks, Saleck,
+//! Zaleski and Chavent 1995).
+
+use crate::error::Error;
+use crate::likelihood::{Likelihood, misfit};
+use crate::optimiser::{self, LeastSquares, Progress, Watch};
+use crate::problem::Problem;
+use rand::RngExt;
+use scalar::random::{Purpose, stream};
+use std::ops::ControlFlow;
+
+/// A misfit below this is taken for noise, and no better fit is looked for.
+pub(crate) const NOISE: f64 = 1.15;
+/// Shares of a channel's greatest line to which lines are trusted in the steps of a descent, before
+/// they are trusted to their noise.
+const SHARES: [f64; 3] = [0.1, 0.02, 0.004];
+/// Points per parameter that are looked at with the coarsest share, and the best of them from which
+/// the search descends.
+const POINTS: usize = 4;
+const STARTS: usize = 8;
+/// Descents that end at the same misfit, to this share, have found the least one.
+const SAME: f64 = 0.01;
+const AGREE: usize = 3;
+/// Evaluations per parameter that CMA-ES is given.
+const GLOBAL: u64 = 100;
+
+/// Relative change of the sum of squares at which a descent ends, and a coarse one.
+pub(crate) const CHANGE: f64 = 1e-6;
+const COARSE_CHANGE: f64 = 1e-2;
+
+/// A search under way.
+struct Search<'a, 'w> {
+    problem: &'a Problem,
+    most: u64,
+    spent: u64,
+    stopped: bool,
+    best: Progress,
+    /// Misfits in which descents have ended.
+    minima: Vec<f64>,
+    watch: Watch<'w>,
+}
+
+/// The best fit: by Levenberg and Marquardt's method from `start`; where that leaves more than
+/// noise, by continuation from there and from the best of many other points, until the noise is
+/// reached or [`AGREE`] descents have ended at the same misfit; where they do not agree, by CMA-ES.
+///
+/// # Errors
+/// Where an optimiser cannot start.
+pub(crate) fn search(
+    problem: &Problem,
+    start: &[f64],
+    seed: u64,
+    most: u64,
+    watch: Watch,
+) -> Result<Progress, Error> {
+    let count = Likelihood::new(problem).count();
+    let mut search = Search {
+        problem,
+        most,
+        spent: 0,
+        stopped: false,
+        best: Progress {
+            x: start.to_vec(),
+            cost: f64::INFINITY,
+            count,
+            evaluations: 0,
+        },
+        minima: Vec::new(),
+        watch,
+    };
+    search.descend(None, start)?;
+    if !search.ended() {
+        search.continuation(start)?;
+    }
+    if !search.ended() {
+        for start in search.promising(start, seed) {
+            if search.ended() {
+                break;
+            }
+            search.continuation(&start)?;
+        }
+    }
+    if !search.ended() {
+        search.globally(seed)?;
+    }
+    Ok(Progress {
+        evaluations: search.spent,
+        ..search.best
+    })
+}
+
+impl Search<'_, '_> {
+    fn left(&self) -> u64 {
+        self.most.saturating_sub(self.spent)
+    }
+
+    fn ended(&self) -> bool {
+        let best = self.best.misfit();
+        let same = |misfit: &&f64| **misfit <= best * (1.0 + SAME);
+        self.stopped
+            || self.left() == 0
+            || best < NOISE
+            || self.minima.iter().filter(same).count() >= AGREE
+    }
+
+    /// From `start` with the great lines first.
+    fn continuation(&mut self, start: &[f64]) -> Result<(), Error> {
+        let mut x = start.to_vec();
+        for share in SHARES.map(Some).into_iter().chain([None]) {
+            if self.stopped || self.left() == 0 {
+                break;
+            }
+            x = self.descend(share, &x)?;
+        }
+        Ok(())
+    }
+
+    /// From `start` with lines trusted to a share of the greatest, or to their noise. Where it ends.
+    fn descend(&mut self, share: Option<f64>, start: &[f64]) -> Result<Vec<f64>, Error> {
+        let (likelihood, change) = match share {
+            Some(share) => (Likelihood::coarse(self.problem, share), COARSE_CHANGE),
+            None => (Likelihood::new(self.problem), CHANGE),
+        };
+        let left = self.left();
+        let found = {
+            let told = &mut self.told(share.is_none());
+            optimiser::levenberg_marquardt(&likelihood, start, change, left, told)?
+        };
+        self.spent += found.evaluations;
+        let end = found.x.clone();
+        if share.is_none() {
+            self.minima.push(found.misfit());
+            self.better(found);
+        }
+        Ok(end)
+    }
+
+    /// CMA-ES from the best point so far, and a descent from where it ends.
+    fn globally(&mut self, seed: u64) -> Result<(), Error> {
+        let likelihood = Likelihood::new(self.problem);
+        let x = self.best.x.clone();
+        let most = self.left().min(GLOBAL * x.len() as u64);
+        let found = {
+            let told = &mut self.told(true);
+            optimiser::cma_es(&likelihood, &x, seed, most, told)?
+        };
+        self.spent += found.evaluations;
+        let end = found.x.clone();
+        self.better(found);
+        if !self.ended() {
+            self.descend(None, &end)?;
+        }
+        Ok(())
+    }
+
+    fn better(&mut self, found: Progress) {
+        if found.cost < self.best.cost {
+            self.best = found;
+        }
+    }
+
+    /// Tells the best so far with every step of an optimiser; with `same` its cost is the search's
+    /// own and may be the best.
+    fn told(&mut self, same: bool) -> impl FnMut(&Progress) -> ControlFlow<()> {
+        move |progress| {
+            let Self { best, spent, .. } = &*self;
+            let better = same && progress.cost < best.cost;
+            let told = Progress {
+                evaluations: *spent + progress.evaluations,
+                ..if better { progress } else { best }.clone()
+            };
+            let answer = (self.watch)(&told);
+            self.stopped |= answer.is_break();
+            answer
+        }
+    }
+
+    /// The best of points spread over the bounds around `start`, by the coarsest share.
+    fn promising(&mut self, start: &[f64], seed: u64) -> Vec<Vec<f64>> {
+        let likelihood = Likelihood::coarse(self.problem, SHARES[0]);
+        let mut costs = Vec::new();
+        for point in spread(start, &likelihood.bounds(), seed) {
+            let told = Progress {
+                evaluations: self.spent,
+                ..self.best.clone()
+            };
+            self.stopped |= (self.watch)(&told).is_break();
+            if self.stopped || self.left() == 0 {
+                break;
+            }
+            costs.push((misfit(&likelihood.residuals(&point)), point));
+            self.spent += 1;
+        }
+        costs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        costs.into_iter().take(STARTS).map(|(_, x)| x).collect()
+    }
+}
+
+/// Points around `start`, spread evenly over a quarter of the bounds to either side of it: a Latin
+/// hypercube (McKay, Beckman and Conover 1979).
+fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
+    let mut random = stream(seed, 0, Purpose::Design);
+    let count = POINTS * start.len();
+    let mut points = vec![start.to_vec(); count];
+    for (i, bound) in bounds.iter().enumerate() {
+        let mut places: Vec<usize> = (0..count).collect();
+        for last in (1..count).rev() {
+            places.swap(last, random.random_range(0..=last));
+        }
+        for (point, place) in points.iter_mut().zip(places) {
+            let share = (place as f64 + 0.5) / count as f64 - 0.5;
+            let moved = point[i] + 0.5 * share * (bound[1] - bound[0]);
+            point[i] = moved.clamp(bound[0], bound[1]);
+        }
+    }
+    points
+}
