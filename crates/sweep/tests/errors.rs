@@ -155,7 +155,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary:\n  rod.mass: {lognormal: {factor: 1.1, range: [12 kg, 11 kg]}}",
-        "sweep.yaml:6:56: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
+        "sweep.yaml:6:54: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mss: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
