@@ -15,6 +15,7 @@ machine: machine.yaml
 calibrate:
   bundle: bundle
   parameters: [joints.big_end.contact.stiffness, joints.big_end.contact.damping]
+  optimiser: levenberg_marquardt
   uncertainty: sampled
 run: {revolutions: 2, transient: 1, sample_rate: 5 kHz, tolerance: 1e-7, chaos: false}
 cases:
@@ -206,7 +207,7 @@ fn a_bad_section_gets_one_message_and_nothing_is_written() {
         (
             "  uncertainty: sampled",
             "  uncertainty: some",
-            "sweep.yaml:6:16: calibrate.uncertainty: found 'some', expected one of ignored, sampled",
+            "sweep.yaml:7:16: calibrate.uncertainty: found 'some', expected one of ignored, sampled",
         ),
     ] {
         std::fs::write(case.path("sweep.yaml"), SWEEP.replace(from, to)).unwrap();

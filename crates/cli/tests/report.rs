@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 /// Two sets of joints at two clearances, and the ideal machine.
 const GRID: &str = "
-run: {revolutions: 3, transient: 1, tolerance: 1e-7}
+run: {revolutions: 3, transient: 1, tolerance: 1e-7, chaos: false}
 splits: {train: 100 %}
 cases:
   - grid:
@@ -23,7 +23,7 @@ cases:
 
 /// Eight cases, two windows each.
 const RANDOM: &str = "
-run: {revolutions: 4, transient: 1, tolerance: 1e-7}
+run: {revolutions: 4, transient: 1, tolerance: 1e-7, chaos: false}
 windows: {count: 2, revolutions: 2}
 splits: {train: 50 %, test: 50 %}
 cases:

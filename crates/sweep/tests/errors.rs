@@ -75,7 +75,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      joints.big_end.contact.dampign: [2e4 N s/m]",
-        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, restitution, slowest_approach; did you mean 'damping'?",
+        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, relation, at_clearance, restitution, slowest_approach; did you mean 'damping'?",
     ),
     (
         "cases:\n  - grid:\n      crank.radius: [120 mm, 700 mm]",
@@ -155,15 +155,15 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary:\n  rod.mass: {lognormal: {factor: 1.1, range: [12 kg, 11 kg]}}",
-        "sweep.yaml:6:56: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
+        "sweep.yaml:6:54: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mss: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
-        "sweep.yaml:6:19: vary_together.0.parameters.rod.mss: unknown key; expected one of mass, centre_of_mass, inertia; did you mean 'mass'?",
+        "sweep.yaml:6:19: vary_together.0.parameters.rod.mss: unknown key; expected one of length, mass, centre_of_mass, inertia; did you mean 'mass'?",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {uniform: [1 kg, 2 kg]}}, correlations: [[1]]}",
-        "sweep.yaml:6:29: vary_together.0.parameters.rod.mass: found 'uniform', expected one of normal, lognormal; did you mean 'normal'?",
+        "sweep.yaml:6:29: vary_together.0.parameters.rod.mass: found 'uniform', expected one of normal, lognormal",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {lognormal: {factor: 1.1}}, crosshead.mass: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",

@@ -36,6 +36,13 @@ pub struct Settings<'a> {
     pub locate: &'a dyn Fn(input::Error) -> input::Error,
 }
 
+impl Settings<'_> {
+    /// Whether there is a machine file beside the bundle's machine section.
+    fn has_machine_file(&self) -> bool {
+        self.machine.is_some() || self.calibration.machine.is_some()
+    }
+}
+
 /// What becomes of a calibration that is there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {

@@ -234,7 +234,7 @@ fn bundles(settings: &Settings) -> Result<Vec<Listed>, Failure> {
             )));
         }
         if let Some(first) = listed.first()
-            && settings.calibration.machine.is_none()
+            && !settings.has_machine_file()
             && first.bundle.machine != bundle.machine
         {
             return Err(Failure::input(format!(

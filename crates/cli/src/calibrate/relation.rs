@@ -33,11 +33,11 @@ pub fn set(
     let states = fitted.map(|run| clearances(tree, &joints, &run.settings));
     let states: Vec<_> = states.collect::<Result<_, _>>().map_err(Failure::input)?;
     let asked = settings.calibration;
-    let (relation, joints) = match (asked.relation, &asked.machine) {
+    let (relation, joints) = match (asked.relation, settings.has_machine_file()) {
         (Some(asked), _) => (named(asked), joints),
-        (None, Some(_)) => return Ok(Vec::new()),
-        (None, None) if several(&states) => (Relation::Fitted, silent),
-        (None, None) => (Relation::Equation5, silent),
+        (None, true) => return Ok(Vec::new()),
+        (None, false) if several(&states) => (Relation::Fitted, silent),
+        (None, false) => (Relation::Equation5, silent),
     };
     relation.set(tree, &joints).map_err(Failure::input)?;
     if relation == Relation::Fitted && !joints.is_empty() {

@@ -191,9 +191,9 @@ impl Plan {
         }
         for (path, draw) in &file.vary.0 {
             let given = paths::get(&plan.tree, path);
-            let sampler = given.and_then(|given| Sampler::new(draw, given));
-            let sampler =
-                sampler.map_err(|e| Error::new(path, e.problem().clone()).under("vary"))?;
+            let given = given.map_err(|e| Error::new(path, e.problem().clone()));
+            let sampler = given.and_then(|g| Sampler::new(draw, g).map_err(|e| e.under(path)));
+            let sampler = sampler.map_err(|e| e.under("vary"))?;
             plan.vary.push((path.clone(), sampler));
         }
         for (position, entry) in file.vary_together.iter().enumerate() {
