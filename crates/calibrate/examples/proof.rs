@@ -38,6 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             copies.parse()?,
             seed.parse()?,
         ),
+        ["truth", bundle, seed] => truth(&Bench::open(Path::new(bundle))?, seed.parse()?),
         ["compare", bundle, seed] => compare(&Bench::open(Path::new(bundle))?, seed.parse()?),
         _ => Err(
             "usage: proof coverage BUNDLE MACHINES COPIES SEED | proof compare BUNDLE SEED".into(),
@@ -207,7 +208,7 @@ fn noisy(clean: &Clean, seed: u64, index: u64) -> Result<Run, Box<dyn Error>> {
         settings: clean.settings.clone(),
         speed_rpm: clean.speed_rpm,
         sample_rate: SAMPLE_RATE,
-        crank_angle: Some(angle.iter().map(|x| (x / count).floor() * count).collect()),
+        crank_angle: Some(angle.iter().map(|x| (x / count).round().rem_euclid(65_536.0) * count).collect()),
         channels,
     })
 }
@@ -291,6 +292,30 @@ fn told_inside(fit: &Fit, truth: &[f64]) -> usize {
                 .is_some_and(|[low, high]| (low..=high).contains(truth))
         })
         .count()
+}
+
+/// The misfit of each run and channel at the truth.
+fn truth(bench: &Bench, seed: u64) -> Result<(), Box<dyn Error>> {
+    let truth = bench.truth(seed, 0);
+    let problem = bench.problem(&bench.simulated(&truth)?, seed, 0)?;
+    let parameters = problem.parameters.iter().zip(&truth);
+    let x: Vec<f64> = parameters.map(|(p, value)| p.coordinate(*value)).collect();
+    for run in &problem.runs {
+        for channel in &run.channels {
+            let mut alone = problem.with_runs(|other| other.id == run.id);
+            alone.runs[0].channels.retain(|c| c.column == channel.column);
+            let residuals = calibrate::likelihood::Likelihood::new(&alone).by_run(&x)?.concat();
+            let parts: Vec<String> = residuals
+                .chunks(residuals.len().div_ceil(4))
+                .map(|part| format!("{:.2}", calibrate::likelihood::misfit(part)))
+                .collect();
+            println!("{} {}: {} orders, {}", run.id, channel.column, channel.orders.len(), parts.join(" "));
+            for k in [1, 2, 3, 5, 8, 13] {
+                println!("  {k}: {:.2} {:.2} sd {:.3e}", residuals[2 * k], residuals[2 * k + 1], channel.lines.variance[k].sqrt());
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Every optimiser on the same recordings, until its misfit is within a tenth of the best.
