@@ -3,7 +3,7 @@
 
 use super::Task;
 use crate::Failure;
-use ::calibrate::fit::Fit;
+use ::calibrate::fit::{Fit, FitSettings, Optimiser};
 use ::calibrate::optimiser::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
@@ -13,8 +13,11 @@ use std::time::Duration;
 /// How often the clock of the bar goes on between two steps.
 const TICK: Duration = Duration::from_millis(500);
 
-/// Searches the best fit until `cancel` is set. Runs whose crank angle was not recorded are aligned
-/// anew with the fitted machine, and fitted again.
+/// Local fits after each of which runs without a zero of their crank angle are aligned anew, before
+/// the search proper, which a wrong zero would send far away.
+const ALIGNMENTS: usize = 3;
+
+/// Searches the best fit until `cancel` is set.
 ///
 /// # Errors
 /// Where the machine cannot be simulated.
@@ -30,37 +33,57 @@ pub fn search(task: &mut Task, cancel: &AtomicBool) -> Result<Fit, Failure> {
     }
     bar.set_message("–");
     bar.enable_steady_tick(TICK);
+    let found = aligned(task, cancel, &bar);
+    bar.finish_and_clear();
+    found
+}
+
+fn aligned(task: &mut Task, cancel: &AtomicBool, bar: &ProgressBar) -> Result<Fit, Failure> {
+    let mut settings = task.settings.clone();
+    settings.optimiser = Optimiser::LevenbergMarquardt;
     let mut spent = 0;
-    let outcome = loop {
-        let found = ::calibrate::calibrate(&task.problem, &task.settings, |progress: &Progress| {
-            bar.set_position(spent + progress.evaluations);
-            bar.set_message(format!("{:.3}", progress.misfit()));
-            match cancel.load(Ordering::Relaxed) {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            }
-        });
-        let mut fit = match found.map_err(Failure::work) {
-            Ok(fit) => fit,
-            Err(failure) => break Err(failure),
-        };
-        spent += fit.evaluations;
+    let rounds = match task.zeroed.contains(&false) {
+        true => ALIGNMENTS,
+        false => 0,
+    };
+    for _ in 0..rounds {
+        let fit = fit(task, &settings, cancel, bar, spent)?;
+        spent = fit.evaluations;
+        if !fit.complete {
+            return Ok(fit);
+        }
         let x: Vec<f64> = fit
             .estimates
             .iter()
             .map(|e| e.parameter.coordinate(e.value))
             .collect();
-        match task.align(&x) {
-            Ok(true) if fit.complete && spent < task.settings.evaluations => {
-                task.settings.start = Some(x);
-            }
-            Ok(_) => {
-                fit.evaluations = spent;
-                break Ok(fit);
-            }
-            Err(failure) => break Err(failure),
+        let moved = task.align(&x)?;
+        settings.start = Some(x);
+        if !moved {
+            break;
+        }
+    }
+    settings.optimiser = task.settings.optimiser;
+    fit(task, &settings, cancel, bar, spent)
+}
+
+/// One fit, after `spent` evaluations.
+fn fit(
+    task: &Task,
+    settings: &FitSettings,
+    cancel: &AtomicBool,
+    bar: &ProgressBar,
+    spent: u64,
+) -> Result<Fit, Failure> {
+    let watch = |progress: &Progress| {
+        bar.set_position(spent + progress.evaluations);
+        bar.set_message(format!("{:.3}", progress.misfit()));
+        match cancel.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
         }
     };
-    bar.finish_and_clear();
-    outcome
+    let mut fit = ::calibrate::calibrate(&task.problem, settings, watch).map_err(Failure::work)?;
+    fit.evaluations += spent;
+    Ok(fit)
 }
