@@ -208,14 +208,14 @@ mod tests {
             ..Estimate::default()
         };
         let found = found(&[
-            of(1.6e10, Some([1.5e10, 1.7e10])),
+            of(1.6e10, Some([1.52e10, 1.68e10])),
             of(2.1e10, Some([1.9e10, 2.3e10])),
             of(2e10, None),
         ]);
         assert_eq!(
             found,
             [
-                "Big end contact stiffness: 20\u{a0}% below its nominal value, known to ±6.3\u{a0}%.",
+                "Big end contact stiffness: 20\u{a0}% below its nominal value, known to ±5\u{a0}%.",
                 "Big end contact stiffness: its nominal value, as far as the recordings tell, known to ±9.5\u{a0}%.",
             ]
         );
