@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
-use crate::problem::Problem;
+use crate::problem::{Problem, throw};
 use input::Resolved;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
@@ -85,11 +85,12 @@ pub(crate) fn prediction(
         sample_rate,
         tolerance: TOLERANCE.max(FINER * TOLERANCE / SETTLED * accuracy),
     };
-    let moved = if derivatives {
-        problem.moved(run, x)?
-    } else {
-        Vec::new()
+    let groups = match derivatives {
+        false => Vec::new(),
+        true if accuracy > 0.0 => problem.independent(),
+        true => (0..x.len()).map(|i| vec![i]).collect(),
     };
+    let moved = problem.moved(run, x, &groups)?;
     let mut record = in_parallel(&machine, &moved, &settings).map_err(failed)?;
     let periodic = record.settled;
     if !periodic {
@@ -133,8 +134,12 @@ pub(crate) fn prediction(
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
     Ok(Prediction {
+        derivatives: if derivatives.is_empty() {
+            derivatives
+        } else {
+            apart(problem, run, &groups, derivatives)
+        },
         lines,
-        derivatives,
         periodic,
     })
 }
@@ -158,6 +163,34 @@ fn in_parallel(
         all.derivatives.extend(part.derivatives);
     }
     Ok(all)
+}
+
+/// The derivatives of each parameter from those of groups: a channel that belongs to a throw feels
+/// the one of the group that belongs to this throw.
+fn apart(
+    problem: &Problem,
+    run: &Observation,
+    groups: &[Vec<usize>],
+    of_groups: Vec<Vec<Vec<Complex64>>>,
+) -> Vec<Vec<Vec<Complex64>>> {
+    let mut all = vec![Vec::new(); problem.parameters.len()];
+    for (group, of_group) in groups.iter().zip(of_groups) {
+        for i in group {
+            let own = throw(&problem.parameters[*i].path);
+            let channels = run.channels.iter().zip(&of_group);
+            all[*i] = channels
+                .map(|(channel, lines)| {
+                    let of_channel = channel.column.split_once('.').map(|(throw, _)| throw);
+                    if group.len() == 1 || own == of_channel {
+                        lines.clone()
+                    } else {
+                        vec![Complex64::ZERO; lines.len()]
+                    }
+                })
+                .collect();
+        }
+    }
+    all
 }
 
 /// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle

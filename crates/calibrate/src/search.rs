@@ -20,6 +20,8 @@ const NOISE: f64 = 1.15;
 /// Shares of a channel's greatest line to which lines are trusted in the steps of a descent, before
 /// they are trusted to their noise.
 const SHARES: [f64; 3] = [0.1, 0.02, 0.004];
+/// Each share over the one before.
+const FINER: f64 = 0.2;
 /// Points per parameter that are looked at with the coarsest share, and the best of them from which
 /// the search descends.
 const POINTS: usize = 4;
@@ -46,9 +48,9 @@ struct Search<'a, 'w> {
     watch: Watch<'w>,
 }
 
-/// The best fit: by Levenberg and Marquardt's method from `start`; where that leaves more than
-/// noise, by continuation from there and from the best of many other points, until the noise is
-/// reached or [`AGREE`] descents have ended at the same misfit; where they do not agree, by CMA-ES.
+/// The best fit: by Levenberg and Marquardt's method with continuation from `start`; where that
+/// leaves more than noise, from the best of many other points, until the noise is reached or
+/// [`AGREE`] descents have ended at the same misfit; where they do not agree, by CMA-ES.
 ///
 /// # Errors
 /// Where an optimiser cannot start.
@@ -74,10 +76,7 @@ pub(crate) fn search(
         minima: Vec::new(),
         watch,
     };
-    search.descend(None, start)?;
-    if !search.ended() {
-        search.continuation(start)?;
-    }
+    search.continuation(start)?;
     if !search.ended() {
         for start in search.promising(start, seed) {
             if search.ended() {
@@ -129,8 +128,15 @@ impl Search<'_, '_> {
         };
         let left = self.left();
         let found = {
-            let told = &mut self.told(share.is_none());
-            optimiser::levenberg_marquardt(&likelihood, start, change, left, told)?
+            let mut told = self.told(share.is_none());
+            // Where the next share is reached already, there is nothing left for this one.
+            let mut watch = |progress: &Progress| match told(progress) {
+                ControlFlow::Continue(()) if share.is_some() && progress.misfit() < FINER => {
+                    ControlFlow::Break(())
+                }
+                answer => answer,
+            };
+            optimiser::levenberg_marquardt(&likelihood, start, change, left, &mut watch)?
         };
         self.spent += found.evaluations;
         let end = found.x.clone();
