@@ -61,17 +61,17 @@ pub(crate) fn search(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let count = Likelihood::new(problem).count();
+    let residuals = Likelihood::new(problem).residuals(start);
     let mut search = Search {
         problem,
         most,
-        spent: 0,
+        spent: 1,
         stopped: false,
         best: Progress {
             x: start.to_vec(),
-            cost: f64::INFINITY,
-            count,
-            evaluations: 0,
+            cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
+            count: residuals.len(),
+            evaluations: 1,
         },
         minima: Vec::new(),
         watch,
