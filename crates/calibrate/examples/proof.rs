@@ -17,7 +17,7 @@ use input::{MachineFile, paths};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
-use simulate::{Chain, ChamberEnd, Measured, Noise, NoiseLevel, Sensor, Settings, Transient};
+use simulate::{Chain, ChamberEnd, Measured, Sensor, Settings, Transient};
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,7 +39,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             seed.parse()?,
         ),
         ["compare", bundle, seed] => compare(&Bench::open(Path::new(bundle))?, seed.parse()?),
-        _ => Err("usage: proof coverage BUNDLE MACHINES COPIES SEED | proof compare BUNDLE SEED".into()),
+        _ => Err(
+            "usage: proof coverage BUNDLE MACHINES COPIES SEED | proof compare BUNDLE SEED".into(),
+        ),
     }
 }
 
@@ -80,7 +82,11 @@ impl Bench {
         for (path, value) in &runs[0].1 {
             paths::set(&mut whole, path, value.clone())?;
         }
-        let keys = ["contact.stiffness", "contact.damping", "friction.coefficient"];
+        let keys = [
+            "contact.stiffness",
+            "contact.damping",
+            "friction.coefficient",
+        ];
         let parameters = joints
             .iter()
             .flat_map(|joint| keys.map(|key| format!("{joint}.{key}")))
@@ -176,7 +182,11 @@ fn noisy(clean: &Clean, seed: u64, index: u64) -> Result<Run, Box<dyn Error>> {
     let mut channels = Vec::new();
     let (angle, series) = clean.series.split_last().ok_or("no series")?;
     for (column, x) in clean.columns.iter().zip(series) {
-        let share = if column.contains("acceleration") { level } else { 0.005 };
+        let share = if column.contains("acceleration") {
+            level
+        } else {
+            0.005
+        };
         let mean = x.iter().sum::<f64>() / x.len() as f64;
         let rms = (x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / x.len() as f64).sqrt();
         let mut normal = || normal(&mut random);
@@ -184,7 +194,8 @@ fn noisy(clean: &Clean, seed: u64, index: u64) -> Result<Run, Box<dyn Error>> {
         let white = share * rms * 0.7_f64.sqrt();
         let count = 2.4 * x.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / 65_536.0;
         let samples = x.iter().zip(&pink);
-        let samples = samples.map(|(x, pink)| ((x + pink + white * normal()) / count).round() * count);
+        let samples =
+            samples.map(|(x, pink)| ((x + pink + white * normal()) / count).round() * count);
         channels.push(Channel {
             column: column.clone(),
             samples: samples.collect(),
@@ -212,7 +223,13 @@ fn settings(optimiser: Optimiser, seed: u64, problem: &Problem) -> FitSettings {
         optimiser,
         seed,
         evaluations: 20_000,
-        held_out: problem.runs.iter().skip(3).step_by(4).map(|r| r.id.clone()).collect(),
+        held_out: problem
+            .runs
+            .iter()
+            .skip(3)
+            .step_by(4)
+            .map(|r| r.id.clone())
+            .collect(),
         start: None,
     }
 }
@@ -225,9 +242,11 @@ fn coverage(bench: &Bench, machines: u64, copies: u64, seed: u64) -> Result<(), 
         for copy in 0..copies {
             let problem = bench.problem(&clean, seed, machine * copies + copy)?;
             let start = Instant::now();
-            let fit = calibrate(&problem, &settings(Optimiser::Default, seed, &problem), |_| {
-                ControlFlow::Continue(())
-            })?;
+            let fit = calibrate(
+                &problem,
+                &settings(Optimiser::Default, seed, &problem),
+                |_| ControlFlow::Continue(()),
+            )?;
             let (mut wrong, mut untold) = (Vec::new(), Vec::new());
             for (estimate, truth) in fit.estimates.iter().zip(&truth) {
                 all += 1;
@@ -257,14 +276,20 @@ fn coverage(bench: &Bench, machines: u64, copies: u64, seed: u64) -> Result<(), 
             );
         }
     }
-    println!("{inside} of {told} bounds hold the truth; {} of {all} not told", all - told);
+    println!(
+        "{inside} of {told} bounds hold the truth; {} of {all} not told",
+        all - told
+    );
     Ok(())
 }
 
 fn told_inside(fit: &Fit, truth: &[f64]) -> usize {
     let pairs = fit.estimates.iter().zip(truth);
     pairs
-        .filter(|(e, truth)| e.interval.is_some_and(|[low, high]| (low..=high).contains(truth)))
+        .filter(|(e, truth)| {
+            e.interval
+                .is_some_and(|[low, high]| (low..=high).contains(truth))
+        })
         .count()
 }
 

@@ -52,16 +52,19 @@ pub enum Error {
         /// The limit, SI.
         value: f64,
     },
+    /// A tacho without two pulses.
+    #[error("a tacho tells an angle from two pulses on, and has {0}")]
+    Pulses(usize),
     /// The recorded crank angle and the stated speed contradict each other.
     #[error(
-        "run {run}: the speed is stated as {stated:.1} rpm, but the crank angle turns at {measured:.1} rpm"
+        "run {run}: the speed is stated as {stated:.1} rpm, but the recording turns at {measured:.1} rpm"
     )]
     Speed {
         /// The run.
         run: String,
         /// What the bundle says, rpm.
         stated: f64,
-        /// What the crank angle says, rpm.
+        /// What the recording says, rpm.
         measured: f64,
     },
     /// A parameter whose value cannot be fitted.

@@ -1,12 +1,12 @@
 //! From a problem to a calibrated machine.
 
 use crate::error::Error;
-use crate::identifiability::{Information, information};
+use crate::identifiability::{Information, information, widening};
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
-use crate::search;
+use crate::search::{self, NOISE};
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 
@@ -53,6 +53,9 @@ impl Optimiser {
     }
 }
 
+/// A value this near to a bound, as a share of the range, is at it.
+const AT_BOUND: f64 = 1e-3;
+
 /// A calibrated machine.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -91,6 +94,16 @@ pub struct Estimate {
     pub value: f64,
     /// Its 95 % interval, SI; none where the recordings do not tell it.
     pub interval: Option<[f64; 2]>,
+}
+
+impl Estimate {
+    /// Whether the best fit lies at a bound of the parameter: the bound says where it ends, and the
+    /// recordings ask for more.
+    pub fn at_bound(&self) -> bool {
+        let [low, high] = self.parameter.box_bounds();
+        let x = self.parameter.coordinate(self.value);
+        self.interval.is_some() && (x - low).min(high - x) < AT_BOUND * (high - low)
+    }
 }
 
 /// How far a run is from its prediction, in units of its noise.
@@ -149,8 +162,19 @@ pub fn calibrate(
         };
         let found = search(&part, &start, settings, &mut watch)?;
         evaluations += found.evaluations;
-        let information = information(&likelihood, &found.x);
+        let mut information = information(&likelihood, &found.x);
         evaluations += 1 + optimiser::DERIVATIVES + 2 * free.len() as u64;
+        let simple = free.len() == nominal.len() && found.misfit() < NOISE;
+        if information.untold.is_none() && !simple {
+            let whole = Likelihood::new(&fitted);
+            let mut x = nominal.clone();
+            for (i, value) in free.iter().zip(&found.x) {
+                x[*i] = *value;
+            }
+            let factors = widening(&whole, &x, &free);
+            information = information.widened(&factors, &found.x);
+            evaluations += 1 + optimiser::DERIVATIVES;
+        }
         match information.untold {
             // What the recordings do not tell keeps its nominal value, and the rest is fitted again.
             Some(untold) if complete => {
@@ -237,7 +261,14 @@ fn estimates(
         let interval = place.zip(told).map(|(place, told)| told.intervals[place]);
         Estimate {
             value: parameter.value(x[i]),
-            interval: interval.map(|interval| interval.map(|x| parameter.value(x))),
+            // Beyond its bounds a parameter cannot lie.
+            interval: interval.map(|interval| {
+                interval.map(|x| {
+                    parameter
+                        .value(x)
+                        .clamp(parameter.bounds[0], parameter.bounds[1])
+                })
+            }),
             parameter: parameter.clone(),
         }
     };

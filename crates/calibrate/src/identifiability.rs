@@ -62,6 +62,17 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
             [reach(-1.0), reach(1.0)]
         })
         .collect();
+    Information {
+        untold: untold(&intervals, &bounds),
+        correlations: DMatrix::from_fn(count, count, |i, j| {
+            covariance[(i, j)] / (deviation(i) * deviation(j))
+        }),
+        intervals,
+    }
+}
+
+/// The parameter whose interval is the greatest share of its range, where that is half or more.
+fn untold(intervals: &[[f64; 2]], bounds: &[[f64; 2]]) -> Option<usize> {
     let share = |i: usize| {
         let [low, high] = intervals[i];
         let share = (high - low) / (bounds[i][1] - bounds[i][0]);
@@ -71,21 +82,66 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
             f64::INFINITY
         }
     };
-    let untold = (0..count)
+    (0..intervals.len())
         .max_by(|a, b| share(*a).total_cmp(&share(*b)))
-        .filter(|i| share(*i) >= TOLD);
-    Information {
-        correlations: DMatrix::from_fn(count, count, |i, j| {
-            covariance[(i, j)] / (deviation(i) * deviation(j))
-        }),
-        intervals,
-        untold,
+        .filter(|i| share(*i) >= TOLD)
+}
+
+impl Information {
+    /// The same with intervals about `x` that are wider by these factors.
+    pub fn widened(mut self, factors: &[f64], x: &[f64]) -> Self {
+        for ((interval, factor), x) in self.intervals.iter_mut().zip(factors).zip(x) {
+            *interval = interval.map(|end| x + factor * (end - x));
+        }
+        self
     }
+}
+
+/// By how much the intervals of the parameters `told` are wider than [`information`] says, which
+/// takes the others for known and the model for right. `problem` has all parameters free.
+///
+/// - What is not told may lie anywhere within its bounds, and whatever can imitate it moves along.
+/// - Where more than noise is left, it is left in some residuals and not in others, and counts most
+///   where it stands in those that a parameter follows: the sandwich H⁻¹ (Σ r² j jᵀ) H⁻¹ is the
+///   covariance of a fit whose model is wrong (Huber 1967, White 1982).
+pub fn widening(problem: &impl LeastSquares, x: &[f64], told: &[usize]) -> Vec<f64> {
+    let residuals = problem.residuals(x);
+    let jacobian = problem.jacobian(x);
+    let excess = misfit(&residuals).max(1.0).powi(2);
+    let information = jacobian.transpose() * &jacobian / excess;
+    let mut weighted = jacobian.clone();
+    for (mut row, residual) in weighted.row_iter_mut().zip(&residuals) {
+        row *= *residual / excess;
+    }
+    let spread = weighted.transpose() * &weighted;
+    // Evenly spread over a width w, a value has the variance w²/12.
+    let bounds = problem.bounds();
+    let prior = DVector::from_fn(x.len(), |i, _| match told.contains(&i) {
+        true => 0.0,
+        false => 12.0 / (bounds[i][1] - bounds[i][0]).powi(2),
+    });
+    let prior = DMatrix::from_diagonal(&prior);
+    let of_all = inverse(&information + &prior);
+    let sandwich = &of_all * (spread + prior) * &of_all;
+    let of_told = DMatrix::from_fn(told.len(), told.len(), |i, j| {
+        information[(told[i], told[j])]
+    });
+    let of_told = inverse(of_told);
+    told.iter()
+        .enumerate()
+        .map(|(place, i)| {
+            let variance = of_all[(*i, *i)].max(sandwich[(*i, *i)]);
+            (variance / of_told[(place, place)]).sqrt().max(1.0)
+        })
+        .collect()
 }
 
 /// (JᵀJ)⁻¹. A direction that the residuals do not feel gets a variance that is as good as infinite.
 fn covariance(jacobian: &DMatrix<f64>) -> DMatrix<f64> {
-    let information = jacobian.transpose() * jacobian;
+    inverse(jacobian.transpose() * jacobian)
+}
+
+fn inverse(information: DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = information.symmetric_eigen();
     let greatest = decomposed.eigenvalues.max().max(f64::MIN_POSITIVE);
     let inverse: DVector<f64> = decomposed
@@ -138,5 +194,62 @@ mod tests {
             "{between}"
         );
         assert_eq!(information.untold, Some(2));
+    }
+
+    /// A line whose slope is known to lie within 2 only.
+    struct Slope;
+
+    impl LeastSquares for Slope {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-10.0, 10.0], [-1.0, 1.0]]
+        }
+        fn count(&self) -> usize {
+            Line.count()
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            Line.residuals(&[x[0], x[1], 0.0])
+        }
+        fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+            Line.jacobian(x).columns(0, 2).into_owned()
+        }
+    }
+
+    #[test]
+    fn what_is_not_told_widens_what_can_imitate_it() {
+        // Of four points the intercept has the variance 1/4 with a known slope. One that is spread
+        // evenly over a width of 2 has 1/3: the information is [[4, 6], [6, 14 + 3]].
+        let factors = widening(&Slope, &[0.97, 0.02], &[0]);
+        let expected = (17.0_f64 / (4.0 * 17.0 - 36.0) / 0.25).sqrt();
+        assert!((factors[0] / expected - 1.0).abs() < 1e-9, "{factors:?}");
+        assert_eq!(widening(&Slope, &[0.97, 0.02], &[0, 1]), [1.0, 1.0]);
+    }
+
+    /// A constant through a step of height 2: the residuals are ±1.
+    struct Step {
+        scale: f64,
+    }
+
+    impl LeastSquares for Step {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-10.0, 10.0]]
+        }
+        fn count(&self) -> usize {
+            4
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            // The parameter is felt by the two great residuals alone.
+            vec![self.scale + x[0], -self.scale + x[0], 0.1, -0.1]
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::from_column_slice(4, 1, &[1.0, 1.0, 0.0, 0.0])
+        }
+    }
+
+    #[test]
+    fn a_wrong_model_widens_what_its_errors_pull_at() {
+        // Spread Σ r² j² = 2 s², information 2: variance s²/2; the misfit squared is nearly s²/2,
+        // and gives s²/4.
+        let factors = widening(&Step { scale: 10.0 }, &[0.0], &[0]);
+        assert!((factors[0] - 2.0_f64.sqrt()).abs() < 1e-3, "{factors:?}");
     }
 }

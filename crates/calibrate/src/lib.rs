@@ -12,19 +12,33 @@
 //! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
 //! Weights come from that noise alone.
 
+pub mod alignment;
+pub mod comparison;
 pub mod error;
+mod few_revolutions;
 pub mod fit;
+pub mod forecast;
 pub mod identifiability;
+pub mod indicator;
 pub mod likelihood;
 pub mod observation;
 pub mod optimiser;
 pub mod parameter;
 pub mod prediction;
+pub mod pressure_gap;
 pub mod problem;
+pub mod relation;
+pub mod replay;
+pub mod run_condition;
 mod search;
+pub mod transfer;
 
+pub use comparison::{Comparison, compare};
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};
 pub use parameter::Parameter;
 pub use problem::Problem;
+pub use relation::{ClearJoint, Relation};
+pub use replay::{Replay, replay};
+pub use transfer::{Transfer, transfer};

@@ -12,7 +12,7 @@ use signal::order_lines::OrderLines;
 
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
-const ACCURACY: f64 = 2e-5;
+pub(crate) const ACCURACY: f64 = 2e-5;
 /// Residual that stands in for every one of a run that cannot be simulated.
 const FAILED: f64 = 1e3;
 
@@ -132,7 +132,8 @@ fn residual_count(run: &Observation) -> usize {
     channels.map(|channel| channel.orders.len() * 2).sum()
 }
 
-fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
+/// The residuals of a run, channel by channel.
+pub(crate) fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
     let mut all = Vec::with_capacity(residual_count(run));
     for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
         let weights = weights(observed, predicted, accuracy);
@@ -192,7 +193,9 @@ fn weights(observed: &Observed, predicted: &OrderLines, accuracy: f64) -> Vec<f6
         .iter()
         .map(|k| {
             let variance = of(&observed.lines, *k) + of(predicted, *k) + accuracy;
-            (2.0 / variance).sqrt()
+            // The mean has no imaginary part, and all of its noise is in the real one.
+            let parts = if *k == 0 { 1.0 } else { 2.0 };
+            (parts / variance).sqrt()
         })
         .collect()
 }

@@ -1,6 +1,7 @@
 //! A run as measured: its channels over the crank angle, and what in them repeats.
 
 use crate::error::Error;
+use crate::few_revolutions;
 use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
@@ -37,6 +38,20 @@ pub struct Run {
     pub crank_angle: Option<Vec<f64>>,
     /// What was measured.
     pub channels: Vec<Channel>,
+}
+
+impl Run {
+    /// The crank angles of the samples of the first whole revolution, or of all where there is none;
+    /// none where the angle is not known.
+    pub fn first_revolution(&self) -> Option<&[f64]> {
+        let angles = self.crank_angle.as_ref()?;
+        let first = *angles.first()?;
+        // From the second half of the revolution on, the next sample past the first ends it.
+        let turned = |a: &f64| (a - first).rem_euclid(TAU);
+        let half = angles.iter().position(|a| turned(a) > 0.5 * TAU)?;
+        let rest = angles[half..].iter().position(|a| turned(a) < 0.5 * TAU);
+        Some(&angles[..rest.map_or(angles.len(), |rest| half + rest)])
+    }
 }
 
 /// A measured channel.
@@ -91,14 +106,19 @@ impl Observation {
             });
         };
         let angle = angle(run, first)?;
+        let short = few_revolutions::is_short(&angle);
         let grid = AngleGrid::new(&angle, POINTS);
+        let of_channel = |samples: &[f64]| {
+            if short && let Some(lines) = few_revolutions::lines(&angle, samples) {
+                return Ok(lines);
+            }
+            lines(grid.as_ref().map_err(Clone::clone)?, samples)
+        };
         let channels = chosen
             .into_iter()
             .map(|channel| {
                 not_clipped(run, channel)?;
-                let lines = grid
-                    .clone()
-                    .and_then(|grid| lines(&grid, &channel.samples))
+                let lines = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
                 let orders = orders(&lines);
                 if orders.len() <= LOW_ORDERS && !stands_out(&lines) {
@@ -136,7 +156,8 @@ fn signal_error(run: &Run, channel: &Channel, source: signal::Error) -> Error {
     }
 }
 
-fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
+/// The crank angle of every sample of a run, recorded or from its speed.
+pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
     let error = |source| Error::Signal {
         run: run.id.clone(),
         channel: "crank_angle_rad".into(),

@@ -283,7 +283,7 @@ mod tests {
             1e-2,
         );
         at_the_bottom(
-            &genetic(&Valley, &Genetic::default(), 1, 20_000, &mut go),
+            &genetic(&Valley, &Genetic::default(), 1, 20_000, &mut go).unwrap(),
             5e-2,
         );
     }

@@ -8,13 +8,19 @@ use serde_json::Value;
 /// A fitted value of the machine file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its path in the machine file.
+    /// Its path in the machine file. With `*` for a part, one value that several places share:
+    /// `joints.*.friction.coefficient`.
     pub path: String,
+    /// The places that hold it.
+    /// There is none for the offset of the crank angle.
+    pub places: Vec<String>,
+    /// The run that it is a condition of; none where it holds for the machine.
+    pub run: Option<String>,
     /// Its value there, SI.
     pub nominal: f64,
     /// Its unit; none for a bare number.
     pub dimension: Option<Dimension>,
-    /// Whether it is searched on a logarithmic scale.
+    /// On what scale it is searched.
     pub scale: Scale,
     /// Least and greatest value, SI.
     pub bounds: [f64; 2],
@@ -25,7 +31,7 @@ pub struct Parameter {
 pub enum Scale {
     /// Its logarithm: for positive values that are known to a factor.
     Logarithmic,
-    /// The value over its nominal magnitude.
+    /// The value over half the width of its bounds.
     Linear,
 }
 
@@ -45,62 +51,68 @@ const UNCERTAIN: [&str; 7] = [
     "clearance",
 ];
 
+/// Exponents of a relation between clearances are searched from twice that of a conformal bearing's
+/// stiffness, −1/2, to as much the other way.
+const EXPONENTS: [f64; 2] = [-1.0, 0.5];
+
 impl Parameter {
     /// The value at `path` of the machine file `tree`, with bounds around its nominal value.
     ///
     /// # Errors
-    /// A path that is not there, or whose value is no quantity.
+    /// A path that is not there, whose value is no quantity, or 0; places that should share a value
+    /// and differ.
     pub fn of(tree: &Value, path: &str) -> Result<Self, Error> {
-        let wrong = |reason: String| Error::Parameter {
-            path: path.to_owned(),
-            reason,
-        };
-        let value = paths::get(tree, path)?;
-        let value = value.ok_or_else(|| wrong("the machine file has no value there".into()))?;
-        let (nominal, dimension) = match value {
-            Value::Number(number) => (number.as_f64(), None),
-            Value::String(text) => match unit::parse(text) {
-                Ok(measure) => (Some(measure.si), Some(measure.dimension)),
-                Err(error) => return Err(wrong(format!("'{text}': {error}"))),
-            },
-            _ => (None, None),
-        };
-        let nominal = nominal.ok_or_else(|| wrong("its value is no quantity".into()))?;
+        let found = Found::at(tree, path)?;
         let last = path.rsplit('.').next().unwrap_or(path);
-        let factor = if UNCERTAIN.contains(&last) {
-            FACTOR
+        let nominal = found.nominal;
+        let bounds = if path.contains(".relation.") {
+            [
+                EXPONENTS[0].min(nominal - 0.5),
+                EXPONENTS[1].max(nominal + 0.5),
+            ]
+        } else if nominal == 0.0 {
+            let reason = "its nominal value is 0, which gives no scale; state its bounds";
+            return Err(refusal(path, reason));
         } else {
-            MEASURED_FACTOR
-        };
-        if nominal == 0.0 {
-            return Err(wrong(
-                "its nominal value is 0, which gives no scale; state a small value".into(),
-            ));
-        }
-        let mut bounds = [nominal / factor, nominal * factor];
-        // An exponent of 1 is a limit that no law goes below.
-        if last == "exponent" {
-            bounds[0] = bounds[0].max(1.01);
-        }
-        bounds.sort_by(f64::total_cmp);
-        Ok(Self {
-            path: path.to_owned(),
-            nominal,
-            dimension,
-            scale: if nominal > 0.0 {
-                Scale::Logarithmic
+            let factor = if UNCERTAIN.contains(&last) {
+                FACTOR
             } else {
-                Scale::Linear
-            },
-            bounds,
-        })
+                MEASURED_FACTOR
+            };
+            let mut bounds = [nominal / factor, nominal * factor];
+            // An exponent of 1 is a limit that no law goes below.
+            if last == "exponent" {
+                bounds[0] = bounds[0].max(1.01);
+            }
+            bounds.sort_by(f64::total_cmp);
+            bounds
+        };
+        Ok(found.within(path, bounds))
+    }
+
+    /// The same with bounds of its own, SI. It is searched on a logarithmic scale where both are
+    /// above 0.
+    ///
+    /// # Errors
+    /// As [`Parameter::of`]; bounds that do not enclose the nominal value.
+    pub fn within(tree: &Value, path: &str, bounds: [f64; 2]) -> Result<Self, Error> {
+        let found = Found::at(tree, path)?;
+        let [low, high] = bounds;
+        if !(low < high && (low..=high).contains(&found.nominal)) {
+            let reason = format!(
+                "its bounds are {low} and {high}, and do not enclose its value {} (in SI)",
+                found.nominal
+            );
+            return Err(refusal(path, reason));
+        }
+        Ok(found.within(path, bounds))
     }
 
     /// The coordinate of a value: 0 at the nominal one.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Logarithmic => (value / self.nominal).ln(),
-            Scale::Linear => (value - self.nominal) / self.nominal.abs(),
+            Scale::Linear => (value - self.nominal) / self.half_width(),
         }
     }
 
@@ -108,8 +120,12 @@ impl Parameter {
     pub fn value(&self, coordinate: f64) -> f64 {
         match self.scale {
             Scale::Logarithmic => self.nominal * coordinate.exp(),
-            Scale::Linear => self.nominal + coordinate * self.nominal.abs(),
+            Scale::Linear => self.nominal + coordinate * self.half_width(),
         }
+    }
+
+    fn half_width(&self) -> f64 {
+        0.5 * (self.bounds[1] - self.bounds[0])
     }
 
     /// The coordinates of the bounds.
@@ -117,11 +133,40 @@ impl Parameter {
         self.bounds.map(|bound| self.coordinate(bound))
     }
 
-    /// Writes a value into a machine file.
+    /// Writes a value into a machine file, at every place. A condition of a run is none of the
+    /// machine's, and is not written.
     ///
     /// # Errors
-    /// Where the file does not have the path.
+    /// Where the file does not have a place.
     pub fn write(&self, tree: &mut Value, value: f64) -> Result<(), Error> {
+        match self.run {
+            Some(_) => Ok(()),
+            None => self.write_everywhere(tree, value),
+        }
+    }
+
+    /// Writes a value into the machine file of a run, if it holds there.
+    ///
+    /// # Errors
+    /// Where the file does not have a place.
+    pub fn write_for(&self, run: &str, tree: &mut Value, value: f64) -> Result<(), Error> {
+        match self.holds_in(run) {
+            true => self.write_everywhere(tree, value),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether it holds in a run.
+    pub fn holds_in(&self, run: &str) -> bool {
+        self.run.as_ref().is_none_or(|of| of == run)
+    }
+
+    /// Whether it is by how much the recorded crank angle is ahead of the crank.
+    pub fn is_crank_angle_offset(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    fn write_everywhere(&self, tree: &mut Value, value: f64) -> Result<(), Error> {
         let written = match self.dimension {
             Some(dimension) => Measure {
                 si: value,
@@ -131,6 +176,163 @@ impl Parameter {
             .into(),
             None => Value::from(value),
         };
-        Ok(paths::set(tree, &self.path, written)?)
+        for place in &self.places {
+            paths::set(tree, place, written.clone())?;
+        }
+        Ok(())
+    }
+}
+
+/// What a machine file has at the places of a path.
+struct Found {
+    places: Vec<String>,
+    nominal: f64,
+    dimension: Option<Dimension>,
+}
+
+impl Found {
+    fn at(tree: &Value, path: &str) -> Result<Self, Error> {
+        let places = paths::matching(tree, path)?;
+        let Some(first) = places.first() else {
+            return Err(refusal(path, "the machine file has no value there"));
+        };
+        let (nominal, dimension) = quantity(tree, first)?;
+        for other in &places[1..] {
+            let (value, unit) = quantity(tree, other)?;
+            if value != nominal || unit != dimension {
+                let reason = format!(
+                    "one value would stand at all its places, but {first} and {other} differ; name them one by one"
+                );
+                return Err(refusal(path, reason));
+            }
+        }
+        Ok(Self {
+            places,
+            nominal,
+            dimension,
+        })
+    }
+
+    fn within(self, path: &str, bounds: [f64; 2]) -> Parameter {
+        Parameter {
+            path: path.to_owned(),
+            places: self.places,
+            run: None,
+            nominal: self.nominal,
+            dimension: self.dimension,
+            scale: if bounds[0] > 0.0 {
+                Scale::Logarithmic
+            } else {
+                Scale::Linear
+            },
+            bounds,
+        }
+    }
+}
+
+/// The value at a path, SI, and its unit.
+fn quantity(tree: &Value, path: &str) -> Result<(f64, Option<Dimension>), Error> {
+    let none = || refusal(path, "its value is no quantity");
+    match paths::get(tree, path)? {
+        Some(Value::Number(number)) => Ok((number.as_f64().ok_or_else(none)?, None)),
+        Some(Value::String(text)) => match unit::parse(text) {
+            Ok(measure) => Ok((measure.si, Some(measure.dimension))),
+            Err(error) => Err(refusal(path, format!("'{text}': {error}"))),
+        },
+        _ => Err(none()),
+    }
+}
+
+fn refusal(path: &str, reason: impl Into<String>) -> Error {
+    Error::Parameter {
+        path: path.to_owned(),
+        reason: reason.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn machine(name: &str) -> Value {
+        let file = format!("{}/../../data/machines/{name}", env!("CARGO_MANIFEST_DIR"));
+        let file = input::machine_file::read(std::path::Path::new(&file)).unwrap();
+        file.to_tree().clone()
+    }
+
+    fn at(tree: &Value, path: &str) -> Value {
+        paths::get(tree, path).unwrap().unwrap().clone()
+    }
+
+    #[test]
+    fn a_star_is_one_value_at_several_places() {
+        let mut tree = machine("single-stage.yaml");
+        let friction = Parameter::of(&tree, "joints.*.friction.coefficient").unwrap();
+        let ends = ["joints.big_end", "joints.small_end"].map(|j| j.to_owned() + ".friction");
+        for end in &ends {
+            let place = format!("{end}.coefficient");
+            assert!(friction.places.contains(&place), "{friction:?}");
+        }
+        friction.write(&mut tree, 0.07).unwrap();
+        for place in &friction.places {
+            assert_eq!(at(&tree, place), json!(0.07));
+        }
+        let apart = Parameter::of(&tree, "joints.*.contact.stiffness").unwrap_err();
+        assert!(apart.to_string().contains("differ"), "{apart}");
+    }
+
+    #[test]
+    fn throws_that_share_a_section_get_values_of_their_own() {
+        let mut tree = machine("two-stage.yaml");
+        let damping = Parameter::of(&tree, "throws.*.joints.small_end.contact.damping").unwrap();
+        let places = ["throw1", "throw2"]
+            .map(|throw| format!("throws.{throw}.joints.small_end.contact.damping"));
+        assert_eq!(damping.places, places);
+        damping.write(&mut tree, 3e4).unwrap();
+        input::MachineFile::from_tree(&tree)
+            .unwrap()
+            .resolve()
+            .unwrap();
+    }
+
+    #[test]
+    fn coordinates_lead_back_to_values() {
+        let mut tree = machine("single-stage.yaml");
+        for (path, value) in [("relation", json!({"stiffness": 0, "damping": -0.2}))] {
+            let path = format!("joints.big_end.contact.{path}");
+            paths::set(&mut tree, &path, value).unwrap();
+        }
+        let stiffness = Parameter::of(&tree, "joints.big_end.contact.stiffness").unwrap();
+        assert_eq!(stiffness.scale, Scale::Logarithmic);
+        assert_eq!(stiffness.bounds, [2.4e9, 2.4e11]);
+        let exponent = "joints.big_end.contact.relation.stiffness";
+        let exponent = Parameter::of(&tree, exponent).unwrap();
+        assert_eq!((exponent.nominal, exponent.bounds), (0.0, [-1.0, 0.5]));
+        assert_eq!(exponent.scale, Scale::Linear);
+        let mass = Parameter::within(&tree, "rod.mass", [5.0, 20.0]).unwrap();
+        assert_eq!(mass.bounds, [5.0, 20.0]);
+        for parameter in [stiffness, exponent, mass] {
+            assert_eq!(parameter.coordinate(parameter.nominal), 0.0);
+            let [low, high] = parameter.box_bounds();
+            for (x, bound) in [(low, parameter.bounds[0]), (high, parameter.bounds[1])] {
+                assert!((parameter.value(x) - bound).abs() < 1e-12 * bound.abs());
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_fitted_says_why() {
+        let mut tree = machine("single-stage.yaml");
+        let refused = |tree: &Value, path: &str| Parameter::of(tree, path).unwrap_err().to_string();
+        assert!(refused(&tree, "name").contains("'"));
+        assert!(refused(&tree, "joints.*.contact.stifness").contains("stiffness"));
+        assert!(refused(&tree, "rod").contains("no quantity"));
+        paths::set(&mut tree, "cylinder.back", json!("0 Pa")).unwrap();
+        assert!(refused(&tree, "cylinder.back").contains("bounds"));
+        let within = |bounds| Parameter::within(&tree, "cylinder.back", bounds);
+        assert_eq!(within([-1e5, 1e5]).unwrap().value(0.5), 5e4);
+        let refused = within([1e5, 2e5]).unwrap_err().to_string();
+        assert!(refused.contains("100000 and 200000"), "{refused}");
     }
 }

@@ -111,11 +111,12 @@ pub(crate) fn prediction(
     let angle = CrankAngle::from_encoder(angle).map_err(analysis)?;
     let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
     let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
+    let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
     let lines = series
         .iter()
-        .map(|s| lines_of(s))
-        .collect::<Result<Vec<_>, _>>()?;
-    let derivatives = record
+        .map(|s| Ok(later(lines_of(s)?, offset)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let mut derivatives = record
         .derivatives
         .iter()
         .map(|of_parameter| {
@@ -126,22 +127,36 @@ pub(crate) fn prediction(
             channels
                 .map(|(derivative, x)| {
                     let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
-                    let lines = lines_of(&at_angle)?;
+                    let lines = later(lines_of(&at_angle)?, offset);
                     let per_coordinate = |c: &Complex64| c / problem.step();
                     Ok(lines.amplitude.iter().map(per_coordinate).collect())
                 })
                 .collect()
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
+    if !derivatives.is_empty() {
+        derivatives = apart(problem, run, &groups, derivatives);
+    }
+    for (of_parameter, slope) in derivatives.iter_mut().zip(&offset_slopes) {
+        for (of_channel, lines) in of_parameter.iter_mut().zip(&lines) {
+            for (k, (d, c)) in of_channel.iter_mut().zip(&lines.amplitude).enumerate() {
+                *d -= Complex64::I * (k as f64 * slope) * c;
+            }
+        }
+    }
     Ok(Prediction {
-        derivatives: if derivatives.is_empty() {
-            derivatives
-        } else {
-            apart(problem, run, &groups, derivatives)
-        },
         lines,
+        derivatives,
         periodic,
     })
+}
+
+/// The lines over a crank angle that reads `offset` more than the crank has turned.
+fn later(mut lines: OrderLines, offset: f64) -> OrderLines {
+    for (k, c) in lines.amplitude.iter_mut().enumerate() {
+        *c *= Complex64::from_polar(1.0, -(k as f64) * offset);
+    }
+    lines
 }
 
 /// The record with its derivatives, eight of them at a time.

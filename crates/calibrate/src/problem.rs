@@ -36,11 +36,27 @@ impl Problem {
             paths::set(&mut tree, path, value.clone())?;
         }
         for (parameter, x) in self.parameters.iter().zip(coordinates) {
-            parameter.write(&mut tree, parameter.value(*x))?;
+            parameter.write_for(&run.id, &mut tree, parameter.value(*x))?;
         }
         let mut machine = MachineFile::from_tree(&tree)?.resolve()?;
         machine.sensors = sensors(&machine, run);
         Ok(machine)
+    }
+
+    /// By how much the recorded crank angle of a run is ahead of the crank at these coordinates,
+    /// rad, and the derivative by each coordinate.
+    pub(crate) fn crank_angle_offset(&self, run: &Observation, x: &[f64]) -> (f64, Vec<f64>) {
+        let each = self.parameters.iter().zip(x).map(|(parameter, x)| {
+            match parameter.is_crank_angle_offset() && parameter.holds_in(&run.id) {
+                true => (
+                    parameter.value(*x),
+                    parameter.value(x + 1.0) - parameter.value(*x),
+                ),
+                false => (0.0, 0.0),
+            }
+        });
+        let (values, slopes): (Vec<f64>, Vec<f64>) = each.unzip();
+        (values.iter().sum(), slopes)
     }
 
     /// The machine of a run with the parameters of each group moved by [`Problem::step`] in turn.
@@ -115,7 +131,8 @@ impl Problem {
 
 /// The throw whose values alone stand at a path.
 pub(crate) fn throw(path: &str) -> Option<&str> {
-    path.strip_prefix("throws.")?.split('.').next()
+    let throw = path.strip_prefix("throws.")?.split('.').next();
+    throw.filter(|throw| *throw != "*")
 }
 
 /// The columns that a machine's runs can be compared in.

@@ -16,7 +16,7 @@ use scalar::random::{Purpose, stream};
 use std::ops::ControlFlow;
 
 /// A misfit below this is taken for noise, and no better fit is looked for.
-const NOISE: f64 = 1.15;
+pub(crate) const NOISE: f64 = 1.15;
 /// Shares of a channel's greatest line to which lines are trusted in the steps of a descent, before
 /// they are trusted to their noise.
 const SHARES: [f64; 3] = [0.1, 0.02, 0.004];

@@ -1,16 +1,13 @@
 //! A bundle of recordings becomes the runs that a machine is held against.
 
+mod recording;
+
 use crate::Failure;
-use ::calibrate::{Channel, Run};
+use ::calibrate::Run;
 use input::bundle::{self, Bundle};
-use recordings::measured::{MeasuredFile, Options};
+use input::bundle_channel::{Meaning, meaning};
 use serde_json::Value;
 use std::path::Path;
-
-/// Samples that are read at a time.
-const BLOCK: usize = 1 << 16;
-/// The column of the crank angle.
-const CRANK_ANGLE: &str = "crank_angle_rad";
 
 /// The machine file's content that the bundle in `folder` is held against: that of `machine`, or the
 /// bundle's own machine section.
@@ -31,21 +28,76 @@ pub fn machine(bundle: &Bundle, machine: Option<&Path>) -> Result<Value, Failure
         .map_err(|error| bundle.locate(error.under("machine")).into())
 }
 
-/// The runs of a bundle, but for those left out by name.
+/// The runs of a bundle, but for those left out by name. Their channels carry the columns that the
+/// model has for them, and are in SI units.
 ///
 /// # Errors
 /// A run that cannot be read, a name that no run has, or conditions that are none.
 pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Run>, Failure> {
     let ids: Vec<&str> = bundle.runs.iter().map(|run| run.id.as_str()).collect();
     known_runs("--leave-out", left_out, &ids)?;
+    let throws = throws(tree);
     let kept = bundle.runs.iter().enumerate();
     let kept = kept.filter(|(_, run)| !left_out.contains(&run.id));
     kept.map(|(i, run)| {
-        let settings = input::run_settings(&run.section, tree)
+        let meanings = meanings(bundle, i, &throws)?;
+        let recording =
+            recording::read(bundle, run, &meanings).map_err(|reason| unusable(&run.id, &reason))?;
+        let mut section = run.section.clone();
+        if let Value::Object(section) = &mut section
+            && !section.contains_key("speed_rpm")
+        {
+            section.insert("speed_rpm".into(), recording.speed_rpm.into());
+        }
+        let settings = input::run_settings(&section, tree)
             .map_err(|error| bundle.locate(error.under(format!("runs.{i}"))))?;
-        read(bundle, run, settings)
+        Ok(Run {
+            id: run.id.clone(),
+            settings,
+            speed_rpm: recording.speed_rpm,
+            sample_rate: recording.sample_rate,
+            crank_angle: recording.crank_angle,
+            channels: recording.channels,
+        })
     })
     .collect()
+}
+
+/// What the channels of run `i` are, in their order.
+///
+/// # Errors
+/// A channel whose unit or name is not understood.
+pub fn meanings(bundle: &Bundle, i: usize, throws: &[String]) -> Result<Vec<Meaning>, Failure> {
+    let names: Vec<&str> = throws.iter().map(String::as_str).collect();
+    let channels = bundle.runs[i].channels.iter().enumerate();
+    channels
+        .map(|(j, channel)| {
+            meaning(channel, &names).map_err(|error| {
+                let key = format!("runs.{i}.channels.{j}");
+                bundle.locate(error.under(key)).into()
+            })
+        })
+        .collect()
+}
+
+/// The names of a machine's throws; one without letters for a machine of one.
+pub fn throws(tree: &Value) -> Vec<String> {
+    let Some(throws) = tree["throws"].as_array() else {
+        return vec![String::new()];
+    };
+    let names = throws.iter().map(|throw| throw["name"].as_str());
+    names
+        .map(|name| name.unwrap_or_default().to_owned())
+        .collect()
+}
+
+/// What is said of a run that cannot be used.
+pub fn unusable(id: &str, reason: &str) -> Failure {
+    let named = format!("run {id}: ");
+    let reason = reason.strip_prefix(&named).unwrap_or(reason);
+    Failure::input(format!(
+        "{named}{reason} (--leave-out {id} goes on without it)"
+    ))
 }
 
 /// Checks that each of `asked` is the id of a run.
@@ -62,73 +114,4 @@ pub fn known_runs(option: &str, asked: &[String], ids: &[&str]) -> Result<(), Fa
         "{option} {unknown}: there is no such run{hint} The runs are {}.",
         ids.join(", ")
     )))
-}
-
-fn read(
-    bundle: &Bundle,
-    run: &bundle::Run,
-    settings: Vec<(String, Value)>,
-) -> Result<Run, Failure> {
-    let path = bundle.path_of(run);
-    let wrong = |reason: String| Failure::input(format!("run {}: {reason}", run.id));
-    let listed = |column: &str| run.channels.iter().any(|c| c.column == column);
-    let options = Options {
-        columns: run
-            .channels
-            .iter()
-            .filter(|c| c.unit != "s")
-            .map(|c| c.column.clone())
-            .collect(),
-        sample_rate_hz: run.sample_rate_hz.map(|rate| rate.get()),
-    };
-    let mut file = MeasuredFile::open(&path, &options).map_err(|e| wrong(e.to_string()))?;
-    let columns: Vec<String> = file.channels().iter().map(|c| c.column.clone()).collect();
-    let mut recording = match file.next() {
-        Some(recording) => recording.map_err(|e| wrong(e.to_string()))?,
-        None => return Err(wrong(format!("{} is empty", path.display()))),
-    };
-    let sample_rate = recording
-        .sample_rate_hz()
-        .ok_or_else(|| wrong("its sample rate is not known: sample_rate_hz is missing".into()))?;
-    let mut samples: Vec<Vec<f32>> = vec![Vec::new(); columns.len()];
-    loop {
-        let block = recording.read(BLOCK, &mut samples);
-        let block = block.map_err(|e| wrong(e.to_string()))?;
-        if let Some(gap) = block.gap_s {
-            return Err(wrong(format!("{gap} s of the recording are missing")));
-        }
-        if block.samples == 0 {
-            break;
-        }
-    }
-    let wide = |samples: &[f32]| samples.iter().map(|x| f64::from(*x)).collect::<Vec<f64>>();
-    let mut crank_angle = None;
-    let mut channels = Vec::new();
-    for (column, samples) in columns.iter().zip(&samples) {
-        if let Some(i) = samples.iter().position(|x| !x.is_finite()) {
-            return Err(wrong(format!(
-                "channel {column} has no number at sample {i}"
-            )));
-        }
-        if column == CRANK_ANGLE {
-            crank_angle = Some(wide(samples));
-        } else if listed(column) {
-            channels.push(Channel {
-                column: column.clone(),
-                samples: wide(samples),
-            });
-        }
-    }
-    let speed_rpm = run
-        .speed_rpm
-        .map(|speed| speed.get())
-        .ok_or_else(|| wrong("its speed_rpm is missing".into()))?;
-    Ok(Run {
-        id: run.id.clone(),
-        settings,
-        speed_rpm,
-        sample_rate,
-        crank_angle,
-        channels,
-    })
 }

@@ -10,6 +10,7 @@ pub mod calibrate;
 pub mod failure;
 pub mod features;
 pub mod gen_dataset;
+pub mod replay;
 pub mod report;
 pub mod schema;
 pub mod simulate;

@@ -19,6 +19,8 @@ enum File {
     Sweep,
     /// recordings.yaml: a bundle of measured runs
     Bundle,
+    /// calibration.yaml: what is fitted to a bundle
+    Calibration,
 }
 
 /// Prints the schema.
@@ -30,6 +32,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         File::Machine => input::schema::machine_schema(),
         File::Sweep => sweep::sweep_file::schema(),
         File::Bundle => input::schema::bundle_schema(),
+        File::Calibration => input::calibration::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");

@@ -16,7 +16,6 @@ use simulate::{
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use sweep::Plan;
 
 /// Rows per group of the Parquet file.
 const ROWS_PER_GROUP: usize = 65_536;
@@ -138,7 +137,7 @@ fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Fa
         let noise = stream(arguments.seed, 0, Purpose::Noise);
         return Ok((read_machine(arguments)?, settings(arguments)?, noise));
     };
-    let plan = Plan::read(&arguments.machine)?;
+    let plan = crate::gen_dataset::read_plan(&arguments.machine)?;
     let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
     let index = index.filter(|i| *i < plan.cases() && plan.case_id(*i) == *id);
     let Some(index) = index else {

@@ -17,7 +17,7 @@ const SWEEP: &str = "
 name: small
 machine: MACHINE
 seed: 7
-run: {revolutions: 4, transient: 2, tolerance: 1e-8}
+run: {revolutions: 4, transient: 2, tolerance: 1e-8, chaos: false}
 repeats: 2
 windows: {count: 2, revolutions: 2}
 shard_size: 5

@@ -87,6 +87,12 @@ pub struct Channel {
     pub column: String,
     /// Its unit, e.g. `m/s2`.
     pub unit: String,
+    /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
+    #[serde(default)]
+    pub offset: Option<Number>,
+    /// The crank angle at which the pulse of a tacho comes, rad.
+    #[serde(default)]
+    pub crank_angle_rad: Option<Number>,
 }
 
 /// The keys of a run, to find slips of the keyboard among those that are unknown.

@@ -130,6 +130,11 @@ impl JsonSchema for Ideal {
 pub struct Count<const LOW: u32, const HIGH: u32>(u32);
 
 impl<const LOW: u32, const HIGH: u32> Count<LOW, HIGH> {
+    /// The number; none where it is out of range.
+    pub fn new(number: u32) -> Option<Self> {
+        (LOW..=HIGH).contains(&number).then_some(Self(number))
+    }
+
     /// The number.
     pub fn get(self) -> u32 {
         self.0

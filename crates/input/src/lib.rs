@@ -9,8 +9,11 @@
 //!
 //! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected.
 
+pub mod amount;
 pub mod bundle;
+pub mod bundle_channel;
 pub mod bundle_machine;
+pub mod calibration;
 pub mod choice;
 pub mod error;
 pub mod machine_file;

@@ -55,12 +55,73 @@ pub fn get<'a>(tree: &'a Value, path: &str) -> Result<Option<&'a Value>, Error> 
     Ok(find(tree, &key).or(shared))
 }
 
+/// The paths with a value that `pattern` stands for, in which a part may be `*`: any key, or any
+/// item of a list. A pattern without one stands for itself.
+///
+/// # Errors
+/// Where the format has no such path, whatever stands for `*`.
+pub fn matching(tree: &Value, pattern: &str) -> Result<Vec<String>, Error> {
+    let parts: Vec<&str> = pattern.split('.').collect();
+    let Some(star) = parts.iter().position(|part| *part == "*") else {
+        let there = get(tree, pattern)?.is_some();
+        return Ok(there.then(|| pattern.to_owned()).into_iter().collect());
+    };
+    let mut found = Vec::new();
+    let mut refused = None;
+    let names = names(tree, &parts[..star])?;
+    for name in &names {
+        let mut parts = parts.clone();
+        parts[star] = name;
+        match matching(tree, &parts.join(".")) {
+            Ok(paths) => found.push(paths),
+            // An item need not have what another has.
+            Err(error) => refused = Some(error),
+        }
+    }
+    match refused {
+        Some(error) if found.is_empty() => Err(error),
+        _ => Ok(found.concat()),
+    }
+}
+
+/// The keys that may stand at the path `above`, or the items that the list there has.
+fn names(tree: &Value, above: &[&str]) -> Result<Vec<String>, Error> {
+    let walked = walk(tree, above.iter().copied())?;
+    if walked.schema.items().is_none() {
+        let keys = walked.schema.keys().into_iter();
+        return Ok(keys.map(str::to_owned).collect());
+    }
+    let items = walked.node.and_then(Value::as_array).into_iter().flatten();
+    let name = |(index, item): (usize, &Value)| {
+        let name = item["name"].as_str().map(str::to_owned);
+        name.unwrap_or_else(|| index.to_string())
+    };
+    Ok(items.enumerate().map(name).collect())
+}
+
 /// The path as keys and indices, names of list items replaced.
 fn resolve(tree: &Value, path: &str) -> Result<Vec<String>, Error> {
+    Ok(walk(tree, path.split('.'))?.keys)
+}
+
+/// A place of a file.
+struct Walked<'a> {
+    /// Its path in keys and indices.
+    keys: Vec<String>,
+    /// What the format has there.
+    schema: Node<'static>,
+    /// What the file has there.
+    node: Option<&'a Value>,
+}
+
+fn walk<'a, 'p>(
+    tree: &'a Value,
+    parts: impl Iterator<Item = &'p str>,
+) -> Result<Walked<'a>, Error> {
     let mut keys: Vec<String> = Vec::new();
     let mut schema = Node::machine();
     let mut node = Some(tree);
-    for part in path.split('.') {
+    for part in parts {
         let here = keys.join(".");
         if let Some(items) = schema.items() {
             let list = node
@@ -82,7 +143,7 @@ fn resolve(tree: &Value, path: &str) -> Result<Vec<String>, Error> {
         node = node.and_then(|node| node.get(part));
         schema = inner;
     }
-    Ok(keys)
+    Ok(Walked { keys, schema, node })
 }
 
 /// The index of the item that `part` is the index or the name of, and whether its name is a key

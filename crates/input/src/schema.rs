@@ -140,6 +140,9 @@ fn channels() -> Value {
                 "name": text_of("What it is, in words."),
                 "column": text_of("Its column in the file."),
                 "unit": text_of("Its unit, e.g. `m/s2`."),
+                "offset": number(
+                    "Added to its numbers, in its unit: the ambient pressure of a gauge."),
+                "crank_angle_rad": number("Crank angle at which the pulse of a tacho comes."),
             },
             "required": ["column", "unit"],
         },
@@ -148,6 +151,10 @@ fn channels() -> Value {
 
 fn text_of(description: &str) -> Value {
     json!({"description": description, "type": "string"})
+}
+
+fn number(description: &str) -> Value {
+    json!({"description": description, "type": "number"})
 }
 
 fn above_zero(description: &str) -> Value {

@@ -182,8 +182,8 @@ fn wrong_machine_sections_are_told() {
              stage, direction, crank_pin_angle_rad, crank_radius_m, stroke_m, rod_length_m, \
              rod_mass_kg, rod_big_end_to_cg_m, rod_inertia_cg_kg_m2, crosshead_mass_kg, \
              piston_radius_m, double_acting, piston_rod_radius_m, head_clearance_m, \
-             crank_end_clearance_m, polytropic_exponent, back_pressure_pa, \
-             big_end_journal_radius_m, small_end_journal_radius_m, youngs_modulus_pa, \
+             crank_end_clearance_m, polytropic_exponent, polytropic_expansion_exponent, \
+             back_pressure_pa, big_end_journal_radius_m, small_end_journal_radius_m, youngs_modulus_pa, \
              poisson_ratio, contact_exponent, contact_stiffness_nominal_n_m15, \
              contact_damping_nominal_n_s_m, contact_damping_depth_m, contact_relation, \
              contact_at_clearance_m, friction_coefficient_nominal, friction_slip_velocity_m_s, \

@@ -1,5 +1,6 @@
 //! The committed JSON Schemas are the ones that the program gives.
 
+use input::calibration;
 use input::schema::{bundle_schema, machine_schema};
 use serde_json::Value;
 use std::path::PathBuf;
@@ -7,7 +8,11 @@ use std::path::PathBuf;
 #[test]
 fn the_committed_schemas_are_current() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../data/schema");
-    for (name, current) in [("machine", machine_schema()), ("bundle", bundle_schema())] {
+    for (name, current) in [
+        ("machine", machine_schema()),
+        ("bundle", bundle_schema()),
+        ("calibration", calibration::schema()),
+    ] {
         let file = format!("{name}.schema.json");
         let committed = std::fs::read_to_string(folder.join(&file)).unwrap_or_default();
         let committed: Value = serde_json::from_str(&committed).unwrap_or_default();
@@ -33,7 +38,11 @@ fn every_reference_leads_to_a_definition() {
             _ => {}
         }
     }
-    for (schema, least) in [(machine_schema(), 50), (bundle_schema(), 3)] {
+    for (schema, least) in [
+        (machine_schema(), 50),
+        (bundle_schema(), 3),
+        (calibration::schema(), 3),
+    ] {
         let mut seen = 0;
         check(&schema, &schema, &mut seen);
         assert!(seen >= least, "{seen}");
@@ -59,5 +68,6 @@ fn every_key_has_a_description() {
     }
     let mut missing = Vec::new();
     check(&machine_schema(), "", &mut missing);
+    check(&calibration::schema(), "", &mut missing);
     assert_eq!(missing, [""; 0]);
 }

@@ -19,8 +19,11 @@ parameters! {
         /// Pressure pb behind a single-acting piston, and on the end of a double-acting one's
         /// rod, absolute, Pa.
         pub back: S,
-        /// Polytropic exponent m.
+        /// Polytropic exponent m of the compression.
         pub exponent: S,
+        /// Polytropic exponent of the expansion of what stays in the clearance. MODEL.md has one
+        /// exponent for both; in a real cylinder heat and leakage make them differ.
+        pub expansion_exponent: S,
         /// Clearance S0 between piston and head at top dead centre, m.
         pub head_clearance: S,
         /// The crank-end chamber of a double-acting cylinder.
@@ -47,8 +50,8 @@ pub(crate) struct Chamber<S> {
     pub stroke: S,
     /// Suction and discharge pressure, Pa.
     pub lines: [S; 2],
-    /// Polytropic exponent.
-    pub exponent: S,
+    /// Polytropic exponents of compression and expansion.
+    pub exponents: [S; 2],
 }
 
 /// Pressure in a chamber, and what the valves' switching depends on. Pa.
@@ -115,7 +118,9 @@ impl<S: Scalar> Chamber<S> {
         let [suction, discharge] = self.lines;
         let from = flagged(expanding, discharge, suction);
         let start = flagged(expanding, self.dead, self.stroke + self.dead);
-        let closed = from * (start / distance).powf(self.exponent);
+        let [compression, expansion] = self.exponents;
+        let exponent = flagged(expanding, expansion, compression);
+        let closed = from * (start / distance).powf(exponent);
         let pressure = flagged(
             mode.discharge,
             open[1],
@@ -160,7 +165,7 @@ pub(crate) fn gas<S: Scalar>(
         dead,
         stroke: throw.crank_radius * 2.0,
         lines,
-        exponent: cylinder.exponent,
+        exponents: [cylinder.exponent, cylinder.expansion_exponent],
     };
     let area = |radius: S| radius * radius * std::f64::consts::PI;
     let face = area(cylinder.piston_radius);

@@ -71,12 +71,13 @@ fn by_hand(throw: &Throw, alpha: f64, w: f64, dw: f64, g: [f64; 2]) -> Hand {
 fn gas_by_hand(throw: &Throw, alpha: f64, position: f64) -> f64 {
     let cylinder = &throw.cylinder;
     let (ps, pd, m) = (cylinder.suction, cylinder.discharge, cylinder.exponent);
+    let expansion = cylinder.expansion_exponent;
     let (r, l) = (throw.crank_radius, throw.rod.length);
     let stroke = 2.0 * r;
     let outward = alpha.rem_euclid(TAU) < PI;
     let pressure = |dead: f64, x: f64, expanding: bool| {
         if expanding {
-            (pd * (dead / x).powf(m)).clamp(ps, pd)
+            (pd * (dead / x).powf(expansion)).clamp(ps, pd)
         } else {
             (ps * ((stroke + dead) / x).powf(m)).clamp(ps, pd)
         }

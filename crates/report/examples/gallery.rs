@@ -28,6 +28,7 @@ fn main() -> io::Result<()> {
     for (name, page) in [
         ("grid.html", synthetic::datasets::grid().render()),
         ("random.html", synthetic::datasets::random().render()),
+        ("calibration.html", synthetic::calibration::page().render()),
         ("chaos.html", synthetic::chaos::page().render()),
     ] {
         fs::write(out.join(name), page.map_err(io::Error::other)?.html)?;

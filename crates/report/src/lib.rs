@@ -5,6 +5,7 @@
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
 //! - [`features_page`]: the HTML page that documents the features;
+//! - [`calibration_page`]: the HTML page of a calibration;
 //! - [`text`]: numbers with units, words, escaping.
 //!
 //! Structs go in, text comes out: nothing here reads or writes a file, and the same structs always
@@ -14,6 +15,7 @@
 //! grids hide the tick labels of panels that then do not have the common range, equal axes come
 //! out lopsided, angles get ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
 
+pub mod calibration_page;
 pub mod case_picture;
 pub mod chaos_page;
 pub mod dataset_page;

@@ -44,7 +44,11 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
     let spectrum = fft::forward(&mut work);
     let reach = (count - 1) / 2;
     let degrees = (4 * reach) as f64;
-    let widened = if reach > 0 { degrees / (degrees - 2.0) } else { 0.0 };
+    let widened = if reach > 0 {
+        degrees / (degrees - 2.0)
+    } else {
+        0.0
+    };
     let noise = |bin: usize| {
         let power = |offset: usize| {
             // Below order 0 the spectrum is its own mirror image.

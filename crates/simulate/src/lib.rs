@@ -31,7 +31,7 @@ pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
 pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};
-pub use record::{Error, Record, simulate};
+pub use record::{Error, Record, simulate, simulate_later};
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{

@@ -69,9 +69,24 @@ pub fn simulate(
     settings: &Settings,
     traced: bool,
 ) -> Result<Record, Error> {
+    simulate_later(machine, sensors, settings, 0.0, traced)
+}
+
+/// The same, the record beginning `delay` seconds (0 or more) after the transient: at a crank angle
+/// of choice, where without a delay a crank of given speed stands at angle 0.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_later(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+    delay: f64,
+    traced: bool,
+) -> Result<Record, Error> {
     let mut run = Run::start(machine.clone(), settings.tolerance, true);
     let (transient, settled) = run.leave_transient(settings.transient)?;
-    let start = f64::from(transient) * run.revolution();
+    let start = f64::from(transient) * run.revolution() + delay;
     let length = f64::from(settings.revolutions) * run.revolution();
     let sampling = Sampling::new(settings.sample_rate, length)?;
     let mut trace = traced.then(|| Trace::new(machine, sampling.factor));

@@ -22,7 +22,14 @@ pub enum Distribution {
         /// Largest value.
         high: f64,
     },
-    /// Gauss's.
+    /// Gauss's, of the number or of its logarithm.
+    Gaussian(Gaussian),
+}
+
+/// Gauss's distribution of a number or of its logarithm, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gaussian {
+    /// The number is normal.
     Normal {
         /// Mean value.
         mean: f64,
@@ -33,9 +40,19 @@ pub enum Distribution {
     LogNormal {
         /// Half of the values are smaller; above 0.
         median: f64,
-        /// 68 % of the values lie between median / factor and median × factor; above 1.
+        /// 68 % of the values lie between median / factor and median × factor; at least 1.
         factor: f64,
     },
+}
+
+impl Gaussian {
+    /// The value that `deviate` of a standard normal distribution stands for.
+    pub fn value(&self, deviate: f64) -> f64 {
+        match *self {
+            Gaussian::Normal { mean, deviation } => mean + deviation * deviate,
+            Gaussian::LogNormal { median, factor } => median * exp(ln(factor) * deviate),
+        }
+    }
 }
 
 impl Distribution {
@@ -44,8 +61,7 @@ impl Distribution {
         match *self {
             Distribution::Uniform { low, high } => low + unit * (high - low),
             Distribution::LogUniform { low, high } => low * exp(unit * ln(high / low)),
-            Distribution::Normal { mean, deviation } => mean + deviation * quantile(unit),
-            Distribution::LogNormal { median, factor } => median * exp(ln(factor) * quantile(unit)),
+            Distribution::Gaussian(gaussian) => gaussian.value(quantile(unit)),
         }
     }
 }
@@ -81,9 +97,10 @@ mod tests {
         // Φ(1) and Φ(2), from tables with 16 digits.
         let (one, two) = (0.841_344_746_068_542_9, 0.977_249_868_051_820_8);
         let (mean, deviation) = (-3.0, 0.5);
-        close(Distribution::Normal { mean, deviation }.quantile(one), -2.5);
+        let normal = Distribution::Gaussian(Gaussian::Normal { mean, deviation });
+        close(normal.quantile(one), -2.5);
         let (median, factor) = (5.0, 1.2);
-        let lognormal = Distribution::LogNormal { median, factor };
+        let lognormal = Distribution::Gaussian(Gaussian::LogNormal { median, factor });
         close(lognormal.quantile(0.5), 5.0);
         close(lognormal.quantile(one), 6.0);
         close(lognormal.quantile(two), 7.2);

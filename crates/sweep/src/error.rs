@@ -45,6 +45,12 @@ pub enum Error {
         /// Identifier of this sweep's plan.
         expected: String,
     },
+    /// The output folder holds a dataset that was begun with another calibration.
+    #[error(
+        "`{}` holds a dataset of another calibration (recordings, machine, settings or version \
+         have changed): --overwrite replaces it, or choose another folder", .0.display()
+    )]
+    OtherCalibration(PathBuf),
     /// Another process writes to the output folder.
     #[error("`{}` is being written by another process ({by})", path.display())]
     InUse {
@@ -137,6 +143,7 @@ impl Error {
                 | Error::Exists(_)
                 | Error::NotOurs(_)
                 | Error::OtherPlan { .. }
+                | Error::OtherCalibration(_)
                 | Error::InUse { .. }
                 | Error::Unwritable { .. }
         )

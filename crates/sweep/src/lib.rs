@@ -1,5 +1,6 @@
 //! sweep.yaml becomes cases, shards and a committed dataset.
 
+pub mod calibration;
 pub mod dataset;
 pub mod design;
 pub mod distribution;
@@ -12,6 +13,7 @@ mod runner;
 pub mod split;
 pub mod sweep_file;
 
+pub use calibration::{Calibration, Sweep};
 pub use dataset::{Existing, Options, Progress, Recording, Runner, finalize, generate, run_shards};
 pub use error::Error;
 pub use plan::{Case, Diagram, DiagramEstimate, Estimate, Plan};

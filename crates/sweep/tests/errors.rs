@@ -18,7 +18,7 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, seed, run, repeats, windows, cases, vary, bifurcations, splits, format, shard_size; did you mean 'cases'?",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?",
     ),
     ("", "sweep.yaml:1:1: cases: missing"),
     (
@@ -143,7 +143,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.big_end.contact.damping: {lognormal: {fctor: 1.2}}",
-        "sweep.yaml:7:48: vary.joints.big_end.contact.damping.lognormal.fctor: unknown key; expected one of median, factor; did you mean 'factor'?",
+        "sweep.yaml:7:48: vary.joints.big_end.contact.damping.lognormal.fctor: unknown key; expected one of median, factor, range; did you mean 'factor'?",
     ),
     (
         "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.bigend.contact.damping: {lognormal: {factor: 1.2}}",
@@ -152,6 +152,34 @@ const MISTAKES: &[(&str, &str)] = &[
     (
         "cases:\n  - grid: {speed: 500 rpm}\nvary:\n  joints.big_end.contact.law: {lognormal: {factor: 1.2}}",
         "sweep.yaml:7:31: vary.joints.big_end.contact.law: found no number in the machine file, expected one to vary about",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary:\n  rod.mass: {lognormal: {factor: 1.1, range: [12 kg, 11 kg]}}",
+        "sweep.yaml:6:56: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mss: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
+        "sweep.yaml:6:19: vary_together.0.parameters.rod.mss: unknown key; expected one of mass, centre_of_mass, inertia; did you mean 'mass'?",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {uniform: [1 kg, 2 kg]}}, correlations: [[1]]}",
+        "sweep.yaml:6:29: vary_together.0.parameters.rod.mass: found 'uniform', expected one of normal, lognormal; did you mean 'normal'?",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {lognormal: {factor: 1.1}}, crosshead.mass: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
+        "sweep.yaml:6:116: vary_together.0.correlations: found 1 rows, expected a symmetric matrix with ones on its diagonal, 2 rows of 2",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {lognormal: {factor: 1.1}}, crosshead.mass: {lognormal: {factor: 1.1}}}, correlations: [[1, 0.5], [0.4, 1]]}",
+        "sweep.yaml:6:121: vary_together.0.correlations.0.1: found 0.5, expected a symmetric matrix with ones on its diagonal, 2 rows of 2",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mass: {lognormal: {factor: 1.1}}, crosshead.mass: {lognormal: {factor: 1.1}}}, correlations: [[1, 1.5], [1.5, 1]]}",
+        "sweep.yaml:6:116: vary_together.0.correlations: found correlations that contradict each other, expected those of some distribution: a matrix without negative eigenvalues",
+    ),
+    (
+        "cases: [{grid: {speed: 500 rpm}}]\nvary: {rod.mass: [11 kg, 12 kg]}\nvary_together:\n  - {parameters: {rod.mass: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
+        "sweep.yaml:7:29: vary_together.0.parameters.rod.mass: found an unknown that varies already, expected it once",
     ),
     (
         "cases:\n  - grid: {speed: 500 rpm}\nsplits: {train: 80 %, test: 30 %}",

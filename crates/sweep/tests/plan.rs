@@ -246,6 +246,58 @@ vary:
 }
 
 #[test]
+fn unknowns_that_vary_together_have_their_correlations_and_stay_in_their_range() {
+    let plan = plan(
+        "cases: [{random: {count: 4000, design: random, axes: {speed: 500 rpm}}}]
+vary_together:
+  - parameters:
+      joints.big_end.contact.stiffness: {lognormal: {factor: 1.2}}
+      rod.mass: {normal: {mean: 10 kg, deviation: 500 g, range: [9 kg, 10.5 kg]}}
+      joints.big_end.friction.coefficient: {lognormal: {median: 0.06, factor: 1.1}}
+    correlations: [[1, -0.8, 0], [-0.8, 1, 0.3], [0, 0.3, 1]]
+",
+    )
+    .unwrap();
+    let value = |case: &Case, path: &str| {
+        let value = input::paths::get(&case.tree, path).unwrap().unwrap();
+        sweep::sweep_file::Amount::of(value).unwrap().si
+    };
+    let drawn: Vec<[f64; 3]> = all(&plan, |case| {
+        let stiffness = value(&case, "joints.big_end.contact.stiffness");
+        let friction = value(&case, "joints.big_end.friction.coefficient");
+        [
+            (stiffness / 24e9).ln() / 1.2_f64.ln(),
+            (value(&case, "rod.mass") - 10.0) / 0.5,
+            (friction / 0.06).ln() / 1.1_f64.ln(),
+        ]
+    });
+    let mean = |of: &dyn Fn(&[f64; 3]) -> f64| drawn.iter().map(of).sum::<f64>() / 4000.0;
+    // Four standard errors of 4000 normal draws: of a mean 0.063, of a product at most 0.09.
+    for i in [0, 2] {
+        assert!(mean(&|z| z[i]).abs() < 0.063, "{}", mean(&|z| z[i]));
+        assert!((mean(&|z| z[i] * z[i]) - 1.0).abs() < 0.09);
+    }
+    assert!(mean(&|z| z[0] * z[2]).abs() < 0.063);
+    // The mass is cut off at -2 and 1 standard deviations, so often is it at its ends: Φ(-2) and
+    // 1 - Φ(1), four standard errors.
+    let share = |end: f64| mean(&|z| f64::from(u8::from((z[1] - end).abs() < 1e-9)));
+    assert!((share(-2.0) - 0.02275).abs() < 0.0095, "{}", share(-2.0));
+    assert!((share(1.0) - 0.15866).abs() < 0.0232, "{}", share(1.0));
+    // Between the ends the product with the first follows its conditional mean -0.8 z.
+    let inside = |z: &[f64; 3]| f64::from(u8::from(z[1] > -1.999 && z[1] < 0.999));
+    let slope = mean(&|z| inside(z) * z[0] * z[1]) / mean(&|z| inside(z) * z[1] * z[1]);
+    // Its standard error: 0.6/√(Σ z²), which is below 0.017.
+    assert!((slope + 0.8).abs() < 0.068, "{slope}");
+    let columns: Vec<&str> = plan.parameters.iter().map(|p| p.column.as_str()).collect();
+    let expected = [
+        "joints.big_end.contact.stiffness_n_m15",
+        "rod.mass_kg",
+        "joints.big_end.friction.coefficient",
+    ];
+    assert_eq!(columns, expected);
+}
+
+#[test]
 fn twins_that_differ_in_noise_and_sensors_share_a_group() {
     let plan = plan(
         "repeats: 3

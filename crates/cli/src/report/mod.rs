@@ -1,5 +1,6 @@
-//! `crosshead report`: the HTML pages of a dataset.
+//! `crosshead report`: the HTML pages of a dataset, or of a calibration.
 
+mod calibration;
 mod chaos;
 mod columns;
 mod counts;
@@ -23,19 +24,23 @@ use pages::Place;
 use std::path::{Path, PathBuf};
 use windows::{Case, Windows};
 
+/// Name of the page in its folder.
+pub(crate) const PAGE: &str = "report.html";
+
 /// Arguments of `crosshead report`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   crosshead report datasets/paper2
   crosshead report datasets/bearing-faults --out bearing-faults.html
+  crosshead report calibrated
 
-Beside the page stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
+A calibration has one page. Beside that of a dataset stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
 feature is) and figures/, every figure as an SVG file.
 
 Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
-    /// Folder of a dataset, as gen-dataset writes it
+    /// Folder of a dataset or of a calibration, as gen-dataset or calibrate writes it
     dir: PathBuf,
     /// The page [default: DIR/report.html]
     #[arg(long, value_name = "FILE.html")]
@@ -48,13 +53,19 @@ pub struct Arguments {
 /// # Errors
 /// A folder that is no whole dataset, or a page that cannot be made or written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if calibration::is_at(&arguments.dir) {
+        let out = arguments.out.clone();
+        let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
+        println!("{}", write_calibration(&arguments.dir, &out)?.display());
+        return Ok(());
+    }
     let contents = Contents::read(&arguments.dir)?;
     let page = contents.dataset_page()?;
     let place = Place {
         dataset: arguments
             .out
             .clone()
-            .unwrap_or_else(|| arguments.dir.join("report.html")),
+            .unwrap_or_else(|| arguments.dir.join(PAGE)),
     };
     place.write(&[
         (
@@ -76,6 +87,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print!("\n{}", grid.claims_markdown());
     }
     Ok(())
+}
+
+/// Writes the page of the calibration in `folder` to the file `out`, and says where that is.
+///
+/// # Errors
+/// A folder that is no calibration, or a page that cannot be made or written.
+pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+    let page = calibration::page(folder)?.render().map_err(Failure::work)?;
+    pages::write(out, &page.html)?;
+    Ok(out.to_owned())
 }
 
 /// What the page of the dataset in `folder` tells.

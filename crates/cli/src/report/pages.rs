@@ -76,7 +76,7 @@ fn make(folder: &Path) -> Result<(), Failure> {
 }
 
 /// Writes a file whole or not at all.
-fn write(out: &Path, text: &str) -> Result<(), Failure> {
+pub(super) fn write(out: &Path, text: &str) -> Result<(), Failure> {
     let written = WholeFile::create(&out.with_extension("part"), out).and_then(|mut file| {
         file.write_all(text.as_bytes())
             .map_err(recordings::Error::Write)?;

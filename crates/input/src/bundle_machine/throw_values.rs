@@ -61,6 +61,9 @@ pub(super) struct ThrowValues {
     crank_end_clearance_m: Option<Number<AboveZero>>,
     /// Polytropic exponent of the gas.
     polytropic_exponent: Number<AboveZero>,
+    /// Polytropic exponent while the gas in the clearance expands; the other where it is left out.
+    #[serde(default)]
+    polytropic_expansion_exponent: Option<Number<AboveZero>>,
     /// Pressure behind a single-acting piston, and on the end of a double-acting one's rod.
     back_pressure_pa: Number<FromZero>,
     /// Radius of the crank pin; without it the big end is ideal.
@@ -233,6 +236,9 @@ impl ThrowValues {
             "exponent": self.polytropic_exponent.get(),
             "head_clearance": text::<Length>(self.head_clearance_m),
         });
+        if let Some(exponent) = self.polytropic_expansion_exponent {
+            cylinder["expansion_exponent"] = exponent.get().into();
+        }
         if self.double_acting {
             let rod_radius = needed(self.piston_rod_radius_m, "piston_rod_radius_m")?;
             let clearance = needed(self.crank_end_clearance_m, "crank_end_clearance_m")?;

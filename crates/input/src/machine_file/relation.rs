@@ -25,8 +25,8 @@ pub(crate) type RelationSection = Or<RelationName, Exponents>;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum RelationName {
-    /// The stiffness follows Eq. (5) of the papers: R₁R₂/(R₁ + R₂). Damping and depth keep the
-    /// restitution.
+    /// The stiffness follows Eq. (5) of the papers: R₁R₂/(R₁ + R₂). The damping follows the patch
+    /// of contact, near c^(−1/5); the depth stays.
     Eq5,
     /// The stiffness follows the conformal form: R₁R₂/(R₂ − R₁). Damping and depth keep the
     /// restitution.

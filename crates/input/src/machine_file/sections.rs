@@ -154,6 +154,9 @@ pub(super) struct Cylinder {
     back: NonNegative<Pressure>,
     /// Polytropic exponent of the gas.
     exponent: Number<AboveZero>,
+    /// Polytropic exponent while the gas in the clearance expands; `exponent` where it is left out.
+    #[serde(default)]
+    expansion_exponent: Option<Number<AboveZero>>,
     /// Gap between piston and head at top dead centre.
     head_clearance: Positive<Length>,
     /// The second chamber of a double-acting cylinder.
@@ -194,6 +197,7 @@ impl Cylinder {
             discharge: discharge.si(),
             back: self.back.si(),
             exponent: self.exponent.get(),
+            expansion_exponent: self.expansion_exponent.unwrap_or(self.exponent).get(),
             head_clearance: self.head_clearance.si(),
             crank_end,
         })

@@ -1,8 +1,7 @@
 //! How contact parameters follow the clearance: a law that is known at one clearance becomes the
 //! law of the same joint at another.
 //!
-//! The two relations that come from a formula for the stiffness also carry over the damping. An
-//! impact of mass m at speed v on `F = K δⁿ + STEP(δ, 0, 0, d, C) δ̇` reaches a depth
+//! An impact of mass m at speed v on `F = K δⁿ + STEP(δ, 0, 0, d, C) δ̇` reaches a depth
 //! `δₘ ∝ (m v²/K)^(1/(n + 1))` (for n = 3/2 Hertz 1881; Johnson 1985, Contact Mechanics, section
 //! 11.4), and only `d/δₘ` and `C δₘ/(m v)` decide what it comes back with: nothing else in the
 //! equation of motion is without dimension. Both stay as they are, at every mass and speed, where
@@ -11,11 +10,18 @@
 //! d ∝ K^(−1/(n + 1)),  C ∝ K^(1/(n + 1))
 //! ```
 //!
-//! so that the same materials give the same restitution. With n = 3/2 and the conformal stiffness
-//! K ∝ c^(−1/2) that is d ∝ c^(1/5) and C ∝ c^(−1/5); with Eq. (5), whose stiffness hardly depends
-//! on the clearance, nothing moves by more than a few tenths of a percent. A linear spring (n = 1)
-//! keeps its damping ratio. A coefficient of restitution stays as it is. Friction does too: it does
-//! not depend on the clearance to first order.
+//! so that the same materials give the same restitution. That is the conformal relation: with
+//! n = 3/2 and the stiffness K ∝ c^(−1/2) of a journal in a bearing, d ∝ c^(1/5) and C ∝ c^(−1/5).
+//!
+//! Eq. (5) speaks of the stiffness alone, which by it hardly depends on the clearance; with an equal
+//! restitution nothing would depend on the clearance, and Eq. (5) would not differ from a constant.
+//! Here, and this is our choice, its damping follows the patch of contact: a journal lies in its
+//! bearing conformally whichever formula gives the spring, and a wider clearance makes the patch
+//! smaller. So C takes the power 1/(n + 1) of the conformal stiffness, c^(−1/5), and the depth, which
+//! belongs to the surfaces, stays.
+//!
+//! A linear spring (n = 1) keeps its damping ratio by the conformal relation. A coefficient of
+//! restitution stays as it is. Friction does too: it does not depend on the clearance to first order.
 
 use super::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use super::stiffness::{effective_radius_conformal, effective_radius_eq5};
@@ -24,7 +30,8 @@ use scalar::Scalar;
 /// A relation between the contact parameters of a joint at different clearances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relation<S = f64> {
-    /// The stiffness follows Eq. (5) of the papers, damping and depth keep the restitution.
+    /// The stiffness follows Eq. (5) of the papers, the damping the conformal patch of contact, the
+    /// depth stays.
     Equation5,
     /// The stiffness follows the conformal form of Hertz 1881, damping and depth keep the
     /// restitution.
@@ -54,13 +61,23 @@ impl<S: Scalar> Relation<S> {
     /// radius `journal` (m), for a law with the exponent `exponent`.
     fn factors(&self, journal: S, clearances: [S; 2], exponent: S) -> Factors<S> {
         let power = |exponent: S| (clearances[1] / clearances[0]).powf(exponent);
-        let of_stiffness = |radius: fn(S, S) -> S| {
+        let of_radius = |radius: fn(S, S) -> S| {
             let [from, to] = clearances.map(|clearance| radius(journal, clearance));
-            Factors::with_equal_restitution((to / from).sqrt(), exponent)
+            (to / from).sqrt()
         };
+        let conformal = || of_radius(effective_radius_conformal);
+        let of_patch = || conformal().powf(S::one() / (exponent + 1.0));
         match *self {
-            Relation::Equation5 => of_stiffness(|r, c| effective_radius_eq5([r, r + c])),
-            Relation::Conformal => of_stiffness(effective_radius_conformal),
+            Relation::Equation5 => Factors {
+                stiffness: of_radius(|r, c| effective_radius_eq5([r, r + c])),
+                damping: of_patch(),
+                depth: S::one(),
+            },
+            Relation::Conformal => Factors {
+                stiffness: conformal(),
+                damping: of_patch(),
+                depth: S::one() / of_patch(),
+            },
             Relation::Constant => Factors {
                 stiffness: S::one(),
                 damping: S::one(),
@@ -75,18 +92,6 @@ impl<S: Scalar> Relation<S> {
                 damping: power(damping),
                 depth: power(depth),
             },
-        }
-    }
-}
-
-impl<S: Scalar> Factors<S> {
-    /// The factors beside that of the stiffness which leave the restitution as it is.
-    fn with_equal_restitution(stiffness: S, exponent: S) -> Self {
-        let damping = stiffness.powf(S::one() / (exponent + 1.0));
-        Self {
-            stiffness,
-            damping,
-            depth: S::one() / damping,
         }
     }
 }
@@ -155,15 +160,13 @@ mod tests {
     }
 
     #[test]
-    fn equation_5_hardly_depends_on_the_clearance() {
+    fn the_stiffness_of_equation_5_hardly_depends_on_the_clearance_and_its_damping_does() {
         // R₁ = 35 mm, R₂ = 35.1 and 35.3 mm: R₁R₂/(R₁ + R₂) = 1228.5/70.1 and 1235.5/70.3 mm.
         let stiffness = ((1235.5 / 70.3) / (1228.5 / 70.1_f64)).sqrt();
         assert!((stiffness - 1.001_417_4).abs() < 1e-7, "{stiffness}");
-        let damping = stiffness.powf(0.4);
-        assert_near(
-            factors(Relation::Equation5),
-            [stiffness, damping, 1.0 / damping],
-        );
+        let damping = (12_355.0 / 3.0 / 12_285.0_f64).powf(0.2);
+        assert!((damping - 3_f64.powf(-0.2)).abs() < 1e-3, "{damping}");
+        assert_near(factors(Relation::Equation5), [stiffness, damping, 1.0]);
     }
 
     #[test]

@@ -66,6 +66,7 @@ pub fn single_stage() -> Machine {
                 discharge: 0.393e6,
                 back: 0.0,
                 exponent: 1.4,
+                expansion_exponent: 1.4,
                 head_clearance: 0.024,
                 crank_end: None,
             },
@@ -144,6 +145,7 @@ pub fn reference_machine(parameters: &Value) -> Machine {
             discharge: number(p, "pd"),
             back: number(p, "pb"),
             exponent: number(p, "m"),
+            expansion_exponent: number(p, "m"),
             head_clearance: number(p, "S0"),
             crank_end: (number(p, "da") != 0.0).then(|| CrankEnd {
                 rod_radius: radius(number(p, "Arod")),

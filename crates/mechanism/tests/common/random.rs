@@ -125,7 +125,7 @@ pub fn guide() -> impl Strategy<Value = Guide> {
 
 fn throw(models: &'static [JointModel]) -> impl Strategy<Value = Throw> {
     let bodies = (6.0..20.0, 0.15..0.35, 0.3..1.0, 12.0..30.0, 0.08..0.3);
-    let gas = (0.0..2e5, any::<bool>(), 0.015..0.05);
+    let gas = (0.0..2e5, any::<bool>(), 0.015..0.05, 1.1..1.5);
     let place = (any::<bool>(), 0.0..std::f64::consts::TAU);
     (bodies, joint(models), joint(models), guide(), gas, place).prop_map(
         |(bodies, big_end, small_end, guide, gas, place)| {
@@ -144,6 +144,7 @@ fn throw(models: &'static [JointModel]) -> impl Strategy<Value = Throw> {
                 clearance: 0.03,
             });
             throw.cylinder.head_clearance = gas.2;
+            throw.cylinder.expansion_exponent = gas.3;
             if place.0 {
                 throw.direction = Direction::Opposed;
             }

@@ -359,7 +359,7 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
     };
     let shape = match series.mark {
         Mark::Points => Some(SHAPES[cycle % SHAPES.len()]),
-        Mark::Rings => Some(RING),
+        Mark::Rings | Mark::Discs => Some(RING),
         _ => None,
     };
     let data: String = match (series.mark, shape) {
@@ -391,6 +391,7 @@ fn mark(out: &mut String, series: &Series, stretches: &[Vec<[f64; 2]>], bottom: 
         Mark::BoldLine => stroke(2.0, 1.0),
         Mark::Points => format!("fill=\"{colour}\" fill-opacity=\".6\""),
         Mark::Rings => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.4\""),
+        Mark::Discs => format!("fill=\"{colour}\""),
         Mark::Dots => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\""),
         Mark::WideDots => {
             format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3.8\" stroke-opacity=\".45\"")

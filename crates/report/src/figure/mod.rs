@@ -115,6 +115,8 @@ pub enum Mark {
     Points,
     /// Separate open circles, for estimates beside [`Mark::Points`].
     Rings,
+    /// Separate discs as wide as [`Mark::Rings`], for a few.
+    Discs,
     /// Separate dots of two pixels, for thousands.
     Dots,
     /// Separate dots twice as wide and light, to show under [`Mark::Dots`].
@@ -163,7 +165,7 @@ impl Mark {
     fn is_separate(self) -> bool {
         matches!(
             self,
-            Self::Points | Self::Rings | Self::Dots | Self::WideDots
+            Self::Points | Self::Rings | Self::Discs | Self::Dots | Self::WideDots
         )
     }
 }

@@ -43,6 +43,9 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
         let commit = commit.ok_or_else(|| Error::MissingDiagram(diagram.name.clone()))?;
         files.push(commit.file);
     }
+    if plan.calibrated.is_some() {
+        files.extend(output.calibration_entries()?);
+    }
     let bifurcations = DiagramTable::new(plan)?.schema;
     let card = card(plan, &tables, &bifurcations, &rows, &files).to_string();
     let sweep = input::yaml::to_string(plan.sweep())?;

@@ -5,6 +5,7 @@ mod commit;
 mod diagrams;
 mod finalize;
 mod judged;
+mod kept;
 mod output;
 mod shard;
 mod tables;
@@ -12,7 +13,7 @@ mod tables;
 pub use commit::Commit;
 pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::finalize;
-pub use output::{Existing, Output};
+pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use tables::{Tables, feature_column};
 
 use std::path::Path;
@@ -85,7 +86,23 @@ pub fn generate(
     progress: &mut dyn Progress,
 ) -> Result<Manifest, Error> {
     plan.check_size()?;
-    let output = Output::open(root, plan, options.existing)?;
+    let claim = Claim::new(root, options.existing)?;
+    generate_in(claim, plan, options, runner, progress)
+}
+
+/// As [`generate`], in a folder that is locked already.
+///
+/// # Errors
+/// As [`generate`].
+pub fn generate_in(
+    claim: Claim,
+    plan: &Plan,
+    options: &Options,
+    runner: &Runner,
+    progress: &mut dyn Progress,
+) -> Result<Manifest, Error> {
+    plan.check_size()?;
+    let output = claim.open(plan)?;
     let mut pending = Vec::new();
     for shard in 0..plan.shards() {
         if Commit::read(&output, plan, shard)?.is_none() {

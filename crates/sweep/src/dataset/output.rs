@@ -4,6 +4,8 @@
 //! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
 //! process at work. The operating system unlocks it when that process ends, however it ends.
+//! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
+//! sweep names that folder, and whoever runs it gets a copy.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -27,6 +29,15 @@ pub enum Existing {
     Overwrite,
 }
 
+/// An output folder that this process has locked, before it is known which plan it is for.
+#[derive(Debug)]
+pub struct Claim {
+    output: Output,
+    existing: Existing,
+    /// Whether the dataset begins with the calibration in the folder.
+    calibrated: bool,
+}
+
 /// A locked output folder.
 #[derive(Debug)]
 pub struct Output {
@@ -46,17 +57,19 @@ struct PlanRecord {
 /// What a dataset has at its top, apart from `_sweep`.
 const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
+/// The folder of the calibration that a dataset begins with.
+pub const CALIBRATION: &str = "calibration";
 /// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
 const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
 const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
 
-impl Output {
-    /// Makes the folder ready for the dataset of `plan`, and locks it.
+impl Claim {
+    /// Locks the folder `root`.
     ///
     /// # Errors
     /// Where the folder has something in it that `existing` does not allow for, another process
     /// writes to it, or it cannot be written to. It is then as it was.
-    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
+    pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
         let (empty, ours) = look(root)?;
         match existing {
             _ if empty => {}
@@ -67,26 +80,83 @@ impl Output {
         for folder in ["_sweep/commits", "_sweep/tmp"] {
             make(&root.join(folder))?;
         }
-        let output = Self {
+        let output = Output {
             lock: lock(root)?,
             root: root.to_owned(),
         };
-        if existing == Existing::Overwrite {
-            output.clear()?;
-        }
         // What an interrupted process left: nobody else writes here now.
         remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
         make(&output.path("_sweep/tmp"))?;
+        Ok(Self {
+            output,
+            existing,
+            calibrated: false,
+        })
+    }
+
+    /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
+    /// already. Where it is not, a dataset that is to be replaced goes first.
+    ///
+    /// # Errors
+    /// Where a dataset was begun with another calibration, or the folder cannot be written to.
+    pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
+        self.calibrated = true;
+        if !is_kept {
+            match self.existing {
+                Existing::Overwrite => self.output.clear(self.calibrated)?,
+                _ if self.begun() => {
+                    return Err(Error::OtherCalibration(self.output.root.clone()));
+                }
+                _ => {}
+            }
+        }
+        Ok(self.output.path(CALIBRATION))
+    }
+
+    /// Whether a dataset has been begun here.
+    fn begun(&self) -> bool {
+        self.output.path("_sweep/plan.json").exists()
+    }
+
+    /// Makes the folder ready for the dataset of `plan`.
+    ///
+    /// # Errors
+    /// Where it holds the dataset of another plan, or cannot be written to.
+    pub fn open(self, plan: &Plan) -> Result<Output, Error> {
+        let begun = self.begun();
+        let output = self.output;
+        let own = output.path(CALIBRATION);
+        let is_own = |from: &PathBuf| fs::canonicalize(from).ok() == fs::canonicalize(&own).ok();
+        let has_it = self.calibrated || plan.calibrated.as_ref().is_some_and(is_own);
+        if self.existing == Existing::Overwrite {
+            output.clear(has_it)?;
+        } else if !begun && !has_it {
+            output.clear_calibration()?;
+        }
         output.record(plan)?;
+        if let Some(from) = plan.calibrated.as_ref().filter(|_| !has_it) {
+            output.copy_calibration(from)?;
+        }
         let folders: &[&str] = match plan.format {
             crate::sweep_file::Format::Parquet => &["signals", "features"],
             crate::sweep_file::Format::Mcap => &["mcap", "features"],
         };
         let diagrams = Some("bifurcations").filter(|_| !plan.diagrams.is_empty());
         for folder in folders.iter().copied().chain(diagrams) {
-            make(&root.join(folder))?;
+            make(&output.path(folder))?;
         }
         Ok(output)
+    }
+}
+
+impl Output {
+    /// Makes the folder ready for the dataset of `plan`, and locks it.
+    ///
+    /// # Errors
+    /// Where the folder has something in it that `existing` does not allow for, another process
+    /// writes to it, or it cannot be written to. It is then as it was.
+    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
+        Claim::new(root, existing)?.open(plan)
     }
 
     /// The folder.
@@ -113,8 +183,8 @@ impl Output {
         Ok(file.commit()?)
     }
 
-    /// Removes a dataset, and nothing else.
-    fn clear(&self) -> Result<(), Error> {
+    /// Removes a dataset, and nothing else; its calibration stays where that is asked for.
+    fn clear(&self, keep_calibration: bool) -> Result<(), Error> {
         // The manifest goes first: without it the folder is not a complete dataset.
         for file in FILES
             .into_iter()
@@ -128,7 +198,14 @@ impl Output {
             remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
         }
         self.clear_figures()?;
+        if !keep_calibration {
+            self.clear_calibration()?;
+        }
         make(&self.path("_sweep/commits"))
+    }
+
+    fn clear_calibration(&self) -> Result<(), Error> {
+        remove(&self.path(CALIBRATION), |path| fs::remove_dir_all(path))
     }
 
     /// Removes the figures of a report; whatever else is in their folder stays.
@@ -195,18 +272,20 @@ fn look(root: &Path) -> Result<(bool, bool), Error> {
     };
     let ours = root.join("_sweep/plan.json").is_file()
         || Manifest::read(&root.join("manifest.json")).is_ok();
-    // A crash between making the folder and writing the plan leaves only work files.
+    // A crash before the plan is written leaves only work files, and perhaps a calibration.
     let begun = !empty && only_work_files(root).map_err(unwritable)?;
     Ok((empty || begun, ours))
 }
 
 fn only_work_files(root: &Path) -> io::Result<bool> {
     for entry in fs::read_dir(root)? {
-        if entry?.file_name() != "_sweep" {
+        let name = entry?.file_name();
+        if name != "_sweep" && name != CALIBRATION {
             return Ok(false);
         }
     }
-    Ok(!root.join("_sweep/plan.json").exists())
+    let work = root.join("_sweep");
+    Ok(work.exists() && !work.join("plan.json").exists())
 }
 
 fn make(folder: &Path) -> Result<(), Error> {

@@ -10,13 +10,14 @@ mod estimate;
 mod levels;
 mod listed;
 mod sampler;
+mod together;
 
 pub use case::{Case, Judgement, OperatingPoint};
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
 
 use std::f64::consts::TAU;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use input::choice::Or;
 use input::yaml::Document;
@@ -35,6 +36,7 @@ use crate::sweep_file::{Amount, Format, Run, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use sampler::Sampler;
+use together::Together;
 
 /// Most cases that one sweep may run.
 pub const MOST_CASES: u64 = 100_000_000;
@@ -73,10 +75,13 @@ pub struct Plan {
     pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
+    /// The folder of the calibration that the machine comes from, where there is one.
+    pub calibrated: Option<PathBuf>,
     throws: Vec<String>,
     tree: Value,
     blocks: Vec<Block>,
     vary: Vec<(String, Sampler)>,
+    together: Vec<Together>,
     repeats: u64,
     sweep: Value,
 }
@@ -110,7 +115,19 @@ impl Plan {
     /// As [`Plan::read`].
     pub fn new(document: &Document, folder: &Path) -> Result<Self, Error> {
         let file: SweepFile = document.read()?;
-        let (machine, resolved) = match &file.machine {
+        if file.calibrate.is_some() {
+            let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
+            return Err(document.locate(Error::found(
+                "calibrate",
+                "a calibration to be made",
+                expected,
+            )));
+        }
+        let machine = file
+            .machine
+            .as_ref()
+            .ok_or_else(|| Error::missing("machine"));
+        let (machine, resolved) = match machine.map_err(|e| document.locate(e))? {
             Or::Scalar(path) => {
                 let machine = input::machine_file::read(&folder.join(path))?;
                 let resolved = machine.resolve()?;
@@ -121,7 +138,8 @@ impl Plan {
                 .map_err(|e| document.locate(e.under("machine")))?,
         };
         let plan = Self::build(&file, machine.to_tree(), resolved, &document.tree);
-        let plan = plan.map_err(|error| document.locate(error))?;
+        let mut plan = plan.map_err(|error| document.locate(error))?;
+        plan.calibrated = file.calibrated.as_ref().map(|path| folder.join(path));
         plan.try_cases(document)?;
         Ok(plan)
     }
@@ -158,9 +176,11 @@ impl Plan {
             diagrams: Vec::new(),
             throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
             base,
+            calibrated: None,
             tree: tree.clone(),
             blocks: Vec::new(),
             vary: Vec::new(),
+            together: Vec::new(),
             repeats: file.repeats.map_or(1, |n| n.get()).into(),
             sweep,
         };
@@ -175,6 +195,20 @@ impl Plan {
             let sampler =
                 sampler.map_err(|e| Error::new(path, e.problem().clone()).under("vary"))?;
             plan.vary.push((path.clone(), sampler));
+        }
+        for (position, entry) in file.vary_together.iter().enumerate() {
+            let key = format!("vary_together.{position}");
+            let together = Together::new(entry, &plan.tree).map_err(|e| e.under(&key))?;
+            let varies = |path: &&str| plan.varied().any(|(_, other)| other == *path);
+            if let Some(path) = together.paths().find(varies) {
+                let key = format!("{key}.parameters.{path}");
+                return Err(Error::found(
+                    key,
+                    "an unknown that varies already",
+                    "it once",
+                ));
+            }
+            plan.together.push(together);
         }
         for (position, file) in file.bifurcations.iter().enumerate() {
             let diagram = Diagram::new(file, position, &plan.frame())?;
@@ -197,6 +231,17 @@ impl Plan {
                 Ok(plan)
             }
         }
+    }
+
+    /// What varies: the section of the sweep file, and the path.
+    fn varied(&self) -> impl Iterator<Item = (String, &str)> {
+        let alone = self.vary.iter();
+        let alone = alone.map(|(path, _)| (String::from("vary"), path.as_str()));
+        let together = self.together.iter().enumerate().flat_map(|(i, together)| {
+            let paths = together.paths();
+            paths.map(move |path| (format!("vary_together.{i}.parameters"), path))
+        });
+        alone.chain(together)
     }
 
     fn frame(&self) -> Frame<'_> {
@@ -265,6 +310,11 @@ impl Plan {
         for (path, sampler) in &self.vary {
             let value = sampler.draw(unit(variation.next_u64()));
             paths::set(&mut tree, path, value)?;
+        }
+        for together in &self.together {
+            for (path, value) in together.draw(&mut variation) {
+                paths::set(&mut tree, path, value)?;
+            }
         }
         for (path, value) in self.blocks[block].assignments(inside, &self.frame()) {
             paths::set(&mut tree, &path, value)?;
@@ -342,9 +392,8 @@ impl Plan {
     /// `error` of a case, at the value of the sweep file that it comes from.
     fn blame(&self, error: Error, keys: Vec<(String, String)>, block: usize, case: u64) -> Error {
         let varied = self
-            .vary
-            .iter()
-            .map(|(path, _)| (format!("vary.{path}"), path.clone()));
+            .varied()
+            .map(|(key, path)| (format!("{key}.{path}"), path.to_owned()));
         let within = |path: &str, other: &str| {
             let rest = path.strip_prefix(other);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -360,7 +409,7 @@ impl Plan {
     }
 
     fn find_parameters(&self) -> Vec<Parameter> {
-        let mut paths: Vec<&str> = self.vary.iter().map(|(path, _)| path.as_str()).collect();
+        let mut paths: Vec<&str> = self.varied().map(|(_, path)| path).collect();
         paths.extend(self.blocks.iter().flat_map(Block::paths));
         let mut seen = std::collections::BTreeSet::new();
         let has_column = |path: &str| {

@@ -6,8 +6,8 @@ use input::unit::Dimension;
 use serde_json::Value;
 
 use super::case::rpm;
-use crate::distribution::{Distribution, choose};
-use crate::sweep_file::{Amount, Draw, Spread, Values};
+use crate::distribution::{Distribution, Gaussian, choose};
+use crate::sweep_file::{self, Amount, Draw, Spread, Values};
 
 /// Something to draw from.
 #[derive(Clone, Debug)]
@@ -20,8 +20,25 @@ pub(super) enum Sampler {
     /// A number.
     Number {
         distribution: Distribution,
-        dimension: Option<Dimension>,
+        scale: Scale,
     },
+}
+
+/// What makes a number a value of the machine file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    dimension: Option<Dimension>,
+    /// Least and greatest value.
+    range: [f64; 2],
+}
+
+impl Scale {
+    /// The value of `si`; of the nearer end of the range where it is beyond.
+    pub(super) fn value(&self, si: f64) -> Value {
+        let [low, high] = self.range;
+        let (si, dimension) = (si.clamp(low, high), self.dimension);
+        Amount { si, dimension }.to_value()
+    }
 }
 
 impl Sampler {
@@ -40,11 +57,8 @@ impl Sampler {
             Sampler::Choice { values, weights } => values[choose(weights, unit)].clone(),
             Sampler::Number {
                 distribution,
-                dimension,
-            } => {
-                let (si, dimension) = (distribution.quantile(unit), *dimension);
-                Amount { si, dimension }.to_value()
-            }
+                scale,
+            } => scale.value(distribution.quantile(unit)),
         }
     }
 }
@@ -60,15 +74,21 @@ fn equally_likely(values: &[Value]) -> Result<Sampler, Error> {
 }
 
 fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
-    let given = || {
-        let amount = given.and_then(Amount::of);
-        amount.ok_or_else(|| Error::found("", "no number in the machine file", "one to vary about"))
-    };
     let number = |name: &str, distribution, amounts: &[Amount]| {
         same_dimension(amounts).map_err(|e| e.under(name))?;
         Ok(Sampler::Number {
             distribution,
-            dimension: amounts[0].dimension,
+            scale: Scale {
+                dimension: amounts[0].dimension,
+                range: [f64::NEG_INFINITY, f64::INFINITY],
+            },
+        })
+    };
+    let bell = |spread| {
+        let (gaussian, scale) = gaussian(&spread, given)?;
+        Ok(Sampler::Number {
+            distribution: Distribution::Gaussian(gaussian),
+            scale,
         })
     };
     match spread {
@@ -81,27 +101,8 @@ fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
             positive(&ends[0]).map_err(|e| e.under("log_uniform.0"))?;
             number("log_uniform", Distribution::LogUniform { low, high }, ends)
         }
-        Spread::Normal(normal) => {
-            let mean = normal.mean.map_or_else(given, Ok)?;
-            if normal.deviation.si < 0.0 {
-                let found = text(&normal.deviation);
-                return Err(Error::found("normal.deviation", found, "0 or more"));
-            }
-            let distribution = Distribution::Normal {
-                mean: mean.si,
-                deviation: normal.deviation.si,
-            };
-            number("normal", distribution, &[mean, normal.deviation])
-        }
-        Spread::Lognormal(lognormal) => {
-            let median = lognormal.median.map_or_else(given, Ok)?;
-            positive(&median).map_err(|e| e.under("lognormal.median"))?;
-            let distribution = Distribution::LogNormal {
-                median: median.si,
-                factor: lognormal.factor.get(),
-            };
-            number("lognormal", distribution, &[median])
-        }
+        Spread::Normal(normal) => bell(sweep_file::Gaussian::Normal(*normal)),
+        Spread::Lognormal(lognormal) => bell(sweep_file::Gaussian::Lognormal(*lognormal)),
         Spread::Choice(choice) => {
             let weights: Vec<f64> = choice.weights.iter().map(|w| w.get()).collect();
             if weights.len() != choice.values.len() || weights.iter().sum::<f64>() <= 0.0 {
@@ -113,6 +114,53 @@ fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
                 values: choice.values.clone(),
                 weights,
             })
+        }
+    }
+}
+
+/// The distribution that `spread` says; `given` is the machine file's value, about which it lies
+/// where it has no middle of its own.
+pub(super) fn gaussian(
+    spread: &sweep_file::Gaussian,
+    given: Option<&Value>,
+) -> Result<(Gaussian, Scale), Error> {
+    let given = || {
+        let amount = given.and_then(Amount::of);
+        amount.ok_or_else(|| Error::found("", "no number in the machine file", "one to vary about"))
+    };
+    let scale = |name: &str, amounts: &[Amount], range: Option<[Amount; 2]>| {
+        same_dimension(amounts).map_err(|e| e.under(name))?;
+        let within = range.map_or(Ok([f64::NEG_INFINITY, f64::INFINITY]), |range| {
+            same_dimension(&[amounts[0], range[0], range[1]])?;
+            ascending(&range)
+        });
+        Ok(Scale {
+            dimension: amounts[0].dimension,
+            range: within.map_err(|e| e.under("range").under(name))?,
+        })
+    };
+    match spread {
+        sweep_file::Gaussian::Normal(normal) => {
+            let mean = normal.mean.map_or_else(given, Ok)?;
+            if normal.deviation.si < 0.0 {
+                let found = text(&normal.deviation);
+                return Err(Error::found("normal.deviation", found, "0 or more"));
+            }
+            let gaussian = Gaussian::Normal {
+                mean: mean.si,
+                deviation: normal.deviation.si,
+            };
+            let amounts = [mean, normal.deviation];
+            Ok((gaussian, scale("normal", &amounts, normal.range)?))
+        }
+        sweep_file::Gaussian::Lognormal(lognormal) => {
+            let median = lognormal.median.map_or_else(given, Ok)?;
+            positive(&median).map_err(|e| e.under("lognormal.median"))?;
+            let gaussian = Gaussian::LogNormal {
+                median: median.si,
+                factor: lognormal.factor.get(),
+            };
+            Ok((gaussian, scale("lognormal", &[median], lognormal.range)?))
         }
     }
 }

@@ -16,6 +16,8 @@
 
 pub mod axes;
 pub mod bifurcation;
+pub mod calibrate;
+pub mod together;
 pub mod values;
 
 use input::choice::{Count, Or};
@@ -26,6 +28,8 @@ use serde_json::{Map, Value};
 
 pub use axes::{Axes, Block, Design, Random};
 pub use bifurcation::{Bifurcation, Directions};
+pub use calibrate::{Calibrate, Uncertainty, Undetermined};
+pub use together::{Gaussian, Together};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 
 /// A sweep: cases, how each is run, and how the dataset is divided.
@@ -34,8 +38,18 @@ pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 pub struct SweepFile {
     /// Name of the dataset.
     pub name: String,
-    /// The machine: path of its file, from the folder of this one, or the machine itself.
-    pub machine: Or<String, Map<String, Value>>,
+    /// The machine: path of its file, from the folder of this one, or the machine itself. With
+    /// `calibrate` it may be left out: it is then the machine section of the bundle, at the
+    /// conditions of its first run.
+    #[serde(default)]
+    pub machine: Option<Or<String, Map<String, Value>>>,
+    /// The machine is calibrated to recordings of it before the first case.
+    #[serde(default)]
+    pub calibrate: Option<Calibrate>,
+    /// The folder of the calibration that the machine comes from, from the folder of this file: it
+    /// is copied into the dataset. A dataset's own sweep.yaml has it.
+    #[serde(default)]
+    pub calibrated: Option<String>,
     /// What all random numbers follow from; 0 where it is left out.
     #[serde(default)]
     pub seed: Option<Count<0, { u32::MAX }>>,
@@ -53,6 +67,9 @@ pub struct SweepFile {
     /// sets itself is not varied.
     #[serde(default)]
     pub vary: Axes<Draw>,
+    /// Unknowns that vary together, and not each by itself.
+    #[serde(default)]
+    pub vary_together: Vec<Together>,
     /// Bifurcation diagrams, computed after the cases.
     #[serde(default)]
     pub bifurcations: Vec<Bifurcation>,

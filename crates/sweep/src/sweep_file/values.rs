@@ -1,12 +1,12 @@
 //! The values that an axis goes through, and those that are drawn.
 
 use super::Weight;
+pub use input::amount::Amount;
 use input::choice::Count;
 use input::quantity::{FromOne, Number};
-use input::unit::{self, Dimension, Measure};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::fmt;
@@ -80,6 +80,9 @@ pub struct Normal {
     pub mean: Option<Amount>,
     /// Standard deviation.
     pub deviation: Amount,
+    /// Least and greatest value; a draw beyond gets the nearer of them.
+    #[serde(default)]
+    pub range: Option<[Amount; 2]>,
 }
 
 /// A lognormal distribution.
@@ -91,6 +94,9 @@ pub struct Lognormal {
     pub median: Option<Amount>,
     /// 68 % of the values lie between median / factor and median × factor.
     pub factor: Number<FromOne>,
+    /// Least and greatest value; a draw beyond gets the nearer of them.
+    #[serde(default)]
+    pub range: Option<[Amount; 2]>,
 }
 
 /// One of several values.
@@ -101,64 +107,6 @@ pub struct Choice {
     pub values: Vec<Value>,
     /// How likely each is, up to a common factor.
     pub weights: Vec<Weight>,
-}
-
-/// A quantity with its unit, or a plain number where the machine file has one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Amount {
-    /// The number, in SI units.
-    pub si: f64,
-    /// Its dimension; none for a plain number.
-    pub dimension: Option<Dimension>,
-}
-
-impl Amount {
-    /// As it stands in a machine file, exactly.
-    pub fn to_value(self) -> Value {
-        match self.dimension {
-            None => self.si.into(),
-            Some(dimension) => {
-                let si = self.si;
-                Measure { si, dimension }.to_string().into()
-            }
-        }
-    }
-
-    /// The amount that a value of a machine file is; none where it is something else.
-    pub fn of(value: &Value) -> Option<Self> {
-        if let Some(si) = value.as_f64() {
-            let dimension = None;
-            return Some(Self { si, dimension });
-        }
-        let Measure { si, dimension } = unit::parse(value.as_str()?).ok()?;
-        let dimension = Some(dimension);
-        Some(Self { si, dimension })
-    }
-}
-
-impl<'de> Deserialize<'de> for Amount {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        const EXPECTED: &str = "a quantity with its unit, e.g. '0.1 mm', or a plain number";
-        let value = Value::deserialize(deserializer)?;
-        Amount::of(&value).ok_or_else(|| {
-            let found = value.to_string();
-            D::Error::invalid_value(Unexpected::Other(&found), &EXPECTED)
-        })
-    }
-}
-
-impl JsonSchema for Amount {
-    fn schema_name() -> Cow<'static, str> {
-        "Amount".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "type": ["string", "number"],
-            "description": "a quantity with its unit, or a plain number where there is none",
-            "examples": ["0.1 mm", "500 rpm", 0.05],
-        })
-    }
 }
 
 impl<'de, S: Deserialize<'de>> Deserialize<'de> for Values<S> {

@@ -1,6 +1,7 @@
 //! Signals that look like those of a compressor with clearance, made without the simulation:
 //! slider-crank kinematics, plus ringing where a journal crosses its clearance.
 
+pub mod calibration;
 pub mod chaos;
 pub mod datasets;
 

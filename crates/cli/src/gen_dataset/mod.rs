@@ -1,5 +1,7 @@
 //! `gen-dataset`: a sweep becomes a labelled dataset.
 
+mod calibrated;
+
 use crate::Failure;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -8,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use sweep::dataset::{Existing, Options, Progress, generate, sample_diagram};
+use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_diagram};
 use sweep::sweep_file::Format;
-use sweep::{Plan, simulate_case};
+use sweep::{Plan, Sweep, simulate_case};
 
 /// Cases that `--dry-run` simulates to measure the time.
 const SAMPLE_CASES: u64 = 3;
@@ -61,20 +63,15 @@ enum FormatArgument {
 /// # Errors
 /// Wrong input, an output that cannot be written, or cases that failed (the others are there).
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let mut plan = Plan::read(&arguments.sweep)?;
-    if let Some(format) = arguments.format {
-        plan = plan.with_format(match format {
-            FormatArgument::Parquet => Format::Parquet,
-            FormatArgument::Mcap => Format::Mcap,
-        });
-    }
+    let sweep = Sweep::read(&arguments.sweep)?;
+    // Mistakes in the sweep are found before anything is calibrated.
+    let nominal = sweep.nominal()?;
+    nominal.check_size().map_err(|e| failure(arguments, e))?;
+    let out = arguments.out.clone();
+    let out = out.unwrap_or_else(|| default_folder(&nominal.name));
     if arguments.dry_run {
-        return dry_run(&plan);
+        return dry_run(&arguments.planned(&sweep, nominal, &out)?);
     }
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| Path::new("datasets").join(&plan.name));
     let cancel = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&cancel);
     // A second Ctrl-C while the first is being obeyed changes nothing: finished shards are safe.
@@ -94,12 +91,86 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         cancel: &cancel,
     };
     let started = Instant::now();
+    let (claim, plan) = match sweep.calibrate() {
+        None => (Claim::new(&out, existing).map_err(failed)?, nominal),
+        Some(_) => on_threads(threads, || {
+            calibrated::plan(&sweep, &out, existing, &cancel)
+        })?,
+    };
+    let plan = arguments.with_format(plan);
     let mut bar = Bar::default();
-    let manifest = generate(&plan, &out, &options, &simulate_case, &mut bar)
+    let manifest = generate_in(claim, &plan, &options, &simulate_case, &mut bar)
         .map_err(|error| failure(arguments, error))?;
     bar.finish();
     summarise(&manifest, &out, started.elapsed().as_secs_f64());
     failures(&manifest)
+}
+
+/// The folder of the dataset of a sweep with this name, where the user names none.
+fn default_folder(name: &str) -> PathBuf {
+    Path::new("datasets").join(name)
+}
+
+/// The plan of the sweep file at `path`. One that calibrates its machine first has the calibration
+/// that its dataset keeps.
+///
+/// # Errors
+/// A mistake in the file, or a calibration that is not there.
+pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
+    let sweep = Sweep::read(path)?;
+    let nominal = sweep.nominal()?;
+    if sweep.calibrate().is_none() {
+        return Ok(nominal);
+    }
+    let root = default_folder(&nominal.name);
+    calibrated::plan_if_kept(&sweep, &root)?.ok_or_else(|| {
+        Failure::input(format!(
+            "{}: this sweep calibrates its machine first, and {} does not hold that calibration: \
+             make the dataset, or name its own sweep.yaml, which has the calibrated machine",
+            path.display(),
+            root.display()
+        ))
+    })
+}
+
+impl Arguments {
+    fn with_format(&self, plan: Plan) -> Plan {
+        match self.format {
+            None => plan,
+            Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet),
+            Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap),
+        }
+    }
+
+    /// The plan as far as it is known without calibrating anything.
+    fn planned(&self, sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
+        let plan = match sweep.calibrate() {
+            None => nominal,
+            Some(_) => match calibrated::plan_if_kept(sweep, out)? {
+                Some(plan) => {
+                    println!("calibrated before, and nothing has changed since");
+                    plan
+                }
+                None => {
+                    println!(
+                        "the machine would be calibrated first; what follows is for the nominal \
+                         one, without its uncertainty"
+                    );
+                    nominal
+                }
+            },
+        };
+        Ok(self.with_format(plan))
+    }
+}
+
+/// Does `work`, whatever it does in parallel on so many threads.
+fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> Result<T, Failure> + Send,
+) -> Result<T, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(Failure::work)?.install(work)
 }
 
 fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
@@ -107,8 +178,15 @@ fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
         sweep::Error::TooManyCases { .. } => {
             Failure::input(format!("{}: cases: {error}", arguments.sweep.display()))
         }
-        error if error.is_input() => Failure::input(error),
-        error => Failure::work(error),
+        error => failed(error),
+    }
+}
+
+fn failed(error: sweep::Error) -> Failure {
+    if error.is_input() {
+        Failure::input(error)
+    } else {
+        Failure::work(error)
     }
 }
 

@@ -1,0 +1,72 @@
+//! Parameters beyond the machine file: what holds in one run alone, and the crank angle's offset.
+
+use crate::error::Error;
+use crate::observation::Run;
+use crate::parameter::{Parameter, Scale};
+use input::paths;
+use input::unit::Dimension;
+use serde_json::Value;
+
+/// By how much the recorded crank angle is ahead of the crank, rad: a dead centre that was set wrong
+/// at the encoder. It is a parameter of every run, or of one: `runs.RUN.crank_angle_offset`.
+pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
+/// Without bounds of its own it is searched over 5° to either side.
+const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
+const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
+
+impl Parameter {
+    /// The parameter that `path` names, with bounds of its own where they are given, SI: a value of
+    /// the machine file `tree`; `runs.RUN.PATH`, the same value in one run alone (the suction
+    /// pressure, say, which differs from run to run); or [`CRANK_ANGLE_OFFSET`], of all runs or one.
+    ///
+    /// # Errors
+    /// As [`Parameter::of`] and [`Parameter::within`]; a run that is not there.
+    pub fn named(
+        tree: &Value,
+        runs: &[Run],
+        path: &str,
+        bounds: Option<[f64; 2]>,
+    ) -> Result<Self, Error> {
+        let Some(of_runs) = path.strip_prefix("runs.") else {
+            return shared(tree, path, bounds);
+        };
+        let mut rests = runs.iter().filter_map(|run| {
+            let rest = of_runs.strip_prefix(run.id.as_str())?;
+            Some((run, rest.strip_prefix('.')?))
+        });
+        let Some((run, rest)) = rests.next() else {
+            let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
+            return Err(Error::Parameter {
+                path: path.to_owned(),
+                reason: format!("there is no such run; the runs are {}", ids.join(", ")),
+            });
+        };
+        let mut tree = tree.clone();
+        for (path, value) in &run.settings {
+            paths::set(&mut tree, path, value.clone())?;
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            run: Some(run.id.clone()),
+            ..shared(&tree, rest, bounds)?
+        })
+    }
+}
+
+fn shared(tree: &Value, path: &str, bounds: Option<[f64; 2]>) -> Result<Parameter, Error> {
+    if path == CRANK_ANGLE_OFFSET {
+        return Ok(Parameter {
+            path: path.to_owned(),
+            places: Vec::new(),
+            run: None,
+            nominal: 0.0,
+            dimension: Some(ANGLE),
+            scale: Scale::Linear,
+            bounds: bounds.unwrap_or(OFFSETS),
+        });
+    }
+    match bounds {
+        Some(bounds) => Parameter::within(tree, path, bounds),
+        None => Parameter::of(tree, path),
+    }
+}

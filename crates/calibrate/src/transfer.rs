@@ -1,0 +1,402 @@
+//! From one clearance to another: what a calibrated machine shows there under each relation, and
+//! which relation the recordings decide for.
+//!
+//! Recordings at one clearance say nothing about the relation: every one fits them equally well, and
+//! the predictions stand side by side. With recordings at two clearances or more the machine is
+//! fitted again under each, from what was found, and the relations are compared by Schwarz's
+//! criterion (1978): the sum of squared residuals plus ln N for every exponent that was fitted, N
+//! being their number. Where the fitted runs have one clearance and those held out others, the
+//! latter decide, by how well they are predicted.
+
+use crate::error::Error;
+use crate::fit::Fit;
+use crate::forecast::{Forecast, forecast};
+use crate::identifiability::information;
+use crate::likelihood::{Likelihood, misfit};
+use crate::observation::Observation;
+use crate::optimiser::{LeastSquares, Progress, Watch, levenberg_marquardt};
+use crate::parameter::Parameter;
+use crate::problem::Problem;
+use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
+use crate::search;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+
+/// How many times its normal clearance a worn joint is predicted at.
+const WORN: f64 = 3.0;
+/// Difference of the criterion from which it counts as strong (Kass and Raftery 1995).
+const STRONG: f64 = 6.0;
+/// Standard deviations that bound 95 % of a normal distribution.
+const QUANTILE: f64 = 1.959_964;
+/// Most evaluations of the model for a fit under another relation.
+const EVALUATIONS: u64 = 200;
+
+/// What the relations between clearances come to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Transfer {
+    /// Each relation held against the recordings.
+    pub relations: Vec<Hypothesis>,
+    /// Which of them the recordings decide for.
+    pub decision: Decision,
+    /// What each shows at other clearances.
+    pub predictions: Vec<Forecast>,
+}
+
+/// A relation, and how the machine fits the recordings under it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hypothesis {
+    /// The relation.
+    pub relation: Relation,
+    /// The exponents that were fitted, by their paths; none for a relation that has none.
+    pub exponents: BTreeMap<String, Bounded>,
+    /// Root mean square of the misfits of the fitted runs, in standard deviations of the noise.
+    pub fitted: f64,
+    /// The same of the runs that were held out; none where there is none.
+    pub held_out: Option<f64>,
+    /// Each run's misfit.
+    pub runs: BTreeMap<String, f64>,
+    /// The criterion less that of the best relation; none where the recordings have no say.
+    pub criterion: Option<f64>,
+}
+
+/// A value with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bounded {
+    /// The value.
+    pub value: f64,
+    /// Its lower bound.
+    pub low: f64,
+    /// Its upper bound.
+    pub high: f64,
+}
+
+/// What the recordings say about the relation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Decision {
+    /// The relations that the recordings leave, the best first: one where they decide, several
+    /// where the criterion differs by less than 6, none where every run has the same clearances.
+    pub relations: Vec<Relation>,
+    /// What that rests on.
+    pub runs: Basis,
+}
+
+/// What a decision rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Basis {
+    /// The fitted runs have several clearances.
+    Fitted,
+    /// The fitted runs have one, and those held out have others.
+    HeldOut,
+    /// Every run has the same clearances.
+    None,
+}
+
+/// A machine as it was fitted under a relation.
+pub(crate) struct Fitted {
+    pub relation: Relation,
+    pub problem: Problem,
+    /// The coordinates of its parameters.
+    pub x: Vec<f64>,
+    /// Their covariance; 0 for what the recordings do not tell.
+    pub covariance: DMatrix<f64>,
+}
+
+/// Compares the relations for a calibrated machine, and predicts what it shows where each clear
+/// bearing in turn has three times its normal clearance, at the conditions of each fitted run
+/// without wear, and in the runs held out that have other clearances than the fitted ones. `watch` is
+/// told of each step of the fits; none where it stops one.
+///
+/// # Errors
+/// A machine that is none under some relation, or a run that cannot be simulated.
+pub fn transfer(
+    problem: &Problem,
+    fit: &Fit,
+    mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<Option<Transfer>, Error> {
+    let mut stopped = false;
+    let mut watch = |progress: &Progress| {
+        let answer = watch(progress);
+        stopped |= answer.is_break();
+        answer
+    };
+    let settings = problem.runs.iter().map(|run| &run.settings[..]);
+    let joints = ClearJoint::of(&problem.tree, settings)?;
+    let held_out = |run: &Observation| fit.runs.iter().any(|r| r.id == run.id && r.held_out);
+    let in_run = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
+    let states: Vec<_> = problem.runs.iter().map(in_run).collect::<Result<_, _>>()?;
+    let of_fitted = problem.runs.iter().zip(&states);
+    let of_fitted: Vec<Vec<Option<f64>>> = of_fitted
+        .filter(|(run, _)| !held_out(run))
+        .map(|(_, state)| state.clone())
+        .collect();
+    let basis = if several(&of_fitted) {
+        Basis::Fitted
+    } else if several(&states) {
+        Basis::HeldOut
+    } else {
+        Basis::None
+    };
+    let mut machines = Vec::new();
+    for relation in Relation::ALL {
+        // Exponents are told by several clearances only.
+        if relation == Relation::Fitted && basis != Basis::Fitted {
+            continue;
+        }
+        let start = under(problem, fit, relation, &joints)?;
+        machines.push(match basis {
+            Basis::Fitted => refitted(start, &held_out, &mut watch)?,
+            _ => start,
+        });
+    }
+    if stopped {
+        return Ok(None);
+    }
+    let compared = machines.iter().map(|m| hypothesis(m, &held_out, basis));
+    let mut compared: Vec<(Hypothesis, Evidence)> = compared.collect();
+    let decision = decide(&mut compared, basis);
+    let relations: Vec<Hypothesis> = compared.into_iter().map(|(h, _)| h).collect();
+    let runs: Vec<(&Observation, &Vec<Option<f64>>)> = problem.runs.iter().zip(&states).collect();
+    // A clearance that was fitted stands in every run, whatever the run's own.
+    let places = || problem.parameters.iter().flat_map(|p| &p.places);
+    let fixed = |joint: &ClearJoint| places().any(|place| *place == joint.clearance_path());
+    let cases = cases(&runs, &joints, held_out, fixed, &of_fitted);
+    let pairs: Vec<(&Case, &Fitted)> = cases
+        .iter()
+        .flat_map(|case| machines.iter().map(move |machine| (case, machine)))
+        .collect();
+    let predictions = pairs
+        .par_iter()
+        .map(|(case, machine)| forecast(case, machine));
+    let mut predictions: Vec<Forecast> = predictions.collect();
+    for prediction in predictions.iter_mut().filter(|p| p.recorded) {
+        let mut all = relations.iter();
+        let hypothesis = all.find(|h| h.relation == prediction.relation);
+        prediction.misfit = hypothesis.and_then(|h| h.runs.get(&prediction.run).copied());
+    }
+    Ok(Some(Transfer {
+        relations,
+        decision,
+        predictions,
+    }))
+}
+
+/// The calibrated machine with another relation in its place.
+fn under(
+    problem: &Problem,
+    fit: &Fit,
+    relation: Relation,
+    joints: &[ClearJoint],
+) -> Result<Fitted, Error> {
+    let exponent = |i: &usize| is_exponent(&problem.parameters[*i]);
+    let all = 0..problem.parameters.len();
+    // Exponents that were fitted stay as they are.
+    let found = relation == Relation::Fitted && all.clone().any(|i| exponent(&i));
+    let keep: Vec<usize> = all.filter(|i| found || !exponent(i)).collect();
+    let mut kept = problem.with_parameters(&keep);
+    if !found {
+        relation.set(&mut kept.tree, joints)?;
+    }
+    let mut x = Vec::new();
+    let mut intervals = Vec::new();
+    for i in &keep {
+        let estimate = &fit.estimates[*i];
+        let coordinate = |value| estimate.parameter.coordinate(value);
+        let value = coordinate(estimate.value);
+        x.push(value);
+        intervals.push(estimate.interval.map_or([value; 2], |i| i.map(coordinate)));
+    }
+    let correlations = DMatrix::from_fn(keep.len(), keep.len(), |i, j| {
+        fit.correlations[(keep[i], keep[j])]
+    });
+    let mut covariance = covariance(&intervals, &correlations);
+    if relation == Relation::Fitted && !found {
+        let exponents = exponents(&kept.tree)?;
+        x.resize(x.len() + exponents.len(), 0.0);
+        covariance = covariance.resize(x.len(), x.len(), 0.0);
+        kept.parameters.extend(exponents);
+    }
+    Ok(Fitted {
+        relation,
+        problem: kept,
+        x,
+        covariance,
+    })
+}
+
+fn is_exponent(parameter: &Parameter) -> bool {
+    parameter.path.contains(".relation.")
+}
+
+fn covariance(intervals: &[[f64; 2]], correlations: &DMatrix<f64>) -> DMatrix<f64> {
+    let deviation = |i: usize| {
+        let [low, high] = intervals[i];
+        0.5 * (high - low).abs() / QUANTILE
+    };
+    DMatrix::from_fn(intervals.len(), intervals.len(), |i, j| {
+        correlations[(i, j)] * deviation(i) * deviation(j)
+    })
+}
+
+/// The machine fitted again from where it stands; what the recordings did not tell stays.
+fn refitted(
+    start: Fitted,
+    held_out: &impl Fn(&Observation) -> bool,
+    watch: Watch,
+) -> Result<Fitted, Error> {
+    let told =
+        |i: &usize| is_exponent(&start.problem.parameters[*i]) || start.covariance[(*i, *i)] > 0.0;
+    let free: Vec<usize> = (0..start.x.len()).filter(told).collect();
+    // What is not told keeps the value that the file has.
+    let problem = start.problem.with_parameters(&free);
+    let fitted = problem.with_runs(|run| !held_out(run));
+    let likelihood = Likelihood::new(&fitted);
+    let from: Vec<f64> = free.iter().map(|i| start.x[*i]).collect();
+    let found = levenberg_marquardt(&likelihood, &from, search::CHANGE, EVALUATIONS, watch)?;
+    let information = information(&likelihood, &found.x);
+    Ok(Fitted {
+        relation: start.relation,
+        problem,
+        x: found.x,
+        covariance: covariance(&information.intervals, &information.correlations),
+    })
+}
+
+fn hypothesis(
+    machine: &Fitted,
+    held_out: &impl Fn(&Observation) -> bool,
+    basis: Basis,
+) -> (Hypothesis, Evidence) {
+    let runs = machine.problem.runs.par_iter().map(|run| {
+        let alone = machine.problem.with_runs(|other| other.id == run.id);
+        (run, Likelihood::new(&alone).residuals(&machine.x))
+    });
+    let runs: Vec<(&Observation, Vec<f64>)> = runs.collect();
+    let of = |held: bool| {
+        let chosen = runs.iter().filter(|(run, _)| held_out(run) == held);
+        let squares: Vec<f64> = chosen.map(|(_, r)| misfit(r).powi(2)).collect();
+        let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+        (!squares.is_empty()).then(|| mean.sqrt())
+    };
+    let mut exponents = BTreeMap::new();
+    for (i, parameter) in machine.problem.parameters.iter().enumerate() {
+        if is_exponent(parameter) {
+            let [value, low, high] = [0.0, -QUANTILE, QUANTILE]
+                .map(|q| parameter.value(machine.x[i] + q * machine.covariance[(i, i)].sqrt()));
+            exponents.insert(parameter.path.clone(), Bounded { value, low, high });
+        }
+    }
+    let decides = |run: &Observation| held_out(run) == (basis == Basis::HeldOut);
+    let deciding = runs.iter().filter(|(run, _)| decides(run));
+    let deciding: Vec<f64> = deciding.flat_map(|(_, r)| r.iter().copied()).collect();
+    let evidence = Evidence {
+        squares: deciding.iter().map(|r| r * r).sum(),
+        count: deciding.len() as f64,
+        exponents: exponents.len() as f64,
+    };
+    let hypothesis = Hypothesis {
+        relation: machine.relation,
+        exponents,
+        fitted: of(false).unwrap_or(f64::NAN),
+        held_out: of(true),
+        runs: runs
+            .iter()
+            .map(|(run, r)| (run.id.clone(), misfit(r)))
+            .collect(),
+        criterion: None,
+    };
+    (hypothesis, evidence)
+}
+
+/// What the criterion is made of.
+struct Evidence {
+    /// Sum of the squares of the residuals.
+    squares: f64,
+    /// Their number.
+    count: f64,
+    /// Number of exponents that were fitted to them.
+    exponents: f64,
+}
+
+/// Ranks the relations by the criterion.
+fn decide(compared: &mut [(Hypothesis, Evidence)], basis: Basis) -> Decision {
+    let mut left = Vec::new();
+    if basis != Basis::None {
+        // Where even the best leaves more than noise, differences are worth less.
+        let shares = compared.iter().map(|(_, e)| e.squares / e.count.max(1.0));
+        let excess = shares.fold(f64::INFINITY, f64::min).max(1.0);
+        let criterion = |e: &Evidence| e.squares / excess + e.exponents * e.count.ln();
+        let criteria = compared.iter().map(|(_, e)| criterion(e));
+        let best = criteria.fold(f64::INFINITY, f64::min);
+        for (hypothesis, evidence) in compared {
+            let above = criterion(evidence) - best;
+            hypothesis.criterion = Some(above);
+            if above < STRONG {
+                left.push((above, hypothesis.relation));
+            }
+        }
+    }
+    left.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Decision {
+        relations: left.into_iter().map(|(_, relation)| relation).collect(),
+        runs: basis,
+    }
+}
+
+/// A run that is predicted.
+pub(crate) struct Case {
+    /// Its conditions, and what was recorded.
+    pub run: Observation,
+    /// The clearances that are not those of the fitted runs, by the joint's path, m.
+    pub clearances: BTreeMap<String, f64>,
+    /// Whether the recording was made at these clearances.
+    pub recorded: bool,
+}
+
+/// The runs that are predicted: those held out whose clearances no fitted run has, and each fitted
+/// run without wear with each joint worn in turn.
+fn cases(
+    runs: &[(&Observation, &Vec<Option<f64>>)],
+    joints: &[ClearJoint],
+    held_out: impl Fn(&Observation) -> bool,
+    fixed: impl Fn(&ClearJoint) -> bool,
+    of_fitted: &[Vec<Option<f64>>],
+) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (run, state) in runs {
+        let clear = joints.iter().zip(*state);
+        let clear = clear.filter_map(|(joint, c)| c.map(|c| (joint, c)));
+        if !held_out(run) {
+            if clear.clone().all(|(joint, c)| c == joint.clearance) {
+                let wearing = clear.filter(|(joint, _)| !fixed(joint));
+                cases.extend(wearing.map(|(joint, _)| worn(run, joint)));
+            }
+        } else if !of_fitted.contains(state) {
+            cases.push(Case {
+                run: (*run).clone(),
+                clearances: clear.map(|(j, c)| (j.path.clone(), c)).collect(),
+                recorded: true,
+            });
+        }
+    }
+    cases
+}
+
+/// A run with one joint worn.
+fn worn(run: &Observation, joint: &ClearJoint) -> Case {
+    let clearance = WORN * joint.clearance;
+    let mut run = run.clone();
+    let setting = (
+        joint.path.clone() + ".clearance",
+        format!("{clearance} m").into(),
+    );
+    run.settings.push(setting);
+    Case {
+        run,
+        clearances: BTreeMap::from([(joint.path.clone(), clearance)]),
+        recorded: false,
+    }
+}

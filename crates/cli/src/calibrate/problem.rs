@@ -1,0 +1,371 @@
+//! From settings to what is to be fitted to what.
+
+use super::{Settings, contradiction, relation};
+use crate::{Failure, bundle};
+use ::calibrate::fit::{FitSettings, Optimiser};
+use ::calibrate::optimiser::Genetic;
+use ::calibrate::prediction::predict;
+use ::calibrate::problem::columns;
+use ::calibrate::relation::clearances;
+use ::calibrate::{ClearJoint, Observation, Parameter, Problem, Run, alignment};
+use input::bundle::Bundle;
+use input::bundle_channel::Meaning;
+use input::calibration;
+use input::unit::Dimension;
+use input::{MachineFile, paths};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::f64::consts::TAU;
+
+/// Of so many runs one is held out.
+const HELD_OUT: usize = 4;
+/// Most evaluations of the model.
+const EVALUATIONS: u32 = 5000;
+/// Change of a run's zero of the crank angle that is worth another fit, rad: a tenth of the noise of
+/// usual lines.
+const ALIGNED: f64 = 1e-5;
+
+/// What a calibration works on.
+pub struct Task {
+    /// What is fitted to what.
+    pub problem: Problem,
+    /// The runs, in the same order, as they were recorded.
+    pub runs: Vec<Run>,
+    /// How it is fitted.
+    pub settings: FitSettings,
+    /// For each run whether the zero of its crank angle was recorded.
+    pub zeroed: Vec<bool>,
+    /// The columns that the machine has.
+    columns: Vec<String>,
+}
+
+/// The task that the settings state.
+///
+/// # Errors
+/// Settings, a machine or runs that cannot be used or contradict each other.
+pub fn task(settings: &Settings) -> Result<Task, Failure> {
+    let asked = settings.calibration;
+    let bundles = bundles(settings)?;
+    let machine = asked.machine.as_ref().map(|path| settings.base.join(path));
+    let mut tree = match settings.machine {
+        Some(tree) => tree.clone(),
+        None => bundle::machine(&bundles[0].bundle, machine.as_deref())?,
+    };
+    let mut runs = Vec::new();
+    let mut zeroed = Vec::new();
+    for listed in &bundles {
+        let (own, own_zeroed) = listed.runs(settings, &tree)?;
+        runs.extend(own);
+        zeroed.extend(own_zeroed);
+    }
+    let Some(first) = runs.first() else {
+        return Err(Failure::input("every run is left out"));
+    };
+    // The machine stands at the conditions of the first run where it has none of its own.
+    for (path, value) in &first.settings {
+        paths::set(&mut tree, path, value.clone())?;
+    }
+    let fit_settings = fit_settings(settings, &tree, &runs)?;
+    let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
+    let resolved = MachineFile::from_tree(&tree)?.resolve()?;
+    let mut parameters = parameters(settings, &tree, &runs)?;
+    for exponent in exponents {
+        let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
+        if !exponent.places.iter().any(free) {
+            parameters.push(exponent);
+        }
+    }
+    let mut task = Task {
+        settings: fit_settings,
+        problem: Problem {
+            tree,
+            parameters,
+            runs: Vec::new(),
+        },
+        runs,
+        zeroed,
+        columns: columns(&resolved),
+    };
+    task.observe()?;
+    Ok(task)
+}
+
+impl Task {
+    /// Looks at all runs, and holds them against the nominal machine.
+    fn observe(&mut self) -> Result<(), Failure> {
+        for run in &mut self.runs {
+            if run.crank_angle.is_none() {
+                let measured = alignment::speed(run);
+                contradiction::speed(run, measured)?;
+                let step = TAU * measured / 60.0 / run.sample_rate;
+                let samples = run.channels.first().map_or(0, |c| c.samples.len());
+                let angles = (0..samples).map(|i| (step * i as f64).rem_euclid(TAU));
+                run.crank_angle = Some(angles.collect());
+            }
+        }
+        let seen = self.runs.iter().map(|run| observe(run, &self.columns));
+        self.problem.runs = seen.collect::<Result<_, _>>()?;
+        let nominal = vec![0.0; self.problem.parameters.len()];
+        self.align(&nominal)?;
+        contradiction::check(&self.problem)
+    }
+
+    /// Sets the zero of the crank angle of every run where it was not recorded to what the machine
+    /// with the parameters at `x` shows; whether that has moved one.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn align(&mut self, x: &[f64]) -> Result<bool, Failure> {
+        let mut moved = false;
+        for i in (0..self.runs.len())
+            .filter(|i| !self.zeroed[*i])
+            .collect::<Vec<_>>()
+        {
+            let observed = &self.problem.runs[i];
+            let predicted = predict(&self.problem, observed, x).map_err(Failure::input)?;
+            let shift = alignment::phase(observed, &predicted);
+            if shift.abs() < ALIGNED {
+                continue;
+            }
+            moved = true;
+            for angle in self.runs[i].crank_angle.iter_mut().flatten() {
+                *angle = (*angle + shift).rem_euclid(TAU);
+            }
+            self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
+        }
+        Ok(moved)
+    }
+
+    /// What tells this calibration from others: the recordings, the machine, what is fitted and how,
+    /// and the version of this program. SHA-256 in hexadecimal.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = Sha256::new();
+        let mut add = |text: &str| {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        };
+        add(env!("CARGO_PKG_VERSION"));
+        add(&self.problem.tree.to_string());
+        let settings = &self.settings;
+        add(&format!("{:?} {:?}", settings.optimiser, settings.seed));
+        add(&format!("{:?}", settings.held_out));
+        for parameter in &self.problem.parameters {
+            add(&format!("{parameter:?}"));
+        }
+        for run in &self.runs {
+            add(&format!(
+                "{} {:?} {} {}",
+                run.id, run.settings, run.speed_rpm, run.sample_rate
+            ));
+            for channel in &run.channels {
+                add(&channel.column);
+            }
+        }
+        for run in &self.runs {
+            let series = run.channels.iter().map(|channel| &channel.samples);
+            for samples in run.crank_angle.iter().chain(series) {
+                hash.update((samples.len() as u64).to_le_bytes());
+                for x in samples {
+                    hash.update(x.to_bits().to_le_bytes());
+                }
+            }
+        }
+        format!("{:x}", hash.finalize())
+    }
+}
+
+fn observe(run: &Run, columns: &[String]) -> Result<Observation, Failure> {
+    Observation::of(run, columns).map_err(|error| bundle::unusable(&run.id, &error.to_string()))
+}
+
+/// A bundle, and what its runs are called in front.
+struct Listed {
+    bundle: Bundle,
+    prefix: String,
+}
+
+fn bundles(settings: &Settings) -> Result<Vec<Listed>, Failure> {
+    let paths = settings.calibration.bundles();
+    let mut listed: Vec<Listed> = Vec::new();
+    for path in paths {
+        let bundle = Bundle::read(&settings.base.join(path))?;
+        let name = path
+            .file_name()
+            .unwrap_or(path.as_os_str())
+            .to_string_lossy();
+        let prefix = match paths.len() {
+            1 => String::new(),
+            _ => format!("{name}/"),
+        };
+        let bundle_file = |b: &Bundle| b.folder.join(input::bundle::FILE).display().to_string();
+        if listed.iter().any(|other| other.prefix == prefix) {
+            return Err(Failure::input(format!(
+                "two bundles are called {name}: give their folders different names"
+            )));
+        }
+        if let Some(first) = listed.first()
+            && settings.calibration.machine.is_none()
+            && first.bundle.machine != bundle.machine
+        {
+            return Err(Failure::input(format!(
+                "{} and {} have different machine sections: give the machine file that holds for both",
+                bundle_file(&first.bundle),
+                bundle_file(&bundle)
+            )));
+        }
+        listed.push(Listed { bundle, prefix });
+    }
+    Ok(listed)
+}
+
+impl Listed {
+    /// The runs, and whether the zero of each one's crank angle was recorded.
+    fn runs(&self, settings: &Settings, tree: &Value) -> Result<(Vec<Run>, Vec<bool>), Failure> {
+        let known: Vec<&str> = self.bundle.runs.iter().map(|run| run.id.as_str()).collect();
+        let named = settings.calibration.leave_out.iter();
+        let own = named.filter_map(|id| id.strip_prefix(&self.prefix));
+        let own: Vec<String> = own.map(str::to_owned).collect();
+        if let Some(unknown) = own.iter().find(|id| !known.contains(&id.as_str())) {
+            let error = input::Error::unknown_name("leave_out", unknown, &known);
+            return Err((settings.locate)(error).into());
+        }
+        let mut runs = bundle::runs(&self.bundle, tree, &own)?;
+        let throws = bundle::throws(tree);
+        let mut zeroed = Vec::new();
+        for (i, run) in self.bundle.runs.iter().enumerate() {
+            if own.contains(&run.id) {
+                continue;
+            }
+            let meanings = bundle::meanings(&self.bundle, i, &throws)?;
+            zeroed.push(meanings.iter().any(|meaning| {
+                matches!(
+                    meaning,
+                    Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) }
+                )
+            }));
+        }
+        for run in &mut runs {
+            run.id = format!("{}{}", self.prefix, run.id);
+        }
+        Ok((runs, zeroed))
+    }
+}
+
+/// What is fitted: the paths of the settings, else the contact of the joints that are clear.
+fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Parameter>, Failure> {
+    let asked = &settings.calibration.parameters.0;
+    let refuse = |path: &str, reason: String| {
+        let key = format!("parameters.{path}");
+        Failure::from((settings.locate)(input::Error::new(
+            key,
+            input::Problem::Other(reason),
+        )))
+    };
+    let of = |path: &str, bounds: Option<[f64; 2]>| {
+        Parameter::named(tree, runs, path, bounds).map_err(|e| refuse(path, e.to_string()))
+    };
+    if asked.is_empty() {
+        return defaults(runs).iter().map(|path| of(path, None)).collect();
+    }
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for (path, bounds) in asked {
+        let parameter = of(path, bounds.map(|bounds| bounds.map(|b| b.si)))?;
+        if let Some([low, _]) = bounds
+            && low.dimension != parameter.dimension
+        {
+            let unit = parameter
+                .dimension
+                .as_ref()
+                .map_or("none".to_owned(), Dimension::to_string);
+            let reason = format!("the bounds have another unit than its value ({unit})");
+            return Err(refuse(path, reason));
+        }
+        if parameters.iter().any(|p| p.path == *path) {
+            return Err(refuse(path, "it is named twice".into()));
+        }
+        parameters.push(parameter);
+    }
+    Ok(parameters)
+}
+
+fn defaults(runs: &[Run]) -> Vec<String> {
+    let clear = |(path, value): &&(String, Value)| path.ends_with(".clearance") && value != "ideal";
+    let settings = runs.iter().flat_map(|run| &run.settings).filter(clear);
+    let mut joints: Vec<&str> = settings
+        .map(|(path, _)| path.trim_end_matches(".clearance"))
+        .collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let keys = [
+        "contact.stiffness",
+        "contact.damping",
+        "friction.coefficient",
+    ];
+    let of_joint = |joint: &&str| keys.map(|key| format!("{joint}.{key}"));
+    joints.iter().flat_map(of_joint).collect()
+}
+
+fn fit_settings(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<FitSettings, Failure> {
+    let asked = settings.calibration;
+    let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
+    let held_out = match &asked.hold_out {
+        None => held_out(tree, runs)?,
+        Some(named) => {
+            if let Some(unknown) = named.iter().find(|id| !ids.contains(&id.as_str())) {
+                let error = input::Error::unknown_name("hold_out", unknown, &ids);
+                return Err((settings.locate)(error).into());
+            }
+            if ids.iter().all(|id| named.iter().any(|held| held == id)) {
+                let expected = "at least one run to fit to";
+                let error = input::Error::found("hold_out", "every run", expected);
+                return Err((settings.locate)(error).into());
+            }
+            named.clone()
+        }
+    };
+    Ok(FitSettings {
+        optimiser: optimiser(asked.optimiser),
+        seed: asked.seed.map_or(0, |seed| u64::from(seed.get())),
+        evaluations: u64::from(asked.evaluations.map_or(EVALUATIONS, |n| n.get())),
+        held_out,
+        start: None,
+    })
+}
+
+/// Of every four runs the last whose clearances a run has that is fitted: what the parameters are at
+/// other clearances is another question.
+fn held_out(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Failure> {
+    let joints = ClearJoint::of(tree, runs.iter().map(|run| &run.settings[..]));
+    let joints = joints.map_err(Failure::input)?;
+    let states = runs.iter().map(|r| clearances(tree, &joints, &r.settings));
+    let states: Vec<_> = states.collect::<Result<_, _>>().map_err(Failure::input)?;
+    let mut held_out: Vec<usize> = Vec::new();
+    for last in (HELD_OUT - 1..runs.len()).step_by(HELD_OUT) {
+        let shared = |i: &usize| {
+            let mut others = (0..runs.len()).filter(|j| j != i && !held_out.contains(j));
+            others.any(|j| states[j] == states[*i])
+        };
+        let group = last + 1 - HELD_OUT..=last;
+        held_out.extend(group.rev().find(shared));
+    }
+    Ok(held_out.into_iter().map(|i| runs[i].id.clone()).collect())
+}
+
+fn optimiser(asked: calibration::Optimiser) -> Optimiser {
+    match asked {
+        calibration::Optimiser::Default => Optimiser::Default,
+        calibration::Optimiser::CmaEs => Optimiser::CmaEs,
+        calibration::Optimiser::LevenbergMarquardt => Optimiser::LevenbergMarquardt,
+        calibration::Optimiser::Genetic(asked) => {
+            let asked = asked.unwrap_or_default();
+            let usual = Genetic::default();
+            Optimiser::Genetic(Genetic {
+                population: asked
+                    .population
+                    .map_or(usual.population, |n| n.get() as usize),
+                crossover: asked.crossover.map_or(usual.crossover, |x| x.get()),
+                mutation: asked.mutation.map_or(usual.mutation, |x| x.get()),
+            })
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! How contact parameters follow the clearance: `--relation`, or what stands in for it.
+
+use super::Settings;
+use crate::Failure;
+use ::calibrate::relation::{clearances, exponents, several};
+use ::calibrate::{ClearJoint, Parameter, Problem, Relation, Run};
+use input::calibration;
+use serde_json::{Map, Value, json};
+
+/// Gives every clear joint of the machine its relation, and returns the exponents to be fitted.
+///
+/// It is that of the settings. Without one the machine file says. Where the bundle's own machine
+/// section says nothing, it is Eq. (5), unless the fitted runs have several clearances and so can
+/// tell: then its exponents are fitted.
+///
+/// # Errors
+/// A clearance that is no length.
+pub fn set(
+    settings: &Settings,
+    tree: &mut Value,
+    runs: &[Run],
+    held_out: &[String],
+) -> Result<Vec<Parameter>, Failure> {
+    let of_runs = runs.iter().map(|run| &run.settings[..]);
+    let joints = ClearJoint::of(tree, of_runs).map_err(Failure::input)?;
+    let mut silent = Vec::new();
+    for joint in &joints {
+        if joint.relation(tree).map_err(Failure::input)?.is_none() {
+            silent.push(joint.clone());
+        }
+    }
+    let fitted = runs.iter().filter(|run| !held_out.contains(&run.id));
+    let states = fitted.map(|run| clearances(tree, &joints, &run.settings));
+    let states: Vec<_> = states.collect::<Result<_, _>>().map_err(Failure::input)?;
+    let asked = settings.calibration;
+    let (relation, joints) = match (asked.relation, &asked.machine) {
+        (Some(asked), _) => (named(asked), joints),
+        (None, Some(_)) => return Ok(Vec::new()),
+        (None, None) if several(&states) => (Relation::Fitted, silent),
+        (None, None) => (Relation::Equation5, silent),
+    };
+    relation.set(tree, &joints).map_err(Failure::input)?;
+    if relation == Relation::Fitted && !joints.is_empty() {
+        return exponents(tree).map_err(Failure::input);
+    }
+    Ok(Vec::new())
+}
+
+fn named(asked: calibration::Relation) -> Relation {
+    match asked {
+        calibration::Relation::Eq5 => Relation::Equation5,
+        calibration::Relation::Conformal => Relation::Conformal,
+        calibration::Relation::Constant => Relation::Constant,
+        calibration::Relation::Fitted => Relation::Fitted,
+    }
+}
+
+/// What `calibration.json` says of it: for each clear joint the relation and the clearance from
+/// which it leads, as the fit began with them; null where there is none.
+///
+/// # Errors
+/// A clearance that is no length.
+pub fn stated(problem: &Problem) -> Result<Value, Failure> {
+    let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
+    let mut by_joint = Map::new();
+    for joint in ClearJoint::of(&problem.tree, of_runs).map_err(Failure::work)? {
+        let content = json!({
+            "relation": joint.relation(&problem.tree).map_err(Failure::work)?,
+            "at_clearance_m": joint.at_clearance(&problem.tree).map_err(Failure::work)?,
+        });
+        by_joint.insert(joint.path, content);
+    }
+    Ok(by_joint.into())
+}

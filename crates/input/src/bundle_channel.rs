@@ -1,0 +1,448 @@
+//! What a channel of a bundle is, and how its numbers become SI values.
+//!
+//! The column's name tells it where it is one that this program writes
+//! (`throw1.crosshead_acceleration_m_s2`), else the channel's name in words: `throw1 crosshead
+//! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
+
+use crate::bundle::Channel;
+use crate::error::{Error, Problem};
+use crate::unit::{self, Dimension, UnitError};
+use simulate::{Axis, ChamberEnd, Measured};
+use std::f64::consts::TAU;
+
+/// What a channel of a recording is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Meaning {
+    /// The time of each sample.
+    Time,
+    /// The angle of the crankshaft, recorded or added up.
+    CrankAngle(ToSi),
+    /// Pulses, one per revolution, which come when the crank stands at `at`, rad, if that is known.
+    Tacho {
+        /// The crank angle of a pulse.
+        at: Option<f64>,
+    },
+    /// Something that the model predicts, under the name of its column there.
+    Measured {
+        /// The column, as [`Measured::column`] names it.
+        column: String,
+        /// How it becomes SI.
+        to_si: ToSi,
+    },
+    /// Nothing that is used.
+    Other,
+}
+
+/// A number in the unit of a channel becomes one in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToSi {
+    /// Added first, in the channel's unit.
+    pub offset: f64,
+    /// SI units in one of the channel's.
+    pub scale: f64,
+}
+
+impl ToSi {
+    /// The value in SI units.
+    pub fn of(self, value: f64) -> f64 {
+        (value + self.offset) * self.scale
+    }
+
+    /// The value in the channel's unit.
+    pub fn back(self, si: f64) -> f64 {
+        si / self.scale - self.offset
+    }
+}
+
+/// Standard gravity, m/s² (3rd CGPM, 1901).
+const GRAVITY: f64 = 9.806_65;
+/// Pounds per square inch, Pa: 0.45359237 kg × 9.80665 m/s² over (0.0254 m)².
+const PSI: f64 = 6_894.757_293_168;
+
+/// Slips of the keyboard by which a name is taken for a known one that is misspelt: `oil pressure` is
+/// none.
+const SLIPS: usize = 2;
+
+const ACCELERATION: Dimension = Dimension::of(1.0, 0.0, -2.0, 0.0);
+const PRESSURE: Dimension = Dimension::of(-1.0, 1.0, -2.0, 0.0);
+const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
+
+/// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
+const RECORDED: [(&str, Dimension, f64); 8] = [
+    ("g", ACCELERATION, GRAVITY),
+    ("mg", ACCELERATION, 1e-3 * GRAVITY),
+    ("gn", ACCELERATION, GRAVITY),
+    ("psi", PRESSURE, PSI),
+    ("psia", PRESSURE, PSI),
+    ("degree", ANGLE, TAU / 360.0),
+    ("degrees", ANGLE, TAU / 360.0),
+    ("rev", ANGLE, TAU),
+];
+
+/// Pressure units over the ambient pressure, and the unit that each is one of.
+const GAUGE: [(&str, &str); 6] = [
+    ("psig", "psi"),
+    ("barg", "bar"),
+    ("bar(g)", "bar"),
+    ("kPag", "kPa"),
+    ("kPa(g)", "kPa"),
+    ("MPag", "MPa"),
+];
+
+/// What a channel is in a machine whose throws have these names (one that is empty for a machine of
+/// one). Mistakes stand under the keys of the channel.
+///
+/// # Errors
+/// A unit that is unknown, or of the wrong dimension for what the channel is; a gauge pressure whose
+/// ambient pressure is not given; a name that is almost a known one.
+pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
+    let known = known(throws);
+    let exact = known.iter().find(|(column, ..)| *column == channel.column);
+    let spoken = [&channel.name, &channel.column].map(|text| words(text));
+    let said = |names: &[String]| names.iter().any(|name| spoken.contains(name));
+    let found = exact.or_else(|| known.iter().find(|(_, names, _)| said(names)));
+    let Some((column, _, kind)) = found else {
+        let all = known.iter().flat_map(|(_, names, _)| names.first());
+        let all: Vec<&str> = all.map(String::as_str).collect();
+        let slips = |known: &&str| strsim::damerau_levenshtein(&spoken[0], known);
+        return match all
+            .iter()
+            .any(|known| spoken[0].len() > 3 && slips(known) <= SLIPS)
+        {
+            true => Err(Error::unknown_name("name", &channel.name, &all)),
+            false => Ok(Meaning::Other),
+        };
+    };
+    Ok(match kind {
+        Kind::Time => Meaning::Time,
+        Kind::Tacho => Meaning::Tacho {
+            at: channel.crank_angle_rad.map(|at| at.get()),
+        },
+        Kind::CrankAngle => {
+            Meaning::CrankAngle(to_si(channel, ANGLE, "an angle, e.g. rad or deg")?)
+        }
+        Kind::Acceleration => Meaning::Measured {
+            column: column.clone(),
+            to_si: to_si(channel, ACCELERATION, "an acceleration, e.g. m/s2 or g")?,
+        },
+        Kind::Pressure => Meaning::Measured {
+            column: column.clone(),
+            to_si: to_si(channel, PRESSURE, "a pressure, e.g. Pa, bar or psi")?,
+        },
+    })
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Time,
+    CrankAngle,
+    Tacho,
+    Acceleration,
+    Pressure,
+}
+
+/// The columns that have a meaning, with the words for each.
+fn known(throws: &[&str]) -> Vec<(String, Vec<String>, Kind)> {
+    let one = |column: &str, names: &[&str], kind| {
+        let names = names.iter().map(|name| (*name).to_owned());
+        (column.to_owned(), names.collect(), kind)
+    };
+    let mut all = vec![
+        one("t_s", &["time", "t"], Kind::Time),
+        one(
+            "crank_angle_rad",
+            &["crank angle", "angle", "encoder", "crankshaft angle"],
+            Kind::CrankAngle,
+        ),
+        one(
+            "tacho",
+            &["tacho", "tachometer", "keyphasor", "once per revolution"],
+            Kind::Tacho,
+        ),
+    ];
+    for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y")] {
+        let column = Measured::FrameAcceleration { axis }.column(throws);
+        let names = [
+            format!("frame acceleration {name}"),
+            format!("{name} frame acceleration"),
+        ];
+        all.push((column, names.to_vec(), Kind::Acceleration));
+    }
+    for (throw, of) in throws.iter().enumerate() {
+        let of = words(of);
+        let mut add = |measured: Measured, names: &[&str], kind| {
+            let names = names.iter().map(|name| match of.is_empty() {
+                true => (*name).to_owned(),
+                false => format!("{of} {name}"),
+            });
+            all.push((measured.column(throws), names.collect(), kind));
+        };
+        add(
+            Measured::CrossheadAcceleration { throw },
+            &[
+                "crosshead acceleration",
+                "acceleration",
+                "acc",
+                "accelerometer",
+                "crosshead vibration",
+            ],
+            Kind::Acceleration,
+        );
+        add(
+            Measured::CrossheadLateralAcceleration { throw },
+            &["crosshead lateral acceleration", "lateral acceleration"],
+            Kind::Acceleration,
+        );
+        let end = ChamberEnd::Head;
+        add(
+            Measured::CylinderPressure { throw, end },
+            &[
+                "cylinder pressure",
+                "pressure",
+                "head end pressure",
+                "head end cylinder pressure",
+                "cylinder pressure head end",
+            ],
+            Kind::Pressure,
+        );
+        let end = ChamberEnd::Crank;
+        add(
+            Measured::CylinderPressure { throw, end },
+            &[
+                "crank end pressure",
+                "crank end cylinder pressure",
+                "cylinder pressure crank end",
+            ],
+            Kind::Pressure,
+        );
+    }
+    all
+}
+
+/// Lower case, words apart, without a unit in brackets or at the end of a column's name.
+fn words(text: &str) -> String {
+    const ENDINGS: [&str; 13] = [
+        " m s2", " kpa", " mpa", " pa", " mbar", " bar", " psig", " psia", " psi", " rad", " deg",
+        " g", " s",
+    ];
+    let text = text.split(['[', '(']).next().unwrap_or(text);
+    let apart = |c: char| c.is_whitespace() || "_-.,:/".contains(c);
+    let lower = text.to_lowercase();
+    let parts: Vec<&str> = lower.split(apart).filter(|part| !part.is_empty()).collect();
+    let joined = parts.join(" ");
+    let ending = ENDINGS
+        .iter()
+        .find_map(|ending| joined.strip_suffix(ending));
+    ending.map_or(joined.clone(), str::to_owned)
+}
+
+fn to_si(channel: &Channel, dimension: Dimension, expected: &str) -> Result<ToSi, Error> {
+    let text = channel.unit.trim();
+    let refuse = |reason: String| Error::new("unit", Problem::Other(reason));
+    let gauge = GAUGE
+        .iter()
+        .find(|(name, _)| name.eq_ignore_ascii_case(text));
+    if let Some((name, of)) = gauge
+        && channel.offset.is_none()
+    {
+        return Err(refuse(format!(
+            "{name} counts from the ambient pressure; give that as `offset`, in {of}, to make it absolute"
+        )));
+    }
+    let text = gauge.map_or(text, |(_, of)| of);
+    // The full scale of a WAV file, `50 m/s2`, leads with a number.
+    let (size, text) = match text.split_once(' ') {
+        Some((size, unit)) if size.parse::<f64>().is_ok_and(f64::is_finite) => (size, unit.trim()),
+        _ => ("1", text),
+    };
+    let recorded = RECORDED.iter().find(|(name, ..)| *name == text);
+    let (found, scale) = match recorded {
+        Some((_, dimension, scale)) => (*dimension, size.parse().unwrap_or(1.0) * scale),
+        None => match unit::parse(&format!("{size} {text}")) {
+            Ok(measure) => (measure.dimension, measure.si),
+            Err(UnitError::NoUnit) => return Err(refuse(format!("no unit; expected {expected}"))),
+            Err(error) => return Err(refuse(format!("{error}; expected {expected}"))),
+        },
+    };
+    if found != dimension {
+        return Err(Error::found(
+            "unit",
+            format!("'{}'", channel.unit),
+            expected,
+        ));
+    }
+    Ok(ToSi {
+        offset: channel.offset.map_or(0.0, |offset| offset.get()),
+        scale,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(name: &str, column: &str, unit: &str) -> Channel {
+        Channel {
+            name: name.into(),
+            column: column.into(),
+            unit: unit.into(),
+            offset: None,
+            crank_angle_rad: None,
+        }
+    }
+
+    fn column(name: &str, column: &str, unit: &str, throws: &[&str]) -> (String, f64) {
+        match meaning(&channel(name, column, unit), throws).unwrap() {
+            Meaning::Measured { column, to_si } => (column, to_si.scale),
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn names_and_columns_tell_what_a_channel_is() {
+        let one = [""];
+        let two = ["throw1", "throw2"];
+        for (name, of, unit, throws, expected, scale) in [
+            (
+                "",
+                "crosshead_acceleration_m_s2",
+                "m/s2",
+                &one[..],
+                "crosshead_acceleration_m_s2",
+                1.0,
+            ),
+            (
+                "crosshead acceleration",
+                "ch1",
+                "g",
+                &one,
+                "crosshead_acceleration_m_s2",
+                GRAVITY,
+            ),
+            (
+                "",
+                "acc [g]",
+                "g",
+                &one,
+                "crosshead_acceleration_m_s2",
+                GRAVITY,
+            ),
+            (
+                "Cylinder Pressure",
+                "p1",
+                "bar",
+                &one,
+                "cylinder_pressure_pa",
+                1e5,
+            ),
+            ("", "pressure_kPa", "kPa", &one, "cylinder_pressure_pa", 1e3),
+            (
+                "crank-end cylinder pressure",
+                "p2",
+                "psi",
+                &one,
+                "cylinder_pressure_crank_end_pa",
+                PSI,
+            ),
+            (
+                "throw2 crosshead acceleration",
+                "b",
+                "mm/s^2",
+                &two,
+                "throw2.crosshead_acceleration_m_s2",
+                1e-3,
+            ),
+            (
+                "crosshead acceleration",
+                "1",
+                "50 g",
+                &one,
+                "crosshead_acceleration_m_s2",
+                50.0 * GRAVITY,
+            ),
+            (
+                "throw1 cylinder pressure",
+                "c",
+                "MPa",
+                &two,
+                "throw1.cylinder_pressure_pa",
+                1e6,
+            ),
+            (
+                "frame acceleration x",
+                "f",
+                "m/s²",
+                &two,
+                "frame_acceleration_x_m_s2",
+                1.0,
+            ),
+        ] {
+            let (found, factor) = column(name, of, unit, throws);
+            assert_eq!(found, expected, "{name} {of}");
+            assert!(
+                (factor / scale - 1.0).abs() < 1e-12,
+                "{name} {of}: {factor}"
+            );
+        }
+    }
+
+    #[test]
+    fn angles_times_and_pulses_are_told_apart() {
+        let of = |name: &str, unit: &str| meaning(&channel(name, "x", unit), &[""]).unwrap();
+        assert_eq!(of("time", "s"), Meaning::Time);
+        assert_eq!(of("tacho", "V"), Meaning::Tacho { at: None });
+        assert_eq!(of("oil temperature", "K"), Meaning::Other);
+        let Meaning::CrankAngle(degrees) = of("crank angle", "deg") else {
+            panic!("no angle");
+        };
+        assert!((degrees.of(180.0) - TAU / 2.0).abs() < 1e-15);
+        assert!((degrees.back(TAU) - 360.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_gauge_pressure_needs_the_ambient_one() {
+        let mut gauge = channel("cylinder pressure", "p", "psig");
+        let message = meaning(&gauge, &[""]).unwrap_err().to_string();
+        assert!(
+            message.contains("unit: psig counts from the ambient pressure"),
+            "{message}"
+        );
+        gauge.offset = crate::quantity::Number::new(14.6);
+        let Ok(Meaning::Measured { to_si, .. }) = meaning(&gauge, &[""]) else {
+            panic!("no pressure");
+        };
+        // 14.6 psi is 100 663.456 Pa.
+        assert!((to_si.of(0.0) - 100_663.456).abs() < 1e-3);
+    }
+
+    #[test]
+    fn wrong_channels_are_told() {
+        for (name, unit, expected) in [
+            (
+                "crosshead acceleration",
+                "Pa",
+                "unit: found 'Pa', expected an acceleration",
+            ),
+            (
+                "crosshead acceleration",
+                "m/z2",
+                "unit: there is no unit 'z'",
+            ),
+            (
+                "crosshead acceleration",
+                "",
+                "unit: no unit; expected an acceleration",
+            ),
+            (
+                "crosshed acceleration",
+                "m/s2",
+                "did you mean 'crosshead acceleration'?",
+            ),
+        ] {
+            let message = meaning(&channel(name, "x", unit), &[""])
+                .unwrap_err()
+                .to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

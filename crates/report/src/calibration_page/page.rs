@@ -1,0 +1,161 @@
+//! The page itself.
+
+use super::{
+    CalibrationPage, Estimate, Hypothesis, Transfer, misfits, parameters, transfers, verdict,
+    waveforms, words,
+};
+use crate::plate::{FigureFile, Plate, Rendered, file_name};
+use crate::{Error, text};
+use askama::Template;
+
+#[derive(Template)]
+#[template(path = "calibration_page.html")]
+struct View<'a> {
+    page: &'a CalibrationPage,
+    verdict: String,
+    warnings: Vec<String>,
+    found: Vec<String>,
+    untold: Vec<String>,
+    together: Vec<String>,
+    misfits: Vec<(usize, Plate)>,
+    intervals: Vec<(usize, Plate)>,
+    correlations: Vec<(usize, Plate)>,
+    transfers: Vec<(usize, Plate)>,
+    runs: Vec<(usize, Plate)>,
+}
+
+impl CalibrationPage {
+    /// The page as one HTML file that loads nothing from anywhere, and its figures.
+    ///
+    /// # Errors
+    /// [`Error::Template`] if the template cannot be filled in.
+    pub fn render(&self) -> Result<Rendered, Error> {
+        let mut number = 0;
+        let mut numbered = |plates: Vec<Plate>| -> Vec<(usize, Plate)> {
+            let plates = plates.into_iter().map(|plate| {
+                number += 1;
+                (number, plate)
+            });
+            plates.collect()
+        };
+        let view = View {
+            page: self,
+            verdict: verdict::verdict(self),
+            warnings: verdict::warnings(self),
+            found: verdict::found(&self.parameters),
+            untold: verdict::untold(&self.parameters),
+            together: verdict::together(self),
+            misfits: numbered(misfits::plate(self).into_iter().collect()),
+            intervals: numbered(parameters::intervals(self).into_iter().collect()),
+            correlations: numbered(parameters::correlations(self).into_iter().collect()),
+            transfers: numbered(transfers::plates(self)),
+            runs: numbered(waveforms::plates(self)),
+        };
+        let html = view.render()?;
+        let plates = [
+            view.misfits,
+            view.intervals,
+            view.correlations,
+            view.transfers,
+            view.runs,
+        ];
+        let figures = plates
+            .into_iter()
+            .flatten()
+            .map(|(number, plate)| FigureFile {
+                name: file_name("calibration", number, &plate.heading),
+                svg: plate.svg,
+            });
+        Ok(Rendered {
+            html,
+            figures: figures.collect(),
+        })
+    }
+}
+
+/// What the template asks for, formatted.
+impl View<'_> {
+    fn counts(&self) -> [String; 2] {
+        let held_out = self.page.runs.iter().filter(|run| run.held_out).count();
+        let fitted = self.page.runs.len() - held_out;
+        [fitted, held_out].map(text::count)
+    }
+
+    fn told(&self) -> String {
+        let all = &self.page.parameters;
+        let told = all.iter().filter(|e| e.interval.is_some()).count();
+        format!("{told} of {}", all.len())
+    }
+
+    fn effort(&self) -> String {
+        let evaluations = usize::try_from(self.page.evaluations).unwrap_or(usize::MAX);
+        let time = match self.page.seconds {
+            s if s < 120.0 => text::quantity(s, "s"),
+            s => text::quantity(s / 60.0, "min"),
+        };
+        format!("{} evaluations, {time}", text::count(evaluations))
+    }
+
+    fn name(estimate: &Estimate) -> String {
+        text::capitalised(&words::path(&estimate.path))
+    }
+
+    fn value(value: &f64, estimate: &Estimate) -> String {
+        let (scale, _) = text::readable_unit(estimate.nominal, &estimate.unit);
+        text::number(value * scale, 4)
+    }
+
+    fn unit(estimate: &Estimate) -> String {
+        text::unit(text::readable_unit(estimate.nominal, &estimate.unit).1)
+    }
+
+    fn interval(estimate: &Estimate) -> String {
+        match estimate.interval {
+            Some([low, high]) => format!(
+                "{} to {}",
+                Self::value(&low, estimate),
+                Self::value(&high, estimate)
+            ),
+            None => "not told".to_owned(),
+        }
+    }
+
+    fn change(estimate: &Estimate) -> String {
+        if estimate.interval.is_none() {
+            return String::new();
+        }
+        let change = 100.0 * (estimate.value / estimate.nominal - 1.0);
+        let sign = if change > 0.0 { "+" } else { "" };
+        format!("{sign}{}\u{a0}%", text::decimal(change, 1))
+    }
+
+    fn decision(transfer: &Transfer) -> String {
+        transfers::decision(transfer)
+    }
+
+    fn relation(name: &str) -> &str {
+        transfers::words(name)
+    }
+
+    fn exponents(hypothesis: &Hypothesis) -> String {
+        transfers::exponents(hypothesis)
+    }
+
+    fn misfit(value: &f64) -> String {
+        verdict::size(*value)
+    }
+
+    fn optional(value: &Option<f64>) -> String {
+        value.map_or_else(String::new, verdict::size)
+    }
+
+    fn left_out(&self) -> String {
+        match waveforms::left_out(self.page) {
+            0 => String::new(),
+            n => format!(
+                "{} without a picture here; waveforms.parquet has them all.",
+                text::counted(n, "run")
+            ),
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The parameters: against their nominal values, and against each other.
+
+use super::misfits::{AFTER, ROW};
+use super::{CalibrationPage, Estimate, words};
+use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
+use crate::text;
+
+/// At most so many parameters are drawn, the first.
+const MOST: usize = 60;
+/// With more parameters than this their correlations are not written into the map.
+const WRITTEN: usize = 16;
+
+/// The names of the parameters, from the last to the first, as an upright axis has them.
+fn names(estimates: &[Estimate], numbered: bool) -> Vec<String> {
+    let name = |(i, estimate): (usize, &Estimate)| {
+        let name = text::capitalised(&words::path(&estimate.path));
+        if numbered {
+            format!("{name}\u{a0}\u{a0}{}", i + 1)
+        } else {
+            name
+        }
+    };
+    let names = estimates.iter().enumerate().map(name);
+    names.rev().collect()
+}
+
+/// Value and interval of each over the nominal value; none where nothing was fitted.
+pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
+    let estimates = &page.parameters[..page.parameters.len().min(MOST)];
+    if estimates.is_empty() {
+        return None;
+    }
+    let top = estimates.len() as f64 - 1.0;
+    let mut bars = Vec::new();
+    let (mut told, mut untold) = (Vec::new(), Vec::new());
+    for (i, estimate) in estimates.iter().enumerate() {
+        let y = top - i as f64;
+        let place = |value: f64| [value / estimate.nominal, y];
+        match estimate.interval {
+            Some([low, high]) => {
+                told.push(place(estimate.value));
+                bars.extend([place(low), place(high), [f64::NAN; 2]]);
+            }
+            None => untold.push(place(estimate.nominal)),
+        }
+    }
+    let positive = bars
+        .iter()
+        .chain(&told)
+        .all(|[x, _]| x.is_nan() || *x > 0.0);
+    let label = "value over its nominal value";
+    let named = |points: &[[f64; 2]], name: &str| match points.is_empty() {
+        true => String::new(),
+        false => name.to_owned(),
+    };
+    let panel = Panel {
+        x: if positive {
+            Axis::log(label)
+        } else {
+            Axis::linear(label)
+        },
+        y: Axis::named("", names(estimates, false)),
+        series: vec![
+            Series::new(
+                "nominal",
+                Colour::Ink,
+                Mark::Line,
+                [[1.0, -1.0], [1.0, top + 1.0]],
+            ),
+            Series::new("", AFTER, Mark::BoldLine, bars),
+            Series::new(
+                named(&told, "found, with its 95 % interval"),
+                AFTER,
+                Mark::Discs,
+                told,
+            ),
+            Series::new(
+                named(&untold, "not told: the nominal value stays"),
+                Colour::Ink,
+                Mark::Rings,
+                untold,
+            ),
+        ],
+        ..Panel::default()
+    };
+    Some(Plate {
+        heading: "Parameters against their nominal values".to_owned(),
+        caption: "The value found for each parameter, and the 95 % interval that the recordings leave for it, over the nominal \
+                  value. An interval that crosses the line at 1 leaves room for the nominal value."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![panel]],
+            row_height: ROW * (estimates.len() as f64 + 0.5),
+            ..Figure::default()
+        }
+        .svg(),
+    })
+}
+
+/// The correlations as a map; none where there is no pair.
+pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
+    let count = page.parameters.len().min(page.correlations.len()).min(MOST);
+    if count < 2 {
+        return None;
+    }
+    let estimates = &page.parameters[..count];
+    let told = |i: usize| estimates[i].interval.is_some();
+    let field = |i: usize, j: usize| {
+        let r = page.correlations[i].get(j).copied().unwrap_or(0.0);
+        let both = told(i) && told(j);
+        let letters = match both {
+            _ if i == j || count > WRITTEN => String::new(),
+            true => text::decimal(r, 2),
+            false => "–".to_owned(),
+        };
+        Field {
+            at: [j as f64, (count - 1 - i) as f64],
+            fill: Colour::Tint(if both && i != j { r.abs() } else { 0.0 }),
+            letters,
+        }
+    };
+    let panel = Panel {
+        x: Axis::named("parameter", (1..=count).map(|i| i.to_string()).collect()),
+        y: Axis::named("", names(estimates, true)),
+        fields: (0..count)
+            .flat_map(|i| (0..count).map(move |j| (i, j)))
+            .map(|(i, j)| field(i, j))
+            .collect(),
+        ..Panel::default()
+    };
+    Some(Plate {
+        heading: "Correlations".to_owned(),
+        caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 the recordings tell \
+                  only a combination of the two: if one is wrong, so is the other. A dash stands for a parameter that is not told."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![panel]],
+            row_height: (1.3 * ROW * count as f64).clamp(90.0, 640.0),
+            ..Figure::default()
+        }
+        .svg(),
+    })
+}

@@ -1,0 +1,140 @@
+//! One picture per run: measured against simulated.
+
+use super::misfits::{AFTER, BEFORE};
+use super::verdict::size;
+use super::{CalibrationPage, Channel, OrderResidual, Point, Run, words};
+use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
+use crate::text;
+
+/// At most so many runs have a picture, the first.
+const MOST_RUNS: usize = 40;
+/// Half of the interval that holds 95 % of a normal distribution, in standard deviations.
+const HALF: f64 = 1.96;
+/// Points, beyond which dots stand for orders.
+const MANY: usize = 60;
+/// The recording.
+const MEASURED: Colour = Colour::Ink;
+
+/// How many runs have no picture.
+pub(super) fn left_out(page: &CalibrationPage) -> usize {
+    page.runs.len().saturating_sub(MOST_RUNS)
+}
+
+/// A picture per run.
+pub(super) fn plates(page: &CalibrationPage) -> Vec<Plate> {
+    let runs = page.runs.iter().take(MOST_RUNS);
+    let with_channels = runs.filter(|run| !run.channels.is_empty());
+    with_channels.map(plate).collect()
+}
+
+fn plate(run: &Run) -> Plate {
+    let kind = if run.held_out {
+        "held out and predicted"
+    } else {
+        "fitted"
+    };
+    Plate {
+        heading: format!("{}, {kind}", run.id),
+        caption: format!(
+            "Misfit {} times the noise before and {} after. Left: the mean over the revolutions, with the band that holds 95 % of \
+             them. Middle: simulation less recording, with the band in which noise alone would put it. Right: the same order by \
+             order, over its noise; noise alone lies about 1.",
+            size(run.misfit.before),
+            size(run.misfit.after)
+        ),
+        svg: Figure {
+            rows: run.channels.iter().map(panels).collect(),
+            row_headings: run.channels.iter().map(heading).collect(),
+            row_height: 210.0,
+            ..Figure::default()
+        }
+        .svg(),
+    }
+}
+
+fn heading(channel: &Channel) -> String {
+    text::capitalised(&words::column(&channel.column).0)
+}
+
+fn panels(channel: &Channel) -> Vec<Panel> {
+    let (_, unit) = words::column(&channel.column);
+    let points = &channel.waveform;
+    let largest = points.iter().map(|p| p.measured.abs()).fold(0.0, f64::max);
+    let (scale, unit) = text::readable_unit(largest, unit);
+    let line = |label: &str, colour, mark, of: &dyn Fn(&Point) -> f64| {
+        let at = points.iter().map(|p| [p.crank_angle_deg, scale * of(p)]);
+        // The end of the revolution is its beginning.
+        let first = points.first().map(|p| [360.0, scale * of(p)]);
+        Series::new(label, colour, mark, at.chain(first))
+    };
+    let band = |label: &str, middle: &dyn Fn(&Point) -> f64, half: &dyn Fn(&Point) -> f64| {
+        let edge = |sign: f64| {
+            let value = move |p: &Point| scale * (middle(p) + sign * HALF * half(p));
+            let at = points.iter().map(move |p| [p.crank_angle_deg, value(p)]);
+            at.chain(points.first().map(|p| [360.0, value(p)]))
+        };
+        let back: Vec<[f64; 2]> = edge(-1.0).collect();
+        let outline = edge(1.0).chain(back.into_iter().rev());
+        Series::new(label, MEASURED, Mark::Band, outline)
+    };
+    let waveform = Panel {
+        title: "Over the crank angle".to_owned(),
+        x: Axis::crank_angle(),
+        y: Axis::linear(text::with_unit("mean", unit)),
+        series: vec![
+            band("measured revolutions", &|p| p.measured, &|p| p.scatter),
+            line("before", BEFORE, Mark::Line, &|p| p.before),
+            line("measured mean", MEASURED, Mark::Line, &|p| p.measured),
+            line("after calibration", AFTER, Mark::Line, &|p| p.after),
+        ],
+        ..Panel::default()
+    };
+    let difference = Panel {
+        title: "Simulated less measured".to_owned(),
+        x: Axis::crank_angle(),
+        y: Axis::linear(text::with_unit("difference", unit)),
+        series: vec![
+            line("", BEFORE, Mark::Line, &|p| p.before - p.measured),
+            band("", &|_| 0.0, &|p| p.noise),
+            line("", AFTER, Mark::Line, &|p| p.after - p.measured),
+        ],
+        ..Panel::default()
+    };
+    vec![waveform, difference, residuals(&channel.orders)]
+}
+
+fn residuals(orders: &[OrderResidual]) -> Panel {
+    let highest = orders.iter().map(|o| o.order).fold(1.0, f64::max);
+    let mark = match orders.len() {
+        0..MANY => Mark::Points,
+        _ => Mark::Dots,
+    };
+    let points = |of: fn(&OrderResidual) -> f64| -> Vec<[f64; 2]> {
+        orders.iter().map(|o| [o.order, of(o)]).collect()
+    };
+    Panel {
+        title: "By order of the crank's speed".to_owned(),
+        x: Axis {
+            range: Some((-0.02 * highest, 1.02 * highest)),
+            ..Axis::linear("order")
+        },
+        y: Axis::log("difference over noise"),
+        series: vec![
+            Series::new(
+                "",
+                Colour::Ink,
+                Mark::Line,
+                [[-highest, 1.0], [2.0 * highest, 1.0]],
+            ),
+            Series::new("", BEFORE, mark, points(|o| o.before)),
+            Series::new("", AFTER, mark, points(|o| o.after)),
+        ],
+        note: if orders.is_empty() {
+            "no orders".to_owned()
+        } else {
+            String::new()
+        },
+        ..Panel::default()
+    }
+}

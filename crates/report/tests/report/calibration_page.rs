@@ -1,0 +1,88 @@
+//! The page of a calibration: every section, its numbers, and what it says where data are missing.
+
+use crate::synthetic::calibration;
+use report::calibration_page::{CalibrationPage, Channel, Estimate, Misfit, Run};
+
+#[test]
+fn every_section_is_there_and_every_figure_is_well_formed() {
+    let page = calibration::page().render().unwrap();
+    // Misfits, intervals, correlations, two sets of clearances, five runs.
+    assert_eq!(page.figures.len(), 3 + 2 + 5);
+    for file in &page.figures {
+        assert!(page.html.contains(&file.svg), "{}", file.name);
+        roxmltree::Document::parse(&file.svg).unwrap();
+    }
+    assert!(page.html.len() < 1_500_000, "{} bytes", page.html.len());
+    for id in [
+        "parameters",
+        "untold",
+        "correlations",
+        "clearances",
+        "runs",
+        "reading",
+    ] {
+        assert!(
+            page.html.contains(&format!("<section id=\"{id}\">")),
+            "{id}"
+        );
+        assert!(page.html.contains(&format!("href=\"#{id}\"")), "{id}");
+    }
+    assert!(!page.html.contains("class=\"missing\""));
+    assert!(!page.html.contains("<script"));
+}
+
+#[test]
+fn the_numbers_are_those_of_the_calibration() {
+    let html = calibration::page().render().unwrap().html;
+    for said in [
+        "what is left is 1.04 times the noise (before: 14)",
+        "Big end contact stiffness: 21\u{a0}% below its nominal value, known to ±3\u{a0}%.",
+        "Big end friction coefficient keeps its nominal value 0.05:",
+        "big end contact stiffness and small end contact stiffness trade off (−0.94)",
+        "<td class=\"n\">1.896 × 10¹⁰</td>",
+        "<dd>5 of 6</dd>",
+        "<td class=\"n\">24</td>",
+        "run04 (held out)",
+    ] {
+        assert!(html.contains(said), "{said}");
+    }
+    let untold = html.split("class=\"untold\"").nth(1).unwrap();
+    assert!(untold[..300].contains("not told"));
+}
+
+/// Whatever the names and the numbers, the page is a page.
+#[test]
+fn empty_hostile_and_infinite_content_is_borne() {
+    let empty = CalibrationPage::default().render().unwrap();
+    assert!(
+        empty
+            .html
+            .contains("The recordings tell none of the parameters.")
+    );
+    let hostile = CalibrationPage {
+        name: "<b>&".into(),
+        parameters: vec![Estimate {
+            path: "a.<i>".into(),
+            nominal: -1.0,
+            value: f64::NAN,
+            interval: Some([f64::NEG_INFINITY, 0.0]),
+            ..Estimate::default()
+        }],
+        correlations: vec![vec![]],
+        runs: vec![Run {
+            id: "<script>".into(),
+            misfit: Misfit {
+                before: f64::INFINITY,
+                after: 0.0,
+            },
+            channels: vec![Channel::default()],
+            ..Run::default()
+        }],
+        ..CalibrationPage::default()
+    };
+    let page = hostile.render().unwrap();
+    assert!(!page.html.contains("<script") && !page.html.contains("<i>"));
+    for file in &page.figures {
+        roxmltree::Document::parse(&file.svg).unwrap();
+    }
+}

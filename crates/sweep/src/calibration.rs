@@ -1,0 +1,256 @@
+//! A sweep that calibrates its machine first: what it asks for, and its plan with what was found.
+//!
+//! What was found is kept as [`Calibration`] and put into the sweep file's tree: the machine with
+//! the values found, and the uncertainty as `vary_together` and `vary`. The plan is that of this
+//! tree, and the dataset's `sweep.yaml` holds it: it no longer names the recordings.
+
+use std::path::{Path, PathBuf};
+
+use input::bundle::Bundle;
+use input::choice::Or;
+use input::yaml::Document;
+use input::{Error, paths};
+use scalar::elementary::exp;
+use serde_json::{Map, Value, json};
+
+use crate::Plan;
+use crate::dataset::CALIBRATION;
+use crate::sweep_file::{Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
+
+/// A sweep file that has been read, but not planned yet.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    document: Document,
+    folder: PathBuf,
+    file: SweepFile,
+}
+
+/// A calibrated machine, and what is not known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The tree of its machine file.
+    pub machine: Value,
+    /// The fitted values.
+    pub estimates: Vec<Estimate>,
+    /// Correlation of each pair of estimates (of their logarithms where they have a ratio).
+    pub correlations: Vec<Vec<f64>>,
+}
+
+/// A fitted value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Its path in the machine file.
+    pub path: String,
+    /// Its value, as the machine file has it.
+    pub value: Value,
+    /// Least and greatest value of the search.
+    pub bounds: [Value; 2],
+    /// Whether it was searched on a logarithmic scale.
+    pub logarithmic: bool,
+    /// Standard deviation: of the logarithm on a logarithmic scale, else of the value, SI; none
+    /// where the recordings do not determine it.
+    pub deviation: Option<f64>,
+}
+
+impl Sweep {
+    /// Reads the sweep file at `path`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or a mistake in it, with its line.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let document = Document::open(path)?;
+        let file: SweepFile = document.read()?;
+        if let Some(calibrate) = &file.calibrate {
+            let checked = calibrate.settings.check();
+            checked.map_err(|error| document.locate(error.under("calibrate")))?;
+        }
+        Ok(Self {
+            document,
+            folder,
+            file,
+        })
+    }
+
+    /// The calibration that it asks for.
+    pub fn calibrate(&self) -> Option<&Calibrate> {
+        self.file.calibrate.as_ref()
+    }
+
+    /// The folder that its paths start from.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// `error`, whose key is one of the section `calibrate`, with its line in the file.
+    pub fn locate(&self, error: Error) -> Error {
+        self.document.locate(error.under("calibrate"))
+    }
+
+    /// The folders of the recordings.
+    pub fn bundles(&self) -> Vec<PathBuf> {
+        let bundles = self.calibrate().map(|c| c.settings.bundles());
+        let bundles = bundles.unwrap_or_default().iter();
+        bundles.map(|bundle| self.folder.join(bundle)).collect()
+    }
+
+    /// The tree of the sweep's own machine file, where it names one.
+    ///
+    /// # Errors
+    /// A machine file that cannot be read.
+    pub fn machine(&self) -> Result<Option<Value>, Error> {
+        Ok(match &self.file.machine {
+            None => None,
+            Some(Or::Section(_)) => Some(self.document.tree["machine"].clone()),
+            Some(Or::Scalar(path)) => {
+                let machine = input::machine_file::read(&self.folder.join(path))?;
+                Some(machine.to_tree().clone())
+            }
+        })
+    }
+
+    /// The machine before any calibration: the sweep's own, or the bundle's machine section at the
+    /// conditions of its first run.
+    fn nominal_machine(&self) -> Result<Value, Error> {
+        if let Some(machine) = self.machine()? {
+            return Ok(machine);
+        }
+        match self.bundles().first() {
+            None => Err(self.document.locate(Error::missing("machine"))),
+            Some(bundle) => machine_of(&Bundle::read(bundle)?),
+        }
+    }
+
+    /// The plan of a sweep without a calibration; of one with it, the plan with the nominal machine.
+    ///
+    /// # Errors
+    /// As [`Plan::read`].
+    pub fn nominal(&self) -> Result<Plan, Error> {
+        match self.calibrate() {
+            None => Plan::new(&self.document, &self.folder),
+            Some(_) => self.plan(self.nominal_machine()?, Map::new(), None),
+        }
+    }
+
+    /// The plan with the calibrated machine, and with its uncertainty where the sweep asks for it.
+    /// What the sweep varies itself is left to it.
+    ///
+    /// # Errors
+    /// As [`Plan::read`].
+    pub fn calibrated(&self, calibration: &Calibration) -> Result<Plan, Error> {
+        let uncertainty = self.calibrate().map(|c| (c.uncertainty, c.undetermined));
+        let (uncertainty, undetermined) = uncertainty.unwrap_or_default();
+        let varied = |path: &str| self.file.vary.0.iter().any(|(own, _)| own == path);
+        let together = (uncertainty == Uncertainty::Sampled)
+            .then(|| calibration.together(varied))
+            .flatten();
+        let alone = match undetermined {
+            Undetermined::Nominal => Map::new(),
+            Undetermined::Prior => calibration.prior(varied),
+        };
+        self.plan(calibration.machine.clone(), alone, together)
+    }
+
+    /// The plan of this file with `machine` in the place of its calibration, and more variation.
+    fn plan(
+        &self,
+        machine: Value,
+        alone: Map<String, Value>,
+        together: Option<Value>,
+    ) -> Result<Plan, Error> {
+        let mut document = self.document.clone();
+        if let Some(sweep) = document.tree.as_object_mut() {
+            sweep.shift_remove("calibrate");
+            sweep.insert("machine".into(), machine);
+            sweep.insert("calibrated".into(), CALIBRATION.into());
+            if !alone.is_empty() {
+                let vary = sweep.entry("vary").or_insert_with(|| json!({}));
+                if let Some(vary) = vary.as_object_mut() {
+                    vary.extend(alone);
+                }
+            }
+            if let Some(entry) = together {
+                let list = sweep.entry("vary_together").or_insert_with(|| json!([]));
+                if let Some(list) = list.as_array_mut() {
+                    list.push(entry);
+                }
+            }
+        }
+        Plan::new(&document, &self.folder)
+    }
+}
+
+/// The machine section of a bundle as a machine file's tree, at the conditions of the first run.
+fn machine_of(bundle: &Bundle) -> Result<Value, Error> {
+    if bundle.machine.is_null() {
+        return Err(bundle.locate(Error::missing("machine")));
+    }
+    let tree = input::from_bundle(&bundle.machine);
+    let mut tree = tree.map_err(|error| bundle.locate(error.under("machine")))?;
+    if let Some(first) = bundle.runs.first() {
+        let settings = input::run_settings(&first.section, &tree);
+        let settings = settings.map_err(|error| bundle.locate(error.under("runs.0")))?;
+        for (path, value) in settings {
+            paths::set(&mut tree, &path, value)?;
+        }
+    }
+    Ok(tree)
+}
+
+impl Calibration {
+    /// The joint distribution of what the recordings determine, as an entry of `vary_together`; none
+    /// where that is nothing.
+    fn together(&self, varied: impl Fn(&str) -> bool) -> Option<Value> {
+        let estimates = self.estimates.iter().enumerate();
+        let drawn: Vec<(usize, &Estimate, f64)> = estimates
+            .filter(|(_, estimate)| !varied(&estimate.path))
+            .filter_map(|(i, estimate)| Some((i, estimate, estimate.deviation?)))
+            .collect();
+        let parameters: Map<String, Value> = drawn
+            .iter()
+            .map(|(_, estimate, deviation)| (estimate.path.clone(), estimate.gaussian(*deviation)))
+            .collect();
+        let correlations: Vec<Vec<f64>> = drawn
+            .iter()
+            .map(|(i, ..)| {
+                drawn
+                    .iter()
+                    .map(|(j, ..)| self.correlations[*i][*j])
+                    .collect()
+            })
+            .collect();
+        let entry = json!({"parameters": parameters, "correlations": correlations});
+        (!drawn.is_empty()).then_some(entry)
+    }
+
+    /// The search ranges of what the recordings do not determine, as entries of `vary`.
+    fn prior(&self, varied: impl Fn(&str) -> bool) -> Map<String, Value> {
+        let open = self.estimates.iter().filter(|e| e.deviation.is_none());
+        open.filter(|estimate| !varied(&estimate.path))
+            .map(|estimate| {
+                let rule = if estimate.logarithmic {
+                    "log_uniform"
+                } else {
+                    "uniform"
+                };
+                (estimate.path.clone(), json!({rule: estimate.bounds}))
+            })
+            .collect()
+    }
+}
+
+impl Estimate {
+    /// The distribution of its value, as `vary_together` has it.
+    fn gaussian(&self, deviation: f64) -> Value {
+        let (value, range) = (&self.value, &self.bounds);
+        if self.logarithmic {
+            let factor = exp(deviation);
+            return json!({"lognormal": {"median": value, "factor": factor, "range": range}});
+        }
+        let deviation = Amount {
+            si: deviation,
+            dimension: Amount::of(value).and_then(|amount| amount.dimension),
+        };
+        json!({"normal": {"mean": value, "deviation": deviation.to_value(), "range": range}})
+    }
+}

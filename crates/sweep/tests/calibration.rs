@@ -1,0 +1,254 @@
+//! Sweeps that calibrate their machine first: plans, the resolved sweep, what is kept.
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use sweep::calibration::{Calibration, Estimate, Sweep};
+use sweep::dataset::{CALIBRATION, Claim, generate_in};
+use sweep::{Case, Error, Existing, Options, Plan};
+
+const STIFFNESS: &str = "joints.big_end.contact.stiffness";
+const DAMPING: &str = "joints.big_end.contact.damping";
+const FRICTION: &str = "joints.big_end.friction.coefficient";
+
+const SWEEP: &str = "name: test
+machine: MACHINE
+calibrate: {bundle: bundle, uncertainty: sampled, undetermined: prior}
+run: {revolutions: 2, transient: 1}
+cases:
+  - grid: {joints: [[], [big_end]], clearance: 0.1 mm, speed: [400 rpm, 500 rpm]}
+vary:
+  rod.mass: {lognormal: {factor: 1.01}}
+";
+
+/// A sweep file beside a bundle with a run whose recording is a few bytes.
+fn write(folder: &Path, text: &str) -> PathBuf {
+    let machine = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
+    let machine = machine.join("single-stage.yaml").display().to_string();
+    let bundle = folder.join("bundle");
+    fs::create_dir_all(&bundle).unwrap();
+    let recordings = "runs:
+  - id: run01
+    file: run01.parquet
+    channels: [{column: crosshead_acceleration_m_s2, unit: m/s2}]
+";
+    fs::write(bundle.join("recordings.yaml"), recordings).unwrap();
+    fs::write(bundle.join("run01.parquet"), "recorded").unwrap();
+    let path = folder.join("sweep.yaml");
+    fs::write(&path, text.replace("MACHINE", &machine)).unwrap();
+    path
+}
+
+fn found(sweep: &Sweep) -> Calibration {
+    let mut machine = sweep.machine().unwrap().unwrap();
+    input::paths::set(&mut machine, STIFFNESS, json!("19.5 GN/m^1.5")).unwrap();
+    let estimate = |path: &str, value: Value, bounds: [Value; 2], deviation| Estimate {
+        path: path.into(),
+        value,
+        bounds,
+        logarithmic: true,
+        deviation,
+    };
+    let gigas = |x: f64| json!(format!("{x} GN/m^1.5"));
+    let damping = ["2e3 N s/m", "2e5 N s/m"].map(|text| json!(text));
+    Calibration {
+        machine,
+        estimates: vec![
+            estimate(
+                STIFFNESS,
+                gigas(19.5),
+                [gigas(2.4), gigas(240.0)],
+                Some(0.1),
+            ),
+            estimate(DAMPING, json!("2e4 N s/m"), damping, None),
+            estimate(FRICTION, json!(0.05), [json!(0.005), json!(0.5)], Some(0.2)),
+        ],
+        correlations: vec![
+            vec![1.0, 0.0, -0.9],
+            vec![0.0, 1.0, 0.0],
+            vec![-0.9, 0.0, 1.0],
+        ],
+    }
+}
+
+fn value(case: &Case, path: &str) -> f64 {
+    let value = input::paths::get(&case.tree, path).unwrap().unwrap();
+    sweep::sweep_file::Amount::of(value).unwrap().si
+}
+
+#[test]
+fn the_resolved_sweep_holds_machine_and_uncertainty_and_no_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = Sweep::read(&write(folder.path(), SWEEP)).unwrap();
+    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let resolved = plan.sweep();
+    assert!(resolved.get("calibrate").is_none());
+    let entry = &resolved["vary_together"][0];
+    assert_eq!(entry["correlations"], json!([[1.0, -0.9], [-0.9, 1.0]]));
+    let lognormal = &entry["parameters"][STIFFNESS]["lognormal"];
+    assert_eq!(lognormal["median"], "19.5 GN/m^1.5");
+    let factor = lognormal["factor"].as_f64().unwrap();
+    assert!((factor - 0.1_f64.exp()).abs() < 1e-12, "{factor}");
+    let prior = &resolved["vary"][DAMPING]["log_uniform"];
+    assert_eq!(*prior, json!(["2e3 N s/m", "2e5 N s/m"]));
+
+    let path = folder.path().join("resolved.yaml");
+    fs::remove_dir_all(folder.path().join("bundle")).unwrap();
+    fs::write(&path, input::yaml::to_string(resolved).unwrap()).unwrap();
+    let again = Plan::read(&path).unwrap();
+    assert_eq!(again.id, plan.id);
+    for i in 0..plan.cases() {
+        assert_eq!(again.case(i).unwrap().tree, plan.case(i).unwrap().tree);
+    }
+    let cases: Vec<Case> = (0..4).map(|i| plan.case(i).unwrap()).collect();
+    for path in [STIFFNESS, DAMPING, FRICTION] {
+        assert!(plan.parameters.iter().any(|p| p.path == path), "{path}");
+        assert_ne!(value(&cases[0], path), value(&cases[1], path), "{path}");
+    }
+}
+
+#[test]
+fn uncertainty_is_drawn_only_on_request_and_where_the_sweep_does_not_vary_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = SWEEP.replace(", uncertainty: sampled, undetermined: prior", "");
+    let sweep = Sweep::read(&write(folder.path(), &plain)).unwrap();
+    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    assert!(plan.sweep().get("vary_together").is_none());
+    assert_eq!(value(&plan.case(3).unwrap(), STIFFNESS), 19.5e9);
+    assert_eq!(
+        value(&sweep.nominal().unwrap().case(3).unwrap(), STIFFNESS),
+        24e9
+    );
+
+    let own = format!("{SWEEP}  {FRICTION}: {{uniform: [0.04, 0.05]}}\n");
+    let sweep = Sweep::read(&write(folder.path(), &own)).unwrap();
+    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let entry = &plan.sweep()["vary_together"][0];
+    assert_eq!(entry["correlations"], json!([[1.0]]));
+    let friction = value(&plan.case(0).unwrap(), FRICTION);
+    assert!((0.04..0.05).contains(&friction), "{friction}");
+}
+
+#[test]
+fn mistakes_in_the_section_tell_their_line() {
+    let folder = tempfile::tempdir().unwrap();
+    for (section, expected) in [
+        ("{}", "sweep.yaml:3:1: calibrate.bundle: missing"),
+        (
+            "{bundel: b}",
+            "sweep.yaml:3:13: calibrate.bundel: unknown key; expected one of bundle",
+        ),
+        (
+            "{bundle: b, uncertainty: smapled}",
+            "sweep.yaml:3:37: calibrate.uncertainty: found 'smapled', expected one of ignored, sampled; did you mean 'sampled'?",
+        ),
+        (
+            "{bundle: b, parameters: {rod.mass: {bounds: [5 kg, 4 kg]}}}",
+            "calibrate.parameters.rod.mass.bounds: found 5 kg to 4 kg",
+        ),
+        (
+            "{bundle: b, machine: m.yaml}",
+            "sweep.yaml:3:12: calibrate: machine beside calibrate",
+        ),
+    ] {
+        let text = SWEEP.replace(
+            "{bundle: bundle, uncertainty: sampled, undetermined: prior}",
+            section,
+        );
+        let error = Sweep::read(&write(folder.path(), &text))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(expected), "{error}");
+    }
+    // Its plan alone would be that of a machine that is not calibrated.
+    let error = Plan::read(&write(folder.path(), SWEEP))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("calibrate: found a calibration to be made"),
+        "{error}"
+    );
+    let bare = "name: test\nrun: {revolutions: 2}\ncases: []\n";
+    let error = Sweep::read(&write(folder.path(), bare))
+        .unwrap()
+        .nominal()
+        .unwrap_err();
+    assert!(error.to_string().ends_with("machine: missing"), "{error}");
+}
+
+#[test]
+fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = Sweep::read(&write(folder.path(), SWEEP)).unwrap();
+    let root = folder.path().join("out");
+    let cancel = AtomicBool::new(false);
+    let plain: String = SWEEP
+        .split_inclusive('\n')
+        .filter(|line| !line.contains("calibrate"))
+        .collect();
+    let machine = sweep.machine().unwrap().unwrap();
+    let plain = plain.replace("MACHINE", &machine.to_string());
+    fs::write(folder.path().join("plain.yaml"), plain).unwrap();
+    let silent = |_: &Case| Err("not simulated".into());
+    let generate = |claim: Claim, existing, plan: &Plan| {
+        let options = Options {
+            existing,
+            threads: 1,
+            cancel: &cancel,
+        };
+        generate_in(claim, plan, &options, &silent, &mut ())
+    };
+
+    // Stopped during the calibration: the folder goes on without a word.
+    let mut claim = Claim::new(&root, Existing::Refuse).unwrap();
+    let calibration = claim.calibration(false).unwrap();
+    assert_eq!(calibration, root.join(CALIBRATION));
+    fs::create_dir(&calibration).unwrap();
+    fs::write(calibration.join("calibration.json"), "half").unwrap();
+    drop(claim);
+    let mut claim = Claim::new(&root, Existing::Resume).unwrap();
+    claim.calibration(false).unwrap();
+    assert!(calibration.join("calibration.json").exists());
+    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    generate(claim, Existing::Resume, &plan).unwrap();
+
+    let manifest = || fs::read_to_string(root.join("manifest.json")).unwrap();
+    assert!(manifest().contains("calibration/calibration.json"));
+    // The resolved sweep takes it along.
+    let resolved = Plan::read(&root.join("sweep.yaml")).unwrap();
+    let copy = folder.path().join("copy");
+    let claim = Claim::new(&copy, Existing::Refuse).unwrap();
+    generate(claim, Existing::Refuse, &resolved).unwrap();
+    assert_eq!(
+        manifest(),
+        fs::read_to_string(copy.join("manifest.json")).unwrap()
+    );
+    assert!(copy.join("calibration/calibration.json").exists());
+    // Replaced by itself, it stays.
+    let claim = Claim::new(&root, Existing::Overwrite).unwrap();
+    generate(claim, Existing::Overwrite, &resolved).unwrap();
+    assert!(calibration.join("calibration.json").exists());
+
+    // Replaced with the same calibration, it stays.
+    let mut claim = Claim::new(&root, Existing::Overwrite).unwrap();
+    claim.calibration(true).unwrap();
+    assert!(root.join("manifest.json").exists());
+    generate(claim, Existing::Overwrite, &plan).unwrap();
+    assert!(calibration.join("calibration.json").exists());
+    // A dataset of another calibration is left alone unless it may be replaced.
+    let mut claim = Claim::new(&root, Existing::Resume).unwrap();
+    let error = claim.calibration(false).unwrap_err();
+    assert!(matches!(error, Error::OtherCalibration(_)) && error.is_input());
+    assert!(root.join("manifest.json").exists());
+    drop(claim);
+    let mut claim = Claim::new(&root, Existing::Overwrite).unwrap();
+    claim.calibration(false).unwrap();
+    assert!(!root.join("manifest.json").exists());
+    generate(claim, Existing::Overwrite, &plan).unwrap();
+    // A sweep without a calibration takes the old one away with the dataset.
+    let claim = Claim::new(&root, Existing::Overwrite).unwrap();
+    let plain = Sweep::read(&folder.path().join("plain.yaml")).unwrap();
+    generate(claim, Existing::Overwrite, &plain.nominal().unwrap()).unwrap();
+    assert!(!calibration.exists());
+}
