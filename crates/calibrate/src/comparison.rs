@@ -1,7 +1,7 @@
 //! Measured beside simulated, before and after: what a picture of a calibration shows.
 
 use crate::error::Error;
-use crate::likelihood::{ACCURACY, Likelihood, residuals};
+use crate::likelihood::{Likelihood, residuals};
 use crate::observation::{self, Observation, Observed, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
@@ -96,7 +96,7 @@ fn of_channel(
             derivatives: Vec::new(),
             periodic: prediction.periodic,
         };
-        (wave, residuals(&alone, &prediction, ACCURACY))
+        (wave, residuals(&alone, &prediction, 0.0))
     });
     let of_order = |(i, order): (usize, &usize)| {
         let size = |residuals: &[f64]| {

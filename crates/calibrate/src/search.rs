@@ -1,11 +1,11 @@
-//! The default search: descents that begin with the greatest lines, from several points.
+//! The default search: descents that begin with the low orders, from several points.
 //!
 //! The high orders of an acceleration are the ringing of the contacts. Their phases turn several
 //! times within the bounds of a stiffness, so that the sum of squares has many local minima; the
-//! great lines have few. A descent therefore trusts lines at first only to a share of their
-//! channel's greatest, and then to smaller and smaller ones, each time from where the last ended:
-//! a continuation from low frequencies, as in the inversion of seismic waves (Bunks, Saleck,
-//! Zaleski and Chavent 1995).
+//! low orders have few. A descent therefore allows at first that features stand at other crank
+//! angles, which leaves the low orders only, and then less and less of that, each time from where the
+//! last ended: a continuation from low frequencies, as in the inversion of seismic waves (Bunks,
+//! Saleck, Zaleski and Chavent 1995).
 
 use crate::error::Error;
 use crate::likelihood::{Likelihood, misfit};
@@ -17,12 +17,10 @@ use std::ops::ControlFlow;
 
 /// A misfit below this is taken for noise, and no better fit is looked for.
 pub(crate) const NOISE: f64 = 1.15;
-/// Shares of a channel's greatest line to which lines are trusted in the steps of a descent, before
-/// they are trusted to their noise.
-const SHARES: [f64; 3] = [0.1, 0.02, 0.004];
-/// Each share over the one before.
-const FINER: f64 = 0.2;
-/// Points per parameter that are looked at with the coarsest share, and the best of them from which
+/// By how much features may stand elsewhere in the steps of a descent, rad, before they must stand
+/// where they are seen.
+const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
+/// Points per parameter that are looked at with the coarsest timing, and the best of them from which
 /// the search descends.
 const POINTS: usize = 4;
 const STARTS: usize = 8;
@@ -108,30 +106,30 @@ impl Search<'_, '_> {
             || self.minima.iter().filter(same).count() >= AGREE
     }
 
-    /// From `start` with the great lines first.
+    /// From `start` with the low orders first.
     fn continuation(&mut self, start: &[f64]) -> Result<(), Error> {
         let mut x = start.to_vec();
-        for share in SHARES.map(Some).into_iter().chain([None]) {
+        for timing in TIMINGS.map(Some).into_iter().chain([None]) {
             if self.stopped || self.left() == 0 {
                 break;
             }
-            x = self.descend(share, &x)?;
+            x = self.descend(timing, &x)?;
         }
         Ok(())
     }
 
-    /// From `start` with lines trusted to a share of the greatest, or to their noise. Where it ends.
-    fn descend(&mut self, share: Option<f64>, start: &[f64]) -> Result<Vec<f64>, Error> {
-        let (likelihood, change) = match share {
-            Some(share) => (Likelihood::coarse(self.problem, share), COARSE_CHANGE),
+    /// From `start` with features that may stand elsewhere, or not. Where it ends.
+    fn descend(&mut self, timing: Option<f64>, start: &[f64]) -> Result<Vec<f64>, Error> {
+        let (likelihood, change) = match timing {
+            Some(timing) => (Likelihood::coarse(self.problem, timing), COARSE_CHANGE),
             None => (Likelihood::new(self.problem), CHANGE),
         };
         let left = self.left();
         let found = {
-            let mut told = self.told(share.is_none());
-            // Where the next share is reached already, there is nothing left for this one.
+            let mut told = self.told(timing.is_none());
+            // What is left is then noise and timing, and less of that may be allowed.
             let mut watch = |progress: &Progress| match told(progress) {
-                ControlFlow::Continue(()) if share.is_some() && progress.misfit() < FINER => {
+                ControlFlow::Continue(()) if timing.is_some() && progress.misfit() < NOISE => {
                     ControlFlow::Break(())
                 }
                 answer => answer,
@@ -140,7 +138,7 @@ impl Search<'_, '_> {
         };
         self.spent += found.evaluations;
         let end = found.x.clone();
-        if share.is_none() {
+        if timing.is_none() {
             self.minima.push(found.misfit());
             self.better(found);
         }
@@ -187,9 +185,9 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The best of points spread over the bounds around `start`, by the coarsest share.
+    /// The best of points spread over the bounds around `start`, by the coarsest timing.
     fn promising(&mut self, start: &[f64], seed: u64) -> Vec<Vec<f64>> {
-        let likelihood = Likelihood::coarse(self.problem, SHARES[0]);
+        let likelihood = Likelihood::coarse(self.problem, TIMINGS[0]);
         let mut costs = Vec::new();
         for point in spread(start, &likelihood.bounds(), seed) {
             let told = Progress {
@@ -226,4 +224,28 @@ fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
         }
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_spread_evenly_within_the_bounds() {
+        let bounds = [[-2.0, 2.0], [0.0, 1.0]];
+        let points = spread(&[1.5, 0.5], &bounds, 4);
+        assert_eq!(points.len(), 2 * POINTS);
+        for point in &points {
+            for (x, [low, high]) in point.iter().zip(&bounds) {
+                assert!((low..=high).contains(&x), "{point:?}");
+            }
+        }
+        // Each eighth of half the width around the start holds one point.
+        let mut second: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        second.sort_by(f64::total_cmp);
+        for (i, x) in second.iter().enumerate() {
+            assert!((x - (0.25 + 0.5 * (i as f64 + 0.5) / 8.0)).abs() < 1e-12);
+        }
+        assert_eq!(points, spread(&[1.5, 0.5], &bounds, 4));
+    }
 }
