@@ -14,7 +14,7 @@ use signal::order_lines::OrderLines;
 /// are never trusted beyond it.
 const ACCURACY: f64 = 2e-5;
 /// Residual that stands in for every one of a run that cannot be simulated.
-const FAILED: f64 = 1e3;
+pub(crate) const FAILED: f64 = 1e3;
 
 /// The residuals of a problem: differences of amplitudes over their standard deviations.
 ///

@@ -286,7 +286,7 @@ mod tests {
         );
         at_the_bottom(
             &genetic(&Valley, &Genetic::default(), 1, 20_000, &mut go).unwrap(),
-            5e-2,
+            1e-1,
         );
     }
 

@@ -7,6 +7,7 @@
 //! last ended: a continuation from low frequencies, as in the inversion of seismic waves (Bunks,
 //! Saleck, Zaleski and Chavent 1995).
 
+use crate::envelopes::Envelopes;
 use crate::error::Error;
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
@@ -108,7 +109,7 @@ impl Search<'_, '_> {
 
     /// From `start` with the low orders first.
     fn continuation(&mut self, start: &[f64]) -> Result<(), Error> {
-        let mut x = start.to_vec();
+        let mut x = self.ringing(start)?;
         for timing in TIMINGS.map(Some).into_iter().chain([None]) {
             if self.stopped || self.left() == 0 {
                 break;
@@ -116,6 +117,18 @@ impl Search<'_, '_> {
             x = self.descend(timing, &x)?;
         }
         Ok(())
+    }
+
+    /// From `start` to envelopes that agree. Where it ends.
+    fn ringing(&mut self, start: &[f64]) -> Result<Vec<f64>, Error> {
+        let envelopes = Envelopes::new(self.problem);
+        let left = self.left();
+        let found = {
+            let told = &mut self.told(false);
+            optimiser::levenberg_marquardt(&envelopes, start, COARSE_CHANGE, left, told)?
+        };
+        self.spent += found.evaluations;
+        Ok(found.x)
     }
 
     /// From `start` with features that may stand elsewhere, or not. Where it ends.
