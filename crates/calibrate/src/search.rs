@@ -25,9 +25,12 @@ const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// the search descends.
 const POINTS: usize = 4;
 const STARTS: usize = 8;
+/// By how much a coordinate is moved out of a local minimum: a third of a value, about as much as
+/// design values are wrong.
+const KICK: f64 = 0.3;
 /// Descents that end at the same misfit, to this share, have found the least one.
 const SAME: f64 = 0.01;
-const AGREE: usize = 3;
+const AGREE: usize = 4;
 /// Evaluations per parameter that CMA-ES is given.
 const GLOBAL: u64 = 100;
 
@@ -76,13 +79,21 @@ pub(crate) fn search(
         watch,
     };
     search.continuation(start)?;
-    if !search.ended() {
-        for start in search.promising(start, seed) {
-            if search.ended() {
-                break;
-            }
-            search.continuation(&start)?;
+    let likelihood = Likelihood::new(problem);
+    let kicked = kicks(&search.best.x, &likelihood.bounds());
+    for start in search.promising(&likelihood, kicked) {
+        if search.ended() {
+            break;
         }
+        search.descend(None, &start)?;
+    }
+    let coarse = Likelihood::coarse(problem, TIMINGS[0]);
+    let spread = spread(start, &coarse.bounds(), seed);
+    for start in search.promising(&coarse, spread) {
+        if search.ended() {
+            break;
+        }
+        search.continuation(&start)?;
     }
     if !search.ended() {
         search.globally(seed)?;
@@ -198,11 +209,13 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The best of points spread over the bounds around `start`, by the coarsest timing.
-    fn promising(&mut self, start: &[f64], seed: u64) -> Vec<Vec<f64>> {
-        let likelihood = Likelihood::coarse(self.problem, TIMINGS[0]);
+    /// The best of these points; none once the search has ended.
+    fn promising(&mut self, likelihood: &Likelihood, points: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         let mut costs = Vec::new();
-        for point in spread(start, &likelihood.bounds(), seed) {
+        if self.ended() {
+            return Vec::new();
+        }
+        for point in points {
             let told = Progress {
                 evaluations: self.spent,
                 ..self.best.clone()
@@ -217,6 +230,19 @@ impl Search<'_, '_> {
         costs.sort_by(|a, b| a.0.total_cmp(&b.0));
         costs.into_iter().take(STARTS).map(|(_, x)| x).collect()
     }
+}
+
+/// `x` with each parameter in turn moved by [`KICK`] to either side. Of a local minimum in which one
+/// parameter that matters little is wrong, the true one is not far from the kick that costs least.
+fn kicks(x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let moved = |i: usize, by: f64| {
+        let mut x = x.to_vec();
+        x[i] = (x[i] + by).clamp(bounds[i][0], bounds[i][1]);
+        x
+    };
+    (0..x.len())
+        .flat_map(|i| [moved(i, -KICK), moved(i, KICK)])
+        .collect()
 }
 
 /// Points around `start`, spread evenly over a quarter of the bounds to either side of it: a Latin
