@@ -29,8 +29,8 @@ pub struct FitSettings {
 /// How the best fit is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Optimiser {
-    /// Levenberg and Marquardt from the nominal values; where that leaves more than noise, with the
-    /// great lines first and from other values too, until the descents agree; then CMA-ES.
+    /// Levenberg and Marquardt from the nominal values, with envelopes and low orders first; where that
+    /// leaves more than noise, from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
     /// CMA-ES alone.

@@ -51,7 +51,7 @@ struct Search<'a, 'w> {
 }
 
 /// The best fit: by Levenberg and Marquardt's method with continuation from `start`; where that
-/// leaves more than noise, from the best of many other points, until the noise is reached or
+/// leaves more than noise, from kicks out of there and from the best of many other points, until the noise is reached or
 /// [`AGREE`] descents have ended at the same misfit; where they do not agree, by CMA-ES.
 ///
 /// # Errors
