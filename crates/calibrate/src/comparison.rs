@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::few_revolutions;
-use crate::likelihood::{ACCURACY, Likelihood, residuals};
+use crate::likelihood::{Likelihood, residuals};
 use crate::observation::{self, Observation, Observed, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
@@ -107,7 +107,7 @@ fn of_channel(
             derivatives: Vec::new(),
             periodic: prediction.periodic,
         };
-        (wave, residuals(&alone, &prediction, ACCURACY))
+        (wave, residuals(&alone, &prediction, 0.0))
     });
     let of_order = |(i, order): (usize, &usize)| {
         let size = |residuals: &[f64]| {

@@ -29,8 +29,8 @@ pub struct FitSettings {
 /// How the best fit is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Optimiser {
-    /// Levenberg and Marquardt from the nominal values; where that leaves more than noise, with the
-    /// great lines first and from other values too, until the descents agree; then CMA-ES.
+    /// Levenberg and Marquardt from the nominal values, with envelopes and low orders first; where that
+    /// leaves more than noise, from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
     /// CMA-ES alone.
@@ -160,10 +160,16 @@ pub fn calibrate(
             complete &= answer.is_continue();
             answer
         };
-        let found = search(&part, &start, settings, &mut watch)?;
+        let found = if free.len() == nominal.len() {
+            search(&part, &start, settings, &mut watch)?
+        } else {
+            // The rest is near its best already.
+            let left = settings.evaluations.saturating_sub(evaluations);
+            optimiser::levenberg_marquardt(&likelihood, &start, search::CHANGE, left, &mut watch)?
+        };
         evaluations += found.evaluations;
         let mut information = information(&likelihood, &found.x);
-        evaluations += 1 + optimiser::DERIVATIVES + 2 * free.len() as u64;
+        evaluations += 1 + optimiser::derivatives(free.len()) + 2 * free.len() as u64;
         let simple = free.len() == nominal.len() && found.misfit() < NOISE;
         if information.untold.is_none() && !simple {
             let whole = Likelihood::new(&fitted);
@@ -173,7 +179,7 @@ pub fn calibrate(
             }
             let factors = widening(&whole, &x, &free);
             information = information.widened(&factors, &found.x);
-            evaluations += 1 + optimiser::DERIVATIVES;
+            evaluations += 1 + optimiser::derivatives(nominal.len());
         }
         match information.untold {
             // What the recordings do not tell keeps its nominal value, and the rest is fitted again.

@@ -178,7 +178,7 @@ mod tests {
 
     #[test]
     fn the_intervals_of_a_line_are_the_textbook_s() {
-        let information = information(&Line, &[0.97, 0.02, 0.0]);
+        let information = information(&Line, &[0.94, 0.04, 0.0]);
         // Variances of intercept and slope at 0, 1, 2, 3: 0.7 and 0.2.
         for (i, variance) in [(0, 0.7_f64), (1, 0.2)] {
             let [low, high] = information.intervals[i];

@@ -14,6 +14,7 @@
 
 pub mod alignment;
 pub mod comparison;
+mod envelopes;
 pub mod error;
 mod few_revolutions;
 pub mod fit;

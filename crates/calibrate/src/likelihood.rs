@@ -12,9 +12,9 @@ use signal::order_lines::OrderLines;
 
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
-pub(crate) const ACCURACY: f64 = 2e-5;
+const ACCURACY: f64 = 2e-5;
 /// Residual that stands in for every one of a run that cannot be simulated.
-const FAILED: f64 = 1e3;
+pub(crate) const FAILED: f64 = 1e3;
 
 /// The residuals of a problem: differences of amplitudes over their standard deviations.
 ///
@@ -23,8 +23,8 @@ const FAILED: f64 = 1e3;
 /// their squares is the negative logarithm of the likelihood.
 pub struct Likelihood<'a> {
     problem: &'a Problem,
-    /// Share of a channel's greatest line beyond which lines are not trusted.
-    accuracy: f64,
+    /// Standard deviation of the crank angle at which a feature may stand, rad.
+    timing: f64,
 }
 
 impl<'a> Likelihood<'a> {
@@ -32,14 +32,15 @@ impl<'a> Likelihood<'a> {
     pub fn new(problem: &'a Problem) -> Self {
         Self {
             problem,
-            accuracy: ACCURACY,
+            timing: 0.0,
         }
     }
 
-    /// The same with lines that are trusted to a share of their channel's greatest only: a smoother
-    /// landscape, in which the large and slow features of a signal count most.
-    pub fn coarse(problem: &'a Problem, accuracy: f64) -> Self {
-        Self { problem, accuracy }
+    /// The same with features that may stand `timing` away from where they are seen (a standard
+    /// deviation, rad). An order k is then trusted only as far as it does not turn over this angle: a
+    /// smoother landscape, in which the slow features of a signal count most.
+    pub fn coarse(problem: &'a Problem, timing: f64) -> Self {
+        Self { problem, timing }
     }
 
     fn prediction(
@@ -48,13 +49,7 @@ impl<'a> Likelihood<'a> {
         x: &[f64],
         derivatives: bool,
     ) -> Result<Prediction, Error> {
-        // Below the usual accuracy the integration keeps to its own.
-        let coarse = if self.accuracy > ACCURACY {
-            self.accuracy
-        } else {
-            0.0
-        };
-        prediction(self.problem, run, x, derivatives, coarse)
+        prediction(self.problem, run, x, derivatives, self.timing > 0.0)
     }
 
     /// The predictions of all runs.
@@ -74,7 +69,7 @@ impl<'a> Likelihood<'a> {
         let predictions = self.predictions(x)?;
         let runs = self.problem.runs.iter().zip(&predictions);
         Ok(runs
-            .map(|(run, p)| residuals(run, p, self.accuracy))
+            .map(|(run, p)| residuals(run, p, self.timing))
             .collect())
     }
 }
@@ -96,7 +91,7 @@ impl LeastSquares for Likelihood<'_> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<Vec<f64>> = runs
             .map(|run| match self.prediction(run, x, false) {
-                Ok(prediction) => residuals(run, &prediction, self.accuracy),
+                Ok(prediction) => residuals(run, &prediction, self.timing),
                 Err(_) => vec![FAILED; residual_count(run)],
             })
             .collect();
@@ -107,7 +102,7 @@ impl LeastSquares for Likelihood<'_> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<DMatrix<f64>> = runs
             .map(|run| match self.prediction(run, x, true) {
-                Ok(prediction) => derivatives(run, &prediction, x.len(), self.accuracy),
+                Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
                 Err(_) => DMatrix::zeros(residual_count(run), x.len()),
             })
             .collect();
@@ -133,10 +128,10 @@ fn residual_count(run: &Observation) -> usize {
 }
 
 /// The residuals of a run, channel by channel.
-pub(crate) fn residuals(run: &Observation, prediction: &Prediction, accuracy: f64) -> Vec<f64> {
+pub(crate) fn residuals(run: &Observation, prediction: &Prediction, timing: f64) -> Vec<f64> {
     let mut all = Vec::with_capacity(residual_count(run));
     for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
-        let weights = weights(observed, predicted, accuracy);
+        let weights = weights(observed, predicted, timing);
         for (k, weight) in observed.orders.iter().zip(weights) {
             let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
             push(&mut all, apart * weight, *k);
@@ -149,7 +144,7 @@ fn derivatives(
     run: &Observation,
     prediction: &Prediction,
     count: usize,
-    accuracy: f64,
+    timing: f64,
 ) -> DMatrix<f64> {
     let mut whole = DMatrix::zeros(residual_count(run), count);
     // A motion that does not repeat itself has none.
@@ -157,7 +152,7 @@ fn derivatives(
         let mut all = Vec::with_capacity(residual_count(run));
         let channels = run.channels.iter().zip(&prediction.lines).zip(of_parameter);
         for ((observed, predicted), derivative) in channels {
-            let weights = weights(observed, predicted, accuracy);
+            let weights = weights(observed, predicted, timing);
             for (k, weight) in observed.orders.iter().zip(weights) {
                 let slope = derivative.get(*k).copied().unwrap_or_default();
                 push(&mut all, slope * weight, *k);
@@ -178,24 +173,67 @@ fn amplitude(lines: &OrderLines, order: usize) -> Complex64 {
     lines.amplitude.get(order).copied().unwrap_or_default()
 }
 
-/// One over the standard deviation of the real part of each compared line.
-fn weights(observed: &Observed, predicted: &OrderLines, accuracy: f64) -> Vec<f64> {
-    let greatest = observed
-        .lines
-        .amplitude
-        .iter()
-        .map(|c| c.norm())
-        .fold(0.0, f64::max);
-    let accuracy = (accuracy * greatest).powi(2);
+/// One over the standard deviation of the real part of each compared line. An error ε of the angle,
+/// normal with variance τ², moves a line c by a mean square E|c e^(ikε) − c|² = 2|c|²(1 − e^(−k²τ²/2)).
+fn weights(observed: &Observed, predicted: &OrderLines, timing: f64) -> Vec<f64> {
+    let lines = &observed.lines.amplitude;
+    let greatest = lines.iter().map(|c| c.norm()).fold(0.0, f64::max);
+    let accuracy = (ACCURACY * greatest).powi(2);
     let of = |lines: &OrderLines, k: usize| lines.variance.get(k).copied().unwrap_or(0.0);
+    // A prediction that scatters more than the recording is not forgiven for it: it is wrong.
+    let shorter = observed.lines.revolutions as f64 / predicted.revolutions.max(1) as f64;
     observed
         .orders
         .iter()
         .map(|k| {
-            let variance = of(&observed.lines, *k) + of(predicted, *k) + accuracy;
+            let turned = 1.0 - (-0.5 * (*k as f64 * timing).powi(2)).exp();
+            let moved = 2.0 * lines[*k].norm_sqr() * turned;
+            let noise = of(&observed.lines, *k);
+            let scatter = of(predicted, *k).min(noise * shorter);
+            let variance = noise + scatter + accuracy + moved;
             // The mean has no imaginary part, and all of its noise is in the real one.
             let parts = if *k == 0 { 1.0 } else { 2.0 };
             (parts / variance).sqrt()
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(amplitude: f64, variance: f64, revolutions: usize) -> OrderLines {
+        OrderLines {
+            amplitude: vec![Complex64::new(amplitude, 0.0); 31],
+            variance: vec![variance; 31],
+            revolutions,
+        }
+    }
+
+    fn weights_of(observed: OrderLines, predicted: &OrderLines, timing: f64) -> Vec<f64> {
+        let observed = Observed {
+            column: "crosshead_acceleration_m_s2".into(),
+            orders: (0..31).collect(),
+            lines: observed,
+        };
+        weights(&observed, predicted, timing)
+    }
+
+    #[test]
+    fn an_order_that_turns_is_not_trusted() {
+        let weights = weights_of(lines(1.0, 1e-4, 30), &lines(1.0, 0.0, 4), 0.1);
+        // Order 10 turns by one radian of standard deviation: 2 (1 − e^(−1/2)) = 0.786939.
+        let expected = (2.0_f64 / (1e-4 + 0.786939)).sqrt();
+        assert!((weights[10] - expected).abs() < 1e-5, "{}", weights[10]);
+        assert!((weights[1..]).is_sorted_by(|a, b| a > b));
+    }
+
+    #[test]
+    fn a_prediction_is_not_forgiven_more_scatter_than_the_recording_has() {
+        let weight = |predicted| weights_of(lines(1.0, 1e-4, 30), &lines(1.0, predicted, 24), 0.0);
+        let as_recorded = weight(1e-4 * 30.0 / 24.0)[5];
+        assert!((as_recorded - (2.0_f64 / 2.25e-4).sqrt()).abs() < 1e-3);
+        assert_eq!(weight(1.0)[5], as_recorded);
+        assert!(weight(1e-5)[5] > as_recorded);
+    }
 }

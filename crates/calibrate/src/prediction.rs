@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
-use crate::problem::Problem;
+use crate::problem::{Problem, throw};
 use input::Resolved;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
@@ -17,8 +17,8 @@ const TOLERANCE: f64 = 1e-7;
 /// it is given.
 const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
-/// How much finer than the lines' accuracy the motion must be.
-const FINER: f64 = 1e-3;
+/// By how much both are greater in a coarse prediction.
+const LOOSER: f64 = 10.0;
 /// Derivatives that are integrated together.
 const TANGENTS: usize = 8;
 /// Revolutions recorded: those of a motion of period 1, 2 or 4, with one to spare for a free crank
@@ -42,7 +42,7 @@ pub struct Prediction {
 /// # Errors
 /// A machine that is none, or that cannot be integrated.
 pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
-    prediction(problem, run, x, false, 0.0)
+    prediction(problem, run, x, false, false)
 }
 
 /// The same with the derivatives by the coordinates. On a motion that does not repeat itself they
@@ -55,17 +55,17 @@ pub fn predict_with_derivatives(
     run: &Observation,
     x: &[f64],
 ) -> Result<Prediction, Error> {
-    prediction(problem, run, x, true, 0.0)
+    prediction(problem, run, x, true, false)
 }
 
-/// The prediction, with or without derivatives, of lines that are trusted to the share `accuracy` of
-/// the greatest only: the integration need not be finer than a thousandth of that.
+/// The prediction, with or without derivatives; a coarse one where a few thousandths are accurate
+/// enough, with throws that do not feel each other.
 pub(crate) fn prediction(
     problem: &Problem,
     run: &Observation,
     x: &[f64],
     derivatives: bool,
-    accuracy: f64,
+    coarse: bool,
 ) -> Result<Prediction, Error> {
     let machine = problem.machine(run, x)?;
     let speed = machine.speed.abs();
@@ -76,20 +76,22 @@ pub(crate) fn prediction(
         run: run.id.clone(),
         source,
     };
+    let looser = if coarse { LOOSER } else { 1.0 };
     let mut settings = Settings {
         transient: Transient::Settled {
-            change: SETTLED.max(FINER * accuracy),
+            change: SETTLED * looser,
             at_most: AT_MOST,
         },
         revolutions: PERIODIC + u32::from(free),
         sample_rate,
-        tolerance: TOLERANCE.max(FINER * TOLERANCE / SETTLED * accuracy),
+        tolerance: TOLERANCE * looser,
     };
-    let moved = if derivatives {
-        problem.moved(run, x)?
-    } else {
-        Vec::new()
+    let groups = match derivatives {
+        false => Vec::new(),
+        true if coarse => problem.independent(),
+        true => (0..x.len()).map(|i| vec![i]).collect(),
     };
+    let moved = problem.moved(run, x, &groups)?;
     let mut record = in_parallel(&machine, &moved, &settings).map_err(failed)?;
     let periodic = record.settled;
     if !periodic {
@@ -133,6 +135,9 @@ pub(crate) fn prediction(
                 .collect()
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
+    if !derivatives.is_empty() {
+        derivatives = apart(problem, run, &groups, derivatives);
+    }
     for (of_parameter, slope) in derivatives.iter_mut().zip(&offset_slopes) {
         for (of_channel, lines) in of_parameter.iter_mut().zip(&lines) {
             for (k, (d, c)) in of_channel.iter_mut().zip(&lines.amplitude).enumerate() {
@@ -174,6 +179,34 @@ fn in_parallel(
         all.derivatives.extend(part.derivatives);
     }
     Ok(all)
+}
+
+/// The derivatives of each parameter from those of groups: a channel that belongs to a throw feels
+/// the one of the group that belongs to this throw.
+fn apart(
+    problem: &Problem,
+    run: &Observation,
+    groups: &[Vec<usize>],
+    of_groups: Vec<Vec<Vec<Complex64>>>,
+) -> Vec<Vec<Vec<Complex64>>> {
+    let mut all = vec![Vec::new(); problem.parameters.len()];
+    for (group, of_group) in groups.iter().zip(of_groups) {
+        for i in group {
+            let own = throw(&problem.parameters[*i].path);
+            let channels = run.channels.iter().zip(&of_group);
+            all[*i] = channels
+                .map(|(channel, lines)| {
+                    let of_channel = channel.column.split_once('.').map(|(throw, _)| throw);
+                    if group.len() == 1 || own == of_channel {
+                        lines.clone()
+                    } else {
+                        vec![Complex64::ZERO; lines.len()]
+                    }
+                })
+                .collect();
+        }
+    }
+    all
 }
 
 /// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle

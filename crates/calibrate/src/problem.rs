@@ -59,19 +59,40 @@ impl Problem {
         (values.iter().sum(), slopes)
     }
 
-    /// The machine of a run with each parameter moved by [`Problem::step`] in turn.
-    pub(crate) fn moved(&self, run: &Observation, x: &[f64]) -> Result<Vec<Moved>, Error> {
-        (0..x.len())
-            .map(|i| {
-                let mut x = x.to_vec();
-                x[i] += STEP;
-                let moved = self.machine(run, &x)?;
-                Ok(Moved {
-                    machine: moved.machine,
-                    sensors: moved.sensors,
-                })
+    /// The machine of a run with the parameters of each group moved by [`Problem::step`] in turn.
+    pub(crate) fn moved(
+        &self,
+        run: &Observation,
+        x: &[f64],
+        groups: &[Vec<usize>],
+    ) -> Result<Vec<Moved>, Error> {
+        let of = |group: &Vec<usize>| {
+            let mut x = x.to_vec();
+            group.iter().for_each(|i| x[*i] += STEP);
+            let moved = self.machine(run, &x)?;
+            Ok(Moved {
+                machine: moved.machine,
+                sensors: moved.sensors,
             })
-            .collect()
+        };
+        groups.iter().map(of).collect()
+    }
+
+    /// Parameters whose derivatives can be taken together, because throws hardly feel each other
+    /// through the crank: one of each throw in a group (Curtis, Powell and Reid 1974).
+    pub(crate) fn independent(&self) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for i in 0..self.parameters.len() {
+            let apart = |j: &usize| match [i, *j].map(|k| throw(&self.parameters[k].path)) {
+                [Some(a), Some(b)] => a != b,
+                _ => false,
+            };
+            match groups.iter_mut().find(|group| group.iter().all(apart)) {
+                Some(group) => group.push(i),
+                None => groups.push(vec![i]),
+            }
+        }
+        groups
     }
 
     /// By how much coordinates are moved for derivatives.
@@ -106,6 +127,12 @@ impl Problem {
             ..self.clone()
         }
     }
+}
+
+/// The throw whose values alone stand at a path.
+pub(crate) fn throw(path: &str) -> Option<&str> {
+    let throw = path.strip_prefix("throws.")?.split('.').next();
+    throw.filter(|throw| *throw != "*")
 }
 
 /// The columns that a machine's runs can be compared in.

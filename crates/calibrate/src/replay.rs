@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::few_revolutions;
-use crate::likelihood::{ACCURACY, misfit, residuals};
+use crate::likelihood::{misfit, residuals};
 use crate::observation::{self, Observation, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
@@ -144,7 +144,7 @@ pub fn replay(
                 recording_rms: deviation(recording),
                 difference: difference(&observed.lines, &lines, has_mean),
                 noise_floor: rms_over_angle(&observed.lines.variance, has_mean),
-                misfit: misfit(&residuals(&alone, &prediction, ACCURACY)),
+                misfit: misfit(&residuals(&alone, &prediction, 0.0)),
                 samples,
             };
             Ok((replayed, lines))
@@ -160,7 +160,7 @@ pub fn replay(
         periodic: same,
         recorded_rpm: place.speed * 60.0 / TAU,
         simulated_rpm: simulated * 60.0 / TAU,
-        misfit: misfit(&residuals(observation, &prediction, ACCURACY)),
+        misfit: misfit(&residuals(observation, &prediction, 0.0)),
         crank_angle: chosen.crank_angle,
     })
 }

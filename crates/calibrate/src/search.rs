@@ -1,12 +1,13 @@
-//! The default search: descents that begin with the greatest lines, from several points.
+//! The default search: descents that begin with the low orders, from several points.
 //!
 //! The high orders of an acceleration are the ringing of the contacts. Their phases turn several
 //! times within the bounds of a stiffness, so that the sum of squares has many local minima; the
-//! great lines have few. A descent therefore trusts lines at first only to a share of their
-//! channel's greatest, and then to smaller and smaller ones, each time from where the last ended:
-//! a continuation from low frequencies, as in the inversion of seismic waves (Bunks, Saleck,
-//! Zaleski and Chavent 1995).
+//! low orders have few. A descent therefore allows at first that features stand at other crank
+//! angles, which leaves the low orders only, and then less and less of that, each time from where the
+//! last ended: a continuation from low frequencies, as in the inversion of seismic waves (Bunks,
+//! Saleck, Zaleski and Chavent 1995).
 
+use crate::envelopes::Envelopes;
 use crate::error::Error;
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
@@ -17,13 +18,19 @@ use std::ops::ControlFlow;
 
 /// A misfit below this is taken for noise, and no better fit is looked for.
 pub(crate) const NOISE: f64 = 1.15;
-/// Shares of a channel's greatest line to which lines are trusted in the steps of a descent, before
-/// they are trusted to their noise.
-const SHARES: [f64; 3] = [0.1, 0.02, 0.004];
-/// Points per parameter that are looked at with the coarsest share, and the best of them from which
+/// By how much features may stand elsewhere in the steps of a descent, rad, before they must stand
+/// where they are seen.
+const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
+/// Points per parameter that are looked at with the coarsest timing, and the best of them from which
 /// the search descends.
 const POINTS: usize = 4;
 const STARTS: usize = 8;
+/// By how much a coordinate is moved out of a local minimum: a third of a value, about as much as
+/// design values are wrong.
+const KICK: f64 = 0.3;
+/// How many of the kicks are followed, and by how much features may stand elsewhere at first.
+const KICKS: usize = 4;
+const LOOSE: f64 = 0.01;
 /// Descents that end at the same misfit, to this share, have found the least one.
 const SAME: f64 = 0.01;
 const AGREE: usize = 3;
@@ -46,9 +53,10 @@ struct Search<'a, 'w> {
     watch: Watch<'w>,
 }
 
-/// The best fit: by Levenberg and Marquardt's method from `start`; where that leaves more than
-/// noise, by continuation from there and from the best of many other points, until the noise is
-/// reached or [`AGREE`] descents have ended at the same misfit; where they do not agree, by CMA-ES.
+/// The best fit: by Levenberg and Marquardt's method from `start`; where that leaves more than noise,
+/// with continuation, from kicks out of where that ends, and from the best of many other points,
+/// until the noise is reached or [`AGREE`] descents have ended at the same misfit; where they do not
+/// agree, by CMA-ES.
 ///
 /// # Errors
 /// Where an optimiser cannot start.
@@ -59,17 +67,17 @@ pub(crate) fn search(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let count = Likelihood::new(problem).count();
+    let residuals = Likelihood::new(problem).residuals(start);
     let mut search = Search {
         problem,
         most,
-        spent: 0,
+        spent: 1,
         stopped: false,
         best: Progress {
             x: start.to_vec(),
-            cost: f64::INFINITY,
-            count,
-            evaluations: 0,
+            cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
+            count: residuals.len(),
+            evaluations: 1,
         },
         minima: Vec::new(),
         watch,
@@ -78,13 +86,14 @@ pub(crate) fn search(
     if !search.ended() {
         search.continuation(start)?;
     }
-    if !search.ended() {
-        for start in search.promising(start, seed) {
-            if search.ended() {
-                break;
-            }
-            search.continuation(&start)?;
+    while !search.ended() && search.kicked()? {}
+    let coarse = Likelihood::coarse(problem, TIMINGS[0]);
+    let spread = spread(start, &coarse.bounds(), seed);
+    for start in search.promising(&coarse, spread, STARTS) {
+        if search.ended() {
+            break;
         }
+        search.continuation(&start)?;
     }
     if !search.ended() {
         search.globally(seed)?;
@@ -109,32 +118,73 @@ impl Search<'_, '_> {
             || self.minima.iter().filter(same).count() >= AGREE
     }
 
-    /// From `start` with the great lines first.
+    /// From `start` with the low orders first.
     fn continuation(&mut self, start: &[f64]) -> Result<(), Error> {
-        let mut x = start.to_vec();
-        for share in SHARES.map(Some).into_iter().chain([None]) {
+        let mut x = self.ringing(start)?;
+        for timing in TIMINGS.map(Some).into_iter().chain([None]) {
             if self.stopped || self.left() == 0 {
                 break;
             }
-            x = self.descend(share, &x)?;
+            x = self.descend(timing, &x)?;
         }
         Ok(())
     }
 
-    /// From `start` with lines trusted to a share of the greatest, or to their noise. Where it ends.
-    fn descend(&mut self, share: Option<f64>, start: &[f64]) -> Result<Vec<f64>, Error> {
-        let (likelihood, change) = match share {
-            Some(share) => (Likelihood::coarse(self.problem, share), COARSE_CHANGE),
+    /// From the best point with one parameter moved; whether that has led to a better one. Descents
+    /// that fall back say nothing about other minima.
+    fn kicked(&mut self) -> Result<bool, Error> {
+        let loose = Likelihood::coarse(self.problem, LOOSE);
+        let kicked = kicks(&self.best.x, &loose.bounds());
+        let (before, minima) = (self.best.cost, self.minima.len());
+        for start in self.promising(&loose, kicked, KICKS) {
+            if self.ended() {
+                break;
+            }
+            let near = self.descend(Some(LOOSE), &start)?;
+            if !self.ended() {
+                self.descend(None, &near)?;
+            }
+            self.minima.truncate(minima);
+            if self.best.cost < (1.0 - SAME) * before {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// From `start` to envelopes that agree. Where it ends.
+    fn ringing(&mut self, start: &[f64]) -> Result<Vec<f64>, Error> {
+        let envelopes = Envelopes::new(self.problem);
+        let left = self.left();
+        let found = {
+            let told = &mut self.told(false);
+            optimiser::levenberg_marquardt(&envelopes, start, COARSE_CHANGE, left, told)?
+        };
+        self.spent += found.evaluations;
+        Ok(found.x)
+    }
+
+    /// From `start` with features that may stand elsewhere, or not. Where it ends.
+    fn descend(&mut self, timing: Option<f64>, start: &[f64]) -> Result<Vec<f64>, Error> {
+        let (likelihood, change) = match timing {
+            Some(timing) => (Likelihood::coarse(self.problem, timing), COARSE_CHANGE),
             None => (Likelihood::new(self.problem), CHANGE),
         };
         let left = self.left();
         let found = {
-            let told = &mut self.told(share.is_none());
-            optimiser::levenberg_marquardt(&likelihood, start, change, left, told)?
+            let mut told = self.told(timing.is_none());
+            // What is left is then noise and timing, and less of that may be allowed.
+            let mut watch = |progress: &Progress| match told(progress) {
+                ControlFlow::Continue(()) if timing.is_some() && progress.misfit() < NOISE => {
+                    ControlFlow::Break(())
+                }
+                answer => answer,
+            };
+            optimiser::levenberg_marquardt(&likelihood, start, change, left, &mut watch)?
         };
         self.spent += found.evaluations;
         let end = found.x.clone();
-        if share.is_none() {
+        if timing.is_none() {
             self.minima.push(found.misfit());
             self.better(found);
         }
@@ -181,11 +231,18 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The best of points spread over the bounds around `start`, by the coarsest share.
-    fn promising(&mut self, start: &[f64], seed: u64) -> Vec<Vec<f64>> {
-        let likelihood = Likelihood::coarse(self.problem, SHARES[0]);
+    /// The `count` best of these points; none once the search has ended.
+    fn promising(
+        &mut self,
+        likelihood: &Likelihood,
+        points: Vec<Vec<f64>>,
+        count: usize,
+    ) -> Vec<Vec<f64>> {
         let mut costs = Vec::new();
-        for point in spread(start, &likelihood.bounds(), seed) {
+        if self.ended() {
+            return Vec::new();
+        }
+        for point in points {
             let told = Progress {
                 evaluations: self.spent,
                 ..self.best.clone()
@@ -198,8 +255,21 @@ impl Search<'_, '_> {
             self.spent += 1;
         }
         costs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        costs.into_iter().take(STARTS).map(|(_, x)| x).collect()
+        costs.into_iter().take(count).map(|(_, x)| x).collect()
     }
+}
+
+/// `x` with each parameter in turn moved by [`KICK`] to either side. Of a local minimum in which one
+/// parameter that matters little is wrong, the true one is not far from the kick that costs least.
+fn kicks(x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
+    let moved = |i: usize, by: f64| {
+        let mut x = x.to_vec();
+        x[i] = (x[i] + by).clamp(bounds[i][0], bounds[i][1]);
+        x
+    };
+    (0..x.len())
+        .flat_map(|i| [moved(i, -KICK), moved(i, KICK)])
+        .collect()
 }
 
 /// Points around `start`, spread evenly over a quarter of the bounds to either side of it: a Latin
@@ -220,4 +290,28 @@ fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
         }
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_spread_evenly_within_the_bounds() {
+        let bounds = [[-2.0, 2.0], [0.0, 1.0]];
+        let points = spread(&[1.5, 0.5], &bounds, 4);
+        assert_eq!(points.len(), 2 * POINTS);
+        for point in &points {
+            for (x, [low, high]) in point.iter().zip(&bounds) {
+                assert!((low..=high).contains(&x), "{point:?}");
+            }
+        }
+        // Each eighth of half the width around the start holds one point.
+        let mut second: Vec<f64> = points.iter().map(|point| point[1]).collect();
+        second.sort_by(f64::total_cmp);
+        for (i, x) in second.iter().enumerate() {
+            assert!((x - (0.25 + 0.5 * (i as f64 + 0.5) / 8.0)).abs() < 1e-12);
+        }
+        assert_eq!(points, spread(&[1.5, 0.5], &bounds, 4));
+    }
 }

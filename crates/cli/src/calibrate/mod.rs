@@ -133,7 +133,7 @@ pub struct Prepared {
 /// folder that is in the way.
 pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Prepared, Failure> {
     earlier::check_folder(out, existing)?;
-    let task = problem::task(settings)?;
+    let task = task(settings)?;
     let fingerprint = task.fingerprint();
     Ok(Prepared {
         earlier: earlier::look(out, existing, &fingerprint)?,

@@ -7,6 +7,7 @@ use ::calibrate::optimiser::Genetic;
 use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
 use ::calibrate::relation::clearances;
+use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::{ClearJoint, Observation, Parameter, Problem, Run, alignment};
 use input::bundle::Bundle;
 use input::bundle_channel::Meaning;
@@ -318,8 +319,9 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
     Ok(parameters)
 }
 
-/// What is fitted where nothing is asked for: the contact of the joints that are clear; the gas where
-/// pressures are all that was recorded.
+/// What is fitted where nothing is asked for: the contact of the joints that are clear, and the zero
+/// of the crank angle, of which an encoder's last digit already matters; the gas where pressures are
+/// all that was recorded.
 fn defaults(runs: &[Run]) -> Vec<String> {
     let columns = || runs.iter().flat_map(|run| &run.channels).map(|c| &c.column);
     if columns().all(|column| column.contains("cylinder_pressure")) {
@@ -338,7 +340,8 @@ fn defaults(runs: &[Run]) -> Vec<String> {
         "friction.coefficient",
     ];
     let of_joint = |joint: &&str| keys.map(|key| format!("{joint}.{key}"));
-    joints.iter().flat_map(of_joint).collect()
+    let contacts = joints.iter().flat_map(of_joint);
+    contacts.chain([CRANK_ANGLE_OFFSET.to_owned()]).collect()
 }
 
 /// The exponent and the clearance of every chamber with a pressure, and the pressures of the lines
