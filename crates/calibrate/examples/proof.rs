@@ -10,6 +10,8 @@
 //! of the acceleration's RMS, 0.5 % of the pressure's, 30 % of its power 1/f, then 16 bits. The
 //! encoder counts down to whole steps, so that the crank angle has an offset of half a step.
 
+#![allow(clippy::print_stdout)]
+
 use calibrate::fit::{FitSettings, Optimiser};
 use calibrate::optimiser::Genetic;
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;

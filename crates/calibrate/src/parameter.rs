@@ -299,10 +299,8 @@ mod tests {
     #[test]
     fn coordinates_lead_back_to_values() {
         let mut tree = machine("single-stage.yaml");
-        for (path, value) in [("relation", json!({"stiffness": 0, "damping": -0.2}))] {
-            let path = format!("joints.big_end.contact.{path}");
-            paths::set(&mut tree, &path, value).unwrap();
-        }
+        let relation = json!({"stiffness": 0, "damping": -0.2});
+        paths::set(&mut tree, "joints.big_end.contact.relation", relation).unwrap();
         let stiffness = Parameter::of(&tree, "joints.big_end.contact.stiffness").unwrap();
         assert_eq!(stiffness.scale, Scale::Logarithmic);
         assert_eq!(stiffness.bounds, [2.4e9, 2.4e11]);

@@ -125,6 +125,7 @@ fn calibrate(folder: &Path, arguments: &[&str]) -> (i32, String) {
 fn task_of(folder: &Path, text: &str) -> Task {
     let calibration = settings_of(folder, text);
     let settings = Settings {
+        machine: None,
         calibration: &calibration,
         base: folder,
         locate: &|error| error,
@@ -430,6 +431,7 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
                 optimiser: levenberg_marquardt\n";
     let calibration = settings_of(folder.path(), text);
     let settings = Settings {
+        machine: None,
         calibration: &calibration,
         base: folder.path(),
         locate: &|error| error,
@@ -470,6 +472,7 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
     // Other settings are told, or made anew.
     let calibration = settings_of(folder.path(), &text.replace("damping", "stiffness"));
     let settings = Settings {
+        machine: None,
         calibration: &calibration,
         ..settings
     };

@@ -89,7 +89,6 @@ fn derivatives_equal_differences_of_records() {
         let size = expected.iter().map(|x| x * x).sum::<f64>().sqrt();
         let apart = derivative[0].iter().zip(&expected);
         let apart = apart.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-        println!("{path}: {:.1e}", apart / size);
         // A filter is moved by a difference, everything else by exact derivatives.
         let bound = if path.ends_with("frequency") {
             2e-3

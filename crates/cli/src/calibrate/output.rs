@@ -161,7 +161,11 @@ pub fn summary(results: &Value) {
             number(&run["nominal"])
         );
     }
-    gas::summary(&results["gas"]);
+    // Where the gas was not fitted it tells nothing new.
+    let mut parameters = results["parameters"].as_object().into_iter().flatten();
+    if parameters.any(|(path, _)| path.contains("cylinder.")) {
+        gas::summary(&results["gas"]);
+    }
     relations(&results["relations"]);
 }
 

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::calibrate::{self, Calibrated, Prepared, Settings, output};
+use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use input::bundle::Bundle;
 use input::{Error, paths};
 use serde_json::Value;
@@ -124,7 +125,13 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
     let mut estimates = Vec::new();
     // The parameter of each estimate: one value may stand at several places.
     let mut names = Vec::new();
-    for (name, found) in parameters.into_iter().flatten() {
+    // The zero of a crank angle and the conditions of a run are the recordings', not the machine's.
+    let of_machine = |name: &&String| *name != CRANK_ANGLE_OFFSET && !name.starts_with("runs.");
+    for (name, found) in parameters
+        .into_iter()
+        .flatten()
+        .filter(|(name, _)| of_machine(name))
+    {
         for place in paths::matching(&machine, name)? {
             let estimate = estimate(&machine, &place, found);
             let estimate = estimate.ok_or_else(|| damaged(format!("{name} is not complete")))?;
