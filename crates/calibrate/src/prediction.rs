@@ -212,15 +212,29 @@ fn apart(
 /// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle
 /// itself moves (a free crank), x is seen elsewhere, dx/dp − (dx/dθ)(dθ/dp).
 fn at_equal_angle(derivative: &[f64], x: &[f64], of_angle: &[f64], angle: &[f64]) -> Vec<f64> {
-    let last = x.len() - 1;
     (0..x.len())
         .map(|i| {
             if of_angle[i] == 0.0 {
                 return derivative[i];
             }
-            let [low, high] = [i.saturating_sub(1), (i + 1).min(last)];
-            let slope = (x[high] - x[low]) / (angle[high] - angle[low]);
-            derivative[i] - slope * of_angle[i]
+            derivative[i] - slope(x, i) / slope(angle, i) * of_angle[i]
         })
         .collect()
+}
+
+/// Weights of a central difference of the eighth order (Fornberg 1988, table 1): good to 2 % at the
+/// highest orders that are compared, of which a sample is a quarter of a period.
+const CENTRAL: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+
+/// The difference of x per sample at sample i; to the first order at the ends.
+fn slope(x: &[f64], i: usize) -> f64 {
+    let reach = CENTRAL.len();
+    if i < reach || i + reach >= x.len() {
+        let [low, high] = [i.saturating_sub(1), (i + 1).min(x.len() - 1)];
+        return (x[high] - x[low]) / (high - low) as f64;
+    }
+    let pairs = CENTRAL.iter().enumerate();
+    pairs
+        .map(|(k, weight)| weight * (x[i + k + 1] - x[i - k - 1]))
+        .sum()
 }
