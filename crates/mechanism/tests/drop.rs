@@ -349,9 +349,12 @@ fn the_whole_of_a_relation_keeps_the_restitution_and_the_stiffness_alone_does_no
         let alone = restitution(&stiffness_alone);
         assert!((alone - changed).abs() < 6e-5, "{speed}: {alone}");
         let wide = widened(&Relation::Conformal);
-        for law in [&whole, &wide, &widened(&Relation::Equation5)] {
+        for law in [&whole, &wide] {
             let after = restitution(law);
             assert!((after - before).abs() < 1e-9, "{speed}: {before} {after}");
         }
+        // Eq. (5) keeps the stiffness and damps less.
+        let eq5 = restitution(&widened(&Relation::Equation5));
+        assert!(eq5 > before, "{speed}: {before} {eq5}");
     }
 }

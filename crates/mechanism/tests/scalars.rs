@@ -200,7 +200,7 @@ proptest! {
             let (more, less) = (at(h), at(-h));
             more.iter().zip(&less).map(|(a, b)| (a - b) / (2.0 * h)).collect()
         };
-        let (wide, narrow) = (difference(0.1), difference(0.05));
+        let (wide, narrow) = (difference(0.02), difference(0.01));
         for (i, ((wide, narrow), dual)) in wide.iter().zip(&narrow).zip(&found).enumerate() {
             let expected = (4.0 * narrow - wide) / 3.0;
             let scale = expected.abs().max(1e-3 * dual.value.abs()).max(1e-3);
