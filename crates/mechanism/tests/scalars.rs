@@ -201,7 +201,7 @@ proptest! {
             let (more, less) = (at(h), at(-h));
             more.iter().zip(&less).map(|(a, b)| (a - b) / (2.0 * h)).collect()
         };
-        let (wide, narrow) = (difference(2e-3), difference(1e-3));
+        let (wide, narrow) = (difference(8e-3), difference(4e-3));
         for (i, ((wide, narrow), dual)) in wide.iter().zip(&narrow).zip(&found).enumerate() {
             let expected = (4.0 * narrow - wide) / 3.0;
             let scale = expected.abs().max(1e-3 * dual.value.abs()).max(1e-3);
