@@ -354,9 +354,14 @@ fn compare(bench: &Bench, seed: u64) -> Result<(), Box<dyn Error>> {
         (Optimiser::Genetic(Genetic::default()), 1.0),
     ] {
         let start = Instant::now();
-        let (mut evaluations, mut best) = (0, f64::INFINITY);
+        let (mut evaluations, mut best, mut told) = (0, f64::INFINITY, f64::INFINITY);
         calibrate(&problem, &settings(optimiser, seed, &problem), |progress| {
             (evaluations, best) = (progress.evaluations, progress.misfit());
+            if best < told / 1.3 {
+                told = best;
+                let seconds = start.elapsed().as_secs_f64();
+                println!("  misfit {best:.3} after {evaluations} evaluations, {seconds:.1} s");
+            }
             if best <= 1.1 * goal * limit {
                 ControlFlow::Break(())
             } else {
