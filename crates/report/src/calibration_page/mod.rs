@@ -126,6 +126,14 @@ pub struct Estimate {
     pub reason: String,
 }
 
+impl Estimate {
+    /// Whether it makes sense to state the value as a share of the nominal one: not for an angle, nor
+    /// for the exponent of a clearance, whose zero means something.
+    fn is_ratio(&self) -> bool {
+        self.nominal > 0.0 && !self.path.contains(".relation.")
+    }
+}
+
 /// A run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {

@@ -124,7 +124,7 @@ impl View<'_> {
     }
 
     fn change(estimate: &Estimate) -> String {
-        if estimate.interval.is_none() {
+        if estimate.interval.is_none() || !estimate.is_ratio() {
             return String::new();
         }
         let change = 100.0 * (estimate.value / estimate.nominal - 1.0);

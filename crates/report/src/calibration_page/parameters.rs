@@ -27,7 +27,11 @@ fn names(estimates: &[Estimate], numbered: bool) -> Vec<String> {
 
 /// Value and interval of each over the nominal value; none where nothing was fitted.
 pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
-    let estimates = &page.parameters[..page.parameters.len().min(MOST)];
+    let ratios = page
+        .parameters
+        .iter()
+        .filter(|estimate| estimate.is_ratio());
+    let estimates: Vec<Estimate> = ratios.take(MOST).cloned().collect();
     if estimates.is_empty() {
         return None;
     }
@@ -60,7 +64,7 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
         } else {
             Axis::linear(label)
         },
-        y: Axis::named("", names(estimates, false)),
+        y: Axis::named("", names(&estimates, false)),
         series: vec![
             Series::new(
                 "nominal",

@@ -78,6 +78,11 @@ pub(super) fn found(estimates: &[Estimate]) -> Vec<String> {
     let say = |estimate: &Estimate| {
         let [low, high] = estimate.interval?;
         let name = text::capitalised(&words::path(&estimate.path));
+        if !estimate.is_ratio() {
+            let [value, low, high] =
+                [estimate.value, low, high].map(|value| quantity(value, &estimate.unit));
+            return Some(format!("{name}: {value} ({low} to {high})."));
+        }
         let change = |value: f64| value / estimate.nominal - 1.0;
         let holds = low.min(high) <= estimate.nominal && estimate.nominal <= low.max(high);
         let percent = percent(change(estimate.value).abs());

@@ -5,6 +5,13 @@ use crate::text;
 /// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
 pub(super) fn path(path: &str) -> String {
+    if let Some((joints, value)) = path.split_once(".contact.relation.") {
+        let of = match joints.ends_with('*') {
+            true => String::new(),
+            false => format!(" at the {}", self::path(joints)),
+        };
+        return format!("exponent of the clearance in the {value}{of}");
+    }
     let parts: Vec<&str> = path
         .split('.')
         .filter(|part| !matches!(*part, "joints" | "throws"))
@@ -48,6 +55,10 @@ mod tests {
                 "throw1 cylinder head clearance",
             ),
             ("joints.big_end.clearance", "big end clearance"),
+            (
+                "joints.*.contact.relation.damping",
+                "exponent of the clearance in the damping",
+            ),
             ("speed", "speed"),
             ("", ""),
         ] {
