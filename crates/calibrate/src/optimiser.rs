@@ -4,12 +4,10 @@
 use crate::error::Error;
 use basin::{
     BoundedCmaEs, BoundedLevenbergMarquardt, BoxBounds, ConstraintSet, Constraints, CostFunction,
-    DenseMatrix, Executor, Jacobian, PointState, PopulationProgress, Residual, Ssga, State,
-    StepOutcome,
+    DenseMatrix, Executor, Jacobian, PointState, PopulationProgress, Residual, Ssga, StepOutcome,
 };
 use nalgebra::DMatrix;
-use std::cell::Cell;
-use std::convert::Infallible;
+use std::cell::RefCell;
 use std::ops::ControlFlow;
 
 /// A sum of squares to be made small within bounds.
@@ -50,65 +48,95 @@ pub fn derivatives(parameters: usize) -> u64 {
     5 * parameters.div_ceil(8) as u64
 }
 
-/// Told after each step; stops where it says so.
+/// Told after each evaluation of the model; stops the search where it says so.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
 
-/// An optimisation problem as the crate sees it, counting its evaluations.
-struct Counted<'a, T> {
+/// The search was stopped by its watch, or has made the evaluations that it was given.
+#[derive(Debug, thiserror::Error)]
+#[error("stopped")]
+struct Stopped;
+
+/// What a search has seen so far.
+struct Seen<'w> {
+    best: Progress,
+    most: u64,
+    watch: Watch<'w>,
+    stopped: bool,
+}
+
+impl Seen<'_> {
+    /// Takes note of evaluations, the cost at `x` among them where it was asked for.
+    fn note(&mut self, evaluations: u64, x: &[f64], cost: Option<f64>) -> Result<(), Stopped> {
+        self.best.evaluations += evaluations;
+        if let Some(cost) = cost.filter(|cost| *cost < self.best.cost) {
+            self.best.cost = cost;
+            self.best.x = x.to_vec();
+        }
+        let stop = (self.watch)(&self.best).is_break();
+        self.stopped |= stop || self.best.evaluations >= self.most;
+        if self.stopped { Err(Stopped) } else { Ok(()) }
+    }
+}
+
+/// An optimisation problem as the crate sees it, which notes its evaluations.
+struct Noted<'a, 'w, T> {
     inner: &'a T,
     low: Vec<f64>,
     high: Vec<f64>,
-    evaluations: &'a Cell<u64>,
+    seen: &'a RefCell<Seen<'w>>,
 }
 
-impl<'a, T: LeastSquares> Counted<'a, T> {
-    fn new(inner: &'a T, evaluations: &'a Cell<u64>) -> Self {
+impl<'a, 'w, T: LeastSquares> Noted<'a, 'w, T> {
+    fn new(inner: &'a T, seen: &'a RefCell<Seen<'w>>) -> Self {
         let (low, high) = inner.bounds().iter().map(|b| (b[0], b[1])).unzip();
         Self {
             inner,
             low,
             high,
-            evaluations,
+            seen,
         }
     }
 
-    fn count(&self, how_many: u64) {
-        self.evaluations.set(self.evaluations.get() + how_many);
+    /// The residuals at `x` and half the sum of their squares.
+    fn evaluate(&self, x: &[f64]) -> Result<(Vec<f64>, f64), Stopped> {
+        let residuals = self.inner.residuals(x);
+        let cost = 0.5 * residuals.iter().map(|r| r * r).sum::<f64>();
+        self.seen.borrow_mut().note(1, x, Some(cost))?;
+        Ok((residuals, cost))
     }
 }
 
-impl<T: LeastSquares> Constraints for Counted<'_, T> {
+impl<T: LeastSquares> Constraints for Noted<'_, '_, T> {
     type Set = ConstraintSet<BoxBounds<Vec<f64>>>;
     fn constraints(&self) -> <Self::Set as basin::ConstraintDescription>::Borrowed<'_> {
         ConstraintSet::new().with_bounds(BoxBounds::new(Some(&self.low), Some(&self.high)))
     }
 }
 
-impl<T: LeastSquares> CostFunction for Counted<'_, T> {
+impl<T: LeastSquares> CostFunction for Noted<'_, '_, T> {
     type Param = Vec<f64>;
     type Output = f64;
-    type Error = Infallible;
-    fn cost(&self, x: &Vec<f64>) -> Result<f64, Infallible> {
-        self.count(1);
-        Ok(half_square(&self.inner.residuals(x)))
+    type Error = Stopped;
+    fn cost(&self, x: &Vec<f64>) -> Result<f64, Stopped> {
+        Ok(self.evaluate(x)?.1)
     }
 }
 
-impl<T: LeastSquares> Residual for Counted<'_, T> {
+impl<T: LeastSquares> Residual for Noted<'_, '_, T> {
     type Param = Vec<f64>;
     type Output = Vec<f64>;
-    type Error = Infallible;
-    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
-        self.count(1);
-        Ok(self.inner.residuals(x))
+    type Error = Stopped;
+    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Stopped> {
+        Ok(self.evaluate(x)?.0)
     }
 }
 
-impl<T: LeastSquares> Jacobian for Counted<'_, T> {
+impl<T: LeastSquares> Jacobian for Noted<'_, '_, T> {
     type Jacobian = DenseMatrix;
-    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
-        self.count(derivatives(self.low.len()));
+    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Stopped> {
         let jacobian = self.inner.jacobian(x);
+        let evaluations = derivatives(self.low.len());
+        self.seen.borrow_mut().note(evaluations, x, None)?;
         Ok(DenseMatrix::from_fn(
             jacobian.nrows(),
             jacobian.ncols(),
@@ -117,39 +145,43 @@ impl<T: LeastSquares> Jacobian for Counted<'_, T> {
     }
 }
 
-fn failed(error: impl std::fmt::Display) -> Error {
-    Error::Optimiser(error.to_string())
+/// The best that `run` sees until it ends or is stopped; `start` stands for it before the first
+/// evaluation.
+fn search<T: LeastSquares>(
+    problem: &T,
+    start: &[f64],
+    most: u64,
+    watch: Watch,
+    run: impl FnOnce(Noted<'_, '_, T>) -> Result<(), String>,
+) -> Result<Progress, Error> {
+    let seen = RefCell::new(Seen {
+        best: Progress {
+            x: start.to_vec(),
+            cost: f64::INFINITY,
+            count: problem.count(),
+            evaluations: 0,
+        },
+        most,
+        watch,
+        stopped: false,
+    });
+    let ended = run(Noted::new(problem, &seen));
+    let seen = seen.into_inner();
+    match ended {
+        Err(error) if !seen.stopped => Err(Error::Optimiser(error)),
+        _ => Ok(seen.best),
+    }
 }
 
-fn half_square(residuals: &[f64]) -> f64 {
-    0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
-}
-
-/// The steps of an executor until it stops, `watch` says so, or `most` evaluations are made.
-macro_rules! run {
-    ($executor:expr, $evaluations:expr, $count:expr, $most:expr, $watch:expr) => {{
-        let mut stepper = $executor.into_stepper().map_err(failed)?;
-        loop {
-            let state = stepper.state();
-            let progress = Progress {
-                x: state.best_param().clone(),
-                cost: state.best_cost(),
-                count: $count,
-                evaluations: $evaluations.get(),
-            };
-            if $watch(&progress).is_break() || progress.evaluations >= $most {
-                break Ok(progress);
-            }
-            if let StepOutcome::Stopped(_) = stepper.step().map_err(failed)? {
-                let state = stepper.state();
-                break Ok(Progress {
-                    x: state.best_param().clone(),
-                    cost: state.best_cost(),
-                    count: $count,
-                    evaluations: $evaluations.get(),
-                });
-            }
-        }
+/// Steps of an executor until it ends.
+macro_rules! to_its_end {
+    ($executor:expr) => {{
+        let mut stepper = $executor.into_stepper().map_err(|e| e.to_string())?;
+        while !matches!(
+            stepper.step().map_err(|e| e.to_string())?,
+            StepOutcome::Stopped(_)
+        ) {}
+        Ok(())
     }};
 }
 
@@ -163,15 +195,12 @@ pub fn levenberg_marquardt(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let evaluations = Cell::new(0);
     let solver = BoundedLevenbergMarquardt::<Vec<f64>, DenseMatrix>::new()
         .with_relative_cost_change_tolerance(change);
-    let executor = Executor::new(
-        Counted::new(problem, &evaluations),
-        solver,
-        PointState::new(start.to_vec()),
-    );
-    run!(executor, evaluations, problem.count(), most, watch)
+    search(problem, start, most, watch, |problem| {
+        let state = PointState::new(start.to_vec());
+        to_its_end!(Executor::new(problem, solver, state))
+    })
 }
 
 /// CMA-ES within bounds (Hansen 2016), from `start`, with an initial standard deviation of a
@@ -183,7 +212,6 @@ pub fn cma_es(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let evaluations = Cell::new(0);
     let widths = problem
         .bounds()
         .iter()
@@ -192,12 +220,10 @@ pub fn cma_es(
     let solver = BoundedCmaEs::<Vec<f64>, DenseMatrix>::new(seed, 0.25)
         .with_stds(widths)
         .with_absolute_distribution_size_tolerance(1e-4);
-    let executor = Executor::new(
-        Counted::new(problem, &evaluations),
-        solver,
-        PopulationProgress::from_point(start.to_vec()),
-    );
-    run!(executor, evaluations, problem.count(), most, watch)
+    search(problem, start, most, watch, |problem| {
+        let state = PopulationProgress::from_point(start.to_vec());
+        to_its_end!(Executor::new(problem, solver, state))
+    })
 }
 
 /// A genetic algorithm, the reference method (Paper 1): a steady-state one with real genes, blend
@@ -230,17 +256,15 @@ pub fn genetic(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let evaluations = Cell::new(0);
     let solver = Ssga::new(seed)
         .with_pop_size(settings.population)
         .with_blx_alpha(settings.crossover)
         .with_mutation_prob(settings.mutation);
-    let executor = Executor::new(
-        Counted::new(problem, &evaluations),
-        solver,
-        PopulationProgress::empty(),
-    );
-    run!(executor, evaluations, problem.count(), most, watch)
+    let bounds = problem.bounds();
+    let middle: Vec<f64> = bounds.iter().map(|b| 0.5 * (b[0] + b[1])).collect();
+    search(problem, &middle, most, watch, |problem| {
+        to_its_end!(Executor::new(problem, solver, PopulationProgress::empty()))
+    })
 }
 
 #[cfg(test)]
