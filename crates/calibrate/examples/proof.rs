@@ -12,6 +12,7 @@
 
 #![allow(clippy::print_stdout)]
 
+use calibrate::CrankMotion;
 use calibrate::fit::{FitSettings, Optimiser};
 use calibrate::optimiser::Genetic;
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;
@@ -141,6 +142,7 @@ impl Bench {
             tree: self.tree.clone(),
             parameters: self.parameters.clone(),
             runs: runs.collect::<Result<_, Box<dyn Error>>>()?,
+            crank: CrankMotion::Driven,
         })
     }
 }

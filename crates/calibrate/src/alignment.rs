@@ -242,6 +242,10 @@ mod tests {
             let observed = Observation {
                 id: "run".into(),
                 settings: Vec::new(),
+                crank: mechanism::drive::GivenSpeed {
+                    speed: 50.0,
+                    fluctuation: Vec::new(),
+                },
                 channels: vec![Observed {
                     column: "x".into(),
                     lines: lines(turned.collect()),

@@ -14,6 +14,7 @@
 
 pub mod alignment;
 pub mod comparison;
+pub mod crank_motion;
 mod envelopes;
 pub mod error;
 mod few_revolutions;
@@ -32,9 +33,11 @@ pub mod relation;
 pub mod replay;
 pub mod run_condition;
 mod search;
+mod throw_alone;
 pub mod transfer;
 
 pub use comparison::{Comparison, compare};
+pub use crank_motion::CrankMotion;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use observation::{Channel, Observation, Run};

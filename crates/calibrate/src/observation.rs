@@ -1,7 +1,9 @@
 //! A run as measured: its channels over the crank angle, and what in them repeats.
 
+use crate::crank_motion;
 use crate::error::Error;
 use crate::few_revolutions;
+use mechanism::drive::GivenSpeed;
 use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
@@ -70,6 +72,8 @@ pub struct Observation {
     pub id: String,
     /// Its settings.
     pub settings: Vec<(String, Value)>,
+    /// How its crank turned.
+    pub crank: GivenSpeed,
     /// The observed channels.
     pub channels: Vec<Observed>,
 }
@@ -137,6 +141,7 @@ impl Observation {
         Ok(Self {
             id: run.id.clone(),
             settings: run.settings.clone(),
+            crank: crank_motion::recorded(&angle, run.sample_rate),
             channels,
         })
     }

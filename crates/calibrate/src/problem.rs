@@ -1,11 +1,13 @@
 //! What is to be fitted to what.
 
+use crate::crank_motion::CrankMotion;
 use crate::error::Error;
 use crate::observation::Observation;
 use crate::parameter::Parameter;
 use input::MachineFile;
 use input::Resolved;
 use input::paths;
+use mechanism::drive::Drive;
 use serde_json::Value;
 use simulate::{Chain, ChamberEnd, Measured, Moved, Sensor};
 
@@ -18,6 +20,8 @@ pub struct Problem {
     pub parameters: Vec<Parameter>,
     /// The runs.
     pub runs: Vec<Observation>,
+    /// What turns their cranks.
+    pub crank: CrankMotion,
 }
 
 /// Step of a coordinate over which a machine's derivative is taken: what follows from a parameter
@@ -40,6 +44,10 @@ impl Problem {
         }
         let mut machine = MachineFile::from_tree(&tree)?.resolve()?;
         machine.sensors = sensors(&machine, run);
+        if self.crank == CrankMotion::Recorded {
+            machine.speed = run.crank.speed;
+            machine.machine.drive = Drive::Given(run.crank.clone());
+        }
         Ok(machine)
     }
 

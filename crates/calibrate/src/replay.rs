@@ -7,7 +7,7 @@ use crate::observation::{self, Observation, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
 use input::Resolved;
-use mechanism::drive::{Drive, GivenSpeed};
+use mechanism::drive::Drive;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::{CrankAngle, unwrap};
 use signal::order_lines::OrderLines;
@@ -93,8 +93,8 @@ pub fn replay(
     let recorded = observation::angle(run, first)?;
     let mut machine = problem.machine(observation, x)?;
     let place = Place::of(&recorded, run.sample_rate);
-    if let Drive::Given(_) = machine.machine.drive {
-        machine.machine.drive = Drive::Given(GivenSpeed { speed: place.speed });
+    if let Drive::Given(given) = &mut machine.machine.drive {
+        given.speed = place.speed;
         machine.speed = place.speed;
     }
     let instants = Instants::of(&machine, run, recorded.angles().len());

@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
 use crate::problem::Problem;
+use crate::throw_alone::{ThrowAlone, throws_alone};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use std::ops::ControlFlow;
@@ -53,7 +54,8 @@ struct Search<'a, 'w> {
     watch: Watch<'w>,
 }
 
-/// The best fit: by Levenberg and Marquardt's method from `start`; where that leaves more than noise,
+/// The best fit: by Levenberg and Marquardt's method from `start`, each of several throws by itself
+/// at first; where that leaves more than noise,
 /// with continuation, from kicks out of where that ends, and from the best of many other points,
 /// until the noise is reached or [`AGREE`] descents have ended at the same misfit; where they do not
 /// agree, by CMA-ES.
@@ -82,6 +84,8 @@ pub(crate) fn search(
         minima: Vec::new(),
         watch,
     };
+    let throws = throws_alone(problem)?;
+    let start = &search.throw_by_throw(&throws, start, seed)?;
     search.descend(None, start)?;
     if !search.ended() {
         search.continuation(start)?;
@@ -116,6 +120,37 @@ impl Search<'_, '_> {
             || self.left() == 0
             || best < NOISE
             || self.minima.iter().filter(same).count() >= AGREE
+    }
+
+    /// From `start` each throw by itself, as far as that takes it. Where it ends; a parameter that
+    /// several throws share is then in the middle of what they ask for.
+    fn throw_by_throw(
+        &mut self,
+        throws: &[ThrowAlone],
+        start: &[f64],
+        seed: u64,
+    ) -> Result<Vec<f64>, Error> {
+        let mut found = vec![Vec::new(); start.len()];
+        for throw in throws {
+            if self.stopped || self.left() == 0 {
+                break;
+            }
+            let own: Vec<f64> = throw.parameters.iter().map(|i| start[*i]).collect();
+            let left = self.left();
+            let alone = {
+                let told = &mut self.told(false);
+                search(&throw.problem, &own, seed, left, told)?
+            };
+            self.spent += alone.evaluations;
+            for (i, x) in throw.parameters.iter().zip(alone.x) {
+                found[*i].push(x);
+            }
+        }
+        let middle = |(found, start): (&Vec<f64>, &f64)| match found.len() {
+            0 => *start,
+            count => found.iter().sum::<f64>() / count as f64,
+        };
+        Ok(found.iter().zip(start).map(middle).collect())
     }
 
     /// From `start` with the low orders first.

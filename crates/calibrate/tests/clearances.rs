@@ -1,5 +1,6 @@
 //! Machines that were recorded at one clearance or at two, under a relation of our choice.
 
+use calibrate::CrankMotion;
 use calibrate::fit::{FitSettings, Optimiser};
 use calibrate::observation::Observed;
 use calibrate::prediction::predict;
@@ -64,6 +65,10 @@ fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observatio
         settings: settings
             .map(|(path, value)| (path.to_owned(), json!(value)))
             .to_vec(),
+        crank: mechanism::drive::GivenSpeed {
+            speed: 0.0,
+            fluctuation: Vec::new(),
+        },
         channels: vec![channel(OrderLines {
             amplitude: Vec::new(),
             variance: Vec::new(),
@@ -74,6 +79,7 @@ fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observatio
         tree: tree.clone(),
         parameters: Vec::new(),
         runs: Vec::new(),
+        crank: CrankMotion::Driven,
     };
     let shown = predict(&machine, &run, &[]).unwrap().lines.remove(0);
     run.channels = vec![channel(OrderLines {
@@ -101,6 +107,7 @@ fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit
         tree,
         parameters,
         runs,
+        crank: CrankMotion::Driven,
     };
     let settings = FitSettings {
         optimiser: Optimiser::LevenbergMarquardt,

@@ -1,5 +1,6 @@
 //! The gas fitted to the measured pressures of a real compressor, one revolution at each end.
 
+use calibrate::CrankMotion;
 use calibrate::fit::{FitSettings, Optimiser};
 use calibrate::pressure_gap::{PressureGap, pressure_gaps};
 use calibrate::problem::columns;
@@ -65,6 +66,7 @@ fn problem(fitted: &[(&str, Option<[f64; 2]>)]) -> (Problem, Vec<Run>) {
         runs: observed.collect::<Result<_, _>>().unwrap(),
         tree,
         parameters,
+        crank: CrankMotion::Driven,
     };
     (problem, runs)
 }

@@ -1,5 +1,6 @@
 //! Runs simulated in place of recordings that were themselves simulated: they must come back.
 
+use calibrate::CrankMotion;
 use calibrate::problem::columns;
 use calibrate::replay::Replayed;
 use calibrate::{Channel, Observation, Problem, Replay, Run, replay};
@@ -77,6 +78,7 @@ fn recorded(machine: &str, changes: &[(&str, &str)], delay: f64) -> (Problem, Ru
         tree,
         parameters: Vec::new(),
         runs: vec![observation],
+        crank: CrankMotion::Driven,
     };
     (problem, run)
 }

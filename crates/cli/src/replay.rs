@@ -4,6 +4,7 @@ use crate::{Failure, bundle};
 use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
 use ::calibrate::{Observation, Problem, Replay, Run, alignment};
+use calibrate::CrankMotion;
 use clap::Args;
 use input::bundle::{Bundle, Channel};
 use input::bundle_channel::Meaning;
@@ -152,6 +153,7 @@ fn problem(mut tree: Value, runs: &mut [Listed]) -> Result<Problem, Failure> {
         tree,
         parameters: Vec::new(),
         runs: Vec::new(),
+        crank: CrankMotion::Driven,
     };
     for listed in runs {
         let zeroed = listed.is_zeroed();

@@ -9,7 +9,7 @@ use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::{Direction, Machine, Throw};
 use crate::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
 use crate::plane::{Vec2, moment, origin, turned};
-use crate::shaft::{Shaft, ShaftMotion};
+use crate::shaft::{Shaft, ShaftMotion, Turning};
 use crate::state::{Layout, ThrowLayout};
 use crate::system;
 use crate::throw::{Accelerations, Joints, Loads, Motion, Response, following_target};
@@ -234,17 +234,23 @@ impl<S: Scalar> Dynamics<S> {
 
     /// Crank angle and speed.
     fn crank(&self, t: S, y: &[S]) -> (S, S) {
-        let reference = self.machine.drive.reference_speed();
-        match self.layout.crank {
-            None => (reference * t, reference),
-            Some(i) => (reference * t + y[i], reference + y[i + 1]),
+        match (&self.machine.drive, self.layout.crank) {
+            (Drive::Free(motor), Some(i)) => {
+                let reference = motor.reference_speed;
+                (reference * t + y[i], reference + y[i + 1])
+            }
+            (Drive::Free(motor), None) => (motor.reference_speed * t, motor.reference_speed),
+            (Drive::Given(given), _) => {
+                let [angle, speed, _] = given.motion(t);
+                (angle, speed)
+            }
         }
     }
 
     /// Evaluates the equations of motion at `(t, y)` in the present mode.
     pub fn evaluate(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
         self.evaluate_forces(t, y);
-        self.evaluate_accelerations();
+        self.evaluate_accelerations(t);
         self.shake_frame(y);
         &self.evaluation
     }
@@ -301,7 +307,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// The accelerations that follow from the forces.
-    fn evaluate_accelerations(&mut self) {
+    fn evaluate_accelerations(&mut self, t: S) {
         let speed = self.evaluation.speed;
         let (sine, cosine) = self.evaluation.angle.sin_cos();
         let mut shaft = Shaft::new(
@@ -310,20 +316,20 @@ impl<S: Scalar> Dynamics<S> {
             speed,
             self.gravity(),
         );
-        let torque = match &self.machine.drive {
-            Drive::Given(_) => None,
+        let turning = match &self.machine.drive {
+            Drive::Given(given) => Turning::Acceleration(given.motion(t)[2]),
             Drive::Free(motor) => {
-                Some(motor.mean_torque + motor.slope * (motor.reference_speed - speed))
+                Turning::Torque(motor.mean_torque + motor.slope * (motor.reference_speed - speed))
             }
         };
         let target = following_target(&self.evaluation.main);
-        self.couple(&mut shaft, torque, target);
+        self.couple(&mut shaft, turning, target);
     }
 
     /// Joins throws and shaft and finds all accelerations from the loads stored in the evaluation.
-    pub(crate) fn couple(&mut self, shaft: &mut Shaft<S>, torque: Option<S>, target: S) {
-        // With a given speed and an ideal main bearing the crank pins' accelerations are known.
-        let moving = torque.is_some() || self.machine.main.clear().is_some();
+    pub(crate) fn couple(&mut self, shaft: &mut Shaft<S>, turning: Turning<S>, target: S) {
+        // At constant speed in an ideal main bearing the pins' accelerations are their bias alone.
+        let moving = !self.machine.drive.is_constant() || self.machine.main.clear().is_some();
         let evaluation = &mut self.evaluation;
         self.responses.clear();
         for ((throw, at), mode) in self
@@ -351,7 +357,7 @@ impl<S: Scalar> Dynamics<S> {
             &self.machine.main,
             &evaluation.main,
             self.mode.main.touching,
-            torque,
+            turning,
             target,
         );
         for ((throw, at), response) in self

@@ -3,7 +3,7 @@
 use crate::drive::Drive;
 use crate::dynamics::{Dynamics, Place};
 use crate::plane::{Vec2, origin};
-use crate::shaft::Shaft;
+use crate::shaft::{Shaft, Turning};
 use crate::throw::Loads;
 use scalar::Scalar;
 
@@ -33,11 +33,11 @@ impl<S: Scalar> Dynamics<S> {
         let (sine, cosine) = self.evaluation().angle.sin_cos();
         let direction = Vec2::new(cosine, sine);
         let mut shaft = Shaft::new(self.machine(), direction, S::zero(), origin());
-        let torque = match &self.machine().drive {
-            Drive::Given(_) => None,
-            Drive::Free(_) => Some(S::zero()),
+        let turning = match &self.machine().drive {
+            Drive::Given(_) => Turning::Acceleration(S::zero()),
+            Drive::Free(_) => Turning::Torque(S::zero()),
         };
-        self.couple(&mut shaft, torque, main_target);
+        self.couple(&mut shaft, turning, main_target);
         self.add_jumps(y);
 
         self.evaluate_forces(t, y);

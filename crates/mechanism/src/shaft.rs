@@ -31,6 +31,15 @@ pub(crate) struct Shaft<S> {
     pub force: Vec2<S>,
 }
 
+/// What is known of the shaft's turning.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Turning<S> {
+    /// The drive's torque, N m: the crank is free.
+    Torque(S),
+    /// The angular acceleration, rad/s²: the motion is given.
+    Acceleration(S),
+}
+
 /// How the shaft moves.
 #[derive(Clone, Copy, Debug)]
 pub struct ShaftMotion<S> {
@@ -85,31 +94,33 @@ impl<S: Scalar> Shaft<S> {
         self.add_force(-known, -moment(arm, known));
     }
 
-    /// Solves for the shaft's motion. `torque` is the drive's where the crank is free, and none
-    /// where its speed is given; `joint` is the main bearing.
+    /// Solves for the shaft's motion; `joint` is the main bearing.
     pub fn solve(
         &self,
         main: &Revolute<S>,
         joint: &JointState<S>,
         touching: S,
-        torque: Option<S>,
+        turning: Turning<S>,
         target: S,
     ) -> ShaftMotion<S> {
         let (zero, one) = (S::zero(), S::one());
-        // With the speed given θ̈ = 0 and the moment equation yields the torque.
-        let give = match torque {
-            Some(_) => one / self.inertia,
-            None => zero,
+        // With the motion given θ̈ is known and the moment equation yields the torque.
+        let (give, drive, given) = match turning {
+            Turning::Torque(torque) => (one / self.inertia, torque, zero),
+            Turning::Acceleration(angular) => (zero, zero, angular),
         };
-        let drive = torque.unwrap_or(zero);
+        let torque_for = |angular: S, moment: S| match turning {
+            Turning::Torque(torque) => torque,
+            Turning::Acceleration(_) => self.inertia * angular - moment,
+        };
         let clear = match main {
             Revolute::Ideal => {
-                let angular = give * (self.moment + drive);
+                let angular = given + give * (self.moment + drive);
                 let bearing_force = self.coupling[1] * angular - self.force;
                 return ShaftMotion {
                     angular,
                     centre: origin(),
-                    torque: torque.unwrap_or(-self.moment),
+                    torque: torque_for(angular, self.moment),
                     bearing_force,
                     push: zero,
                 };
@@ -117,12 +128,13 @@ impl<S: Scalar> Shaft<S> {
             Revolute::Clear(clear) => clear,
         };
         let contact_moment = moment(joint.arm, joint.force);
-        // Eliminate θ̈ = give (moment + drive − coupling·Ö + ...).
+        // Eliminate θ̈ = given + give (moment + drive − coupling·Ö + ...).
         let condensed = self.mass - outer(self.coupling[1], self.coupling[0]) * give;
         let answer = inverse(&condensed);
         let centre_for = |force: Vec2<S>, moment: S| {
             answer
-                * (self.force + force - self.coupling[1] * (give * (self.moment + drive + moment)))
+                * (self.force + force
+                    - self.coupling[1] * (given + give * (self.moment + drive + moment)))
         };
         let mut force = joint.force;
         let mut moment_of = contact_moment;
@@ -142,13 +154,12 @@ impl<S: Scalar> Shaft<S> {
             moment_of = unit_moment * push;
             centre = centre_for(force, moment_of);
         }
-        let angular = give * (self.moment + drive + moment_of - self.coupling[0].dot(&centre));
-        let torque =
-            torque.unwrap_or_else(|| self.coupling[0].dot(&centre) - self.moment - moment_of);
+        let moment = self.moment + moment_of - self.coupling[0].dot(&centre);
+        let angular = given + give * (moment + drive);
         ShaftMotion {
             angular,
             centre,
-            torque,
+            torque: torque_for(angular, moment),
             bearing_force: force,
             push,
         }

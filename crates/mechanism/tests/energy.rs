@@ -5,7 +5,7 @@ mod common;
 
 use common::random::{MODELS, cases, machine};
 use common::{REVOLUTION, Run, joint, single_stage, with_clearance};
-use mechanism::drive::{Drive, MotorLine};
+use mechanism::drive::{Drive, Fluctuation, MotorLine};
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use mechanism::joints::friction::{Adams, Ambrosio, FrictionLaw};
 use mechanism::joints::guide::{Guide, GuideClearance};
@@ -74,6 +74,25 @@ fn main_bearing_clear() {
     machine.main = joint(2e-4, 0.06, 2.4e10, 2e4);
     machine.crankshaft.eccentricity = 0.02;
     check("main", machine);
+}
+
+#[test]
+fn speed_fluctuating() {
+    for main in [false, true] {
+        let mut machine = with_clearance(2e-4, 2e-4, 2e4);
+        if main {
+            machine.main = joint(2e-4, 0.06, 2.4e10, 2e4);
+            machine.crankshaft.eccentricity = 0.02;
+        }
+        let Drive::Given(given) = &mut machine.drive else {
+            unreachable!()
+        };
+        given.fluctuation = vec![Fluctuation {
+            amplitude: 0.02,
+            phase: 0.7,
+        }];
+        check("fluctuating", machine);
+    }
 }
 
 #[test]

@@ -36,7 +36,10 @@ fn guide(friction: FrictionLaw) -> Guide {
 /// The single-stage machine without gas, turning slowly, with a clear guide.
 fn slow(speed: f64, friction: FrictionLaw) -> Machine {
     let mut machine = single_stage();
-    machine.drive = Drive::Given(GivenSpeed { speed });
+    machine.drive = Drive::Given(GivenSpeed {
+        speed,
+        fluctuation: Vec::new(),
+    });
     machine.throws[0].cylinder.piston_radius = 0.0;
     machine.throws[0].guide = guide(friction);
     machine

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Run, SPEED, single_stage};
-use mechanism::drive::{Drive, MotorLine};
+use mechanism::drive::{Drive, Fluctuation, GivenSpeed, MotorLine};
 use mechanism::gas::CrankEnd;
 use mechanism::{Direction, Evaluation, Machine, Throw};
 use std::collections::BTreeMap;
@@ -219,4 +219,28 @@ fn two_throws_on_a_free_crank() {
     });
     // The hand calculation takes θ̈ from the program; with it the torque must be the motor's.
     check("two throws, free crank", machine);
+}
+
+#[test]
+fn two_throws_at_a_speed_that_fluctuates() {
+    let mut machine = two_throws();
+    machine.crankshaft.eccentricity = 0.015;
+    machine.crankshaft.inertia = 3.0;
+    let harmonic = |amplitude, phase| Fluctuation { amplitude, phase };
+    machine.drive = Drive::Given(GivenSpeed {
+        speed: SPEED,
+        fluctuation: vec![harmonic(0.03, 0.4), harmonic(0.02, -1.1)],
+    });
+    let mut run = Run::start(machine.clone(), 1e-12, false);
+    run.advance(0.031);
+    let at = run.now().clone();
+    // θ = φ + 0.03 sin(φ + 0.4) + 0.01 sin(2 φ − 1.1), and its derivatives.
+    let phi = SPEED * 0.031;
+    let first = [phi + 0.4, 2.0 * phi - 1.1].map(f64::sin_cos);
+    let [(s1, c1), (s2, c2)] = first;
+    assert!((at.angle - (phi + 0.03 * s1 + 0.01 * s2)).abs() < 1e-12);
+    assert!((at.speed / SPEED - (1.0 + 0.03 * c1 + 0.02 * c2)).abs() < 1e-12);
+    let angular = -SPEED * SPEED * (0.03 * s1 + 0.04 * s2);
+    assert!((at.shaft.angular / angular - 1.0).abs() < 1e-12);
+    check("two throws, fluctuating", machine);
 }

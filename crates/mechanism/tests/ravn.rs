@@ -36,7 +36,10 @@ fn lankarani_nikravesh(clearance: f64, slowest_approach: f64) -> ContactLaw {
 
 fn machine(clearance: f64, contact: ContactLaw) -> Machine {
     let mut machine = single_stage();
-    machine.drive = Drive::Given(GivenSpeed { speed: SPEED });
+    machine.drive = Drive::Given(GivenSpeed {
+        speed: SPEED,
+        fluctuation: Vec::new(),
+    });
     (machine.gravity_x, machine.gravity_y) = (0.0, 0.0);
     let throw = &mut machine.throws[0];
     throw.crank_radius = 0.05;

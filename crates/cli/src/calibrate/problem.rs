@@ -9,6 +9,7 @@ use ::calibrate::problem::columns;
 use ::calibrate::relation::clearances;
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::{ClearJoint, Observation, Parameter, Problem, Run, alignment};
+use calibrate::CrankMotion;
 use input::bundle::Bundle;
 use input::bundle_channel::Meaning;
 use input::calibration;
@@ -95,6 +96,7 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
             tree,
             parameters,
             runs: Vec::new(),
+            crank: CrankMotion::Driven,
         },
         runs,
         zeroed,

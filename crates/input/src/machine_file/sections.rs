@@ -72,7 +72,10 @@ impl Crank {
 
     pub(super) fn drive(&self, speed: Positive<Speed>) -> Drive {
         match &self.drive {
-            DriveChoice::Given => Drive::Given(GivenSpeed { speed: speed.si() }),
+            DriveChoice::Given => Drive::Given(GivenSpeed {
+                speed: speed.si(),
+                fluctuation: Vec::new(),
+            }),
             DriveChoice::Free(motor) => Drive::Free(MotorLine {
                 reference_speed: speed.si(),
                 mean_torque: motor.mean_torque.si(),

@@ -45,7 +45,10 @@ pub fn single_stage() -> Machine {
             inertia: 8.0,
             eccentricity: 0.0,
         },
-        drive: Drive::Given(GivenSpeed { speed: SPEED }),
+        drive: Drive::Given(GivenSpeed {
+            speed: SPEED,
+            fluctuation: Vec::new(),
+        }),
         main: Revolute::Ideal,
         throws: vec![Throw {
             crank_radius: 0.12,
@@ -160,6 +163,7 @@ pub fn reference_machine(parameters: &Value) -> Machine {
     if number(drive, "free") == 0.0 {
         machine.drive = Drive::Given(GivenSpeed {
             speed: number(drive, "omega"),
+            fluctuation: Vec::new(),
         });
     } else {
         machine.crankshaft.inertia = number(drive, "J");

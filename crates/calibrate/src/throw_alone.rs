@@ -1,0 +1,78 @@
+//! One throw of several, by itself.
+//!
+//! Throws whose shaft lies in an ideal bearing feel each other through the crank's turning alone.
+//! Where the crank turns as it was recorded, each of them is therefore a machine of its own, with few
+//! parameters and few minima.
+
+use crate::crank_motion::CrankMotion;
+use crate::error::Error;
+use crate::observation::Observation;
+use crate::problem::{Problem, throw};
+use input::MachineFile;
+use serde_json::Value;
+
+/// A throw's own problem, and which of the whole problem's parameters it has.
+pub(crate) struct ThrowAlone {
+    pub problem: Problem,
+    pub parameters: Vec<usize>,
+}
+
+/// Each throw of a problem by itself; none where there is only one, or where they cannot be taken
+/// apart.
+///
+/// # Errors
+/// A machine that is none.
+pub(crate) fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
+    let machine = MachineFile::from_tree(&problem.tree)?.resolve()?;
+    let names: Vec<&str> = machine
+        .machine
+        .throws
+        .iter()
+        .map(|t| t.name.as_str())
+        .collect();
+    if names.len() < 2 || machine.machine.main.clear().is_some() || machine.speed <= 0.0 {
+        return Ok(Vec::new());
+    }
+    let alone = names.iter().map(|name| alone(problem, name));
+    Ok(alone.filter(|a| !a.problem.runs.is_empty()).collect())
+}
+
+fn alone(problem: &Problem, name: &str) -> ThrowAlone {
+    let belongs = |path: &str| throw(path).is_none_or(|of| of == name);
+    let mut tree = problem.tree.clone();
+    if let Some(Value::Array(throws)) = tree.get_mut("throws") {
+        throws.retain(|throw| throw.get("name").and_then(Value::as_str) == Some(name));
+    }
+    let parameters: Vec<usize> = (0..problem.parameters.len())
+        .filter(|i| belongs(&problem.parameters[*i].path))
+        .collect();
+    let own = parameters.iter().map(|i| {
+        let mut parameter = problem.parameters[*i].clone();
+        parameter.places.retain(|place| belongs(place));
+        parameter
+    });
+    let runs = problem.runs.iter().map(|run| Observation {
+        settings: run
+            .settings
+            .iter()
+            .filter(|(path, _)| belongs(path))
+            .cloned()
+            .collect(),
+        channels: run
+            .channels
+            .iter()
+            .filter(|c| c.column.split_once('.').is_some_and(|(of, _)| of == name))
+            .cloned()
+            .collect(),
+        ..run.clone()
+    });
+    ThrowAlone {
+        problem: Problem {
+            tree,
+            parameters: own.collect(),
+            runs: runs.filter(|run| !run.channels.is_empty()).collect(),
+            crank: CrankMotion::Recorded,
+        },
+        parameters,
+    }
+}
