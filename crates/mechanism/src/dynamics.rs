@@ -48,6 +48,16 @@ pub struct Evaluation<S> {
     pub frame_force: Vec2<S>,
 }
 
+impl<S: Scalar> Evaluation<S> {
+    /// Acceleration of the frame, m/s²: on its springs, and as effects shake it.
+    pub fn frame_acceleration(&self) -> Vec2<S> {
+        match self.shaken {
+            None => self.frame,
+            Some(shaken) => self.frame + shaken,
+        }
+    }
+}
+
 /// One throw's part of an [`Evaluation`].
 #[derive(Clone, Copy, Debug)]
 pub struct ThrowEvaluation<S> {
