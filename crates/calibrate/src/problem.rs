@@ -9,7 +9,7 @@ use input::Resolved;
 use input::paths;
 use mechanism::drive::Drive;
 use serde_json::Value;
-use simulate::{Chain, ChamberEnd, Measured, Moved, Sensor};
+use simulate::{ChamberEnd, Measured, Moved, Sensor};
 
 /// A machine file, the values of it that are free, and the runs that they must explain.
 #[derive(Clone, Debug)]
@@ -182,23 +182,21 @@ fn measurable(machine: &Resolved) -> Vec<Measured> {
 }
 
 /// The sensors of a run's channels, in their order, and the crank angle last: those of the machine
-/// file where it has them, perfect ones elsewhere.
+/// file where it has them, perfect ones elsewhere, with the effects on both.
 fn sensors(machine: &Resolved, run: &Observation) -> Vec<Sensor> {
     let names = names(machine);
     let all = measurable(machine);
     let of_column = |column: &str| {
         let measured = *all.iter().find(|m| m.column(&names) == column)?;
         let given = machine.sensors.iter().find(|s| s.measured == measured);
-        Some(given.cloned().unwrap_or(Sensor {
-            measured,
-            chain: Chain::default(),
-        }))
+        Some(
+            given
+                .cloned()
+                .unwrap_or_else(|| machine.perfect_sensor(measured)),
+        )
     };
     let channels = run.channels.iter();
     let mut sensors: Vec<Sensor> = channels.filter_map(|c| of_column(&c.column)).collect();
-    sensors.push(Sensor {
-        measured: Measured::CrankAngle,
-        chain: Chain::default(),
-    });
+    sensors.push(machine.perfect_sensor(Measured::CrankAngle));
     sensors
 }

@@ -25,6 +25,11 @@ pub mod schema;
 pub mod unit;
 pub mod yaml;
 
+/// The catalogue of effects as data.
+pub mod effects {
+    pub use crate::machine_file::effects::{CATALOGUE, Choice, Entry, Parameter, entry};
+}
+
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
 pub use machine_file::{MachineFile, NormalClearance, Resolved, ThrowNormalClearance};

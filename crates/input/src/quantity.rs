@@ -16,6 +16,8 @@ pub trait Kind {
     const NAME: &'static str;
     /// Its name with an article: `a length`.
     const WORDS: &'static str;
+    /// Its SI unit.
+    const UNIT: &'static str;
     /// Something that people write: `0.1 mm`.
     const EXAMPLE: &'static str;
     /// Its dimension.
@@ -39,6 +41,7 @@ macro_rules! kinds {
             impl Kind for $name {
                 const NAME: &'static str = stringify!($name);
                 const WORDS: &'static str = $words;
+                const UNIT: &'static str = $unit;
                 const EXAMPLE: &'static str = $example;
                 const DIMENSION: Dimension = $dimension;
             }
@@ -65,6 +68,10 @@ kinds! {
     Pressure, "a pressure", "Pa", "0.393 MPa", Dimension::of(-1.0, 1.0, -2.0, 0.0);
     Inertia, "a moment of inertia", "kg m^2", "0.6 kg m^2", Dimension::of(2.0, 1.0, 0.0, 0.0);
     Damping, "a damping", "N s/m", "2e4 N s/m", Dimension::of(0.0, 1.0, -1.0, 0.0);
+    Area, "an area", "m^2", "2 mm^2", Dimension::of(2.0, 0.0, 0.0, 0.0);
+    Compliance, "a length per force", "m/N", "5 nm/N", Dimension::of(0.0, -1.0, 2.0, 0.0);
+    Viscosity, "a viscosity", "Pa s", "0.05 Pa s", Dimension::of(-1.0, 1.0, -1.0, 0.0);
+    StiffnessPerRoot, "a stiffness in N/m^1.5", "N/m^1.5", "20 GN/m^1.5", Dimension::stiffness(1.5);
     ForcePerPressure, "a force per pressure", "N/Pa", "1e-4 N/Pa", Dimension::of(2.0, 0.0, 0.0, 0.0);
     Ratio, "a percentage", "%", "5 %", Dimension::NONE;
 }

@@ -1,9 +1,9 @@
 //! The equations of motion of the whole machine, written once for every scalar.
 
 use crate::drive::Drive;
-use crate::effects::Effect;
+use crate::effects::{Acting, AtJoint, Joint};
 use crate::energy::{self, Energy};
-use crate::gas::{Gas, gas};
+use crate::gas::{CylinderAt, Gas};
 use crate::joints::guide::{Guide, GuideState};
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::{Direction, Machine, Throw};
@@ -40,10 +40,22 @@ pub struct Evaluation<S> {
     pub main: JointState<S>,
     /// Each throw.
     pub throws: Vec<ThrowEvaluation<S>>,
-    /// Acceleration of the frame, m/s²; 0 without one.
+    /// Acceleration of the frame against its springs, m/s²; 0 without one.
     pub frame: Vec2<S>,
+    /// Acceleration that effects give the frame and everything on it, m/s².
+    pub(crate) shaken: Option<Vec2<S>>,
     /// Force of the machine on the frame, N.
     pub frame_force: Vec2<S>,
+}
+
+impl<S: Scalar> Evaluation<S> {
+    /// Acceleration of the frame, m/s²: on its springs, and as effects shake it.
+    pub fn frame_acceleration(&self) -> Vec2<S> {
+        match self.shaken {
+            None => self.frame,
+            Some(shaken) => self.frame + shaken,
+        }
+    }
 }
 
 /// One throw's part of an [`Evaluation`].
@@ -57,6 +69,9 @@ pub struct ThrowEvaluation<S> {
     pub gas: Gas<S>,
     /// Accelerations and rigid joints' forces.
     pub accelerations: Accelerations<S>,
+    /// Acceleration along x of what the throw stands on, m/s²: what a sensor on the crosshead feels
+    /// beside the crosshead's own. 0 where the frame does not carry.
+    pub carried: S,
     pub(crate) loads: Loads<S>,
 }
 
@@ -94,6 +109,7 @@ impl<S: Scalar> Dynamics<S> {
             main: JointState::ideal(),
             throws: Vec::with_capacity(throws),
             frame: origin(),
+            shaken: None,
             frame_force: origin(),
         };
         let mut dynamics = Self {
@@ -252,6 +268,8 @@ impl<S: Scalar> Dynamics<S> {
     /// Poses, rates, and the forces that follow from them.
     pub(crate) fn evaluate_forces(&mut self, t: S, y: &[S]) {
         let (angle, speed) = self.crank(t, y);
+        let on_shaft = Acting::on_shaft(&self.machine.effects);
+        self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
         let gravity = self.gravity();
         let evaluation = &mut self.evaluation;
         evaluation.angle = angle;
@@ -261,16 +279,21 @@ impl<S: Scalar> Dynamics<S> {
             pair(y, self.layout.main),
             [speed, S::zero()],
             &self.mode.main,
+            &AtJoint {
+                acting: on_shaft,
+                joint: Joint::Main,
+                axis: Vec2::new(S::one(), S::zero()),
+            },
         );
         evaluation.throws.clear();
         let parts = self.layout.throws.iter().zip(&self.mode.throws);
-        for (throw, (layout, mode)) in self.machine.throws.iter().zip(parts) {
+        for (i, (throw, (layout, mode))) in self.machine.throws.iter().zip(parts).enumerate() {
             let shaft = pair(y, self.layout.main).map(|v| throw.local(v));
             let gravity = throw.local(gravity);
             let angle = throw.local_angle(angle);
             evaluation.throws.push(ThrowEvaluation::new(
                 throw,
-                &self.machine.effects,
+                Acting::on_throw(&self.machine.effects, i),
                 Standing {
                     layout,
                     mode,
@@ -284,8 +307,13 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
+    /// Gravity, as a frame that is shaken feels it.
     fn gravity(&self) -> Vec2<S> {
-        Vec2::new(self.machine.gravity_x, self.machine.gravity_y)
+        let gravity = Vec2::new(self.machine.gravity_x, self.machine.gravity_y);
+        match self.evaluation.shaken {
+            None => gravity,
+            Some(acceleration) => gravity - acceleration,
+        }
     }
 
     /// The accelerations that follow from the forces.
@@ -378,6 +406,20 @@ impl<S: Scalar> Dynamics<S> {
             let [place, rate] = pair(y, self.layout.frame);
             evaluation.frame = frame.acceleration(force, place, rate);
         }
+        let mut carried = evaluation.shaken;
+        if self
+            .machine
+            .frame
+            .as_ref()
+            .is_some_and(|frame| frame.carries)
+        {
+            carried = Some(carried.unwrap_or(origin()) + evaluation.frame);
+        }
+        if let Some(carried) = carried {
+            for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
+                at.carried = throw.local(carried).x;
+            }
+        }
     }
 
     /// Kinetic, potential and elastic energy at the last evaluation, J.
@@ -408,19 +450,36 @@ struct Standing<'a, S> {
 }
 
 impl<S: Scalar> ThrowEvaluation<S> {
-    fn new(throw: &Throw<S>, effects: &[Effect<S>], at: Standing<'_, S>, y: &[S]) -> Self {
+    fn new(throw: &Throw<S>, effects: Acting<'_, S>, at: Standing<'_, S>, y: &[S]) -> Self {
         let big = pair(y, at.layout.big_end);
         let small = pair(y, at.layout.small_end);
         let guide = pair(y, at.layout.guide);
-        let motion = Motion::new(throw, at.shaft, at.angle, at.speed, big, small, guide);
+        let two = |i: usize| [y[i], y[i + 1]];
+        let stretch = at.layout.rod.map_or([S::zero(); 2], two);
+        let motion = Motion::new(
+            throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
+        );
         let spin = motion.rod_rate;
+        // Both ends' bearings are in the rod.
+        let at_joint = |joint| AtJoint {
+            acting: effects,
+            joint,
+            axis: motion.along_rod(),
+        };
         let joints = Joints {
-            big_end: revolute_state(&throw.big_end, big, [at.speed, spin], &at.mode.big_end),
+            big_end: revolute_state(
+                &throw.big_end,
+                big,
+                [at.speed, spin],
+                &at.mode.big_end,
+                &at_joint(Joint::BigEnd),
+            ),
             small_end: revolute_state(
                 &throw.small_end,
                 small,
                 [guide[1].y, spin],
                 &at.mode.small_end,
+                &at_joint(Joint::SmallEnd),
             ),
             guide: match &throw.guide {
                 Guide::Ideal => GuideState::ideal(),
@@ -429,8 +488,25 @@ impl<S: Scalar> ThrowEvaluation<S> {
                 }
             },
         };
-        let gas = gas(throw, effects, &motion, at.speed, at.mode);
-        let loads = Loads::new(throw, at.gravity, at.speed, &motion, &joints, &gas);
+        let cylinder = CylinderAt {
+            throw,
+            effects,
+            motion: &motion,
+            speed: at.speed,
+            mode: at.mode,
+            drift: at.layout.gas.map(two),
+        };
+        let gas = cylinder.gas();
+        let spring = effects.rod();
+        let loads = Loads::new(
+            throw,
+            spring.as_ref(),
+            at.gravity,
+            at.speed,
+            &motion,
+            &joints,
+            &gas,
+        );
         Self {
             motion,
             joints,
@@ -444,7 +520,9 @@ impl<S: Scalar> ThrowEvaluation<S> {
                 big_force: origin(),
                 small_force: origin(),
                 rod: S::zero(),
+                stretch: S::zero(),
             },
+            carried: S::zero(),
         }
     }
 }
@@ -481,10 +559,11 @@ fn revolute_state<S: Scalar>(
     [offset, rate]: [Vec2<S>; 2],
     spins: [S; 2],
     mode: &ContactMode<S>,
+    effects: &AtJoint<'_, S>,
 ) -> JointState<S> {
     match joint {
         Revolute::Ideal => JointState::ideal(),
-        Revolute::Clear(clear) => clear.state(offset, rate, spins, mode),
+        Revolute::Clear(clear) => clear.state(offset, rate, spins, mode, effects),
     }
 }
 

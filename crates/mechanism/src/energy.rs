@@ -4,10 +4,11 @@
 //! Δ(kinetic + potential + elastic) = work of gas + work of drive − friction loss − damping loss
 //! ```
 
-use crate::dynamics::Evaluation;
+use crate::dynamics::{Evaluation, ThrowEvaluation};
+use crate::effects::Acting;
 use crate::joints::guide::Guide;
 use crate::joints::revolute::{JointState, Revolute};
-use crate::machine::Machine;
+use crate::machine::{Machine, Throw};
 use crate::plane::{Vec2, turned};
 use scalar::Scalar;
 
@@ -34,7 +35,7 @@ impl<S: Scalar> Energy<S> {
 pub struct Powers<S> {
     /// Of the gas (and line pressures) on the crosshead bodies.
     pub gas: S,
-    /// Of the drive on the shaft.
+    /// Of the drive on the shaft, and of whatever shakes the frame.
     pub drive: S,
     /// Lost to friction, rings included.
     pub friction: S,
@@ -55,17 +56,16 @@ pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<
         potential: -gravity.dot(&(at.main.offset + lever)) * shaft.mass,
         elastic: stored(&machine.main, &at.main),
     };
-    for (throw, part) in machine.throws.iter().zip(&at.throws) {
+    for (i, (throw, part)) in machine.throws.iter().zip(&at.throws).enumerate() {
         let down = throw.local(gravity);
         let motion = &part.motion;
-        let arm = motion.along_rod() * throw.rod.centre_of_mass;
-        let centre = motion.big_eye[0] + arm;
-        let velocity = motion.big_eye[1] + turned(arm) * motion.rod_rate;
+        let [centre, velocity] = part.rod_centre(throw);
+        let spin = motion.stretch * motion.rod_rate;
         let guide = &part.joints.guide;
         let crosshead = Vec2::new(motion.crosshead, guide.position.x);
         let crosshead_rate = Vec2::new(motion.crosshead_rate, guide.rate.x);
         energy.kinetic += (throw.rod.mass * velocity.dot(&velocity)
-            + throw.rod.inertia * motion.rod_rate * motion.rod_rate
+            + throw.rod.inertia * (spin * spin + motion.stretch_rate * motion.stretch_rate)
             + throw.crosshead.mass * crosshead_rate.dot(&crosshead_rate)
             + throw.crosshead.inertia * guide.rate.y * guide.rate.y)
             * 0.5;
@@ -73,6 +73,10 @@ pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<
             -(down.dot(&centre) * throw.rod.mass + down.dot(&crosshead) * throw.crosshead.mass);
         energy.elastic += stored(&throw.big_end, &part.joints.big_end);
         energy.elastic += stored(&throw.small_end, &part.joints.small_end);
+        if let Some(spring) = Acting::on_throw(&machine.effects, i).rod() {
+            let longer = (motion.stretch - 1.0) * throw.rod.length;
+            energy.elastic += spring.stiffness * longer * longer * 0.5;
+        }
         if let Guide::Clear(clear) = &throw.guide {
             for corner in &guide.corners {
                 energy.elastic += clear.contact.stored_energy(corner.penetration);
@@ -91,6 +95,32 @@ fn stored<S: Scalar>(joint: &Revolute<S>, state: &JointState<S>) -> S {
     }
 }
 
+/// Momentum of the moving parts in the frame, kg m/s.
+fn momentum<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Vec2<S> {
+    let shaft = &machine.crankshaft;
+    let (sine, cosine) = at.angle.sin_cos();
+    let lever = turned(Vec2::new(cosine, sine)) * (shaft.eccentricity * at.speed);
+    let mut momentum = (at.main.rate + lever) * shaft.mass;
+    for (throw, part) in machine.throws.iter().zip(&at.throws) {
+        let [_, rod] = part.rod_centre(throw);
+        let crosshead = Vec2::new(part.motion.crosshead_rate, part.joints.guide.rate.x);
+        momentum += throw.local(rod * throw.rod.mass + crosshead * throw.crosshead.mass);
+    }
+    momentum
+}
+
+impl<S: Scalar> ThrowEvaluation<S> {
+    /// Centre of mass of the rod, m, and its velocity, m/s.
+    fn rod_centre(&self, throw: &Throw<S>) -> [Vec2<S>; 2] {
+        let motion = &self.motion;
+        let along = motion.along_rod() * throw.rod.centre_of_mass;
+        let arm = along * motion.stretch;
+        let growth = along * motion.stretch_rate;
+        let [eye, rate] = motion.big_eye;
+        [eye + arm, rate + turned(arm) * motion.rod_rate + growth]
+    }
+}
+
 /// The rates at which the works of the ledger grow.
 pub(crate) fn powers<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Powers<S> {
     let mut powers = Powers {
@@ -99,7 +129,14 @@ pub(crate) fn powers<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Pow
         friction: at.main.friction_power(at.shaft.push),
         damping: at.main.damping_power,
     };
-    for (throw, part) in machine.throws.iter().zip(&at.throws) {
+    if let Some(acceleration) = at.shaken {
+        powers.drive -= momentum(machine, at).dot(&acceleration);
+    }
+    for (i, (throw, part)) in machine.throws.iter().zip(&at.throws).enumerate() {
+        if let Some(spring) = Acting::on_throw(&machine.effects, i).rod() {
+            let rate = part.motion.stretch_rate;
+            powers.damping += spring.damping(throw) * rate * rate;
+        }
         let (joints, motion) = (&part.joints, &part.motion);
         let push = |joint: &Revolute<S>, state: &JointState<S>, force: Vec2<S>| {
             if joint.is_rigid() {

@@ -25,6 +25,10 @@ parameters! {
         pub damping_x: S,
         /// Damping along y, N s/m.
         pub damping_y: S,
+        fixed {
+            /// True where sensors on the crossheads feel the frame's motion.
+            pub carries: bool,
+        }
     }
 }
 

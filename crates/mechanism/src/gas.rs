@@ -1,11 +1,12 @@
 //! Gas force with ideal valves, single or double acting (MODEL.md, sections 3 and 6).
 
-use crate::effects::Effect;
+use crate::effects::{Acting, ChamberAt, End, PistonAt};
 use crate::lift::parameters;
 use crate::machine::Throw;
 use crate::mode::{ChamberMode, ThrowMode, flagged};
 use crate::throw::Motion;
 use scalar::Scalar;
+use std::f64::consts::PI;
 
 parameters! {
     /// Cylinder, piston and gas of one throw.
@@ -46,9 +47,9 @@ parameters! {
 pub(crate) struct Chamber<S> {
     /// Distance from piston to cover at the chamber's own dead centre, m.
     pub dead: S,
-    /// Stroke of the ideal mechanism, m.
-    pub stroke: S,
-    /// Suction and discharge pressure, Pa.
+    /// Distance at which the compression starts: where the suction valve closes, m.
+    pub filled: S,
+    /// Suction and discharge pressure at the dead centres, Pa.
     pub lines: [S; 2],
     /// Polytropic exponents of compression and expansion.
     pub exponents: [S; 2],
@@ -73,6 +74,15 @@ impl<S: Scalar> GasState<S> {
             closed: S::zero(),
             open: [S::zero(); 2],
         }
+    }
+
+    /// Where the drift of the chamber's next stroke starts, at a dead centre where `next` is the
+    /// same gas in that stroke: 0, as the valve that was open leaves the line's pressure behind,
+    /// unless it never opened.
+    pub(crate) fn carried(&self, next: &Self, expanding: S) -> S {
+        let left = (self.closed / next.closed).ln();
+        let zero = S::zero();
+        flagged(expanding, left.min(zero), left.max(zero))
     }
 
     /// Guards of the suction and the discharge valve's state in `mode`.
@@ -106,21 +116,26 @@ impl<S: Scalar> GasState<S> {
 
 impl<S: Scalar> Chamber<S> {
     /// The gas with the piston `distance` from the cover; `expanding` is 1 while it moves away,
-    /// `open` are the pressures at which open valves hold the chamber.
+    /// `open` are the pressures at which open valves hold the chamber, `drift` is the logarithm of
+    /// how far the closed chamber has left its polytrope.
     #[inline]
     pub fn state(
         &self,
         distance: S,
         expanding: S,
         open: [S; 2],
+        drift: Option<S>,
         mode: &ChamberMode<S>,
     ) -> GasState<S> {
         let [suction, discharge] = self.lines;
         let from = flagged(expanding, discharge, suction);
-        let start = flagged(expanding, self.dead, self.stroke + self.dead);
+        let start = flagged(expanding, self.dead, self.filled);
         let [compression, expansion] = self.exponents;
         let exponent = flagged(expanding, expansion, compression);
-        let closed = from * (start / distance).powf(exponent);
+        let mut closed = from * (start / distance).powf(exponent);
+        if let Some(drift) = drift {
+            closed = closed * drift.exp();
+        }
         let pressure = flagged(
             mode.discharge,
             open[1],
@@ -131,6 +146,22 @@ impl<S: Scalar> Chamber<S> {
             closed,
             open,
         }
+    }
+}
+
+impl<S: Scalar> Chamber<S> {
+    /// Temperature of the gas at `pressure` over that in the suction line. What the cylinder holds
+    /// stays, while the valves are closed; what is left in the clearance was compressed before.
+    fn warmth(&self, pressure: S, distance: S, expanding: S) -> S {
+        let [suction, discharge] = self.lines;
+        let [compression, _] = self.exponents;
+        let hot = (discharge / suction).powf(S::one() - S::one() / compression);
+        let from = flagged(
+            expanding,
+            discharge * self.dead / hot,
+            suction * self.filled,
+        );
+        pressure * distance / from
     }
 }
 
@@ -145,55 +176,163 @@ pub struct Gas<S> {
     pub force: S,
     /// Force of the effects on the crosshead body along x, N.
     pub effects: S,
+    /// Rates of the drifts of head end and crank end off their polytropes, 1/s.
+    pub(crate) drift: [S; 2],
 }
 
-/// The gas of a throw (MODEL.md, sections 3 and 6), and the effects on the piston.
-pub(crate) fn gas<S: Scalar>(
-    throw: &Throw<S>,
-    effects: &[Effect<S>],
-    motion: &Motion<S>,
-    speed: S,
-    mode: &ThrowMode<S>,
-) -> Gas<S> {
-    let cylinder = &throw.cylinder;
-    let lines = [cylinder.suction, cylinder.discharge];
-    let piston = motion.crosshead_rate / (throw.crank_radius * speed);
-    let open = effects
-        .iter()
-        .fold(lines, |open, effect| effect.line_pressures(open, piston));
-    let chamber = |dead: S| Chamber {
-        dead,
-        stroke: throw.crank_radius * 2.0,
-        lines,
-        exponents: [cylinder.exponent, cylinder.expansion_exponent],
-    };
-    let area = |radius: S| radius * radius * std::f64::consts::PI;
-    let face = area(cylinder.piston_radius);
+/// One throw's cylinder at an instant: what both of its chambers share.
+pub(crate) struct CylinderAt<'a, S> {
+    /// The throw.
+    pub throw: &'a Throw<S>,
+    /// The effects on it.
+    pub effects: Acting<'a, S>,
+    /// Its motion.
+    pub motion: &'a Motion<S>,
+    /// Speed of the crank, rad/s.
+    pub speed: S,
+    /// Its mode.
+    pub mode: &'a ThrowMode<S>,
+    /// Logarithms of how far head end and crank end have left their polytropes.
+    pub drift: Option<[S; 2]>,
+}
 
-    let reach = throw.crank_radius + throw.rod.length;
-    let to_head = cylinder.head_clearance + reach - motion.crosshead;
-    let head_end =
-        chamber(cylinder.head_clearance).state(to_head, mode.outward, open, &mode.head_end);
-    let (crank_end, force) = match &cylinder.crank_end {
-        None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
-        Some(end) => {
-            let to_cover =
-                end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
-            let inward = S::one() - mode.outward;
-            let gas = chamber(end.clearance).state(to_cover, inward, open, &mode.crank_end);
-            let rod = area(end.rod_radius);
-            let force =
-                gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
-            (gas, force)
+impl<S: Scalar> CylinderAt<'_, S> {
+    /// The gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston.
+    pub fn gas(&self) -> Gas<S> {
+        let (throw, motion) = (self.throw, self.motion);
+        let cylinder = &throw.cylinder;
+        let face = area(cylinder.piston_radius);
+        let reach = throw.crank_radius + throw.rod.length;
+        let to_head = cylinder.head_clearance + reach - motion.crosshead;
+        let (head_end, seen) = self.chamber(End::Head, cylinder.head_clearance, to_head);
+        let mut across = None;
+        let (crank_end, force) = match &cylinder.crank_end {
+            None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
+            Some(end) => {
+                let to_cover =
+                    end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
+                let (gas, seen) = self.chamber(End::Crank, end.clearance, to_cover);
+                across = Some(seen);
+                let rod = area(end.rod_radius);
+                let force =
+                    gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
+                (gas, force)
+            }
+        };
+        let piston = PistonAt {
+            speed: motion.crosshead_rate,
+            pressure: head_end.pressure,
+            angle: motion.angle,
+            crank_speed: self.speed,
+            mass: throw.crosshead.mass,
+        };
+        let effects = self.effects.all();
+        Gas {
+            head_end,
+            crank_end,
+            force,
+            effects: effects.fold(S::zero(), |sum, effect| sum + effect.piston_force(&piston)),
+            drift: self.drifts([Some(seen), across]),
         }
-    };
-    let effects = effects.iter().fold(S::zero(), |sum, effect| {
-        sum + effect.piston_force(motion.crosshead_rate, head_end.pressure)
-    });
-    Gas {
-        head_end,
-        crank_end,
-        force,
-        effects,
     }
+
+    /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre.
+    fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, ChamberAt<S>) {
+        let (throw, motion) = (self.throw, self.motion);
+        let cylinder = &throw.cylinder;
+        let pin = throw.crank_radius * self.speed.abs();
+        let outward = motion.crosshead_rate / pin;
+        let (growth, expanding, mode) = match end {
+            End::Head => (-outward, self.mode.outward, &self.mode.head_end),
+            End::Crank => {
+                let inward = S::one() - self.mode.outward;
+                (outward, inward, &self.mode.crank_end)
+            }
+        };
+        let rod = match (end, &cylinder.crank_end) {
+            (End::Crank, Some(crank_end)) => area(crank_end.rod_radius),
+            _ => S::zero(),
+        };
+        let mut seen = ChamberAt {
+            angle: motion.angle,
+            growth,
+            distance,
+            area: area(cylinder.piston_radius) - rod,
+            radius: cylinder.piston_radius,
+            mean_speed: pin * (2.0 / PI),
+            pressure: S::zero(),
+            across: cylinder.back,
+            warmth: S::one(),
+            suction: cylinder.suction,
+            exponent: flagged(expanding, cylinder.expansion_exponent, cylinder.exponent),
+            closed: S::one() - mode.suction - mode.discharge,
+        };
+        let lines = |seen: &ChamberAt<S>| {
+            let plain = [cylinder.suction, cylinder.discharge];
+            let effects = self.effects.at_end(end);
+            effects.fold(plain, |lines, effect| effect.line_pressures(lines, seen))
+        };
+        // The strokes start where the valves leave off, at the dead centres.
+        let at_rest = |angle: f64| {
+            lines(&ChamberAt {
+                angle: S::constant(angle),
+                growth: S::zero(),
+                ..seen
+            })
+        };
+        let [filled, emptied] = match end {
+            End::Head => [PI, 0.0],
+            End::Crank => [0.0, PI],
+        };
+        let chamber = Chamber {
+            dead,
+            filled: throw.crank_radius * 2.0 + dead - self.retreat(end),
+            lines: [at_rest(filled)[0], at_rest(emptied)[1]],
+            exponents: [cylinder.exponent, cylinder.expansion_exponent],
+        };
+        let drift = self.drift.map(|drift| drift[end as usize]);
+        let state = chamber.state(distance, expanding, lines(&seen), drift, mode);
+        seen.pressure = state.pressure;
+        if drift.is_some() {
+            seen.warmth = chamber.warmth(state.pressure, distance, expanding);
+        }
+        (state, seen)
+    }
+
+    /// How far the ideal piston has come back from the dead centre when the suction valve closes, m.
+    fn retreat(&self, end: End) -> S {
+        let mut held = self.effects.at_end(end).filter_map(|e| e.suction_held());
+        let Some(angle) = held.next() else {
+            return S::zero();
+        };
+        let (radius, length) = (self.throw.crank_radius, self.throw.rod.length);
+        let (sine, cosine) = angle.sin_cos();
+        let slope = sine * radius / length;
+        let rod = length * (S::one() - (S::one() - slope * slope).sqrt());
+        let crank = radius * (S::one() - cosine);
+        match end {
+            End::Head => crank - rod,
+            End::Crank => crank + rod,
+        }
+    }
+
+    /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none.
+    fn drifts(&self, chambers: [Option<ChamberAt<S>>; 2]) -> [S; 2] {
+        if self.drift.is_none() {
+            return [S::zero(); 2];
+        }
+        let pressures = chambers.map(|chamber| chamber.map(|chamber| chamber.pressure));
+        [End::Head, End::Crank].map(|end| {
+            let Some(mut chamber) = chambers[end as usize] else {
+                return S::zero();
+            };
+            chamber.across = pressures[1 - end as usize].unwrap_or(chamber.across);
+            let effects = self.effects.at_end(end);
+            chamber.closed * effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber))
+        })
+    }
+}
+
+fn area<S: Scalar>(radius: S) -> S {
+    radius * radius * PI
 }

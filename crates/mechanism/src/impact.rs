@@ -18,7 +18,7 @@ impl<S: Scalar> Dynamics<S> {
         let before = self.energy().total();
         let wanted = -self.joint(place).1.penetration_rate;
         for at in &mut self.evaluation_mut().throws {
-            at.loads = Loads::none();
+            at.loads = Loads::none(at.loads.stretch.is_some());
         }
         match place {
             Place::Main => {}
@@ -55,11 +55,18 @@ impl<S: Scalar> Dynamics<S> {
             }
         };
         let (layout, at) = (self.layout(), self.evaluation());
+        let mut stretches = Vec::new();
         add(layout.main, at.shaft.centre);
         for (layout, throw) in layout.throws.iter().zip(&at.throws) {
             add(layout.big_end, throw.accelerations.big_end);
             add(layout.small_end, throw.accelerations.small_end);
             add(layout.guide, throw.accelerations.guide);
+            if let Some(i) = layout.rod {
+                stretches.push((i, throw.accelerations.stretch));
+            }
+        }
+        for (i, jump) in stretches {
+            y[i + 1] += jump;
         }
         if let Some(i) = layout.crank {
             y[i + 1] += at.shaft.angular;

@@ -7,10 +7,13 @@
 //! mechanism with none is pure kinematics.
 
 use crate::drive::Drive;
+use crate::effects::Acting;
 use crate::machine::Machine;
+use scalar::Scalar;
 
 /// Where each part of the state lies. An offset joint takes `x, y, ẋ, ẏ`; a guide `y, τ, ẏ, τ̇`;
-/// a free crank `θ − ω_ref t, θ̇ − ω_ref`; a frame `x, y, ẋ, ẏ`; the ledger four works.
+/// an elastic rod `η, η̇` (its stretch); gas that leaves its polytrope the drifts of head and crank
+/// end; a free crank `θ − ω_ref t, θ̇ − ω_ref`; a frame `x, y, ẋ, ẏ`; the ledger four works.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// The main bearing's offset.
@@ -36,11 +39,15 @@ pub struct ThrowLayout {
     pub small_end: Option<usize>,
     /// Shift and tilt in the guide.
     pub guide: Option<usize>,
+    /// Stretch of the rod.
+    pub rod: Option<usize>,
+    /// Drifts of the gas off its polytropes.
+    pub gas: Option<usize>,
 }
 
 impl Layout {
     /// The layout of `machine`, with the energy ledger or without.
-    pub fn new<S>(machine: &Machine<S>, ledger: bool) -> Self {
+    pub fn new<S: Scalar>(machine: &Machine<S>, ledger: bool) -> Self {
         let mut next = 0;
         let mut room = |present: bool, length: usize| {
             present.then(|| {
@@ -52,10 +59,16 @@ impl Layout {
         let throws = machine
             .throws
             .iter()
-            .map(|throw| ThrowLayout {
-                big_end: room(throw.big_end.clear().is_some(), 4),
-                small_end: room(throw.small_end.clear().is_some(), 4),
-                guide: room(throw.guide.clear().is_some(), 4),
+            .enumerate()
+            .map(|(i, throw)| {
+                let effects = Acting::on_throw(&machine.effects, i);
+                ThrowLayout {
+                    big_end: room(throw.big_end.clear().is_some(), 4),
+                    small_end: room(throw.small_end.clear().is_some(), 4),
+                    guide: room(throw.guide.clear().is_some(), 4),
+                    rod: room(effects.rod().is_some(), 2),
+                    gas: room(effects.all().any(|effect| effect.drifts()), 2),
+                }
             })
             .collect();
         let crank = room(matches!(machine.drive, Drive::Free(_)), 2);

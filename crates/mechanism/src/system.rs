@@ -16,6 +16,10 @@ use scalar::Scalar;
 const RATE: f64 = 1e3;
 /// Scale of a frame's displacement, m.
 const FRAME: f64 = 1e-5;
+/// Scale of a rod's stretch.
+const STRETCH: f64 = 1e-5;
+/// Scale of the gas's drift off its polytrope.
+const DRIFT: f64 = 1e-3;
 /// Scale of the crank angle's deviation, rad.
 const ANGLE: f64 = 1e-3;
 
@@ -45,6 +49,15 @@ pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S>
         }
     }
     set(layout.frame, [S::constant(FRAME); 2]);
+    for at in &layout.throws {
+        if let Some(i) = at.rod {
+            scales[i] = S::constant(STRETCH);
+            scales[i + 1] = S::constant(STRETCH * RATE);
+        }
+        if let Some(i) = at.gas {
+            scales[i..i + 2].fill(S::constant(DRIFT));
+        }
+    }
     if let (Some(i), Drive::Free(motor)) = (layout.crank, &machine.drive) {
         scales[i] = S::constant(ANGLE);
         scales[i + 1] = motor.reference_speed.abs() * ANGLE;
@@ -71,6 +84,15 @@ impl<S: Scalar> Dynamics<S> {
             write(layout.guide, throw.accelerations.guide);
         }
         write(layout.frame, at.frame);
+        for (layout, throw) in layout.throws.iter().zip(&at.throws) {
+            if let Some(i) = layout.rod {
+                dy[i] = y[i + 1];
+                dy[i + 1] = throw.accelerations.stretch;
+            }
+            if let Some(i) = layout.gas {
+                dy[i..i + 2].copy_from_slice(&throw.gas.drift);
+            }
+        }
         if let Some(i) = layout.crank {
             dy[i] = y[i + 1];
             dy[i + 1] = at.shaft.angular;
@@ -256,12 +278,27 @@ impl<S: Real> Dynamics<S> {
     }
 
     /// A dead centre (part 0) or a valve.
-    fn switch_gas(&mut self, throw: usize, part: usize, t: S, y: &[S]) {
+    fn switch_gas(&mut self, throw: usize, part: usize, t: S, y: &mut [S]) {
         if part == 0 {
+            let before = self.evaluation().throws[throw].gas;
+            let drift = self.layout().throws[throw].gas;
+            if let Some(i) = drift {
+                y[i..i + 2].fill(S::zero());
+            }
             let mode = &mut self.mode_mut().throws[throw];
             mode.outward = S::one() - mode.outward;
+            let outward = mode.outward;
             // The new polytrope decides which valves are open.
             self.evaluate(t, y);
+            if let Some(i) = drift {
+                let after = self.evaluation().throws[throw].gas;
+                let inward = S::one() - outward;
+                y[i] = before.head_end.carried(&after.head_end, outward);
+                if self.machine().throws[throw].cylinder.crank_end.is_some() {
+                    y[i + 1] = before.crank_end.carried(&after.crank_end, inward);
+                }
+                self.evaluate(t, y);
+            }
             let gas = self.evaluation().throws[throw].gas;
             let mode = &mut self.mode_mut().throws[throw];
             mode.head_end = gas.head_end.mode();

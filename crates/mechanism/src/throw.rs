@@ -8,6 +8,7 @@
 //!    acceleration, by eliminating the small end, then the big end. A joint with clearance has no
 //!    unknown force, so with both ends clear nothing is solved at all.
 
+use crate::effects::RodSpring;
 use crate::gas::Gas;
 use crate::joints::guide::GuideState;
 use crate::joints::revolute::{JointModel, JointState, Revolute};
@@ -39,6 +40,10 @@ pub struct Motion<S> {
     pub crosshead: S,
     /// Its speed, m/s.
     pub crosshead_rate: S,
+    /// Length of the rod over that without load: 1 + η.
+    pub stretch: S,
+    /// Its rate η̇, 1/s.
+    pub stretch_rate: S,
 }
 
 /// What acts on the bodies of one throw, as far as poses and rates tell.
@@ -59,11 +64,14 @@ pub(crate) struct Loads<S> {
     /// Wanted relative acceleration of following joints along their normal.
     pub big_target: S,
     pub small_target: S,
+    /// Second rate of the rod's stretch without the forces of rigid joints, 1/s²; none where the
+    /// rod is rigid.
+    pub stretch: Option<S>,
 }
 
 impl<S: Scalar> Loads<S> {
     /// No loads: with a target, the answer to an impulse instead of a force.
-    pub fn none() -> Self {
+    pub fn none(elastic: bool) -> Self {
         let zero = S::zero();
         Self {
             rod_force: origin(),
@@ -77,6 +85,7 @@ impl<S: Scalar> Loads<S> {
             small_bias: origin(),
             big_target: zero,
             small_target: zero,
+            stretch: elastic.then_some(zero),
         }
     }
 }
@@ -156,6 +165,7 @@ pub(crate) struct Response<S> {
     small_offset: Vec2<S>,
     arms: Arms<S>,
     rod_free: (Vec2<S>, S),
+    inertia: S,
     crosshead_free: Vec2<S>,
     crosshead_give: Matrix2<S>,
 }
@@ -163,6 +173,10 @@ pub(crate) struct Response<S> {
 /// Arms from the rod's centre of mass to its eyes and to where the rigid joints' forces act.
 #[derive(Clone, Copy, Debug)]
 struct Arms<S> {
+    /// Unit vector along the rod.
+    along: Vec2<S>,
+    /// Where big and small end lie on the unloaded rod, from its centre of mass, m.
+    shares: [S; 2],
     big: Vec2<S>,
     small: Vec2<S>,
     big_force: Vec2<S>,
@@ -186,11 +200,14 @@ pub struct Accelerations<S> {
     pub small_force: Vec2<S>,
     /// Rod's angular acceleration, rad/s².
     pub rod: S,
+    /// Second rate of the rod's stretch, 1/s².
+    pub(crate) stretch: S,
 }
 
 impl<S: Scalar> Motion<S> {
     /// The pose with the shaft's centre at `shaft` (position and velocity), the crank at `angle`
-    /// turning at `speed`, and the given joint offsets and rates.
+    /// turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its rate.
+    #[allow(clippy::too_many_arguments)]
     pub(crate) fn new(
         throw: &Throw<S>,
         shaft: [Vec2<S>; 2],
@@ -199,6 +216,7 @@ impl<S: Scalar> Motion<S> {
         big: [Vec2<S>; 2],
         small: [Vec2<S>; 2],
         guide: [Vec2<S>; 2],
+        [stretch, stretch_rate]: [S; 2],
     ) -> Self {
         let (sine, cosine) = angle.sin_cos();
         let pin = Vec2::new(cosine, sine) * throw.crank_radius;
@@ -207,10 +225,12 @@ impl<S: Scalar> Motion<S> {
         // The small-end eye's height follows from the crosshead's, and gives the rod's angle.
         let rise = guide[0].x - small[0].y - eye.y;
         let rise_rate = guide[1].x - small[1].y - eye_rate.y;
-        let length = throw.rod.length;
+        let stretch = S::one() + stretch;
+        let length = throw.rod.length * stretch;
+        let length_rate = throw.rod.length * stretch_rate;
         let rod_sine = rise / length;
         let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
-        let rod_rate = rise_rate / (length * rod_cosine);
+        let rod_rate = (rise_rate - length_rate * rod_sine) / (length * rod_cosine);
         Self {
             angle,
             angle_sin_cos: (sine, cosine),
@@ -219,7 +239,11 @@ impl<S: Scalar> Motion<S> {
             rod_rate,
             big_eye: [eye, eye_rate],
             crosshead: eye.x + length * rod_cosine + small[0].x,
-            crosshead_rate: eye_rate.x - length * rod_sine * rod_rate + small[1].x,
+            crosshead_rate: eye_rate.x - length * rod_sine * rod_rate
+                + length_rate * rod_cosine
+                + small[1].x,
+            stretch,
+            stretch_rate,
         }
     }
 
@@ -241,8 +265,10 @@ pub struct Joints<S> {
 }
 
 impl<S: Scalar> Loads<S> {
+    /// The loads, with the rod as the spring that it is.
     pub fn new(
         throw: &Throw<S>,
+        spring: Option<&RodSpring<S>>,
         gravity: Vec2<S>,
         speed: S,
         motion: &Motion<S>,
@@ -251,10 +277,12 @@ impl<S: Scalar> Loads<S> {
     ) -> Self {
         let arms = Arms::new(throw, motion, joints);
         let (big, small) = (&joints.big_end, &joints.small_end);
-        let mut loads = Self::none();
+        let mut loads = Self::none(false);
         loads.rod_force = gravity * throw.rod.mass - big.force - small.force;
-        loads.rod_moment =
-            -moment(arms.big_force, big.force) - moment(arms.small_force, small.force);
+        let whirl = motion.stretch_rate * motion.rod_rate * 2.0;
+        loads.rod_moment = -moment(arms.big_force, big.force)
+            - moment(arms.small_force, small.force)
+            - throw.rod.inertia * motion.stretch * whirl;
         loads.crosshead_force = gravity * throw.crosshead.mass
             + small.force
             + joints.guide.force
@@ -264,8 +292,14 @@ impl<S: Scalar> Loads<S> {
         loads.pin_moment = moment(motion.pin + big.arm, big.force);
         loads.pin_bias = -(motion.pin * (speed * speed));
         let rate2 = motion.rod_rate * motion.rod_rate;
-        loads.big_bias = -(arms.big * rate2);
-        loads.small_bias = -(arms.small * rate2);
+        let across = turned(arms.along);
+        let [of_big, of_small] = arms.shares;
+        loads.big_bias = across * (of_big * whirl) - arms.big * rate2;
+        loads.small_bias = across * (of_small * whirl) - arms.small * rate2;
+        loads.stretch = spring.map(|spring| {
+            let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
+            motion.stretch * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
+        });
         loads.big_target = following_target(big);
         loads.small_target = following_target(small);
         loads
@@ -275,14 +309,42 @@ impl<S: Scalar> Loads<S> {
 impl<S: Scalar> Arms<S> {
     fn new(throw: &Throw<S>, motion: &Motion<S>, joints: &Joints<S>) -> Self {
         let along = motion.along_rod();
-        let big = -(along * throw.rod.centre_of_mass);
-        let small = along * (throw.rod.length - throw.rod.centre_of_mass);
+        let shares = [
+            -throw.rod.centre_of_mass,
+            throw.rod.length - throw.rod.centre_of_mass,
+        ];
+        let [big, small] = shares.map(|share| along * (share * motion.stretch));
         Self {
+            along,
+            shares,
             big,
             small,
             big_force: big + joints.big_end.offset + joints.big_end.arm,
             small_force: small + joints.small_end.offset + joints.small_end.arm,
         }
+    }
+}
+
+impl<S: Scalar> Arms<S> {
+    /// Moment of inertia of the stretched rod about its centre of mass, kg m².
+    fn inertia(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
+        throw.rod.inertia * motion.stretch * motion.stretch
+    }
+}
+
+impl<S: Scalar> RodSpring<S> {
+    /// Moment of the spring and its damping on the stretch η, N m: −L² (k η + c η̇), with c so that
+    /// the free rod has the damping ratio.
+    fn pull(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
+        let length = throw.rod.length;
+        let stretch = motion.stretch - 1.0;
+        -(self.stiffness * length * length * stretch) - self.damping(throw) * motion.stretch_rate
+    }
+
+    /// Damping L² c of the stretch, N m s.
+    pub(crate) fn damping(&self, throw: &Throw<S>) -> S {
+        let critical = (self.stiffness * throw.rod.inertia).sqrt() * throw.rod.length * 2.0;
+        self.damping_ratio * critical
     }
 }
 
@@ -296,15 +358,29 @@ impl<S: Scalar> Response<S> {
         touching: [S; 2],
     ) -> Self {
         let arms = Arms::new(throw, motion, joints);
-        let (mass, inertia) = (throw.rod.mass, throw.rod.inertia);
+        let [of_big, of_small] = arms.shares;
+        let (mass, inertia) = (throw.rod.mass, arms.inertia(throw, motion));
         // Acceleration of an eye for a unit force: W = 1/m + (turned arm of the eye)(turned arm
-        // of the force)ᵀ / I.
-        let answer = |eye: Vec2<S>, force: Vec2<S>| {
+        // of the force)ᵀ / I; an elastic rod gives along its axis too.
+        let answer = |[eye, force]: [Vec2<S>; 2], shares: [S; 2]| {
             let light = S::one() / mass;
-            diagonal(light, light) + outer(turned(eye), turned(force)) / inertia
+            let rigid = diagonal(light, light) + outer(turned(eye), turned(force)) / inertia;
+            match loads.stretch {
+                None => rigid,
+                Some(_) => {
+                    let give = shares[0] * shares[1] / throw.rod.inertia;
+                    rigid + outer(arms.along, arms.along) * give
+                }
+            }
         };
         let free = (loads.rod_force / mass, loads.rod_moment / inertia);
-        let free_at = |eye: Vec2<S>, bias: Vec2<S>| free.0 + turned(eye) * free.1 + bias;
+        let free_at = |eye: Vec2<S>, share: S, bias: Vec2<S>| {
+            let rigid = free.0 + turned(eye) * free.1 + bias;
+            match loads.stretch {
+                None => rigid,
+                Some(stretch) => rigid + arms.along * (share * stretch),
+            }
+        };
 
         let light = S::one() / throw.crosshead.mass;
         let across = match throw.guide.clear() {
@@ -321,23 +397,26 @@ impl<S: Scalar> Response<S> {
             small_offset: origin(),
             arms,
             rod_free: free,
+            inertia,
             crosshead_free,
             crosshead_give,
         };
         let small = Constraint::new(&throw.small_end, &joints.small_end, touching[1]);
-        let small_answer = answer(arms.small, arms.small_force) + crosshead_give;
+        let small_answer = answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give;
         if let Some(stiff) = small.stiffen(&small_answer) {
             let missing = crosshead_free
-                - free_at(arms.small, loads.small_bias)
+                - free_at(arms.small, of_small, loads.small_bias)
                 - joints.small_end.normal * loads.small_target;
             response.small_offset = stiff * missing;
-            response.small_slope = stiff * answer(arms.small, arms.big_force);
+            response.small_slope = stiff * answer([arms.small, arms.big_force], [of_small, of_big]);
         }
         let big = Constraint::new(&throw.big_end, &joints.big_end, touching[0]);
-        let through = answer(arms.big, arms.small_force);
-        let big_answer = answer(arms.big, arms.big_force) - through * response.small_slope;
+        let through = answer([arms.big, arms.small_force], [of_big, of_small]);
+        let big_answer =
+            answer([arms.big, arms.big_force], [of_big; 2]) - through * response.small_slope;
         if let Some(stiff) = big.stiffen(&big_answer) {
-            let free_eye = free_at(arms.big, loads.big_bias) + through * response.small_offset;
+            let free_eye =
+                free_at(arms.big, of_big, loads.big_bias) + through * response.small_offset;
             response.slope = stiff;
             response.offset = -(stiff * (free_eye + joints.big_end.normal * loads.big_target));
         }
@@ -358,9 +437,17 @@ impl<S: Scalar> Response<S> {
         let centre = self.rod_free.0 + (big_force + small_force) / throw.rod.mass;
         let rod = self.rod_free.1
             + (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
-                / throw.rod.inertia;
-        let big_eye = centre + turned(arms.big) * rod + loads.big_bias;
-        let small_eye = centre + turned(arms.small) * rod + loads.small_bias;
+                / self.inertia;
+        let [of_big, of_small] = arms.shares;
+        let mut big_eye = centre + turned(arms.big) * rod + loads.big_bias;
+        let mut small_eye = centre + turned(arms.small) * rod + loads.small_bias;
+        let stretch = loads.stretch.map_or(S::zero(), |stretch| {
+            let pull = (big_force * of_big + small_force * of_small).dot(&arms.along);
+            let stretch = stretch + pull / throw.rod.inertia;
+            big_eye += arms.along * (of_big * stretch);
+            small_eye += arms.along * (of_small * stretch);
+            stretch
+        });
         let crosshead = self.crosshead_free - self.crosshead_give * small_force;
         let tilt = (loads.crosshead_moment - moment(joints.small_end.arm, small_force))
             / throw.crosshead.inertia;
@@ -372,6 +459,7 @@ impl<S: Scalar> Response<S> {
             big_force,
             small_force,
             rod,
+            stretch,
         }
     }
 }

@@ -7,7 +7,7 @@ use common::random::{cases, machine};
 use common::{REVOLUTION, Run, reference, reference_machine, single_stage, with_clearance};
 use integrate::{Integrator, System};
 use mechanism::drive::Drive;
-use mechanism::effects::Effect;
+use mechanism::effects::Law;
 use mechanism::joints::contact::{ContactLaw, Restitution};
 use mechanism::joints::friction::FrictionLaw;
 use mechanism::joints::guide::Guide;
@@ -146,7 +146,7 @@ fn rescaled(machine: &Machine, length: f64, mass: f64, time: f64) -> Machine {
     }
     joint(&mut m.main);
     for effect in &mut m.effects {
-        if let Effect::RingFriction(rings) = effect {
+        if let Law::RingFriction(rings) = &mut effect.law {
             rings.coulomb_force *= force;
             rings.per_pressure *= force / pressure;
             rings.slip_speed *= speed;

@@ -4,6 +4,7 @@ use crate::record::Error;
 use crate::sensor::{Axis, ChamberEnd, Measured, Sensor};
 use integrate::Real;
 use mechanism::{Evaluation, Machine};
+use scalar::Scalar;
 use signal::biquad::Filter;
 use signal::decimate::Decimator;
 use std::f64::consts::TAU;
@@ -60,17 +61,23 @@ impl Sampling {
         }
     }
 
-    /// What `sensor` makes of the inner samples of its quantity: filtered, amplified, decimated.
+    /// What `sensor` makes of the inner samples of its quantity in a record that begins at `start`,
+    /// s: filtered, amplified, decimated, with the hum of the mains.
     pub(crate) fn record(
         &self,
         sensor: &Sensor,
         machine: &Machine,
+        start: f64,
         inner: &[f64],
     ) -> Result<Vec<f64>, Error> {
         // An angle has a jump a revolution, which no filter must touch.
         if sensor.measured == Measured::CrankAngle {
             let recorded = inner[self.lead()..].iter().step_by(self.factor);
-            return Ok(recorded.take(self.samples).copied().collect());
+            let offset = sensor.chain.angle_offset;
+            return Ok(recorded
+                .take(self.samples)
+                .map(|x| shifted(*x, offset))
+                .collect());
         }
         let mut filters = filters(sensor, self.inner_rate).map_err(|source| {
             let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
@@ -87,7 +94,24 @@ impl Sampling {
             .iter()
             .map(|x| filters.iter_mut().fold(x * gain, |x, f| f.run(x)))
             .collect();
-        Ok(self.decimator.apply(&filtered))
+        let mut recorded = self.decimator.apply(&filtered);
+        if let Some(hum) = sensor.chain.hum {
+            let rate = self.inner_rate / self.factor as f64;
+            for (i, x) in recorded.iter_mut().enumerate() {
+                let time = start + i as f64 / rate;
+                let (_, cosine) = Scalar::sin_cos(TAU * hum.frequency * time + hum.phase);
+                *x += hum.amplitude * cosine;
+            }
+        }
+        Ok(recorded)
+    }
+}
+
+/// An angle from 0 to one turn, turned on by `offset`.
+fn shifted(angle: f64, offset: f64) -> f64 {
+    match offset {
+        0.0 => angle,
+        offset => (angle + offset).rem_euclid(TAU),
     }
 }
 
@@ -115,12 +139,15 @@ impl Measured {
     /// The quantity at an instant, SI.
     pub fn value<S: Real>(&self, at: &Evaluation<S>) -> S {
         match *self {
-            Measured::CrossheadAcceleration { throw } => at.throws[throw].accelerations.crosshead,
+            Measured::CrossheadAcceleration { throw } => {
+                let throw = &at.throws[throw];
+                throw.accelerations.crosshead + throw.carried
+            }
             Measured::CrossheadLateralAcceleration { throw } => {
                 at.throws[throw].accelerations.guide.x
             }
-            Measured::FrameAcceleration { axis: Axis::X } => at.frame.x,
-            Measured::FrameAcceleration { axis: Axis::Y } => at.frame.y,
+            Measured::FrameAcceleration { axis: Axis::X } => at.frame_acceleration().x,
+            Measured::FrameAcceleration { axis: Axis::Y } => at.frame_acceleration().y,
             Measured::CylinderPressure { throw, end } => {
                 let gas = &at.throws[throw].gas;
                 match end {

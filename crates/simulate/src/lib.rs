@@ -35,7 +35,7 @@ pub use record::{Error, Record, simulate, simulate_later};
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
-    Axis, Chain, ChamberEnd, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
+    Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
 pub use settings::{Settings, Transient};
 pub use trace::{JointTrace, ThrowTrace, Trace};

@@ -110,7 +110,7 @@ pub fn simulate_later(
     let series = sensors
         .iter()
         .zip(&inner)
-        .map(|(sensor, inner)| sampling.record(sensor, machine, inner))
+        .map(|(sensor, inner)| sampling.record(sensor, machine, start, inner))
         .collect::<Result<_, _>>()?;
     Ok(Record {
         sample_rate: settings.sample_rate,

@@ -96,17 +96,18 @@ fn tangents<const N: usize>(
         sensors
             .iter()
             .zip(inner)
-            .map(|(sensor, inner)| sampling.record(sensor, machine, inner))
+            .map(|(sensor, inner)| sampling.record(sensor, machine, start, inner))
             .collect::<Result<Vec<_>, _>>()
     };
     let series = record(sensors, &values)?;
+    let linear: Vec<Sensor> = sensors.iter().map(Sensor::without_additions).collect();
     let mut derivatives = Vec::with_capacity(moved.len());
     for (i, moved) in moved.iter().enumerate() {
         let tangents: Vec<Vec<f64>> = inner
             .iter()
             .map(|x| x.iter().map(|x| x.tangent[i]).collect())
             .collect();
-        let mut derivative = record(sensors, &tangents)?;
+        let mut derivative = record(&linear, &tangents)?;
         // What moves in the chain itself comes on top.
         if moved.sensors != sensors {
             let other = record(&moved.sensors, &values)?;

@@ -9,6 +9,16 @@ pub struct Sensor {
     pub chain: Chain,
 }
 
+impl Sensor {
+    /// The sensor without what its chain adds: what is left is linear, and takes derivatives.
+    pub(crate) fn without_additions(&self) -> Self {
+        let mut sensor = self.clone();
+        sensor.chain.hum = None;
+        sensor.chain.angle_offset = 0.0;
+        sensor
+    }
+}
+
 /// A quantity that a sensor can see. `throw` is an index into the machine's throws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measured {
@@ -57,7 +67,7 @@ pub enum ChamberEnd {
 }
 
 /// What happens between the quantity and the recorded number, in this order: mounting resonance,
-/// low-pass, gain, noise, range, quantisation.
+/// low-pass, gain, hum, noise, range, quantisation; of an encoder the offset of its zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// Resonance of the sensor on its mount.
@@ -66,6 +76,10 @@ pub struct Chain {
     pub low_pass: Option<LowPass>,
     /// Factor on the value (1 when calibrated right).
     pub gain: f64,
+    /// Mains hum on the cable, after the gain.
+    pub hum: Option<Hum>,
+    /// What an encoder reads at angle 0, rad.
+    pub angle_offset: f64,
     /// Noise added.
     pub noise: Option<Noise>,
     /// Largest magnitude that is recorded, in the channel's unit; beyond it the record is flat.
@@ -80,6 +94,8 @@ impl Default for Chain {
             mounting: None,
             low_pass: None,
             gain: 1.0,
+            hum: None,
+            angle_offset: 0.0,
             noise: None,
             range: None,
             bits: None,
@@ -94,6 +110,17 @@ pub struct Resonance {
     pub frequency: f64,
     /// Damping ratio ζ.
     pub damping_ratio: f64,
+}
+
+/// A sine whose frequency has nothing to do with the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hum {
+    /// Amplitude, in the channel's unit.
+    pub amplitude: f64,
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Phase of the cosine at the start of the machine, rad.
+    pub phase: f64,
 }
 
 /// A Butterworth low-pass.

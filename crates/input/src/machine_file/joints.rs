@@ -183,7 +183,27 @@ pub(super) fn guide(joint: &Option<Joint<GuideFaces>>) -> Result<Fitted<Guide>, 
     }
 }
 
+/// The section of a joint, where it has one.
+pub(super) fn section(joint: &mut Option<Joint<Bearing>>) -> Option<&mut Bearing> {
+    match joint {
+        Some(Or::Section(bearing)) => Some(bearing),
+        Some(Or::Scalar(Ideal)) | None => None,
+    }
+}
+
 impl Bearing {
+    /// The clearance, m; 0 where the joint is ideal.
+    pub(super) fn gap(&self) -> f64 {
+        let Gap(clearance) = self.clearance;
+        clearance.si()
+    }
+
+    /// Makes the clearance larger by `more`, m; it does not fall below 0.
+    pub(super) fn widen(&mut self, more: f64) {
+        let wider = NonNegative::new(self.gap() + more);
+        self.clearance = Gap(wider.unwrap_or(NonNegative::ZERO));
+    }
+
     fn resolve(&self) -> Result<Fitted<Revolute>, Error> {
         let radius = self.journal_radius;
         let clearance = self.clearance.below("journal_radius", radius)?;

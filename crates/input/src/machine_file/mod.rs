@@ -5,7 +5,7 @@
 //! that does not say otherwise, key by key.
 
 mod contact;
-mod effects;
+pub(crate) mod effects;
 mod joints;
 mod relation;
 mod sections;
@@ -16,8 +16,8 @@ use crate::error::Error;
 use crate::quantity::{Angle, Length, Positive, Quantity, Speed};
 use crate::yaml::{self, Document};
 use crate::{reader, schema};
-use effects::EffectSection;
-use joints::{Joints, ThrowJoints};
+use effects::{EffectSection, Effects};
+use joints::{Bearing, Joints, ThrowJoints};
 use mechanism::{Direction, Machine, Throw};
 pub(crate) use relation::RelationSection;
 use schemars::JsonSchema;
@@ -25,7 +25,7 @@ use sections::{Crank, Crosshead, Cylinder, FrameSection, Gravity, Rod};
 use sensors::SensorSection;
 use serde::Deserialize;
 use serde_json::Value;
-use simulate::Sensor;
+use simulate::{Chain, Measured, Sensor};
 use std::path::Path;
 
 /// A reciprocating compressor. Every physical value is a text with its unit.
@@ -62,7 +62,7 @@ pub(crate) struct Sections {
     /// What is measured.
     #[serde(default)]
     sensors: Vec<SensorSection>,
-    /// Physics beyond the first model, each effect at most once.
+    /// Physics beyond the first model, each effect at most once at its place.
     #[serde(default)]
     effects: Vec<EffectSection>,
 }
@@ -124,6 +124,17 @@ pub struct Resolved {
     pub sensors: Vec<Sensor>,
     /// Up to which clearances it is healthy.
     pub normal_clearance: NormalClearance,
+    effects: Effects,
+}
+
+impl Resolved {
+    /// A sensor that is perfect but for what the effects make of it.
+    pub fn perfect_sensor(&self, measured: Measured) -> Sensor {
+        let chain = Chain::default();
+        let mut sensor = Sensor { measured, chain };
+        self.effects.sense(&mut sensor, &self.machine.throws);
+        sensor
+    }
 }
 
 /// Clearances up to which joints count as healthy, m.
@@ -213,7 +224,31 @@ fn locate(document: &Document, error: Error) -> Error {
 }
 
 impl Sections {
+    /// The machine with its effects.
     fn resolve(&self) -> Result<Resolved, Error> {
+        let under = |error: Error| error.under("effects");
+        let effects = Effects::new(&self.effects).map_err(under)?;
+        let mut prepared = self.clone();
+        effects.prepare(&mut prepared).map_err(under)?;
+        let (mut machine, normal_clearance) = prepared.machine()?;
+        effects.act(&mut machine).map_err(under)?;
+        let sensors = sensors::resolve(&self.sensors, &machine);
+        let mut sensors = sensors.map_err(|e| e.under("sensors"))?;
+        for sensor in &mut sensors {
+            effects.sense(sensor, &machine.throws);
+        }
+        Ok(Resolved {
+            name: self.name.clone(),
+            speed: self.speed.si(),
+            machine,
+            sensors,
+            normal_clearance,
+            effects,
+        })
+    }
+
+    /// The machine without effects, and up to which clearances it is healthy.
+    fn machine(&self) -> Result<(Machine, NormalClearance), Error> {
         let top = self.joints.clone().unwrap_or_default();
         let main = joints::bearing(&top.main).map_err(|e| e.under("joints.main"))?;
         let crankshaft = self.crank.crankshaft(&main.joint);
@@ -228,19 +263,38 @@ impl Sections {
             gravity_x,
             gravity_y,
             frame: self.frame.as_ref().map(FrameSection::resolve),
-            effects: effects::resolve(&self.effects).map_err(|e| e.under("effects"))?,
+            effects: Vec::new(),
         };
-        let sensors = sensors::resolve(&self.sensors, &machine).map_err(|e| e.under("sensors"))?;
-        Ok(Resolved {
-            name: self.name.clone(),
-            speed: self.speed.si(),
-            machine,
-            sensors,
-            normal_clearance: NormalClearance {
-                main: main.normal_clearance,
-                throws: normal,
-            },
-        })
+        let normal = NormalClearance {
+            main: main.normal_clearance,
+            throws: normal,
+        };
+        Ok((machine, normal))
+    }
+
+    /// The sections of the bearings at `place`; none where a joint has no section.
+    fn bearings(&mut self, place: &effects::Place) -> Result<Vec<Option<&mut Bearing>>, Error> {
+        let names = self.throws.iter().flatten().map(|t| t.name.as_str());
+        let only = place.throw(names)?;
+        if place.joint == Some(effects::Joint::Main) {
+            let joints = self.joints.as_mut();
+            return Ok(vec![joints.and_then(|j| joints::section(&mut j.main))]);
+        }
+        let small = place.joint == Some(effects::Joint::SmallEnd);
+        let Some(throws) = &mut self.throws else {
+            let joints = self.joints.as_mut();
+            return Ok(vec![joints.and_then(|j| match small {
+                true => joints::section(&mut j.small_end),
+                false => joints::section(&mut j.big_end),
+            })]);
+        };
+        let throws = throws.iter_mut().enumerate();
+        let throws = throws.filter(|(i, _)| only.is_none_or(|only| only == *i));
+        let bearings = throws.map(|(_, throw)| match small {
+            true => joints::section(&mut throw.joints.small_end),
+            false => joints::section(&mut throw.joints.big_end),
+        });
+        Ok(bearings.collect())
     }
 
     fn throws(&self, top: Joints) -> Result<(Vec<Throw>, Vec<ThrowNormalClearance>), Error> {

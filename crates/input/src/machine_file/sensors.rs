@@ -81,6 +81,7 @@ macro_rules! sensor {
                     noise: self.noise.as_ref().map(Noise::resolve),
                     range: self.range.map(|range| range.si()),
                     bits: self.bits.map(|bits| bits.get()),
+                    ..Chain::default()
                 }
             }
         }

@@ -1,44 +1,103 @@
 //! The catalogue: physics that a first model leaves out, one effect per file.
 //!
-//! An effect is a line in the machine file; where the catalogue's list is empty the model is the
-//! one of MODEL.md. A new effect is a file here, a variant, and an arm where it acts.
+//! An effect is a line in the machine file; where the list is empty the model is the one of
+//! MODEL.md. A new effect that acts in the equations is a file here and a line in [`catalogue!`]:
+//! a struct of parameters, and those methods of [`Acts`] that say where it acts. Effects that only
+//! change the machine's data (a clearance, the frame) or what sensors make of it need nothing here.
 
-mod ring_friction;
-mod valve_loss;
+mod acting;
 
-pub use ring_friction::RingFriction;
-pub use valve_loss::ValveLoss;
+pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring};
 
-use crate::lift::alternatives;
-use scalar::Scalar;
+use crate::lift::{alternatives, parameters};
 
-alternatives! {
-    /// An effect, with its parameters. Each acts on every throw.
-    pub enum Effect<S> {
-        /// Pressure drop across open valves.
-        ValveLoss(ValveLoss),
-        /// Friction of piston rings and packing.
-        RingFriction(RingFriction),
+/// The one list of the effects that act in the equations: it makes the modules, [`Law`] and its
+/// dispatch.
+macro_rules! catalogue {
+    ($( $module:ident::$kind:ident, )*) => {
+        $( mod $module; pub use $module::$kind; )*
+
+        alternatives! {
+            /// What an effect does, with its parameters.
+            pub enum Law<S> {
+                $( #[doc = concat!("See [`", stringify!($kind), "`].")] $kind($kind), )*
+            }
+        }
+
+        impl<S: scalar::Scalar> Law<S> {
+            /// Where the law acts.
+            pub(crate) fn acts(&self) -> &dyn Acts<S> {
+                match self {
+                    $( Law::$kind(law) => law, )*
+                }
+            }
+        }
+    };
+}
+
+catalogue! {
+    valve_loss::ValveLoss,
+    ring_friction::RingFriction,
+    suction_unloading::SuctionUnloading,
+    ring_leakage::RingLeakage,
+    heat_transfer::HeatTransfer,
+    gas_pulsation::GasPulsation,
+    rotating_unbalance::RotatingUnbalance,
+    misalignment::Misalignment,
+    rod_flexibility::RodFlexibility,
+    squeeze_film::SqueezeFilm,
+    bearing_ovality::BearingOvality,
+}
+
+pub use rotating_unbalance::Shaken;
+
+parameters! {
+    /// An effect of the catalogue at its place.
+    pub struct Effect<S> {
+        /// What it does.
+        pub law: Law<S>,
+        fixed {
+            /// Where.
+            pub place: Place,
+        }
     }
 }
 
-impl<S: Scalar> Effect<S> {
-    /// Pressures at which the suction and the discharge valve hold the cylinder while open, Pa,
-    /// at piston speed `piston` relative to the crank pin's speed.
-    #[inline]
-    pub(crate) fn line_pressures(&self, [suction, discharge]: [S; 2], piston: S) -> [S; 2] {
-        match self {
-            Effect::ValveLoss(loss) => loss.line_pressures([suction, discharge], piston),
-            Effect::RingFriction(_) => [suction, discharge],
-        }
-    }
+/// Where an effect acts, as far as its law leaves a choice. What is left open means everywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Index of the throw.
+    pub throw: Option<usize>,
+    /// The joint.
+    pub joint: Option<Joint>,
+    /// The chamber of the cylinder.
+    pub end: Option<End>,
+}
 
-    /// Force on the crosshead body along x, N, at its speed (m/s) and head-end pressure (Pa).
-    #[inline]
-    pub(crate) fn piston_force(&self, speed: S, pressure: S) -> S {
-        match self {
-            Effect::RingFriction(rings) => rings.force(speed, pressure),
-            Effect::ValveLoss(_) => S::zero(),
-        }
+/// A joint of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// Crankshaft in frame.
+    Main,
+    /// Crank pin in rod.
+    BigEnd,
+    /// Crosshead pin in rod.
+    SmallEnd,
+}
+
+/// A chamber of a cylinder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Between piston and head.
+    Head,
+    /// Between piston and crank-end cover.
+    Crank,
+}
+
+impl<S> Law<S> {
+    /// The law at every place where it can act.
+    pub fn everywhere(self) -> Effect<S> {
+        let place = Place::default();
+        Effect { law: self, place }
     }
 }

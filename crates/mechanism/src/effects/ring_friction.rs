@@ -8,6 +8,7 @@
 //!
 //! Signature: a step at both dead centres, odd orders; grows with pressure, not with speed.
 
+use super::{Acts, PistonAt};
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -23,10 +24,10 @@ parameters! {
     }
 }
 
-impl<S: Scalar> RingFriction<S> {
-    #[inline]
-    pub(super) fn force(&self, speed: S, pressure: S) -> S {
-        let size = self.coulomb_force + self.per_pressure * pressure;
-        -(size * speed) / (speed * speed + self.slip_speed * self.slip_speed).sqrt()
+impl<S: Scalar> Acts<S> for RingFriction<S> {
+    fn piston_force(&self, at: &PistonAt<S>) -> S {
+        let (speed, slip) = (at.speed, self.slip_speed);
+        let size = self.coulomb_force + self.per_pressure * at.pressure;
+        -(size * speed) / (speed * speed + slip * slip).sqrt()
     }
 }

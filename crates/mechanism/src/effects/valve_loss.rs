@@ -2,12 +2,14 @@
 //! square of the piston speed (Costagliola 1950, in the dimensionless form below).
 //!
 //! ```text
-//! discharge valve open: p = pd (1 + ζd u²)      suction valve open: p = ps (1 − ζs u²)
+//! discharge valve open: p = pd (1 − ζd u |u|)      suction valve open: p = ps (1 − ζs u |u|)
 //! ```
 //!
-//! u is the piston speed over the crank pin's speed R ω. Signature: the plateaus of the indicator
-//! diagram bulge at mid-stroke; orders 2 to 6; dissipates work.
+//! u is the rate at which the chamber grows, as piston speed over the crank pin's speed R ω: below
+//! 0 while gas flows out. Signature: the plateaus of the indicator diagram bulge at mid-stroke;
+//! orders 2 to 6; dissipates work.
 
+use super::{Acts, ChamberAt};
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -21,13 +23,12 @@ parameters! {
     }
 }
 
-impl<S: Scalar> ValveLoss<S> {
-    #[inline]
-    pub(super) fn line_pressures(&self, [suction, discharge]: [S; 2], piston: S) -> [S; 2] {
-        let u2 = piston * piston;
+impl<S: Scalar> Acts<S> for ValveLoss<S> {
+    fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
+        let flow = at.growth * at.growth.abs();
         [
-            suction * (S::one() - self.suction * u2),
-            discharge * (S::one() + self.discharge * u2),
+            suction * (S::one() - self.suction * flow),
+            discharge * (S::one() - self.discharge * flow),
         ]
     }
 }

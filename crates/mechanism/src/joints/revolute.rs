@@ -2,6 +2,7 @@
 
 use super::contact::{ContactLaw, NormalForce};
 use super::friction::FrictionLaw;
+use crate::effects::{AtJoint, JointAt};
 use crate::lift::{Lift, parameters};
 use crate::mode::{ContactMode, flagged};
 use crate::plane::{Vec2, origin, turned};
@@ -113,6 +114,16 @@ pub struct JointState<S> {
     pub(crate) coefficient: S,
 }
 
+/// The surfaces of a joint at an instant.
+struct Surface<S> {
+    normal: Vec2<S>,
+    /// Length of the penetration's gradient; none where it is 1.
+    steepness: Option<S>,
+    penetration: S,
+    penetration_rate: S,
+    slip: S,
+}
+
 impl<S: Scalar> JointState<S> {
     /// An ideal joint.
     pub(crate) fn ideal() -> Self {
@@ -143,19 +154,19 @@ impl<S: Scalar> Clearance<S> {
         &self,
         offset: Vec2<S>,
         rate: Vec2<S>,
-        [journal, bearing]: [S; 2],
+        spins: [S; 2],
         mode: &ContactMode<S>,
+        effects: &AtJoint<'_, S>,
     ) -> JointState<S> {
-        let distance = offset.dot(&offset).sqrt();
-        // A centred journal has no direction; any will do, as nothing acts there.
-        let least = S::constant(1e-300);
-        let x = S::select(distance.lt(least), least, offset.x);
-        let normal = Vec2::new(x, offset.y) / distance.max(least);
+        let surface = self.surface(offset, rate, spins, effects);
+        let Surface {
+            normal,
+            steepness,
+            penetration,
+            penetration_rate,
+            slip,
+        } = surface;
         let tangent = turned(normal);
-        let penetration = distance - self.clearance;
-        let penetration_rate = normal.dot(&rate);
-        let slip = tangent.dot(&rate) + journal * self.journal_radius
-            - bearing * (self.journal_radius + distance);
         let coefficient = match self.model {
             JointModel::MasslessLink => S::zero(),
             JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
@@ -164,13 +175,23 @@ impl<S: Scalar> Clearance<S> {
             JointModel::ThreeMode => self.contact.force(penetration, penetration_rate, mode),
             JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
         };
-        let normal_force = flagged(mode.pressed, raw, S::zero());
+        let pressed = flagged(mode.pressed, raw, S::zero());
         let stored = flagged(mode.touching, elastic, S::zero());
+        let normal_force = match steepness {
+            None => pressed,
+            Some(steepness) => pressed * steepness,
+        };
         let friction_force = coefficient * normal_force;
         let arm = match self.model {
             JointModel::MasslessLink => origin(),
             JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
         };
+        let film = effects.film_force(&JointAt {
+            penetration,
+            rate: penetration_rate,
+            clearance: self.clearance,
+            journal_radius: self.journal_radius,
+        });
         JointState {
             offset,
             rate,
@@ -180,11 +201,56 @@ impl<S: Scalar> Clearance<S> {
             slip,
             normal_force,
             friction_force,
-            force: -(normal * normal_force) - tangent * friction_force,
+            force: -(normal * (normal_force - film)) - tangent * friction_force,
             sign,
-            damping_power: (normal_force - stored) * penetration_rate,
+            damping_power: (pressed - stored - film) * penetration_rate,
             arm,
             coefficient,
+        }
+    }
+
+    /// The surfaces at offset `e`, as the bearing's shape has them.
+    ///
+    /// With a clearance c(γ) in the direction γ the penetration is δ = |e| − c(γ − φ), φ being the
+    /// bearing's angle. Its gradient n − (c'/|e|) t is the normal; that the force follows it, through
+    /// the journal's centre, conserves energy.
+    #[inline]
+    fn surface(
+        &self,
+        offset: Vec2<S>,
+        rate: Vec2<S>,
+        [journal, bearing]: [S; 2],
+        effects: &AtJoint<'_, S>,
+    ) -> Surface<S> {
+        let distance = offset.dot(&offset).sqrt();
+        // A centred journal has no direction; any will do, as nothing acts there.
+        let least = S::constant(1e-300);
+        let x = S::select(distance.lt(least), least, offset.x);
+        let normal = Vec2::new(x, offset.y) / distance.max(least);
+        let slip = |tangent: Vec2<S>, distance: S| {
+            tangent.dot(&rate) + journal * self.journal_radius
+                - bearing * (self.journal_radius + distance)
+        };
+        let Some([wider, change]) = effects.bearing_shape(normal) else {
+            return Surface {
+                normal,
+                steepness: None,
+                penetration: distance - self.clearance,
+                penetration_rate: normal.dot(&rate),
+                slip: slip(turned(normal), distance),
+            };
+        };
+        // Near the centre, where nothing touches, the direction of the gradient does not matter.
+        let tilt = change / distance.max(self.clearance * 0.1);
+        let gradient = normal - turned(normal) * tilt;
+        let steepness = (tilt * tilt + 1.0).sqrt();
+        let normal = gradient / steepness;
+        Surface {
+            normal,
+            steepness: Some(steepness),
+            penetration: distance - self.clearance - wider,
+            penetration_rate: gradient.dot(&rate) + change * bearing,
+            slip: slip(turned(normal), normal.dot(&offset)),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::single_stage;
 use integrate::System;
 use mechanism::drive::{Drive, MotorLine};
-use mechanism::effects::{Effect, RingFriction, ValveLoss};
+use mechanism::effects::{Effect, Law, RingFriction, ValveLoss};
 use mechanism::gas::CrankEnd;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use mechanism::joints::friction::{Adams, Ambrosio, Coulomb, FrictionLaw};
@@ -155,16 +155,17 @@ fn throw(models: &'static [JointModel]) -> impl Strategy<Value = Throw> {
 }
 
 fn effects() -> impl Strategy<Value = Vec<Effect>> {
-    let rings = Effect::RingFriction(RingFriction {
+    let rings = Law::RingFriction(RingFriction {
         coulomb_force: 30.0,
         per_pressure: 2e-4,
         slip_speed: 0.02,
     });
-    let valves = Effect::ValveLoss(ValveLoss {
+    let valves = Law::ValveLoss(ValveLoss {
         suction: 0.1,
         discharge: 0.2,
     });
-    proptest::sample::subsequence(vec![rings, valves], 0..=2)
+    let all = [rings, valves].map(Law::everywhere).to_vec();
+    proptest::sample::subsequence(all, 0..=2)
 }
 
 /// A machine of one or two throws whose joints are of the given models, on a free crank or not,

@@ -1,0 +1,33 @@
+//! More clearance in a joint than the file says.
+//!
+//! The clearance is added before the contact is worked out, so that whatever follows the clearance
+//! (see `relation`) follows it here too; an ideal joint becomes clear with the contact that stands in
+//! its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
+
+use super::section::{Act, Section, effect};
+use crate::error::Error;
+use crate::machine_file::Sections;
+use crate::quantity::{Length, NonNegative};
+
+effect! {
+    /// Clearance on top of the joint's own. The joint needs a section, with journal_radius and
+    /// contact; with `clearance: ideal` it becomes clear.
+    ExtraClearance at [throw, joint]:
+    "The joint has more play than was believed." {
+        /// By how much the radial clearance is larger.
+        clearance: NonNegative<Length>, 2e-6 to 5e-4, start 5e-5, absent 0.0;
+    }
+}
+
+impl Act for ExtraClearance {
+    fn prepare(&self, file: &mut Sections) -> Result<(), Error> {
+        for bearing in file.bearings(&self.place())? {
+            let Some(bearing) = bearing else {
+                let expected = "a joint with a section that has journal_radius and contact";
+                return Err(Error::clash("joint", expected));
+            };
+            bearing.widen(self.clearance());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,36 @@
+//! Mains hum on the cable of an accelerometer.
+//!
+//! A sine of the line's frequency, which has nothing to do with the crank: its phase counts from the
+//! start of the machine, and in the mean over revolutions it fades as they become many, unless it
+//! meets an order (50 Hz is order 6 at 500 rpm).
+
+use super::section::{Act, Measure, Section, effect};
+use crate::quantity::{Acceleration, Angle, Frequency, NonNegative, Positive, Quantity};
+use simulate::{Hum, Sensor};
+
+effect! {
+    /// A sine of constant frequency on accelerometers.
+    MainsHum at [throw, measure]:
+    "The cable picks up the mains: a hum of 50 or 60 Hz whatever the speed." {
+        /// Amplitude, in the unit of the sensor.
+        amplitude: NonNegative<Acceleration>, 0.01 to 200.0, start 5.0, absent 0.0;
+        /// Frequency; 50 Hz where it is left out.
+        frequency: Positive<Frequency>, 45.0 to 400.0, start 50.0;
+        /// Phase at the start of the machine; 0 deg where it is left out.
+        phase: Quantity<Angle>, turn, start 0.0;
+    }
+}
+
+impl Act for MainsHum {
+    fn sense(&self, sensor: &mut Sensor, throws: &[&str]) {
+        let place = self.place();
+        if place.measure != Some(Measure::CylinderPressure) && place.means(&sensor.measured, throws)
+        {
+            sensor.chain.hum = Some(Hum {
+                amplitude: self.amplitude(),
+                frequency: self.frequency(),
+                phase: self.phase(),
+            });
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! A sensor that resonates on its mount.
+//!
+//! A damped mass on a spring with the gain 1 at rest (Harris 2002, chapter 12): the measuring
+//! chain's own `mounting`. Signature: one and the same ring after every blow, whatever its cause and
+//! the speed.
+
+use super::section::{Act, effect};
+use crate::quantity::{Frequency, FromZero, Positive, Quantity, Ratio};
+use simulate::{Resonance, Sensor};
+
+effect! {
+    /// Resonance of a sensor on its mount; it takes the place of the sensor's own.
+    SensorResonance at [throw, measure]:
+    "The sensor rings on its mount after every blow, always at the same pitch." {
+        /// Natural frequency; 2 kHz where it is left out. The effect is gone far above the band of
+        /// the recording.
+        frequency: Positive<Frequency>, 100.0 to 20000.0, start 2000.0;
+        /// Damping, of the critical one; 5 % where it is left out.
+        damping_ratio: Quantity<Ratio, FromZero>, 0.005 to 0.7, start 0.05;
+    }
+}
+
+impl Act for SensorResonance {
+    fn sense(&self, sensor: &mut Sensor, throws: &[&str]) {
+        use super::section::Section;
+        if self.place().means(&sensor.measured, throws) {
+            sensor.chain.mounting = Some(Resonance {
+                frequency: self.frequency(),
+                damping_ratio: self.damping_ratio(),
+            });
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Clearance that changes as the bearing warms up.
+//!
+//! Journal and bearing of different warmth or material change the clearance in proportion to the
+//! rise of temperature, c = c0 + (α_B R_B − α_J R_J) ΔT; friction heats the bearing with a power of
+//! the speed: the first at a load that stays (Coulomb), the second in oil (Petroff 1883). With the
+//! change stated at a speed,
+//!
+//! ```text
+//! c = c0 + change (speed / at_speed)^exponent
+//! ```
+//!
+//! constant within a run. Signature: extra clearance that grows, or falls, from run to run with the
+//! speed.
+
+use super::section::{Act, Section, effect};
+use crate::error::Error;
+use crate::machine_file::Sections;
+use crate::quantity::{FromZero, Length, Number, Positive, Quantity, Speed};
+use scalar::Scalar;
+
+effect! {
+    /// Change of a joint's clearance with the speed, by the heat of its friction: change × (speed /
+    /// at_speed)^exponent. Nothing in an ideal joint.
+    ThermalClearance at [throw, joint]:
+    "The bearing grows warm, and its play changes with the speed at which the machine runs." {
+        /// Change of the radial clearance at at_speed.
+        change: Quantity<Length>, -2e-4 to 2e-4, start 3e-5, absent 0.0;
+        /// Speed at which it changes by that much; 500 rpm where it is left out.
+        at_speed: Positive<Speed>, 10.0 to 200.0, start 52.359877559829886;
+        /// Power of the speed: 1 for dry friction (where it is left out), 2 for oil.
+        exponent: Number<FromZero>, 0.5 to 3.0, start 1.0;
+    }
+}
+
+impl Act for ThermalClearance {
+    fn prepare(&self, file: &mut Sections) -> Result<(), Error> {
+        let speed = file.speed.si() / self.at_speed();
+        let change = self.change() * Scalar::powf(speed, self.exponent());
+        for bearing in file.bearings(&self.place())?.into_iter().flatten() {
+            if bearing.gap() > 0.0 {
+                if bearing.gap() + change <= 0.0 {
+                    let expected = format_args!("a change that leaves some of {} m", bearing.gap());
+                    return Err(Error::clash("change", expected));
+                }
+                bearing.widen(change);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,208 @@
+//! Where effects act in the equations: one method a place, which does nothing unless a law says so.
+
+use super::{Effect, End, Joint, Place};
+use crate::plane::{Vec2, turned};
+use scalar::Scalar;
+
+/// What a law does at each place where effects can act. A law implements the methods that it needs.
+pub(crate) trait Acts<S: Scalar> {
+    /// Pressures at which the suction and the discharge valve hold a chamber while open, Pa, from
+    /// those without this effect.
+    fn line_pressures(&self, lines: [S; 2], _at: &ChamberAt<S>) -> [S; 2] {
+        lines
+    }
+
+    /// Crank angle after the dead centre until which the suction valve is held open, rad; none
+    /// where it closes by itself.
+    fn suction_held(&self) -> Option<S> {
+        None
+    }
+
+    /// True where the gas of a closed chamber drifts off its polytrope, so that the chambers need
+    /// a state.
+    fn drifts(&self) -> bool {
+        false
+    }
+
+    /// Rate of the logarithm of the pressure in a closed chamber beyond its polytrope, 1/s.
+    fn drift(&self, _at: &ChamberAt<S>) -> S {
+        S::zero()
+    }
+
+    /// Force on the crosshead body along x, N.
+    fn piston_force(&self, _at: &PistonAt<S>) -> S {
+        S::zero()
+    }
+
+    /// Acceleration of the frame, on which everything stands, at crank angle `_angle` (rad) and
+    /// speed `_speed` (rad/s), in the machine's coordinates, m/s²; none where the law moves no frame.
+    fn frame_acceleration(&self, _angle: S, _speed: S) -> Option<Vec2<S>> {
+        None
+    }
+
+    /// The spring that a connecting rod is along its axis; none where it is rigid.
+    fn rod(&self) -> Option<RodSpring<S>> {
+        None
+    }
+
+    /// How much wider than its clearance a bearing is in the direction of angle γ (cosine, sine)
+    /// from its own x axis, m, and the derivative of that by γ, m/rad; none where it is round.
+    fn bearing_shape(&self, _direction: Vec2<S>) -> Option<[S; 2]> {
+        None
+    }
+
+    /// Force of the bearing on the journal along the normal, outward, N.
+    fn film_force(&self, _at: &JointAt<S>) -> S {
+        S::zero()
+    }
+}
+
+/// A chamber at an instant, as effects see it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChamberAt<S> {
+    /// Crank angle since the throw's top dead centre, rad.
+    pub angle: S,
+    /// Rate of the distance from piston to cover over the crank pin's speed: above 0 while the
+    /// chamber grows.
+    pub growth: S,
+    /// Distance from piston to cover, m.
+    pub distance: S,
+    /// Area of the piston on this side, m².
+    pub area: S,
+    /// Radius of the piston, m.
+    pub radius: S,
+    /// Mean speed of the piston, m/s.
+    pub mean_speed: S,
+    /// Pressure, Pa.
+    pub pressure: S,
+    /// Pressure on the other side of the piston, Pa.
+    pub across: S,
+    /// Temperature of the gas over that in the suction line.
+    pub warmth: S,
+    /// Suction pressure, Pa.
+    pub suction: S,
+    /// Polytropic exponent of the stroke.
+    pub exponent: S,
+    /// 1 while both valves are closed.
+    pub closed: S,
+}
+
+/// Piston and crosshead at an instant, as effects see them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PistonAt<S> {
+    /// Speed along x, m/s.
+    pub speed: S,
+    /// Pressure at the head end, Pa.
+    pub pressure: S,
+    /// Crank angle since the throw's top dead centre, rad.
+    pub angle: S,
+    /// Speed of the crank, rad/s.
+    pub crank_speed: S,
+    /// Mass of crosshead, piston rod and piston, kg.
+    pub mass: S,
+}
+
+/// A joint with clearance at an instant, as effects see it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointAt<S> {
+    /// Penetration, m: below 0 while the surfaces are apart.
+    pub penetration: S,
+    /// Its rate, m/s.
+    pub rate: S,
+    /// Radial clearance, m.
+    pub clearance: S,
+    /// Radius of the journal, m.
+    pub journal_radius: S,
+}
+
+/// An elastic connecting rod.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RodSpring<S> {
+    /// Stiffness between the eyes, N/m.
+    pub stiffness: S,
+    /// Damping as a share of the critical one of the free rod.
+    pub damping_ratio: S,
+}
+
+/// The effects that act on one throw, or with none on the shaft.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Acting<'a, S> {
+    effects: &'a [Effect<S>],
+    throw: Option<usize>,
+}
+
+impl<'a, S: Scalar> Acting<'a, S> {
+    /// Those that act on the throw with the index `throw`.
+    pub fn on_throw(effects: &'a [Effect<S>], throw: usize) -> Self {
+        let throw = Some(throw);
+        Self { effects, throw }
+    }
+
+    /// Those that act on the shaft and what it turns in.
+    pub fn on_shaft(effects: &'a [Effect<S>]) -> Self {
+        let throw = None;
+        Self { effects, throw }
+    }
+
+    fn wherever(self, holds: impl Fn(&Place) -> bool) -> impl Iterator<Item = &'a dyn Acts<S>> {
+        let here = move |place: &Place| place.throw.is_none() || place.throw == self.throw;
+        let acting = move |effect: &&'a Effect<S>| here(&effect.place) && holds(&effect.place);
+        self.effects
+            .iter()
+            .filter(acting)
+            .map(|effect| effect.law.acts())
+    }
+
+    /// All of them.
+    pub fn all(self) -> impl Iterator<Item = &'a dyn Acts<S>> {
+        self.wherever(|_| true)
+    }
+
+    /// The spring that the throw's connecting rod is; none where it is rigid.
+    pub fn rod(self) -> Option<RodSpring<S>> {
+        self.all().find_map(|effect| effect.rod())
+    }
+
+    /// Acceleration of the frame, m/s²; none where it stands still.
+    pub fn frame_acceleration(self, angle: S, speed: S) -> Option<Vec2<S>> {
+        let moves = self
+            .all()
+            .filter_map(|effect| effect.frame_acceleration(angle, speed));
+        moves.reduce(|sum, more| sum + more)
+    }
+
+    /// Those that act at a joint.
+    pub fn at_joint(self, joint: Joint) -> impl Iterator<Item = &'a dyn Acts<S>> {
+        self.wherever(move |place| place.joint.is_none_or(|j| j == joint))
+    }
+
+    /// Those that act in a chamber.
+    pub fn at_end(self, end: End) -> impl Iterator<Item = &'a dyn Acts<S>> {
+        self.wherever(move |place| place.end.is_none_or(|e| e == end))
+    }
+}
+
+/// The effects at one joint, whose bearing's x axis points along `axis`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AtJoint<'a, S> {
+    pub acting: Acting<'a, S>,
+    pub joint: Joint,
+    pub axis: Vec2<S>,
+}
+
+impl<S: Scalar> AtJoint<'_, S> {
+    /// How much wider the bearing is in the direction `normal`, m, and the derivative of that by
+    /// the angle, m/rad; none where it is round.
+    pub fn bearing_shape(&self, normal: Vec2<S>) -> Option<[S; 2]> {
+        let direction = Vec2::new(self.axis.dot(&normal), turned(self.axis).dot(&normal));
+        let effects = self.acting.at_joint(self.joint);
+        let shapes = effects.filter_map(|effect| effect.bearing_shape(direction));
+        shapes.reduce(|[a, b], [c, d]| [a + c, b + d])
+    }
+
+    /// Force of the film on the journal along the normal, N.
+    pub fn film_force(&self, at: &JointAt<S>) -> S {
+        let effects = self.acting.at_joint(self.joint);
+        effects.fold(S::zero(), |sum, effect| sum + effect.film_force(at))
+    }
+}

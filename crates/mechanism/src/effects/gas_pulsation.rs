@@ -1,0 +1,42 @@
+//! Pulsation: the pressures of the lines swing with a harmonic of the crank, as in a pipe whose
+//! resonance it meets (API 618; the first term of the series that an acoustic study gives).
+//!
+//! ```text
+//! line = mean (1 + b cos(k α + φ))
+//! ```
+//!
+//! α is the crank angle since the throw's top dead centre. Signature: plateaus that wobble, with
+//! the order k; the same share at every pressure, strongest where k times the speed meets a resonance.
+
+use super::{Acts, ChamberAt};
+use crate::lift::parameters;
+use scalar::Scalar;
+
+parameters! {
+    /// One harmonic of the pressures in the lines.
+    pub struct GasPulsation<S> {
+        /// Its order k, cycles a revolution.
+        pub order: S,
+        /// Amplitude b in the suction line, over its pressure.
+        pub suction: S,
+        /// Its phase φ, rad.
+        pub suction_phase: S,
+        /// Amplitude b in the discharge line, over its pressure.
+        pub discharge: S,
+        /// Its phase φ, rad.
+        pub discharge_phase: S,
+    }
+}
+
+impl<S: Scalar> Acts<S> for GasPulsation<S> {
+    fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
+        let swing = |amplitude: S, phase: S| {
+            let (_, cosine) = (self.order * at.angle + phase).sin_cos();
+            S::one() + amplitude * cosine
+        };
+        [
+            suction * swing(self.suction, self.suction_phase),
+            discharge * swing(self.discharge, self.discharge_phase),
+        ]
+    }
+}

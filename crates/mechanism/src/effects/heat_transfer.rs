@@ -1,0 +1,37 @@
+//! Heat between the gas and the walls of the cylinder: Newton's law of cooling, with the film
+//! coefficient by the Reynolds analogy, h = St ρ cp w (Reynolds 1874; it is Woschni's 1967 with
+//! exponents of 1 in place of 0.8; Adair, Qvale and Pearson 1972 for compressors).
+//!
+//! ```text
+//! d ln p / dt = m St w (A/V) (Tw/T − 1)     while both valves are closed
+//! ```
+//!
+//! w is the mean piston speed, A/V = 2/x + 2/r the walls' area over the gas's volume, T its
+//! temperature from p V = const T. It is the first law, Q̇ = h A (Tw − T) = p V/(m − 1) d ln p/dt, with
+//! cp/R = m/(m − 1). Signature: slopes of the polytropes that are not one exponent; other walls.
+
+use super::{Acts, ChamberAt};
+use crate::lift::parameters;
+use scalar::Scalar;
+
+parameters! {
+    /// Parameters of the heat transfer.
+    pub struct HeatTransfer<S> {
+        /// Stanton number St.
+        pub stanton: S,
+        /// Temperature of the walls over that of the gas in the suction line.
+        pub wall_temperature: S,
+    }
+}
+
+impl<S: Scalar> Acts<S> for HeatTransfer<S> {
+    fn drifts(&self) -> bool {
+        true
+    }
+
+    fn drift(&self, at: &ChamberAt<S>) -> S {
+        let walls = (S::one() / at.distance + S::one() / at.radius) * 2.0;
+        let excess = self.wall_temperature / at.warmth - 1.0;
+        at.exponent * self.stanton * at.mean_speed * walls * excess
+    }
+}

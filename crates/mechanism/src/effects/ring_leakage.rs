@@ -1,0 +1,43 @@
+//! Gas that leaks past the piston rings to the other side of the piston. The rings are throttles in
+//! series, for which Stodola's ellipse holds (Stodola 1927, Steam and Gas Turbines, labyrinths):
+//!
+//! ```text
+//! ṁ = A √((p1² − p2²) / (R T))         d ln p / dt = −n ṁ R T / (p V)     while both valves are closed
+//! ```
+//!
+//! A is the area of one throttle over the root of their number, with its discharge coefficient, R T
+//! the square of `gas_speed`, taken where the gas comes from as in the suction line. The second
+//! equation is the first law for a chamber that loses gas of its own state. At equal pressures the
+//! root is smoothed over 2 % of the suction pressure. Signature: compression too low, expansion too
+//! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
+
+use super::{Acts, ChamberAt};
+use crate::lift::parameters;
+use scalar::Scalar;
+
+/// Difference of pressures, over the suction pressure, below which the flow is laminar.
+const LAMINAR: f64 = 0.02;
+
+parameters! {
+    /// Parameters of leaking rings.
+    pub struct RingLeakage<S> {
+        /// Effective area A, m².
+        pub area: S,
+        /// √(R T) of the gas in the suction line, m/s; 290 for air.
+        pub gas_speed: S,
+    }
+}
+
+impl<S: Scalar> Acts<S> for RingLeakage<S> {
+    fn drifts(&self) -> bool {
+        true
+    }
+
+    fn drift(&self, at: &ChamberAt<S>) -> S {
+        let squares = at.pressure * at.pressure - at.across * at.across;
+        let floor = at.suction * at.suction * (LAMINAR * LAMINAR);
+        let root = squares / (squares * squares + floor * floor).sqrt().sqrt();
+        let volume = at.area * at.distance;
+        -(at.exponent * self.area * self.gas_speed * root) / (at.pressure * volume)
+    }
+}

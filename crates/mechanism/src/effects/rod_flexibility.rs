@@ -1,0 +1,34 @@
+//! A connecting rod that gives along its axis: it stretches evenly by η, a degree of freedom of its
+//! own, as a spring of stiffness k = E A / L between its eyes (the assumed mode of Rayleigh 1877).
+//!
+//! ```text
+//! I (η̈ − (1 + η) φ̇²) = (L − a) u·F_small − a u·F_big − L² (k η + c η̇)
+//! ```
+//!
+//! u is the direction of the rod, I its moment of inertia about the centre of mass at a from the big
+//! end, F the forces on the rod at its ends; see [`crate::throw`] for the rest. Between fixed big end
+//! and crosshead of mass m it swings with ω² = k L² / (I + M a² + m L²). Signature: ringing of a few
+//! hundred Hz after every reversal, of one frequency at every speed.
+
+use super::{Acts, RodSpring};
+use crate::lift::parameters;
+use scalar::Scalar;
+
+parameters! {
+    /// Parameters of the rod.
+    pub struct RodFlexibility<S> {
+        /// How much longer a force makes it, 1/k, m/N.
+        pub compliance: S,
+        /// Damping as a share of the critical one of the free rod.
+        pub damping_ratio: S,
+    }
+}
+
+impl<S: Scalar> Acts<S> for RodFlexibility<S> {
+    fn rod(&self) -> Option<RodSpring<S>> {
+        Some(RodSpring {
+            stiffness: S::one() / self.compliance,
+            damping_ratio: self.damping_ratio,
+        })
+    }
+}
