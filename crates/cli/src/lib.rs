@@ -7,6 +7,7 @@
 
 pub mod bundle;
 pub mod calibrate;
+pub mod explain_gap;
 pub mod failure;
 pub mod features;
 pub mod gen_dataset;

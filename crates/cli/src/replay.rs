@@ -58,13 +58,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bundle = Bundle::read(&arguments.bundle)?;
     let tree = bundle::machine(&bundle, arguments.machine.as_deref())?;
-    let mut listed = listed(arguments, &bundle, &tree)?;
+    let mut listed = listed(&arguments.leave_out, &bundle, &tree)?;
     let problem = problem(tree, &mut listed)?;
     let results = arguments.out.join("replay.json");
-    let files = listed
-        .iter()
-        .map(|listed| file_of(&arguments.out, &listed.run.id))
-        .collect::<Result<Vec<_>, _>>()?;
+    let files = files(&arguments.out, &listed)?;
     if let Some(path) = files.iter().chain([&results]).find(|path| path.exists())
         && !arguments.overwrite
     {
@@ -73,20 +70,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             path.display()
         )));
     }
-    let replays = listed
-        .par_iter()
-        .zip(&problem.runs)
-        .map(|(listed, observation)| ::calibrate::replay(&problem, &listed.run, observation, &[]))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(Failure::work)?;
-    std::fs::create_dir_all(&arguments.out)
-        .map_err(|error| Failure::unwritten(&arguments.out, error))?;
-    for (i, (listed, replay)) in listed.iter().zip(&replays).enumerate() {
-        let table = table(&listed.run, replay, &listed.channels).map_err(Failure::work)?;
-        write_whole(&files[i], |file| {
-            parquet::write_table(file, &table, ROWS_PER_GROUP)
-        })?;
-    }
+    let replays = simulated(&problem, &listed)?;
+    write(&arguments.out, &files, &listed, &replays)?;
     let text = serde_json::to_string_pretty(&told(&listed, &replays)).map_err(Failure::work)?;
     write_whole(&results, |mut file| {
         file.write_all(text.as_bytes())
@@ -95,6 +80,56 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     summary(&listed, &replays);
     println!("{}", results.display());
+    Ok(())
+}
+
+/// Simulates the runs of a bundle on the machine of the file's content `tree` and writes them into
+/// `folder`, one file each.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn into_folder(
+    bundle: &Path,
+    tree: Value,
+    leave_out: &[String],
+    folder: &Path,
+) -> Result<(), Failure> {
+    let bundle = Bundle::read(bundle)?;
+    let mut listed = listed(leave_out, &bundle, &tree)?;
+    let problem = problem(tree, &mut listed)?;
+    let files = files(folder, &listed)?;
+    write(folder, &files, &listed, &simulated(&problem, &listed)?)
+}
+
+fn files(folder: &Path, runs: &[Listed]) -> Result<Vec<PathBuf>, Failure> {
+    runs.iter()
+        .map(|listed| file_of(folder, &listed.run.id))
+        .collect()
+}
+
+fn simulated(problem: &Problem, runs: &[Listed]) -> Result<Vec<Replay>, Failure> {
+    let runs = runs.par_iter().zip(&problem.runs);
+    let replay = |(listed, observation): (&Listed, &Observation)| {
+        ::calibrate::replay(problem, &listed.run, observation, &[])
+    };
+    runs.map(replay)
+        .collect::<Result<_, _>>()
+        .map_err(Failure::work)
+}
+
+fn write(
+    folder: &Path,
+    files: &[PathBuf],
+    runs: &[Listed],
+    replays: &[Replay],
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
+    for (file, (listed, replay)) in files.iter().zip(runs.iter().zip(replays)) {
+        let table = table(&listed.run, replay, &listed.channels).map_err(Failure::work)?;
+        write_whole(file, |file| {
+            parquet::write_table(file, &table, ROWS_PER_GROUP)
+        })?;
+    }
     Ok(())
 }
 
@@ -119,13 +154,13 @@ impl Listed<'_> {
 
 /// The runs that are not left out.
 fn listed<'a>(
-    arguments: &Arguments,
+    leave_out: &[String],
     bundle: &'a Bundle,
     tree: &Value,
 ) -> Result<Vec<Listed<'a>>, Failure> {
     let throws = bundle::throws(tree);
     let mut all = Vec::new();
-    for run in bundle::runs(bundle, tree, &arguments.leave_out)? {
+    for run in bundle::runs(bundle, tree, leave_out)? {
         let i = bundle.runs.iter().position(|listed| listed.id == run.id);
         let i = i.unwrap_or_default();
         let meanings = bundle::meanings(bundle, i, &throws)?;

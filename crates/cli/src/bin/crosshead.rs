@@ -23,6 +23,8 @@ enum Verb {
     Report(cli::report::Arguments),
     /// Fit a machine's parameters to recordings of it
     Calibrate(cli::calibrate::Arguments),
+    /// Find which effect a model lacks that recordings show, and add it
+    ExplainGap(cli::explain_gap::Arguments),
     /// Simulate the runs of a bundle in place of their recordings, and tell how far they differ
     Replay(cli::replay::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         Verb::Features(arguments) => cli::features::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Calibrate(arguments) => cli::calibrate::run(&arguments),
+        Verb::ExplainGap(arguments) => cli::explain_gap::run(&arguments),
         Verb::Replay(arguments) => cli::replay::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })

@@ -189,7 +189,11 @@ fn relations(results: &Value) {
     );
 }
 
-fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+/// Writes a file that appears whole or not at all.
+///
+/// # Errors
+/// Where it cannot be written.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     let written = WholeFile::create(&path.with_extension("part"), path).and_then(|mut file| {
         file.write_all(content).map_err(recordings::Error::Write)?;
         file.commit()

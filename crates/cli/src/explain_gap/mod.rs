@@ -1,0 +1,112 @@
+//! `crosshead explain-gap`: which effect a model lacks that recordings show.
+
+mod output;
+mod progress;
+
+use crate::calibrate::{Settings, task};
+use crate::{Failure, replay};
+use clap::Args;
+use gap::Effort;
+use input::calibration::Calibration;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Most evaluations of the model in one descent.
+const EVALUATIONS: u64 = 120;
+
+/// Arguments of `crosshead explain-gap`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The machine is calibrated to the recordings first. Where that leaves more than noise, the effects of
+the catalogue are tried one after another, and those that the recordings show, and that predict the
+runs that were held out, are added to the machine file.
+
+Examples:
+  crosshead explain-gap my-bundle --out explained
+  crosshead explain-gap my-bundle --machine machine.yaml --out explained
+
+Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// Folder of recordings
+    #[arg(value_name = "BUNDLE")]
+    bundle: PathBuf,
+    /// The machine file [default: the machine section of the bundle]
+    #[arg(long, value_name = "MACHINE.yaml")]
+    machine: Option<PathBuf>,
+    /// Folder to write into: gap.json, machine.yaml, simulated/, baseline/, report.html
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Predict this run and do not fit to it; may be repeated
+    #[arg(long, value_name = "RUN")]
+    hold_out: Vec<String>,
+    /// Do not use this run at all; may be repeated
+    #[arg(long, value_name = "RUN")]
+    leave_out: Vec<String>,
+    /// Replace an explanation that is there
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// Explains the gap, and tells what was found.
+///
+/// # Errors
+/// A bundle or machine that is none, runs that cannot be used, or files that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    if out.join(output::RESULTS).exists() && !arguments.overwrite {
+        return Err(Failure::input(format!(
+            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
+            out.join(output::RESULTS).display()
+        )));
+    }
+    let mut calibration = Calibration::of(vec![arguments.bundle.clone()]);
+    if let Some(machine) = &arguments.machine {
+        calibration.machine = Some(std::path::absolute(machine).map_err(Failure::input)?);
+    }
+    if !arguments.hold_out.is_empty() {
+        calibration.hold_out = Some(arguments.hold_out.clone());
+    }
+    calibration.leave_out = arguments.leave_out.clone();
+    let task = task(&Settings {
+        calibration: &calibration,
+        base: Path::new(""),
+        machine: None,
+        locate: &|error| error,
+    })?;
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let watch = || match cancel.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    };
+    let effort = Effort {
+        held_out: task.settings.held_out.clone(),
+        evaluations: EVALUATIONS,
+    };
+    let start = Instant::now();
+    let bar = progress::Bar::new();
+    let explanation = gap::explain(&task.problem, &effort, &|stage| bar.tell(stage), &watch);
+    bar.finish();
+    let explanation = explanation.map_err(Failure::work)?;
+    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
+    for (folder, model) in [
+        ("simulated", &explanation.explained),
+        ("baseline", &explanation.baseline),
+    ] {
+        let tree = model.problem.fitted(&model.x).map_err(Failure::work)?;
+        replay::into_folder(
+            &arguments.bundle,
+            tree,
+            &arguments.leave_out,
+            &out.join(folder),
+        )?;
+    }
+    let results = output::write(out, &explanation, &effort, start.elapsed().as_secs_f64())?;
+    output::summary(&results);
+    println!("{}", out.join(output::RESULTS).display());
+    Ok(())
+}

@@ -1,0 +1,37 @@
+//! What is being tried, on a terminal.
+
+use gap::Stage;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Duration;
+
+/// How often the clock goes on between two stages.
+const TICK: Duration = Duration::from_millis(500);
+
+/// A line that tells the present stage; nothing where standard error is no terminal.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    pub fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(TICK);
+        Self(bar)
+    }
+
+    pub fn tell(&self, stage: &Stage) {
+        if std::env::var_os("GAP_TRACE").is_some() {
+            eprintln!("{:?} {stage:?}", self.0.elapsed());
+        }
+        let misfit = match stage.misfit.is_finite() {
+            true => format!(", misfit {:.2}", stage.misfit),
+            false => String::new(),
+        };
+        self.0.set_message(format!("{}{misfit}", stage.words));
+    }
+
+    pub fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,266 @@
+//! What may be missing: an effect of the catalogue at a place of the machine.
+
+use crate::error::Error;
+use crate::model::Model;
+use calibrate::Problem;
+use input::MachineFile;
+use input::effects::{CATALOGUE, Entry, Parameter};
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+/// An effect at a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// The effect.
+    pub entry: &'static Entry,
+    /// Where it acts: keys of its section and words.
+    pub place: Vec<(&'static str, String)>,
+    /// The values that are not searched (an order), by their index among the effect's parameters.
+    pub fixed: Vec<(usize, f64)>,
+}
+
+/// Places that tell nothing new by their names: what holds at every one is tried instead.
+const EVERYWHERE: [&str; 2] = ["end", "measure"];
+/// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with.
+const ELSEWHERE: [&str; 2] = ["mains_hum", "crank_angle_offset"];
+/// What the pressure of a cylinder shows whatever the joints do.
+const GAS: [&str; 5] = [
+    "valve_loss",
+    "suction_unloading",
+    "ring_leakage",
+    "heat_transfer",
+    "gas_pulsation",
+];
+/// Amplitudes at which an effect is tried, over its usual one.
+const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
+/// Values at which a parameter is tried that is no amplitude and may lie anywhere in wide bounds.
+const VALUES: usize = 5;
+/// Bounds this far apart are wide.
+const WIDE: f64 = 15.0;
+/// Phases at which an effect is tried.
+const PHASES: usize = 4;
+
+impl Candidate {
+    /// Every effect of the catalogue at every place that the machine of `problem` has.
+    pub fn all(problem: &Problem) -> Vec<Self> {
+        let throws = throws(&problem.tree);
+        let mut all = Vec::new();
+        for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
+            for place in places(entry, &throws) {
+                for fixed in orders(entry) {
+                    let place = place.clone();
+                    let candidate = Self {
+                        entry,
+                        place,
+                        fixed,
+                    };
+                    let usual: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
+                    if candidate.is_new(problem) && candidate.added(problem, &usual).is_ok() {
+                        all.push(candidate);
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether it acts on the gas, so that the pressures show it.
+    pub fn is_of_gas(&self) -> bool {
+        GAS.contains(&self.entry.name)
+    }
+
+    /// Its joint, where it has one.
+    pub fn joint(&self) -> Option<&str> {
+        let place = self.place.iter().find(|(key, _)| *key == "joint");
+        place.map(|(_, joint)| joint.as_str())
+    }
+
+    /// The throw at which it acts, where it does at one alone.
+    pub fn throw(&self) -> Option<&str> {
+        let place = self.place.iter().find(|(key, _)| *key == "throw");
+        place.map(|(_, throw)| throw.as_str())
+    }
+
+    /// What it is called in words: effect, place and order.
+    pub fn label(&self) -> String {
+        let mut label = self.entry.name.to_owned();
+        for (_, word) in &self.place {
+            label.push(' ');
+            label.push_str(word);
+        }
+        for (index, value) in &self.fixed {
+            label.push_str(&format!(" {} {value}", self.entry.parameters[*index].key));
+        }
+        label
+    }
+
+    /// Whether the machine does not have it yet.
+    fn is_new(&self, problem: &Problem) -> bool {
+        let there = problem.tree.get("effects").and_then(Value::as_array);
+        !there.into_iter().flatten().any(|item| {
+            item.get(self.entry.name).is_some_and(|section| {
+                let same =
+                    |(key, word): &(&str, String)| section[*key] == Value::from(word.as_str());
+                let index = |i: usize| self.entry.parameters[i].key;
+                let fixed = |(i, value): &(usize, f64)| section[index(*i)].as_f64() == Some(*value);
+                self.place.iter().all(same) && self.fixed.iter().all(fixed)
+            })
+        })
+    }
+
+    /// The problem with the effect in the machine and its parameters free, at `values` (SI, one per
+    /// parameter of the catalogue's entry) where their coordinates are 0.
+    ///
+    /// # Errors
+    /// A machine that cannot have it.
+    pub fn added(&self, problem: &Problem, values: &[f64]) -> Result<Problem, Error> {
+        let mut values = values.to_vec();
+        for (index, value) in &self.fixed {
+            values[*index] = *value;
+        }
+        let place: Vec<(&str, &str)> = self.place.iter().map(|(k, w)| (*k, w.as_str())).collect();
+        let mut added = problem.clone();
+        let effects = &mut added.tree["effects"];
+        if !effects.is_array() {
+            *effects = Value::Array(Vec::new());
+        }
+        let items = effects.as_array_mut().ok_or(Error::Effects)?;
+        let index = items.len();
+        items.push(self.entry.item(&place, &values));
+        MachineFile::from_tree(&added.tree)?.resolve()?;
+        for (i, parameter) in self.entry.parameters.iter().enumerate() {
+            if self.fixed.iter().any(|(fixed, _)| *fixed == i) {
+                continue;
+            }
+            let path = format!("effects.{index}.{}.{}", self.entry.name, parameter.key);
+            let value = values[i];
+            let bounds = match parameter.cyclic {
+                // A turn to either side: it has no ends.
+                true => [value - TAU, value + TAU],
+                false => [
+                    parameter.bounds[0].min(value),
+                    parameter.bounds[1].max(value),
+                ],
+            };
+            added
+                .parameters
+                .push(calibrate::Parameter::within(&added.tree, &path, bounds)?);
+        }
+        Ok(added)
+    }
+
+    /// Its parameters in a model that has it, SI.
+    pub fn values(&self, model: &Model) -> Vec<f64> {
+        let of = |(i, parameter): (usize, &Parameter)| {
+            let suffix = format!(".{}.{}", self.entry.name, parameter.key);
+            let mut fitted = model.problem.parameters.iter().zip(&model.x).rev();
+            let fitted = fitted.find(|(p, _)| p.path.ends_with(&suffix));
+            let fixed = self.fixed.iter().find(|(index, _)| *index == i);
+            match (fixed, fitted) {
+                (Some((_, value)), _) => *value,
+                (None, Some((fitted, x))) => fitted.value(*x),
+                (None, None) => parameter.start,
+            }
+        };
+        self.entry.parameters.iter().enumerate().map(of).collect()
+    }
+
+    /// Values at which it is tried: amplitudes, phases, and what else may lie anywhere.
+    pub fn probes(&self) -> Vec<Vec<f64>> {
+        let parameters = self.entry.parameters;
+        let usual: Vec<f64> = parameters.iter().map(|p| p.start).collect();
+        let clamp = |i: usize, x: f64| x.clamp(parameters[i].bounds[0], parameters[i].bounds[1]);
+        let mut probes = vec![usual.clone()];
+        if parameters.iter().any(|p| p.absent.is_some()) {
+            let amplitude = |share: f64| {
+                let scaled = |(i, p): (usize, &f64)| match parameters[i].absent {
+                    Some(absent) => clamp(i, absent + share * (p - absent)),
+                    None => *p,
+                };
+                usual.iter().enumerate().map(scaled).collect::<Vec<f64>>()
+            };
+            let signed = parameters
+                .iter()
+                .any(|p| p.absent.is_some_and(|a| a > p.bounds[0]));
+            probes = AMPLITUDES.map(amplitude).to_vec();
+            if signed {
+                probes.extend(AMPLITUDES.map(|share| amplitude(-share)));
+            }
+        }
+        // What may lie anywhere is varied by itself.
+        for (i, parameter) in parameters.iter().enumerate() {
+            let [low, high] = parameter.bounds;
+            let other = parameter.absent.is_some() || parameter.cyclic || parameter.whole;
+            if !other && low > 0.0 && high / low > WIDE {
+                probes.extend((0..VALUES).map(|k| {
+                    let share = (k as f64 + 0.5) / VALUES as f64;
+                    let mut probe = usual.clone();
+                    probe[i] = low * (high / low).powf(share);
+                    probe
+                }));
+            }
+        }
+        // All phases turn together; what they are to each other is left to the fit.
+        let cyclic: Vec<usize> = (0..parameters.len())
+            .filter(|i| parameters[*i].cyclic)
+            .collect();
+        if !cyclic.is_empty() {
+            let turned = |probe: &Vec<f64>, k: usize| {
+                let mut probe = probe.clone();
+                for i in &cyclic {
+                    let [low, high] = parameters[*i].bounds;
+                    probe[*i] = low + (high - low) * k as f64 / PHASES as f64;
+                }
+                probe
+            };
+            let each = probes
+                .iter()
+                .flat_map(|p| (0..PHASES).map(move |k| turned(p, k)));
+            probes = each.collect();
+        }
+        probes
+    }
+}
+
+fn throws(tree: &Value) -> Vec<String> {
+    let throws = tree.get("throws").and_then(Value::as_array);
+    let names = throws
+        .into_iter()
+        .flatten()
+        .filter_map(|t| t["name"].as_str());
+    names.map(str::to_owned).collect()
+}
+
+/// The places where an effect can act. Without a throw of its own an effect acts at all of them;
+/// a joint must be one.
+fn places(entry: &Entry, throws: &[String]) -> Vec<Vec<(&'static str, String)>> {
+    let mut places: Vec<Vec<(&'static str, String)>> = vec![Vec::new()];
+    for choice in entry.places.iter().filter(|c| !EVERYWHERE.contains(&c.key)) {
+        let words: Vec<String> = match choice.key {
+            "throw" => throws.to_vec(),
+            _ => choice.words.iter().map(|word| (*word).to_owned()).collect(),
+        };
+        if words.is_empty() {
+            continue;
+        }
+        let each = places.iter().flat_map(|place| {
+            words.iter().map(move |word| {
+                let mut place = place.clone();
+                place.push((choice.key, word.clone()));
+                place
+            })
+        });
+        places = each.collect();
+    }
+    places
+}
+
+/// The orders that an effect may have: whole numbers are tried one by one.
+fn orders(entry: &Entry) -> Vec<Vec<(usize, f64)>> {
+    let whole = entry.parameters.iter().position(|p| p.whole);
+    let Some(index) = whole else {
+        return vec![Vec::new()];
+    };
+    let [low, high] = entry.parameters[index].bounds.map(|x| x as u32);
+    (low..=high).map(|k| vec![(index, f64::from(k))]).collect()
+}

@@ -1,0 +1,20 @@
+//! Finds where a calibrated model and recordings disagree, which physical effect is missing, and by
+//! how much it closes the gap.
+//!
+//! ```text
+//! recordings ─┐
+//!             ├─calibrate─> residual ─screening─> candidates ─refit─> decision ──> model + effect
+//! machine ────┘                ^                                                       │
+//!                              └────────────── until the noise is reached <────────────┘
+//! ```
+
+pub mod candidate;
+pub mod error;
+pub mod explain;
+pub mod model;
+pub mod screening;
+
+pub use candidate::Candidate;
+pub use error::Error;
+pub use explain::{Evidence, Explanation, Found, Stage, Tried, Verdict, explain};
+pub use model::{Effort, Model};
