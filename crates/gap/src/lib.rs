@@ -12,9 +12,11 @@ pub mod candidate;
 pub mod error;
 pub mod explain;
 pub mod model;
+pub mod residual_map;
 pub mod screening;
 
 pub use candidate::Candidate;
 pub use error::Error;
 pub use explain::{Evidence, Explanation, Found, Stage, Tried, Verdict, explain};
 pub use model::{Effort, Model};
+pub use residual_map::{Place, ResidualMap, places, residual_maps};

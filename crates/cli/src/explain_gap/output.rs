@@ -11,6 +11,8 @@ use std::path::Path;
 pub const MACHINE: &str = "machine.yaml";
 /// Name of the file of results.
 pub const RESULTS: &str = "gap.json";
+/// Most places in which the gap is told.
+const PLACES: usize = 40;
 
 /// Writes the explained machine, and last, as what makes the folder whole, the results, which it
 /// gives back.
@@ -30,6 +32,12 @@ pub fn write(
         .map_err(Failure::work)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
     let before = &explanation.baseline;
+    let maps = [before, model].map(gap::residual_maps);
+    let [before_map, after_map] = maps;
+    let maps = [
+        before_map.map_err(Failure::work)?,
+        after_map.map_err(Failure::work)?,
+    ];
     let effects: Vec<Value> = explanation.found.iter().map(|f| effect(f, model)).collect();
     let results = json!({
         "verdict": explanation.verdict,
@@ -42,11 +50,12 @@ pub fn write(
             "heldout_before": before.held_out,
             "heldout_after": model.held_out,
         },
-        "where": [],
+        "where": gap::places(&maps[0], PLACES),
         "heldout_runs": effort.held_out,
         "next_recording": Value::Null,
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
         "seconds": seconds,
+        "maps": {"before": maps[0], "after": maps[1]},
     });
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())?;
