@@ -11,6 +11,7 @@
 pub mod candidate;
 pub mod error;
 pub mod explain;
+pub mod mains_hum;
 pub mod model;
 pub mod residual_map;
 pub mod screening;
@@ -18,5 +19,6 @@ pub mod screening;
 pub use candidate::Candidate;
 pub use error::Error;
 pub use explain::{Evidence, Explanation, Found, Stage, Tried, Verdict, explain};
+pub use mains_hum::{Hum, remove_hum};
 pub use model::{Effort, Model};
 pub use residual_map::{Place, ResidualMap, places, residual_maps};
