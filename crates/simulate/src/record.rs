@@ -85,7 +85,7 @@ pub fn simulate_later(
     traced: bool,
 ) -> Result<Record, Error> {
     let mut run = Run::start(machine.clone(), settings.tolerance, true);
-    let (transient, settled) = run.leave_transient(settings.transient)?;
+    let (transient, period) = run.leave_transient(settings.transient)?;
     let start = f64::from(transient) * run.revolution() + delay;
     let length = f64::from(settings.revolutions) * run.revolution();
     let sampling = Sampling::new(settings.sample_rate, length)?;
@@ -118,7 +118,7 @@ pub fn simulate_later(
         trace,
         series,
         transient,
-        settled,
+        settled: period.is_some(),
         energy_residual,
         work: run.work(),
     })

@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
 const LONGEST_STEP: f64 = 0.05;
 /// Periods, in revolutions, that count as settled.
-const PERIODS: [usize; 3] = [1, 2, 4];
+const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD as u32];
+const LONGEST_PERIOD: usize = 4;
 
 /// A machine on its way.
 pub(crate) struct Run<S> {
@@ -69,8 +70,12 @@ impl<S: Real> Run<S> {
     }
 
     /// Leaves the start behind, but for the last revolution, which leads into the record. Tells how
-    /// many revolutions the transient takes, and whether the motion had settled.
-    pub(crate) fn leave_transient(&mut self, transient: Transient) -> Result<(u32, bool), Error> {
+    /// many revolutions the transient takes, and after how many the motion repeats itself, if it had
+    /// settled.
+    pub(crate) fn leave_transient(
+        &mut self,
+        transient: Transient,
+    ) -> Result<(u32, Option<u32>), Error> {
         let (change, at_most) = match transient {
             Transient::Revolutions(count) => (0.0, count),
             Transient::Settled { change, at_most } => (change, at_most),
@@ -79,19 +84,21 @@ impl<S: Real> Run<S> {
         for revolution in 1..at_most {
             self.revolve(revolution)?;
             let now = self.strobe();
-            let repeats = |period: &usize| {
-                let earlier = strobes.len().checked_sub(*period);
+            let repeats = |period: &u32| {
+                let earlier = strobes.len().checked_sub(*period as usize);
                 earlier.is_some_and(|i| self.distance(&now, &strobes[i]) < change)
             };
             // Not before the start has had a revolution to pass.
-            if revolution > 1 && PERIODS.iter().any(repeats) {
-                return Ok((revolution + 1, true));
+            if revolution > 1
+                && let Some(period) = PERIODS.into_iter().find(repeats)
+            {
+                return Ok((revolution + 1, Some(period)));
             }
             strobes.push(now);
-            let keep = strobes.len().saturating_sub(PERIODS[PERIODS.len() - 1]);
+            let keep = strobes.len().saturating_sub(LONGEST_PERIOD);
             strobes.drain(..keep);
         }
-        Ok((at_most, false))
+        Ok((at_most, None))
     }
 
     /// Goes on to the end of a revolution. A free crank does not keep to the reference speed: the

@@ -6,7 +6,7 @@
 //! chaotic one it grows without bound, and statistics have to be compared by differences instead.
 
 use crate::chain::Sampling;
-use crate::record::{Error, simulate};
+use crate::record::Error;
 use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::settings::Settings;
@@ -36,7 +36,8 @@ pub struct Sensitivities {
     pub settled: bool,
 }
 
-/// Runs `machine` and records `sensors` with the derivatives toward each of `moved`.
+/// Runs `machine` and records `sensors` with the derivatives toward each of `moved`. Of a motion that
+/// settles no more is recorded than one revolution beyond its period.
 ///
 /// # Errors
 /// As [`simulate`](crate::simulate()).
@@ -46,16 +47,9 @@ pub fn sensitivities(
     moved: &[Moved],
     settings: &Settings,
 ) -> Result<Sensitivities, Error> {
-    if moved.is_empty() {
-        let record = simulate(machine, sensors, settings, false)?;
-        return Ok(Sensitivities {
-            series: record.series,
-            derivatives: Vec::new(),
-            settled: record.settled,
-        });
-    }
     // Eight tangents at a time; the last tangents of an incomplete chunk are 0.
     let part = |chunk: &[Moved]| match chunk.len() {
+        0 => tangents::<0>(machine, sensors, chunk, settings),
         1 => tangents::<1>(machine, sensors, chunk, settings),
         2 => tangents::<2>(machine, sensors, chunk, settings),
         3 | 4 => tangents::<4>(machine, sensors, chunk, settings),
@@ -78,9 +72,11 @@ fn tangents<const N: usize>(
     let towards = std::array::from_fn(|i| moved.get(i).map_or(machine, |moved| &moved.machine));
     let lifted = lift::gradient::<N, Machine>(machine, towards);
     let mut run = Run::<Dual<f64, N>>::start(lifted, settings.tolerance, false);
-    let (transient, settled) = run.leave_transient(settings.transient)?;
+    let (transient, period) = run.leave_transient(settings.transient)?;
     let start = f64::from(transient) * run.revolution();
-    let length = f64::from(settings.revolutions) * run.revolution();
+    let enough = period.map_or(settings.revolutions, |period| period + 1);
+    let revolutions = settings.revolutions.min(enough);
+    let length = f64::from(revolutions) * run.revolution();
     let sampling = Sampling::new(settings.sample_rate, length)?;
     let mut inner: Vec<Vec<Dual<f64, N>>> = vec![Vec::new(); sensors.len()];
     run.show(sampling.instants(start), |at| {
@@ -123,6 +119,6 @@ fn tangents<const N: usize>(
     Ok(Sensitivities {
         series,
         derivatives,
-        settled,
+        settled: period.is_some(),
     })
 }
