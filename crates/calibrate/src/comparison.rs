@@ -58,11 +58,22 @@ pub struct OrderResidual {
 /// # Errors
 /// A run that cannot be simulated.
 pub fn compare(problem: &Problem, recordings: &[Run], x: &[f64]) -> Result<Vec<Comparison>, Error> {
-    let likelihood = Likelihood::new(problem);
-    let before = likelihood.predictions(&vec![0.0; x.len()])?;
-    let after = likelihood.predictions(x)?;
+    let nominal = vec![0.0; x.len()];
+    compare_models([(problem, &nominal), (problem, x)], recordings)
+}
+
+/// Compares the runs with two models of them, each a problem with coordinates.
+///
+/// # Errors
+/// A run that cannot be simulated.
+pub fn compare_models(
+    models: [(&Problem, &[f64]); 2],
+    recordings: &[Run],
+) -> Result<Vec<Comparison>, Error> {
+    let [before, after] = models.map(|(problem, x)| Likelihood::new(problem).predictions(x));
+    let (before, after) = (before?, after?);
     let mut comparisons = Vec::new();
-    for (run, (before, after)) in problem.runs.iter().zip(before.iter().zip(&after)) {
+    for (run, (before, after)) in models[1].0.runs.iter().zip(before.iter().zip(&after)) {
         let recording = recordings.iter().find(|recording| recording.id == run.id);
         for (i, channel) in run.channels.iter().enumerate() {
             let scatter = match recording {

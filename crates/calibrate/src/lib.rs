@@ -36,7 +36,7 @@ mod search;
 mod throw_alone;
 pub mod transfer;
 
-pub use comparison::{Comparison, compare};
+pub use comparison::{Comparison, compare, compare_models};
 pub use crank_motion::CrankMotion;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};

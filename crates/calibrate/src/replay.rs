@@ -98,9 +98,12 @@ pub fn replay(
         machine.speed = place.speed;
     }
     let instants = Instants::of(&machine, run, recorded.angles().len());
-    let delay = match machine.machine.drive {
-        Drive::Given(_) => place.angle.rem_euclid(TAU) / place.speed,
-        Drive::Free(_) => instants.delay(&machine, &recorded).map_err(failed)?,
+    let offset = machine.sensors.last().map_or(0.0, |s| s.chain.angle_offset);
+    let delay = match &machine.machine.drive {
+        Drive::Given(given) if given.fluctuation.is_empty() => {
+            (place.angle - offset).rem_euclid(TAU) / place.speed
+        }
+        _ => instants.delay(&machine, &recorded).map_err(failed)?,
     };
     let mut chosen = instants.record(&machine, delay).map_err(failed)?;
     let wanted = |column: &str| {

@@ -2,10 +2,12 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
+use crate::mains_hum::Hum;
+use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::model::{Effort, Model, Watch};
 use crate::screening::{Screened, screen};
 use calibrate::Problem;
-use calibrate::fit::{FitSettings, Optimiser};
+use calibrate::fit::{Estimate, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -14,7 +16,7 @@ use serde_json::Value;
 /// A misfit below this is noise.
 pub const NOISE: f64 = 1.15;
 /// Pressures this near to the noise show no effect.
-const GAS_NOISE: f64 = 1.5;
+const GAS_NOISE: f64 = 2.0;
 /// Most evaluations of the calibration to begin with.
 const CALIBRATION: u64 = 300;
 /// A model this near to the noise explains what was missing.
@@ -44,10 +46,16 @@ pub struct Explanation {
     pub explained: Model,
     /// The effects, in the order in which they were added.
     pub found: Vec<Found>,
+    /// What is wrong with the measuring: it was taken off or fitted to begin with.
+    pub chain: Vec<Found>,
     /// What this comes to.
     pub verdict: Verdict,
     /// What was tried last and did not earn its place.
     pub refused: Vec<Tried>,
+    /// The machine as it was given.
+    pub nominal: Model,
+    /// What the parameters of the explained model are known to.
+    pub estimates: Vec<Estimate>,
 }
 
 /// What an explanation comes to.
@@ -109,12 +117,13 @@ pub struct Stage {
     pub misfit: f64,
 }
 
-/// Explains the gap between the problem's machine and its recordings.
+/// Explains the gap between the problem's machine and its recordings, which `hum` has been taken off.
 ///
 /// # Errors
 /// A machine that cannot be simulated; [`Error::Stopped`].
 pub fn explain(
     problem: &Problem,
+    hum: &[Hum],
     effort: &Effort,
     tell: &(dyn Fn(&Stage) + Sync),
     watch: Watch,
@@ -156,8 +165,26 @@ pub fn explain(
     };
     let (model, others, refused) = search.while_they_earn(model, NOISE, MOST, candidates)?;
     found.extend(others);
-    let verdict = verdict(&baseline, &model, &found);
+    say("finding bounds", model.fitted);
+    let estimates = search.bounds(&model)?;
+    let nothing = vec![0.0; problem.parameters.len()];
+    let set_right = || {
+        let mut problem = problem.clone();
+        problem.parameters.retain(|p| !p.is_crank_angle_offset());
+        let start = vec![0.0; problem.parameters.len()];
+        Model::fit(problem, &start, effort, watch)
+    };
+    let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
+    let mut baseline = baseline;
+    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)? {
+        chain.push(offset);
+        baseline = without;
+    }
+    let verdict = verdict(&baseline, &model, found.len() + chain.len());
     Ok(Explanation {
+        nominal: Model::at(problem.clone(), nothing, effort)?,
+        chain,
+        estimates,
         baseline,
         explained: model,
         found,
@@ -274,6 +301,19 @@ impl Search<'_> {
             .iter()
             .map(|e| e.parameter.coordinate(e.value));
         Model::at(problem.clone(), x.collect(), self.effort)
+    }
+
+    /// The parameters of a model with their bounds.
+    fn bounds(&self, model: &Model) -> Result<Vec<Estimate>, Error> {
+        let settings = FitSettings {
+            optimiser: Optimiser::LevenbergMarquardt,
+            seed: 0,
+            evaluations: self.effort.evaluations,
+            held_out: self.effort.held_out.clone(),
+            start: Some(model.x.clone()),
+        };
+        let fit = calibrate::calibrate(&model.problem, &settings, |_| (self.watch)())?;
+        Ok(fit.estimates)
     }
 
     /// The model with one candidate after another until it is at `noise` or none earns its place;
@@ -393,17 +433,11 @@ fn few(model: &Model, effort: &Effort) -> Model {
 
 fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
     let held_out = before.held_out.zip(after.held_out);
-    let runs = after.problem.runs.iter();
-    let count = runs
-        .flat_map(|r| &r.channels)
-        .map(|c| 2 * c.orders.len())
-        .sum::<usize>() as f64;
-    let extra = (after.x.len() - before.x.len()) as f64;
     Evidence {
         score,
         misfit: [before.fitted, after.fitted],
         heldout_misfit: held_out.map(|(before, after)| [before, after]),
-        delta_bic: count * (after.fitted.powi(2) - before.fitted.powi(2)) + extra * count.ln(),
+        delta_bic: before.bic_to(after),
     }
 }
 
@@ -416,14 +450,14 @@ fn earns(before: &Model, after: &Model) -> bool {
         && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))
 }
 
-fn verdict(baseline: &Model, model: &Model, found: &[Found]) -> Verdict {
-    if baseline.fitted <= NOISE {
+fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdict {
+    if effects == 0 && baseline.fitted <= NOISE {
         return Verdict::NoGap;
     }
     let worst = model
         .held_out
         .map_or(model.fitted, |held| held.max(model.fitted));
-    if found.is_empty() {
+    if effects == 0 {
         Verdict::Unexplained
     } else if worst <= EXPLAINED {
         Verdict::Explained

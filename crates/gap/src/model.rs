@@ -27,6 +27,8 @@ pub struct Model {
     pub fitted: f64,
     /// See [`Model::fitted`].
     pub held_out: Option<f64>,
+    /// Misfit of each run.
+    pub by_run: Vec<f64>,
 }
 
 /// Which runs a model is fitted to, and how long it may take.
@@ -60,6 +62,7 @@ impl Model {
         Ok(Self {
             fitted: part(true).unwrap_or(f64::NAN),
             held_out: part(false),
+            by_run: by_run.iter().map(|residuals| misfit(residuals)).collect(),
             problem,
             x,
         })
@@ -102,6 +105,15 @@ impl Model {
             }
         }
         Ok((problem, x))
+    }
+
+    /// Schwarz's criterion of `after`, which has the same runs, less that of this model; each line of
+    /// an order counts as two observations.
+    pub(crate) fn bic_to(&self, after: &Self) -> f64 {
+        let channels = after.problem.runs.iter().flat_map(|run| &run.channels);
+        let count = channels.map(|c| 2 * c.orders.len()).sum::<usize>() as f64;
+        let extra = after.x.len() as f64 - self.x.len() as f64;
+        count * (after.fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
     }
 
     /// The better of two; the first where they are as good.

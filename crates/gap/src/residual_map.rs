@@ -56,6 +56,14 @@ pub struct Place {
     pub excess: f64,
 }
 
+/// The bands in words.
+pub fn band_names() -> Vec<String> {
+    let edges = BANDS.windows(2);
+    edges
+        .map(|edge| format!("{} to {}", edge[0], edge[1] - 1))
+        .collect()
+}
+
 /// The maps of all channels of all runs.
 ///
 /// # Errors

@@ -6,6 +6,7 @@
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
 //! - [`features_page`]: the HTML page that documents the features;
 //! - [`calibration_page`]: the HTML page of a calibration;
+//! - [`gap_page`]: the HTML page of an explanation;
 //! - [`text`]: numbers with units, words, escaping.
 //!
 //! Structs go in, text comes out: nothing here reads or writes a file, and the same structs always
@@ -21,6 +22,7 @@ pub mod chaos_page;
 pub mod dataset_page;
 pub mod features_page;
 pub mod figure;
+pub mod gap_page;
 mod plate;
 mod revolutions;
 mod statistics;

@@ -192,7 +192,13 @@ impl Prepared {
             evaluations: evaluations + fit.evaluations,
             seconds: seconds + start.elapsed().as_secs_f64(),
         };
-        pictures::write(&out, &task.problem, &task.runs, &fit)?;
+        let x: Vec<f64> = fit
+            .estimates
+            .iter()
+            .map(|e| e.parameter.coordinate(e.value))
+            .collect();
+        let compared = ::calibrate::compare(&task.problem, &task.runs, &x);
+        pictures::write(&out, &compared.map_err(Failure::work)?)?;
         let results = output::write(&out, &task, &found)?;
         report::write_calibration(&out, &out.join(report::PAGE))?;
         Ok(Calibrated {

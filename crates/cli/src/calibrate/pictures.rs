@@ -1,8 +1,7 @@
-//! What the pictures of a calibration are drawn from: `waveforms.parquet` and `orders.parquet`.
+//! What the pictures of a calibration or an explanation are drawn from: `waveforms.parquet` and `orders.parquet`.
 
 use crate::Failure;
-use ::calibrate::comparison::{Comparison, compare};
-use ::calibrate::{Fit, Problem, Run};
+use ::calibrate::Comparison;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use std::path::Path;
@@ -14,18 +13,15 @@ pub const ORDERS: &str = "orders.parquet";
 /// Rows per group of a Parquet file.
 const ROWS_PER_GROUP: usize = 65_536;
 
-/// Writes both files for the runs of a calibration.
+/// Writes both files.
 ///
 /// # Errors
-/// A run that cannot be simulated, or a file that cannot be written.
-pub fn write(folder: &Path, problem: &Problem, runs: &[Run], fit: &Fit) -> Result<(), Failure> {
-    let coordinate = |e: &::calibrate::fit::Estimate| e.parameter.coordinate(e.value);
-    let x: Vec<f64> = fit.estimates.iter().map(coordinate).collect();
-    let comparisons = compare(problem, runs, &x).map_err(Failure::work)?;
+/// A file that cannot be written.
+pub fn write(folder: &Path, comparisons: &[Comparison]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
     for (name, table) in [
-        (WAVEFORMS, waveforms(&comparisons)),
-        (ORDERS, orders(&comparisons)),
+        (WAVEFORMS, waveforms(comparisons)),
+        (ORDERS, orders(comparisons)),
     ] {
         let path = folder.join(name);
         let table = table.map_err(Failure::work)?;
@@ -69,13 +65,13 @@ fn waveforms(comparisons: &[Comparison]) -> Result<Table, recordings::Error> {
             (
                 "before",
                 "",
-                "mean of the simulation with nominal parameters",
+                "mean of the simulation before: with nominal parameters, or without an effect",
                 &|comparison, i| comparison.means[i].before,
             ),
             (
                 "after",
                 "",
-                "mean of the simulation with calibrated parameters",
+                "mean of the simulation after: with calibrated parameters, or with the effect",
                 &|comparison, i| comparison.means[i].after,
             ),
         ],
@@ -96,15 +92,12 @@ fn orders(comparisons: &[Comparison]) -> Result<Table, recordings::Error> {
             (
                 "before",
                 "",
-                "difference of amplitudes over the standard deviation of its noise, nominal parameters",
+                "difference of amplitudes over the standard deviation of its noise, before",
                 &|comparison, i| comparison.orders[i].before,
             ),
-            (
-                "after",
-                "",
-                "the same with calibrated parameters",
-                &|comparison, i| comparison.orders[i].after,
-            ),
+            ("after", "", "the same after", &|comparison, i| {
+                comparison.orders[i].after
+            }),
         ],
     )
 }

@@ -1,10 +1,10 @@
 //! `crosshead explain-gap`: which effect a model lacks that recordings show.
 
-mod output;
+pub mod output;
 mod progress;
 
-use crate::calibrate::{Settings, task};
-use crate::{Failure, replay};
+use crate::calibrate::{Settings, pictures, task};
+use crate::{Failure, replay, report};
 use clap::Args;
 use gap::Effort;
 use input::calibration::Calibration;
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration.hold_out = Some(arguments.hold_out.clone());
     }
     calibration.leave_out = arguments.leave_out.clone();
-    let task = task(&Settings {
+    let mut task = task(&Settings {
         calibration: &calibration,
         base: Path::new(""),
         machine: None,
@@ -89,24 +89,35 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let start = Instant::now();
     let bar = progress::Bar::new();
-    let explanation = gap::explain(&task.problem, &effort, &|stage| bar.tell(stage), &watch);
+    let hum = gap::remove_hum(&mut task.problem, &mut task.runs).map_err(Failure::work)?;
+    let explanation = gap::explain(
+        &task.problem,
+        &hum,
+        &effort,
+        &|stage| bar.tell(stage),
+        &watch,
+    );
     bar.finish();
     let explanation = explanation.map_err(Failure::work)?;
     std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
-    for (folder, model) in [
-        ("simulated", &explanation.explained),
-        ("baseline", &explanation.baseline),
-    ] {
-        let tree = model.problem.fitted(&model.x).map_err(Failure::work)?;
-        replay::into_folder(
-            &arguments.bundle,
-            tree,
-            &arguments.leave_out,
-            &out.join(folder),
-        )?;
+    let baseline = &explanation.baseline;
+    let baseline = baseline
+        .problem
+        .fitted(&baseline.x)
+        .map_err(Failure::work)?;
+    let explained = output::tree(&explanation, |name| name != "mains_hum")?;
+    for (folder, tree) in [("simulated", explained), ("baseline", baseline)] {
+        let folder = out.join(folder);
+        replay::into_folder(&arguments.bundle, tree, &arguments.leave_out, &folder)?;
     }
+    let [before, after] = [&explanation.baseline, &explanation.explained];
+    let models = [before, after].map(|model| (&model.problem, &model.x[..]));
+    let compared = ::calibrate::compare_models(models, &task.runs).map_err(Failure::work)?;
+    pictures::write(out, &compared)?;
     let results = output::write(out, &explanation, &effort, start.elapsed().as_secs_f64())?;
+    report::write_gap(out, &out.join(report::PAGE))?;
     output::summary(&results);
-    println!("{}", out.join(output::RESULTS).display());
+    println!("{}", out.join(output::MACHINE).display());
+    println!("{}", out.join(report::PAGE).display());
     Ok(())
 }

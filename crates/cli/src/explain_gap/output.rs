@@ -2,7 +2,8 @@
 
 use crate::Failure;
 use crate::calibrate::output::write_file;
-use gap::{Candidate, Effort, Explanation, Found, Model, Tried};
+use calibrate::fit::Estimate;
+use gap::{Candidate, Effort, Explanation, Found, Tried};
 use input::MachineFile;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -26,7 +27,7 @@ pub fn write(
     seconds: f64,
 ) -> Result<Value, Failure> {
     let model = &explanation.explained;
-    let tree = model.problem.fitted(&model.x).map_err(Failure::work)?;
+    let tree = tree(explanation, |_| true)?;
     let machine = MachineFile::from_tree(&tree)
         .and_then(|file| file.to_yaml())
         .map_err(Failure::work)?;
@@ -38,13 +39,38 @@ pub fn write(
         before_map.map_err(Failure::work)?,
         after_map.map_err(Failure::work)?,
     ];
-    let effects: Vec<Value> = explanation.found.iter().map(|f| effect(f, model)).collect();
+    let numbered = explanation.found.iter().enumerate();
+    let first = before.problem.tree["effects"]
+        .as_array()
+        .map_or(0, Vec::len);
+    let effects: Vec<Value> = numbered
+        .map(|(i, found)| effect((first + i, found), &explanation.estimates))
+        .chain(
+            explanation
+                .chain
+                .iter()
+                .map(|found| effect((usize::MAX, found), &[])),
+        )
+        .collect();
+    let runs: Map<String, Value> = (0..model.problem.runs.len())
+        .map(|i| {
+            let id = model.problem.runs[i].id.clone();
+            let content = json!({
+                "held_out": effort.held_out.contains(&id),
+                "before": before.by_run[i],
+                "after": model.by_run[i],
+            });
+            (id, content)
+        })
+        .collect();
     let results = json!({
         "verdict": explanation.verdict,
         "effects": effects,
         "gap": {
             "unit": "standard deviations of the noise",
             "noise_floor": 1.0,
+            "nominal": explanation.nominal.fitted,
+            "heldout_nominal": explanation.nominal.held_out,
             "before": before.fitted,
             "after": model.fitted,
             "heldout_before": before.held_out,
@@ -55,25 +81,55 @@ pub fn write(
         "next_recording": Value::Null,
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
         "seconds": seconds,
-        "maps": {"before": maps[0], "after": maps[1]},
+        "runs": runs,
+        "maps": {"bands": gap::band_names(), "before": maps[0], "after": maps[1]},
     });
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&folder.join(RESULTS), text.as_bytes())?;
     Ok(results)
 }
 
-fn effect(found: &Found, model: &Model) -> Value {
+/// The explained machine file, with those findings about the measuring chain whose effect `keep`
+/// names.
+///
+/// # Errors
+/// A machine that is none.
+pub fn tree(explanation: &Explanation, keep: impl Fn(&str) -> bool) -> Result<Value, Failure> {
+    let model = &explanation.explained;
+    let mut tree = model.problem.fitted(&model.x).map_err(Failure::work)?;
+    for found in &explanation.chain {
+        let Candidate { entry, place, .. } = &found.candidate;
+        if keep(entry.name) {
+            let place: Vec<(&str, &str)> = place.iter().map(|(k, w)| (*k, w.as_str())).collect();
+            let effects = tree["effects"].take();
+            let mut effects = effects.as_array().cloned().unwrap_or_default();
+            effects.push(entry.item(&place, &found.values));
+            tree["effects"] = effects.into();
+        }
+    }
+    Ok(tree)
+}
+
+fn effect((index, found): (usize, &Found), estimates: &[Estimate]) -> Value {
     let entry = found.candidate.entry;
     let mut parameters = Map::new();
-    for parameter in entry.parameters {
-        let suffix = format!(".{}.{}", entry.name, parameter.key);
-        let mut fitted = model.problem.parameters.iter().zip(&model.x);
-        if let Some((fitted, x)) = fitted.find(|(p, _)| p.path.ends_with(&suffix)) {
-            parameters.insert(parameter.key.to_owned(), json!({"value": fitted.value(*x)}));
-        }
+    for (i, parameter) in entry.parameters.iter().enumerate() {
+        let path = format!("effects.{index}.{}.{}", entry.name, parameter.key);
+        let content = match estimates.iter().find(|e| e.parameter.path == path) {
+            Some(estimate) => {
+                let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
+                json!({"value": estimate.value, "low": low, "high": high})
+            }
+            // An order is not searched but tried.
+            None => {
+                json!({"value": found.values[i], "low": found.values[i], "high": found.values[i]})
+            }
+        };
+        parameters.insert(parameter.key.to_owned(), content);
     }
     json!({
         "effect": entry.name,
+        "label": found.candidate.label(),
         "throw": found.candidate.throw(),
         "joint": found.candidate.joint(),
         "sentence": entry.sentence,

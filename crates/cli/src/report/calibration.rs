@@ -70,24 +70,24 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         },
         correlations: parameters.iter().map(|(path, _)| row(path)).collect(),
         parameters: estimates,
-        runs: runs(folder, &results)?,
+        runs: runs(folder, &results, ["nominal", "calibrated"])?,
         gas: gas::chambers(folder, &results.content["gas"])?,
         transfer: transfer(&results.content),
     })
 }
 
-fn machine_name(tree: &Value) -> String {
+pub(super) fn machine_name(tree: &Value) -> String {
     tree["name"].as_str().unwrap_or("machine").to_owned()
 }
 
-/// `calibration.json`.
-struct Results<'a> {
+/// `calibration.json`, or `gap.json`.
+pub(super) struct Results<'a> {
     path: &'a Path,
-    content: Value,
+    pub content: Value,
 }
 
 impl<'a> Results<'a> {
-    fn read(path: &'a Path) -> Result<Self, Failure> {
+    pub fn read(path: &'a Path) -> Result<Self, Failure> {
         let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
         let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
         let content = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
@@ -96,12 +96,12 @@ impl<'a> Results<'a> {
 
     fn wrong(&self, key: &str, expected: &str) -> Failure {
         Failure::input(format!(
-            "{}: {key}: expected {expected}; this is no result of crosshead calibrate",
+            "{}: {key}: expected {expected}; this is no result of this program",
             self.path.display()
         ))
     }
 
-    fn number(&self, section: &Value, place: &str, key: &str) -> Result<f64, Failure> {
+    pub fn number(&self, section: &Value, place: &str, key: &str) -> Result<f64, Failure> {
         section[key]
             .as_f64()
             .ok_or_else(|| self.wrong(place, "a number"))
@@ -176,7 +176,7 @@ fn transfer(content: &Value) -> Option<Transfer> {
     })
 }
 
-fn bounded(content: &Value) -> Bounded {
+pub(super) fn bounded(content: &Value) -> Bounded {
     let ends = content["low"].as_f64().zip(content["high"].as_f64());
     Bounded {
         value: content["value"].as_f64().unwrap_or(f64::NAN),
@@ -204,16 +204,21 @@ fn unit_of(tree: &Value, path: &str) -> String {
     }
 }
 
-/// The runs, with their curves where the files of these are there.
-fn runs(folder: &Path, results: &Results) -> Result<Vec<Run>, Failure> {
+/// The runs, with their curves where the files of these are there; `before` and `after` are the
+/// keys of their misfits.
+pub(super) fn runs(
+    folder: &Path,
+    results: &Results,
+    [before, after]: [&str; 2],
+) -> Result<Vec<Run>, Failure> {
     let mut runs = Vec::new();
     for (id, content) in results.entries("runs")? {
         let number = |key: &str| results.number(&content, &format!("runs.{id}.{key}"), key);
         runs.push(Run {
             held_out: content["held_out"] == true,
             misfit: Misfit {
-                before: number("nominal")?,
-                after: number("calibrated")?,
+                before: number(before)?,
+                after: number(after)?,
             },
             channels: Vec::new(),
             id,

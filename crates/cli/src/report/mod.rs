@@ -1,4 +1,4 @@
-//! `crosshead report`: the HTML pages of a dataset, or of a calibration.
+//! `crosshead report`: the HTML pages of a dataset, of a calibration, or of an explanation.
 
 mod calibration;
 mod chaos;
@@ -8,6 +8,7 @@ mod dataset;
 mod examples;
 mod features;
 mod features_page;
+mod gap;
 mod gas;
 mod grid;
 mod labels;
@@ -35,13 +36,15 @@ Examples:
   crosshead report datasets/paper2
   crosshead report datasets/bearing-faults --out bearing-faults.html
   crosshead report calibrated
+  crosshead report explained
 
-A calibration has one page. Beside that of a dataset stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
+A calibration and an explanation have one page. Beside that of a dataset stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
 feature is) and figures/, every figure as an SVG file.
 
 Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
-    /// Folder of a dataset or of a calibration, as gen-dataset or calibrate writes it
+    /// Folder of a dataset, a calibration or an explanation, as gen-dataset, calibrate or explain-gap
+    /// writes it
     dir: PathBuf,
     /// The page [default: DIR/report.html]
     #[arg(long, value_name = "FILE.html")]
@@ -58,6 +61,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let out = arguments.out.clone();
         let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
         println!("{}", write_calibration(&arguments.dir, &out)?.display());
+        return Ok(());
+    }
+    if gap::is_at(&arguments.dir) {
+        let out = arguments.out.clone();
+        let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
+        println!("{}", write_gap(&arguments.dir, &out)?.display());
         return Ok(());
     }
     let contents = Contents::read(&arguments.dir)?;
@@ -96,6 +105,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// A folder that is no calibration, or a page that cannot be made or written.
 pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = calibration::page(folder)?.render().map_err(Failure::work)?;
+    pages::write(out, &page.html)?;
+    Ok(out.to_owned())
+}
+
+/// Writes the page of the explanation in `folder` to the file `out`, and says where that is.
+///
+/// # Errors
+/// A folder that is no explanation, or a page that cannot be made or written.
+pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+    let page = gap::page(folder)?.render().map_err(Failure::work)?;
     pages::write(out, &page.html)?;
     Ok(out.to_owned())
 }

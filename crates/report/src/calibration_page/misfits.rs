@@ -5,11 +5,11 @@ use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 
 /// The simulation with nominal parameters, in every figure.
-pub(super) const BEFORE: Colour = Colour::Class(1);
+pub(crate) const BEFORE: Colour = Colour::Class(1);
 /// The simulation with the calibrated ones.
-pub(super) const AFTER: Colour = Colour::Class(0);
+pub(crate) const AFTER: Colour = Colour::Class(0);
 /// Height of a row with a name, pixels.
-pub(super) const ROW: f64 = 26.0;
+pub(crate) const ROW: f64 = 26.0;
 /// At most so many runs are drawn, the first.
 const MOST_RUNS: usize = 60;
 

@@ -5,13 +5,13 @@
 //! whatever the calibration.
 
 mod gas;
-mod misfits;
+pub(crate) mod misfits;
 mod page;
 mod parameters;
 mod transfers;
-mod verdict;
-mod waveforms;
-mod words;
+pub(crate) mod verdict;
+pub(crate) mod waveforms;
+pub(crate) mod words;
 
 pub use gas::{Chamber, Diagram, Phase, Pressure};
 

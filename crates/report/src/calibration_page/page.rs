@@ -51,7 +51,10 @@ impl CalibrationPage {
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
             transfers: numbered(transfers::plates(self)),
             gas: numbered(gas::plates(&self.gas)),
-            runs: numbered(waveforms::plates(self)),
+            runs: numbered(waveforms::plates(
+                &self.runs,
+                ["before", "after calibration"],
+            )),
         };
         let html = view.render()?;
         let plates = [
@@ -166,7 +169,7 @@ impl View<'_> {
     }
 
     fn left_out(&self) -> String {
-        match waveforms::left_out(self.page) {
+        match waveforms::left_out(&self.page.runs) {
             0 => String::new(),
             n => format!(
                 "{} without a picture here; waveforms.parquet has them all.",

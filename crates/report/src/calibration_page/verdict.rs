@@ -69,7 +69,7 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
 }
 
 /// A misfit as a number of a few digits.
-pub(super) fn size(misfit: f64) -> String {
+pub(crate) fn size(misfit: f64) -> String {
     text::decimal(misfit, if misfit < 10.0 { 2 } else { 0 })
 }
 

@@ -2,7 +2,7 @@
 
 use super::misfits::{AFTER, BEFORE};
 use super::verdict::size;
-use super::{CalibrationPage, Channel, OrderResidual, Point, Run, words};
+use super::{Channel, OrderResidual, Point, Run, words};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
@@ -19,18 +19,18 @@ const LOWEST: f64 = 0.1;
 const MEASURED: Colour = Colour::Ink;
 
 /// How many runs have no picture.
-pub(super) fn left_out(page: &CalibrationPage) -> usize {
-    page.runs.len().saturating_sub(MOST_RUNS)
+pub(crate) fn left_out(runs: &[Run]) -> usize {
+    runs.len().saturating_sub(MOST_RUNS)
 }
 
-/// A picture per run.
-pub(super) fn plates(page: &CalibrationPage) -> Vec<Plate> {
-    let runs = page.runs.iter().take(MOST_RUNS);
+/// A picture per run; `names` are what the simulation before and after is called.
+pub(crate) fn plates(runs: &[Run], names: [&str; 2]) -> Vec<Plate> {
+    let runs = runs.iter().take(MOST_RUNS);
     let with_channels = runs.filter(|run| !run.channels.is_empty());
-    with_channels.map(plate).collect()
+    with_channels.map(|run| plate(run, names)).collect()
 }
 
-fn plate(run: &Run) -> Plate {
+fn plate(run: &Run, names: [&str; 2]) -> Plate {
     let kind = if run.held_out {
         "held out and predicted"
     } else {
@@ -46,7 +46,7 @@ fn plate(run: &Run) -> Plate {
             size(run.misfit.after)
         ),
         svg: Figure {
-            rows: run.channels.iter().map(panels).collect(),
+            rows: run.channels.iter().map(|c| panels(c, names)).collect(),
             row_headings: run.channels.iter().map(heading).collect(),
             row_height: 210.0,
             ..Figure::default()
@@ -59,7 +59,7 @@ fn heading(channel: &Channel) -> String {
     text::capitalised(&words::column(&channel.column).0)
 }
 
-fn panels(channel: &Channel) -> Vec<Panel> {
+fn panels(channel: &Channel, [before, after]: [&str; 2]) -> Vec<Panel> {
     let (_, unit) = words::column(&channel.column);
     let points = &channel.waveform;
     let largest = points.iter().map(|p| p.measured.abs()).fold(0.0, f64::max);
@@ -86,9 +86,9 @@ fn panels(channel: &Channel) -> Vec<Panel> {
         y: Axis::linear(text::with_unit("mean", unit)),
         series: vec![
             band("measured revolutions", &|p| p.measured, &|p| p.scatter),
-            line("before", BEFORE, Mark::Line, &|p| p.before),
+            line(before, BEFORE, Mark::Line, &|p| p.before),
             line("measured mean", MEASURED, Mark::Line, &|p| p.measured),
-            line("after calibration", AFTER, Mark::Line, &|p| p.after),
+            line(after, AFTER, Mark::Line, &|p| p.after),
         ],
         ..Panel::default()
     };

@@ -21,7 +21,7 @@ pub(super) fn path(path: &str) -> String {
 
 /// A column as its quantity and unit: `throw1.cylinder_pressure_pa` is «throw1 cylinder pressure» in
 /// Pa.
-pub(super) fn column(column: &str) -> (String, &'static str) {
+pub(crate) fn column(column: &str) -> (String, &'static str) {
     let units = [
         ("_m_s2", "m/s²"),
         ("_pa", "Pa"),

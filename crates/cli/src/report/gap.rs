@@ -1,0 +1,131 @@
+//! The page of an explanation, from what `crosshead explain-gap` has written.
+
+use super::calibration::{Results, bounded, machine_name, runs};
+use crate::Failure;
+use crate::explain_gap::output::{MACHINE, RESULTS};
+use ::report::gap_page::{CALIBRATED, Effect, GapPage, Map, Parameter, Step};
+use input::effects::entry;
+use serde_json::Value;
+use std::path::Path;
+
+/// Whether an explanation has been written into `folder`.
+pub(crate) fn is_at(folder: &Path) -> bool {
+    folder.join(RESULTS).is_file()
+}
+
+/// What the page of the explanation in `folder` tells.
+///
+/// # Errors
+/// A file that cannot be read, or is none that an explanation writes.
+pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
+    let path = folder.join(RESULTS);
+    let results = Results::read(&path)?;
+    let machine = input::machine_file::read(&folder.join(MACHINE))?;
+    let content = &results.content;
+    let tried = |value: &Value| -> Vec<(String, f64)> {
+        let each = list(value);
+        each.iter()
+            .map(|t| (text(&t["label"]), number(&t["evidence"]["misfit"][1])))
+            .collect()
+    };
+    let effects = list(&content["effects"]);
+    let gap = &content["gap"];
+    let mut steps = vec![
+        Step {
+            label: "nominal".to_owned(),
+            fitted: number(&gap["nominal"]),
+            held_out: gap["heldout_nominal"].as_f64(),
+        },
+        Step {
+            label: CALIBRATED.to_owned(),
+            fitted: results.number(gap, "gap.before", "before")?,
+            held_out: gap["heldout_before"].as_f64(),
+        },
+    ];
+    // Earlier effects were judged before the last calibration: only the last step is of all runs.
+    if let Some(labels) = effects
+        .iter()
+        .map(|e| text(&e["label"]))
+        .reduce(|a, b| format!("{a}, {b}"))
+    {
+        steps.push(Step {
+            label: format!("with {labels}"),
+            fitted: results.number(gap, "gap.after", "after")?,
+            held_out: gap["heldout_after"].as_f64(),
+        });
+    }
+    let effect = |content: &Value| Effect {
+        label: text(&content["label"]),
+        sentence: text(&content["sentence"]),
+        parameters: parameters(content),
+        rivals: tried(&content["rivals"]),
+    };
+    Ok(GapPage {
+        name: machine_name(machine.to_tree()),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        verdict: text(&content["verdict"]),
+        steps,
+        effects: effects.iter().map(effect).collect(),
+        refused: tried(&content["refused"]),
+        maps: maps(&content["maps"]),
+        runs: runs(folder, &results, ["before", "after"])?,
+        next_recording: text(&content["next_recording"]),
+        seconds: number(&content["seconds"]),
+    })
+}
+
+fn parameters(effect: &Value) -> Vec<Parameter> {
+    let name = text(&effect["effect"]);
+    let of = |(key, content): (&String, &Value)| {
+        let known = entry(&name).and_then(|entry| entry.parameter(key));
+        let bounded = bounded(content);
+        Parameter {
+            key: key.clone(),
+            unit: known.map_or(String::new(), |p| p.unit.to_owned()),
+            value: bounded.value,
+            interval: bounded.interval,
+        }
+    };
+    effect["parameters"]
+        .as_object()
+        .into_iter()
+        .flatten()
+        .map(of)
+        .collect()
+}
+
+/// The maps before, each beside the one after.
+fn maps(content: &Value) -> Vec<Map> {
+    let bands: Vec<String> = list(&content["bands"]).iter().map(text).collect();
+    let rows = |map: &Value| -> Vec<Vec<f64>> {
+        let rows = list(&map["excess"]);
+        rows.iter()
+            .map(|row| list(row).iter().map(number).collect())
+            .collect()
+    };
+    let [before, after] = ["before", "after"].map(|key| list(&content[key]));
+    let both = before.iter().zip(&after);
+    both.map(|(before, after)| {
+        let excess = rows(before);
+        Map {
+            run: text(&before["run"]),
+            channel: text(&before["channel"]),
+            bands: bands.iter().take(excess.len()).cloned().collect(),
+            before: excess,
+            after: rows(after),
+        }
+    })
+    .collect()
+}
+
+fn text(value: &Value) -> String {
+    value.as_str().unwrap_or_default().to_owned()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+fn list(value: &Value) -> Vec<Value> {
+    value.as_array().cloned().unwrap_or_default()
+}

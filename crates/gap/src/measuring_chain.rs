@@ -1,0 +1,83 @@
+//! What is wrong with the measuring and not with the machine: told as effects like any other.
+
+use crate::candidate::Candidate;
+use crate::explain::{Evidence, Found};
+use crate::mains_hum::Hum;
+use crate::model::Model;
+use calibrate::fit::Estimate;
+use input::effects::{Entry, entry};
+
+/// An encoder is set to a dead centre within this, rad (a tenth of a degree): less is no finding.
+const SET: f64 = 1.7e-3;
+/// An offset that counts is so many times the half width of its 95 % interval.
+const CLEAR: f64 = 2.0;
+
+/// The zero of the crank angle, where it is not at top dead centre; its item of a machine file.
+pub(crate) fn crank_angle_offset(
+    estimates: &[Estimate],
+    before: impl FnOnce() -> Result<Model, crate::Error>,
+    after: &Model,
+) -> Result<Option<(Found, Model)>, crate::Error> {
+    let mut offsets = estimates
+        .iter()
+        .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
+    let (Some(estimate), Some(entry)) = (offsets.next(), entry("crank_angle_offset")) else {
+        return Ok(None);
+    };
+    let clear = estimate
+        .interval
+        .is_some_and(|[low, high]| estimate.value.abs() > CLEAR * 0.5 * (high - low));
+    if estimate.value.abs() < SET || !clear {
+        return Ok(None);
+    }
+    let before = before()?;
+    let held_out = before.held_out.zip(after.held_out);
+    let evidence = Evidence {
+        score: 1.0 - (after.fitted / before.fitted).powi(2),
+        misfit: [before.fitted, after.fitted],
+        heldout_misfit: held_out.map(|(before, after)| [before, after]),
+        delta_bic: before.bic_to(after),
+    };
+    Ok(Some((
+        found(entry, Vec::new(), vec![estimate.value], evidence),
+        before,
+    )))
+}
+
+/// A hum as an effect.
+pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
+    let entry = entry("mains_hum")?;
+    let of = |key: &str, start: f64| match key {
+        "amplitude" => hum.amplitude,
+        "frequency" => hum.frequency,
+        _ => start,
+    };
+    let values = entry.parameters.iter().map(|p| of(p.key, p.start));
+    let throw = hum.channel.split_once('.').map(|(throw, _)| throw);
+    let place = throw.map(|throw| ("throw", throw.to_owned())).into_iter();
+    let evidence = Evidence {
+        score: 1.0 - 1.0 / hum.over_noise,
+        misfit: [model.fitted; 2],
+        heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
+        delta_bic: 0.0,
+    };
+    Some(found(entry, place.collect(), values.collect(), evidence))
+}
+
+fn found(
+    entry: &'static Entry,
+    place: Vec<(&'static str, String)>,
+    values: Vec<f64>,
+    evidence: Evidence,
+) -> Found {
+    Found {
+        candidate: Candidate {
+            entry,
+            place,
+            fixed: Vec::new(),
+        },
+        values,
+        evidence,
+        rivals: Vec::new(),
+    }
+}

@@ -1,0 +1,119 @@
+//! The pictures of an explanation.
+
+use super::{GapPage, Map};
+use crate::calibration_page::{misfits, words};
+use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
+use crate::plate::Plate;
+use crate::text;
+
+/// At most so many channels have a map, those with the greatest gap.
+const MOST_MAPS: usize = 6;
+/// Height of a row of a map, pixels.
+const ROW: f64 = 18.0;
+/// An excess of so many times the noise is black.
+const BLACK: f64 = 30.0;
+/// Excess up to which a cell is empty.
+const EMPTY: f64 = 1.3;
+
+/// The gap as it shrank.
+pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
+    let steps = &page.steps;
+    let top = steps.len().checked_sub(1)? as f64;
+    let names = steps.iter().rev().map(|step| step.label.clone()).collect();
+    let at = |of: &dyn Fn(usize) -> Option<f64>| -> Vec<[f64; 2]> {
+        let points = (0..steps.len()).filter_map(|i| Some([of(i)?, top - i as f64]));
+        points.collect()
+    };
+    let fitted = at(&|i| Some(steps[i].fitted));
+    let panel = Panel {
+        x: Axis::log("gap (times the noise)"),
+        y: Axis::named("", names),
+        series: vec![
+            Series::new(
+                "noise floor",
+                Colour::Ink,
+                Mark::Line,
+                [[1.0, -1.0], [1.0, top + 1.0]],
+            ),
+            Series::new("", misfits::AFTER, Mark::FaintLine, fitted.iter().copied()),
+            Series::new("runs fitted to", misfits::AFTER, Mark::Discs, fitted),
+            Series::new(
+                "runs held out",
+                misfits::BEFORE,
+                Mark::Rings,
+                at(&|i| steps[i].held_out),
+            ),
+        ],
+        ..Panel::default()
+    };
+    Some(Plate {
+        heading: "The gap, step by step".to_owned(),
+        caption: "Root mean square of the difference between simulation and recording, order by order, over its noise. At 1 noise is \
+                  all that is left. Runs that were held out were never fitted to."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![panel]],
+            row_height: misfits::ROW * (top + 1.5),
+            ..Figure::default()
+        }
+        .svg(),
+    })
+}
+
+/// Where the gap was and is, for the channels in which it was greatest.
+pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
+    let greatest = |map: &Map| map.before.iter().flatten().copied().fold(0.0, f64::max);
+    let mut maps: Vec<&Map> = page.maps.iter().collect();
+    maps.sort_by(|a, b| greatest(b).total_cmp(&greatest(a)));
+    maps.truncate(MOST_MAPS);
+    maps.into_iter().map(plate).collect()
+}
+
+fn plate(map: &Map) -> Plate {
+    let (channel, _) = words::column(&map.channel);
+    Plate {
+        heading: format!("{}, {channel}", map.run),
+        caption: "The residual over the noise, by crank angle and order: the darker, the further from the recording. White is noise \
+                  alone; numbers are multiples of it."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![
+                panel("without the effects", &map.bands, &map.before),
+                panel("with them", &map.bands, &map.after),
+            ]],
+            row_height: ROW * (map.bands.len() as f64 + 0.5),
+            ..Figure::default()
+        }
+        .svg(),
+    }
+}
+
+fn panel(title: &str, bands: &[String], excess: &[Vec<f64>]) -> Panel {
+    let sectors = excess.first().map_or(1, Vec::len);
+    let mut fields = Vec::new();
+    for (band, row) in excess.iter().enumerate() {
+        for (sector, value) in row.iter().enumerate().filter(|(_, v)| **v > EMPTY) {
+            let letters = match *value {
+                v if v < 9.5 => text::decimal(v, 0),
+                _ => String::new(),
+            };
+            fields.push(Field {
+                at: [sector as f64, band as f64],
+                fill: Colour::Tint((value.ln() / BLACK.ln()).clamp(0.0, 1.0)),
+                letters,
+            });
+        }
+    }
+    let sector = 360.0 / sectors as f64;
+    let name = |i: usize| match i % 6 {
+        0 => format!("{}°", text::decimal(i as f64 * sector, 0)),
+        _ => String::new(),
+    };
+    Panel {
+        title: title.to_owned(),
+        x: Axis::named("crank angle", (0..sectors).map(name).collect()),
+        y: Axis::named("orders", bands.to_vec()),
+        fields,
+        ..Panel::default()
+    }
+}

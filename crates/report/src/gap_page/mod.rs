@@ -1,0 +1,88 @@
+//! The HTML page of an explanation: where model and recordings disagreed, which effect was missing,
+//! and how far the gap has shrunk.
+
+mod figures;
+mod page;
+
+use crate::calibration_page::Run;
+
+/// What the step is called in which the machine has been calibrated and no effect been added.
+pub const CALIBRATED: &str = "calibrated";
+
+/// All that the page tells. Numbers are SI; misfits are in units of the recordings' noise, so that 1
+/// is noise alone.
+#[derive(Clone, Debug, Default)]
+pub struct GapPage {
+    /// Name of the machine.
+    pub name: String,
+    /// Version of the program that makes the page.
+    pub version: String,
+    /// `no-gap`, `explained`, `partly-explained` or `unexplained`.
+    pub verdict: String,
+    /// The gap as it shrank, the nominal machine first.
+    pub steps: Vec<Step>,
+    /// The effects, in the order in which they were added.
+    pub effects: Vec<Effect>,
+    /// Candidates that were tried and did not earn their place, with their misfit.
+    pub refused: Vec<(String, f64)>,
+    /// Where the gap was and is.
+    pub maps: Vec<Map>,
+    /// The runs.
+    pub runs: Vec<Run>,
+    /// What to measure next; empty where nothing is asked for.
+    pub next_recording: String,
+    /// Time that it took, s.
+    pub seconds: f64,
+}
+
+/// A model on the way.
+#[derive(Clone, Debug, Default)]
+pub struct Step {
+    /// What was done last.
+    pub label: String,
+    /// Misfit of the runs that were fitted to.
+    pub fitted: f64,
+    /// Misfit of those held out.
+    pub held_out: Option<f64>,
+}
+
+/// An effect that was added.
+#[derive(Clone, Debug, Default)]
+pub struct Effect {
+    /// Its name, with its place.
+    pub label: String,
+    /// What it is, for a mechanic.
+    pub sentence: String,
+    /// Its parameters.
+    pub parameters: Vec<Parameter>,
+    /// What else might have been, with the misfit that it leaves.
+    pub rivals: Vec<(String, f64)>,
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, Default)]
+pub struct Parameter {
+    /// Its key.
+    pub key: String,
+    /// Its unit; empty for a plain number.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// Its 95 % interval; none where the recordings do not tell it.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// The residual of a channel of a run over crank angle and orders.
+#[derive(Clone, Debug, Default)]
+pub struct Map {
+    /// The run.
+    pub run: String,
+    /// The channel's column.
+    pub channel: String,
+    /// The bands of orders.
+    pub bands: Vec<String>,
+    /// For each band and sector the residual over the noise, without the effects.
+    pub before: Vec<Vec<f64>>,
+    /// The same with them.
+    pub after: Vec<Vec<f64>>,
+}

@@ -1,0 +1,127 @@
+//! The page itself.
+
+use super::{Effect, GapPage, Parameter, figures};
+use crate::calibration_page::{verdict::size, waveforms};
+use crate::plate::{FigureFile, Plate, Rendered, file_name};
+use crate::{Error, text};
+use askama::Template;
+
+#[derive(Template)]
+#[template(path = "gap_page.html")]
+struct View<'a> {
+    page: &'a GapPage,
+    verdict: String,
+    waterfall: Vec<(usize, Plate)>,
+    maps: Vec<(usize, Plate)>,
+    runs: Vec<(usize, Plate)>,
+}
+
+impl GapPage {
+    /// The page as one HTML file that loads nothing from anywhere, and its figures.
+    ///
+    /// # Errors
+    /// [`Error::Template`] if the template cannot be filled in.
+    pub fn render(&self) -> Result<Rendered, Error> {
+        let mut number = 0;
+        let mut numbered = |plates: Vec<Plate>| -> Vec<(usize, Plate)> {
+            let plates = plates.into_iter().map(|plate| {
+                number += 1;
+                (number, plate)
+            });
+            plates.collect()
+        };
+        let names = match self.effects.is_empty() {
+            true => ["calibrated", ""],
+            false => ["without the effects", "with them"],
+        };
+        let view = View {
+            page: self,
+            verdict: verdict(self),
+            waterfall: numbered(figures::waterfall(self).into_iter().collect()),
+            maps: numbered(figures::maps(self)),
+            runs: numbered(waveforms::plates(&self.runs, names)),
+        };
+        let html = view.render()?;
+        let plates = [view.waterfall, view.maps, view.runs];
+        let figures = plates
+            .into_iter()
+            .flatten()
+            .map(|(number, plate)| FigureFile {
+                name: file_name("gap", number, &plate.heading),
+                svg: plate.svg,
+            });
+        Ok(Rendered {
+            html,
+            figures: figures.collect(),
+        })
+    }
+}
+
+/// What the explanation comes to, in a sentence.
+fn verdict(page: &GapPage) -> String {
+    let (Some(first), Some(last)) = (
+        page.steps
+            .iter()
+            .find(|step| step.label == super::CALIBRATED),
+        page.steps.last(),
+    ) else {
+        return String::new();
+    };
+    let named: Vec<&str> = page.effects.iter().map(|e| e.label.as_str()).collect();
+    let named = named.join(" and ");
+    let [before, after] = [first, last].map(|step| size(step.fitted));
+    match page.verdict.as_str() {
+        "no-gap" => format!(
+            "The calibrated model agrees with the recordings within their noise ({before} times): nothing is missing."
+        ),
+        "explained" => format!(
+            "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with it {after} \
+             times the noise are left."
+        ),
+        "partly-explained" => format!(
+            "The calibrated model missed the recordings by {before} times their noise. {} takes this down to {after}; something is \
+             still missing.",
+            text::capitalised(&named)
+        ),
+        _ => format!(
+            "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
+             explains it."
+        ),
+    }
+}
+
+/// What the template asks for, formatted.
+impl View<'_> {
+    fn misfit(value: &f64) -> String {
+        size(*value)
+    }
+
+    fn value(parameter: &Parameter) -> String {
+        text::quantity(parameter.value, &parameter.unit)
+    }
+
+    fn interval(parameter: &Parameter) -> String {
+        match parameter.interval {
+            Some([low, high]) => format!("{} to {}", text::number(low, 3), text::number(high, 3)),
+            None => "not told".to_owned(),
+        }
+    }
+
+    fn key(parameter: &Parameter) -> String {
+        text::words(&parameter.key)
+    }
+
+    fn has_rivals(effect: &Effect) -> bool {
+        !effect.rivals.is_empty()
+    }
+
+    fn left_out(&self) -> String {
+        match waveforms::left_out(&self.page.runs) {
+            0 => String::new(),
+            n => format!(
+                "{} without a picture here; waveforms.parquet has them all.",
+                text::counted(n, "run")
+            ),
+        }
+    }
+}
