@@ -149,13 +149,13 @@ impl Candidate {
         Ok(added)
     }
 
-    /// Its parameters in a model that has it, SI.
-    pub fn values(&self, model: &Model) -> Vec<f64> {
+    /// Its parameters in a model in which it is the effect of this index, SI.
+    pub(crate) fn values(&self, model: &Model, index: usize) -> Vec<f64> {
         let of = |(i, parameter): (usize, &Parameter)| {
-            let suffix = format!(".{}.{}", self.entry.name, parameter.key);
-            let mut fitted = model.problem.parameters.iter().zip(&model.x).rev();
-            let fitted = fitted.find(|(p, _)| p.path.ends_with(&suffix));
-            let fixed = self.fixed.iter().find(|(index, _)| *index == i);
+            let path = format!("effects.{index}.{}.{}", self.entry.name, parameter.key);
+            let mut fitted = model.problem.parameters.iter().zip(&model.x);
+            let fitted = fitted.find(|(p, _)| p.path == path);
+            let fixed = self.fixed.iter().find(|(fixed, _)| *fixed == i);
             match (fixed, fitted) {
                 (Some((_, value)), _) => *value,
                 (None, Some((fitted, x))) => fitted.value(*x),

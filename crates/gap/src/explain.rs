@@ -81,6 +81,8 @@ pub struct Found {
     pub values: Vec<f64>,
     /// On what it was decided.
     pub evidence: Evidence,
+    /// The misfit that it leaves in each run.
+    pub by_run: Vec<(String, f64)>,
     /// What else might have been.
     pub rivals: Vec<Tried>,
 }
@@ -92,6 +94,8 @@ pub struct Tried {
     pub candidate: Candidate,
     /// How well it did.
     pub evidence: Evidence,
+    /// The misfit that it leaves in each of the runs that it was fitted to or held against.
+    pub by_run: Vec<(String, f64)>,
 }
 
 /// What speaks for an effect.
@@ -165,6 +169,7 @@ pub fn explain(
     };
     let (model, others, refused) = search.while_they_earn(model, NOISE, MOST, candidates)?;
     found.extend(others);
+    let (model, found) = search.pruned(problem, model, found)?;
     say("finding bounds", model.fitted);
     let estimates = search.bounds(&model)?;
     let nothing = vec![0.0; problem.parameters.len()];
@@ -303,6 +308,37 @@ impl Search<'_> {
         Model::at(problem.clone(), x.collect(), self.effort)
     }
 
+    /// The model without those of its effects that no longer earn their place beside the others.
+    fn pruned(
+        &self,
+        problem: &Problem,
+        mut model: Model,
+        mut found: Vec<Found>,
+    ) -> Result<(Model, Vec<Found>), Error> {
+        let mut i = 0;
+        while found.len() > 1 && i < found.len() {
+            let label = found[i].candidate.label();
+            (self.say)(&format!("without {label}"), model.fitted);
+            let others = found.iter().enumerate().filter(|(j, _)| *j != i);
+            let mut without = problem.clone();
+            for (j, other) in others {
+                let values = other.candidate.values(&model, effects(problem) + j);
+                without = other.candidate.added(&without, &values)?;
+            }
+            // The others stand at what they were found to be, which is their coordinates' 0.
+            let mut x = model.x[..problem.parameters.len()].to_vec();
+            x.resize(without.parameters.len(), 0.0);
+            let without = Model::fit(without, &x, self.effort, self.watch)?;
+            if earns(&without, &model) {
+                i += 1;
+            } else {
+                found.remove(i);
+                model = without;
+            }
+        }
+        Ok((model, found))
+    }
+
     /// The parameters of a model with their bounds.
     fn bounds(&self, model: &Model) -> Result<Vec<Estimate>, Error> {
         let settings = FitSettings {
@@ -343,7 +379,8 @@ impl Search<'_> {
             let near = |tried: &Tried| tried.evidence.misfit[1] < RIVAL * after.fitted;
             found.push(Found {
                 rivals: others.filter(near).collect(),
-                values: best.candidate.values(&after),
+                values: best.candidate.values(&after, effects(&model.problem)),
+                by_run: best.by_run,
                 candidate: best.candidate,
                 evidence: best.evidence,
             });
@@ -396,6 +433,7 @@ impl Search<'_> {
                 Tried {
                     candidate,
                     evidence,
+                    by_run: after.misfits(),
                 },
                 after,
             ));
@@ -405,6 +443,11 @@ impl Search<'_> {
         tried[..last].sort_by(|a, b| order(a).total_cmp(&order(b)));
         Ok(tried)
     }
+}
+
+/// How many effects a problem's machine has.
+fn effects(problem: &Problem) -> usize {
+    problem.tree["effects"].as_array().map_or(0, Vec::len)
 }
 
 /// The model with a few of the runs that it is fitted to, of speeds as different as there are.

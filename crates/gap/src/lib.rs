@@ -14,6 +14,7 @@ pub mod explain;
 pub mod mains_hum;
 mod measuring_chain;
 pub mod model;
+mod next_recording;
 pub mod residual_map;
 pub mod screening;
 
@@ -22,4 +23,5 @@ pub use error::Error;
 pub use explain::{Evidence, Explanation, Found, Stage, Tried, Verdict, explain};
 pub use mains_hum::{Hum, remove_hum};
 pub use model::{Effort, Model};
+pub use next_recording::next_recording;
 pub use residual_map::{Place, ResidualMap, band_names, places, residual_maps};

@@ -78,6 +78,7 @@ fn found(
         },
         values,
         evidence,
+        by_run: Vec::new(),
         rivals: Vec::new(),
     }
 }

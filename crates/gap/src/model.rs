@@ -107,6 +107,12 @@ impl Model {
         Ok((problem, x))
     }
 
+    /// The misfit of each run, by its name.
+    pub(crate) fn misfits(&self) -> Vec<(String, f64)> {
+        let runs = self.problem.runs.iter().map(|run| run.id.clone());
+        runs.zip(self.by_run.iter().copied()).collect()
+    }
+
     /// Schwarz's criterion of `after`, which has the same runs, less that of this model; each line of
     /// an order counts as two observations.
     pub(crate) fn bic_to(&self, after: &Self) -> f64 {

@@ -78,7 +78,7 @@ pub fn write(
         },
         "where": gap::places(&maps[0], PLACES),
         "heldout_runs": effort.held_out,
-        "next_recording": Value::Null,
+        "next_recording": gap::next_recording(&explanation.found),
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
         "seconds": seconds,
         "runs": runs,
