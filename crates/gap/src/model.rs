@@ -78,6 +78,9 @@ impl Model {
         effort: &Effort,
         watch: Watch,
     ) -> Result<Self, Error> {
+        if problem.parameters.is_empty() {
+            return Self::at(problem, Vec::new(), effort);
+        }
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
         let rough = descend(
             &Likelihood::coarse(&fitted, LOOSE),

@@ -6,7 +6,7 @@ use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
 
-/// At most so many channels have a map, those with the greatest gap.
+/// About so many runs' channels have a map: of each channel those with the greatest gap.
 const MOST_MAPS: usize = 6;
 /// Height of a row of a map, pixels.
 const ROW: f64 = 18.0;
@@ -65,8 +65,18 @@ pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
     let greatest = |map: &Map| map.before.iter().flatten().copied().fold(0.0, f64::max);
     let mut maps: Vec<&Map> = page.maps.iter().collect();
     maps.sort_by(|a, b| greatest(b).total_cmp(&greatest(a)));
-    maps.truncate(MOST_MAPS);
-    maps.into_iter().map(plate).collect()
+    let mut columns: Vec<&str> = maps.iter().map(|map| map.channel.as_str()).collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let each = (MOST_MAPS / columns.len().max(1)).max(1);
+    let chosen = columns.iter().flat_map(|column| {
+        let own = maps
+            .iter()
+            .copied()
+            .filter(move |map| map.channel == *column);
+        own.take(each)
+    });
+    chosen.map(plate).collect()
 }
 
 fn plate(map: &Map) -> Plate {

@@ -97,12 +97,16 @@ impl View<'_> {
     }
 
     fn value(parameter: &Parameter) -> String {
-        text::quantity(parameter.value, &parameter.unit)
+        let value = text::number(parameter.value, 5);
+        match parameter.unit.is_empty() {
+            true => value,
+            false => format!("{value}\u{a0}{}", text::unit(&parameter.unit)),
+        }
     }
 
     fn interval(parameter: &Parameter) -> String {
         match parameter.interval {
-            Some([low, high]) => format!("{} to {}", text::number(low, 3), text::number(high, 3)),
+            Some([low, high]) => format!("{} to {}", text::number(low, 5), text::number(high, 5)),
             None => "not told".to_owned(),
         }
     }

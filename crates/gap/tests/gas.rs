@@ -1,0 +1,127 @@
+//! Effects of the gas, hidden in pressures without a recording's noise, are named again.
+
+use calibrate::observation::Observed;
+use calibrate::prediction::predict;
+use calibrate::run_condition::CRANK_ANGLE_OFFSET;
+use calibrate::{CrankMotion, Observation, Parameter, Problem};
+use gap::{Effort, Verdict, explain};
+use input::effects::entry;
+use mechanism::drive::GivenSpeed;
+use serde_json::{Value, json};
+use signal::order_lines::OrderLines;
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+const COLUMN: &str = "cylinder_pressure_pa";
+const ORDERS: usize = 60;
+/// Standard deviation of a line's noise, Pa: a thousandth of the swing.
+const NOISE: f64 = 200.0;
+
+/// The single-stage machine with ideal joints.
+fn machine() -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
+    let machine = input::machine_file::read(&path).unwrap();
+    let mut tree = machine.to_tree().clone();
+    tree["effects"] = json!([]);
+    for joint in ["big_end", "small_end"] {
+        tree["joints"][joint]["clearance"] = json!("ideal");
+    }
+    tree
+}
+
+fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
+    let offset = Parameter::named(&tree, &[], CRANK_ANGLE_OFFSET, None).unwrap();
+    Problem {
+        tree,
+        parameters: vec![offset],
+        runs,
+        crank: CrankMotion::Driven,
+    }
+}
+
+/// What the machine with these effects shows at a speed and a discharge pressure.
+fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> Observation {
+    let observed = |lines| Observed {
+        column: COLUMN.into(),
+        lines,
+        orders: (0..=ORDERS).collect(),
+    };
+    let mut run = Observation {
+        id: id.into(),
+        settings: vec![
+            ("speed".to_owned(), json!(format!("{rpm} rpm"))),
+            ("cylinder.discharge".to_owned(), json!(discharge)),
+        ],
+        crank: GivenSpeed {
+            speed: rpm * PI / 30.0,
+            fluctuation: Vec::new(),
+        },
+        channels: vec![observed(OrderLines {
+            amplitude: Vec::new(),
+            variance: Vec::new(),
+            revolutions: 30,
+        })],
+    };
+    let mut tree = machine();
+    tree["effects"] = effects.clone();
+    let shown = predict(&problem(tree, Vec::new()), &run, &[0.0]).unwrap();
+    let lines = shown.lines.into_iter().next().unwrap();
+    run.channels = vec![observed(OrderLines {
+        variance: vec![NOISE * NOISE; lines.amplitude.len()],
+        revolutions: 30,
+        ..lines
+    })];
+    run
+}
+
+fn explained(effects: &Value) -> gap::Explanation {
+    let runs = [
+        ("a", 400.0, "0.4 MPa"),
+        ("b", 600.0, "0.4 MPa"),
+        ("c", 500.0, "0.5 MPa"),
+        ("d", 550.0, "0.45 MPa"),
+    ];
+    let runs = runs.map(|(id, rpm, discharge)| recorded(effects, id, rpm, discharge));
+    let effort = Effort {
+        held_out: vec!["d".into()],
+        evaluations: 120,
+    };
+    let problem = problem(machine(), runs.to_vec());
+    explain(&problem, &[], &effort, &|_| (), &|| {
+        ControlFlow::Continue(())
+    })
+    .unwrap()
+}
+
+#[test]
+fn nothing_hidden_is_no_gap() {
+    let found = explained(&json!([]));
+    assert_eq!(found.verdict, Verdict::NoGap);
+    assert!(found.found.is_empty() && found.chain.is_empty());
+}
+
+#[test]
+fn a_valve_loss_is_named_with_its_coefficients() {
+    let entry = entry("valve_loss").unwrap();
+    let found = explained(&json!([entry.item(&[], &[0.12, 0.2])]));
+    assert_eq!(found.verdict, Verdict::Explained);
+    let names: Vec<_> = found.found.iter().map(|f| f.candidate.label()).collect();
+    assert_eq!(names, ["valve_loss"]);
+    for (value, truth) in found.found[0].values.iter().zip([0.12, 0.2]) {
+        assert!((value / truth - 1.0).abs() < 0.01, "{value}");
+    }
+    assert!(found.explained.held_out.unwrap() < 0.1);
+}
+
+#[test]
+fn an_encoder_that_is_set_wrong_is_told_as_such() {
+    let entry = entry("crank_angle_offset").unwrap();
+    let found = explained(&json!([entry.item(&[], &[0.03])]));
+    assert_eq!(found.verdict, Verdict::Explained);
+    assert!(found.found.is_empty());
+    let names: Vec<_> = found.chain.iter().map(|f| f.candidate.label()).collect();
+    assert_eq!(names, ["crank_angle_offset"]);
+    assert!((found.chain[0].values[0] - 0.03).abs() < 1e-4);
+    assert!(found.baseline.fitted > 5.0 * found.explained.fitted);
+}
