@@ -231,7 +231,11 @@ impl<S: Scalar> Clearance<S> {
             tangent.dot(&rate) + journal * self.journal_radius
                 - bearing * (self.journal_radius + distance)
         };
-        let Some([wider, change]) = effects.bearing_shape(normal) else {
+        let shape = match self.model {
+            JointModel::ThreeMode => effects.bearing_shape(normal),
+            JointModel::TwoMode | JointModel::MasslessLink => None,
+        };
+        let Some([wider, change]) = shape else {
             return Surface {
                 normal,
                 steepness: None,
