@@ -135,7 +135,7 @@ impl<S: Scalar> Chamber<S> {
         let exponent = flagged(expanding, expansion, compression);
         let mut closed = from * (start / distance).powf(exponent);
         if let Some(drift) = drift {
-            closed = closed * drift.exp();
+            closed *= drift.exp();
         }
         let pressure = flagged(
             mode.discharge,
