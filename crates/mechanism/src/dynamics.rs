@@ -69,9 +69,9 @@ pub struct ThrowEvaluation<S> {
     pub gas: Gas<S>,
     /// Accelerations and rigid joints' forces.
     pub accelerations: Accelerations<S>,
-    /// Acceleration along x of what the throw stands on, m/s²: what a sensor on the crosshead feels
-    /// beside the crosshead's own. 0 where the frame does not carry.
-    pub carried: S,
+    /// Acceleration of what the throw stands on, m/s²: what a sensor on the crosshead feels beside
+    /// the crosshead's own. 0 where the frame does not carry.
+    pub carried: Vec2<S>,
     pub(crate) loads: Loads<S>,
 }
 
@@ -282,7 +282,10 @@ impl<S: Scalar> Dynamics<S> {
             &AtJoint {
                 acting: on_shaft,
                 joint: Joint::Main,
-                axis: Vec2::new(S::one(), S::zero()),
+                axes: [
+                    along_x(),
+                    self.layout.main.map_or(along_x(), |_| direction(angle)),
+                ],
             },
         );
         evaluation.throws.clear();
@@ -417,7 +420,7 @@ impl<S: Scalar> Dynamics<S> {
         }
         if let Some(carried) = carried {
             for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
-                at.carried = throw.local(carried).x;
+                at.carried = throw.local(carried);
             }
         }
     }
@@ -461,25 +464,27 @@ impl<S: Scalar> ThrowEvaluation<S> {
         );
         let spin = motion.rod_rate;
         // Both ends' bearings are in the rod.
-        let at_joint = |joint| AtJoint {
+        let at_joint = |joint, journal| AtJoint {
             acting: effects,
             joint,
-            axis: motion.along_rod(),
+            axes: [motion.along_rod(), journal],
         };
+        let pin = motion.angle_sin_cos;
+        let crosshead = at.layout.guide.map_or(along_x(), |_| direction(guide[0].y));
         let joints = Joints {
             big_end: revolute_state(
                 &throw.big_end,
                 big,
                 [at.speed, spin],
                 &at.mode.big_end,
-                &at_joint(Joint::BigEnd),
+                &at_joint(Joint::BigEnd, Vec2::new(pin.1, pin.0)),
             ),
             small_end: revolute_state(
                 &throw.small_end,
                 small,
                 [guide[1].y, spin],
                 &at.mode.small_end,
-                &at_joint(Joint::SmallEnd),
+                &at_joint(Joint::SmallEnd, crosshead),
             ),
             guide: match &throw.guide {
                 Guide::Ideal => GuideState::ideal(),
@@ -522,7 +527,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
                 rod: S::zero(),
                 stretch: S::zero(),
             },
-            carried: S::zero(),
+            carried: origin(),
         }
     }
 }
@@ -552,6 +557,17 @@ fn pair<S: Scalar>(y: &[S], at: Option<usize>) -> [Vec2<S>; 2] {
         None => [origin(); 2],
         Some(i) => [Vec2::new(y[i], y[i + 1]), Vec2::new(y[i + 2], y[i + 3])],
     }
+}
+
+/// The direction of the x axis.
+fn along_x<S: Scalar>() -> Vec2<S> {
+    Vec2::new(S::one(), S::zero())
+}
+
+/// The direction at an angle, rad.
+fn direction<S: Scalar>(angle: S) -> Vec2<S> {
+    let (sine, cosine) = angle.sin_cos();
+    Vec2::new(cosine, sine)
 }
 
 fn revolute_state<S: Scalar>(

@@ -4,7 +4,7 @@ mod common;
 
 use common::{REVOLUTION, Run, SPEED, single_stage, with_clearance};
 use mechanism::effects::{
-    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Place,
+    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Oval, Place,
     RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance, Shaken, SqueezeFilm,
     SuctionUnloading, ValveLoss,
 };
@@ -346,7 +346,7 @@ fn an_unbalance_shakes_the_sensor_once_a_revolution_with_the_square_of_the_speed
     };
     let felt = |machine: Machine| {
         at_angles(machine, &revolution(64), |at| {
-            at.throws[0].accelerations.crosshead + at.throws[0].carried
+            at.throws[0].accelerations.crosshead + at.throws[0].carried.x
         })
     };
     let quiet = felt(single_stage());
@@ -374,7 +374,7 @@ fn a_shaken_frame_feels_like_gravity_to_what_flies_free() {
         let mut dynamics = Dynamics::new(machine, false);
         let y = dynamics.initial_state();
         let at = dynamics.evaluate(0.01, &y);
-        at.throws[0].accelerations.crosshead + at.throws[0].carried
+        at.throws[0].accelerations.crosshead + at.throws[0].carried.x
     };
     let unbalance = Law::RotatingUnbalance(RotatingUnbalance {
         eccentricity: 1e-3,
@@ -471,6 +471,7 @@ fn an_oval_bearing_is_wider_along_its_long_axis() {
         law: Law::BearingOvality(BearingOvality {
             amplitude,
             direction,
+            oval: Oval::Bearing,
         }),
         place: Place {
             joint: Some(Joint::SmallEnd),
@@ -518,7 +519,7 @@ fn a_frame_on_springs_follows_the_forces_by_its_frequency_response() {
         run.advance(degrees / 360.0 * REVOLUTION);
         let at = run.now();
         force.push(at.frame_force.x);
-        felt.push(at.throws[0].carried);
+        felt.push(at.throws[0].carried.x);
     }
     for k in [1.0, 2.0, 4.0] {
         let r = k * SPEED / natural;

@@ -101,7 +101,7 @@ fn numbers<S: Scalar>(dynamics: &Dynamics<S>) -> Vec<S> {
         ));
         vector(Vec2::new(found.crosshead, found.rod));
         vector(Vec2::new(joints.guide.moment, part.gas.force));
-        vector(Vec2::new(part.gas.effects, part.carried));
+        vector(Vec2::new(part.gas.effects, part.carried.x));
     }
     row
 }

@@ -4,7 +4,7 @@ use super::single_stage;
 use integrate::System;
 use mechanism::drive::{Drive, MotorLine};
 use mechanism::effects::{
-    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Place,
+    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Oval, Place,
     RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance, Shaken, SqueezeFilm,
     SuctionUnloading, ValveLoss,
 };
@@ -281,8 +281,18 @@ pub fn catalogue() -> Vec<Effect> {
             Law::BearingOvality(BearingOvality {
                 amplitude: 2e-5,
                 direction: 0.6,
+                oval: Oval::Bearing,
             }),
             Some(Joint::BigEnd),
+            None,
+        ),
+        at(
+            Law::BearingOvality(BearingOvality {
+                amplitude: 1e-5,
+                direction: 2.0,
+                oval: Oval::Journal,
+            }),
+            None,
             None,
         ),
     ]

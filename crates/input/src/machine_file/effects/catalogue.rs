@@ -49,7 +49,7 @@ pub struct Choice {
     /// What may stand there; none for the names of the machine's throws.
     pub words: &'static [&'static str],
     /// True where the key must be there. Where another is left out, the effect acts at every place
-    /// (of `measure` and `body`: at the first).
+    /// (of `measure`, `body` and `part`: at the first).
     pub required: bool,
 }
 
