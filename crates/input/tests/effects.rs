@@ -150,6 +150,11 @@ fn every_parameter_can_be_reached_by_its_path() {
         let before = resolve(&tree);
         for p in entry.parameters {
             let path = format!("effects.{}.{}", entry.name, p.key);
+            assert_eq!(input::effects::at_path(&path), Some(p));
+            assert_eq!(
+                input::effects::at_path(&path.replace("effects.", "effects.7.")),
+                Some(p)
+            );
             let there = paths::get(&tree, &path).unwrap().cloned();
             assert_eq!(there, Some(p.value(p.start)), "{path}");
             let other = if p.start == p.bounds[1] {

@@ -94,3 +94,11 @@ impl Entry {
 pub fn entry(name: &str) -> Option<&'static Entry> {
     super::CATALOGUE.iter().find(|entry| entry.name == name)
 }
+
+/// The parameter that a path of the machine file leads to: `effects.valve_loss.discharge`,
+/// `effects.2.squeeze_film.viscosity`.
+pub fn at_path(path: &str) -> Option<&'static Parameter> {
+    let (rest, key) = path.strip_prefix("effects.")?.rsplit_once('.')?;
+    let name = rest.rsplit('.').next()?;
+    entry(name)?.parameter(key)
+}
