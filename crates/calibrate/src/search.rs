@@ -19,6 +19,9 @@ use std::ops::ControlFlow;
 
 /// A misfit below this is taken for noise, and no better fit is looked for.
 pub(crate) const NOISE: f64 = 1.15;
+/// For a throw by itself this is near enough: what the encoder does not show of the crank's turning
+/// is left over.
+const NEAR: f64 = 2.0;
 /// By how much features may stand elsewhere in the steps of a descent, rad, before they must stand
 /// where they are seen.
 const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
@@ -49,16 +52,17 @@ struct Search<'a, 'w> {
     spent: u64,
     stopped: bool,
     best: Progress,
+    /// The misfit that is looked for.
+    wanted: f64,
     /// Misfits in which descents have ended.
     minima: Vec<f64>,
     watch: Watch<'w>,
 }
 
 /// The best fit: by Levenberg and Marquardt's method from `start`, each of several throws by itself
-/// at first; where that leaves more than noise,
-/// with continuation, from kicks out of where that ends, and from the best of many other points,
-/// until the noise is reached or [`AGREE`] descents have ended at the same misfit; where they do not
-/// agree, by CMA-ES.
+/// at first; where that leaves more than noise, with continuation, from kicks out of where that
+/// ends, and from the best of many other points, until the noise is reached or [`AGREE`] descents
+/// have ended at the same misfit; where they do not agree, by CMA-ES.
 ///
 /// # Errors
 /// Where an optimiser cannot start.
@@ -69,46 +73,44 @@ pub(crate) fn search(
     most: u64,
     watch: Watch,
 ) -> Result<Progress, Error> {
-    let residuals = Likelihood::new(problem).residuals(start);
-    let mut search = Search {
-        problem,
-        most,
-        spent: 1,
-        stopped: false,
-        best: Progress {
-            x: start.to_vec(),
-            cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
-            count: residuals.len(),
-            evaluations: 1,
-        },
-        minima: Vec::new(),
-        watch,
-    };
+    let mut search = Search::new(problem, start, most, NOISE, watch);
     let throws = throws_alone(problem)?;
-    let start = &search.throw_by_throw(&throws, start, seed)?;
-    search.descend(None, start)?;
-    if !search.ended() {
-        search.continuation(start)?;
-    }
-    while !search.ended() && search.kicked()? {}
-    let coarse = Likelihood::coarse(problem, TIMINGS[0]);
-    let spread = spread(start, &coarse.bounds(), seed);
-    for start in search.promising(&coarse, spread, STARTS) {
-        if search.ended() {
-            break;
-        }
-        search.continuation(&start)?;
-    }
+    let start = search.throw_by_throw(&throws, start, seed)?;
+    search.locally(&start)?;
+    search.elsewhere(&start, seed)?;
     if !search.ended() {
         search.globally(seed)?;
     }
-    Ok(Progress {
-        evaluations: search.spent,
-        ..search.best
-    })
+    Ok(search.found())
 }
 
-impl Search<'_, '_> {
+impl<'a, 'w> Search<'a, 'w> {
+    fn new(problem: &'a Problem, start: &[f64], most: u64, wanted: f64, watch: Watch<'w>) -> Self {
+        let residuals = Likelihood::new(problem).residuals(start);
+        Self {
+            problem,
+            most,
+            spent: 1,
+            stopped: false,
+            best: Progress {
+                x: start.to_vec(),
+                cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
+                count: residuals.len(),
+                evaluations: 1,
+            },
+            wanted,
+            minima: Vec::new(),
+            watch,
+        }
+    }
+
+    fn found(self) -> Progress {
+        Progress {
+            evaluations: self.spent,
+            ..self.best
+        }
+    }
+
     fn left(&self) -> u64 {
         self.most.saturating_sub(self.spent)
     }
@@ -118,7 +120,7 @@ impl Search<'_, '_> {
         let same = |misfit: &&f64| **misfit <= best * (1.0 + SAME);
         self.stopped
             || self.left() == 0
-            || best < NOISE
+            || best < self.wanted
             || self.minima.iter().filter(same).count() >= AGREE
     }
 
@@ -139,7 +141,10 @@ impl Search<'_, '_> {
             let left = self.left();
             let alone = {
                 let told = &mut self.told(false);
-                search(&throw.problem, &own, seed, left, told)?
+                let mut alone = Search::new(&throw.problem, &own, left, NEAR, told);
+                alone.locally(&own)?;
+                alone.elsewhere(&own, seed)?;
+                alone.found()
             };
             self.spent += alone.evaluations;
             for (i, x) in throw.parameters.iter().zip(alone.x) {
@@ -151,6 +156,35 @@ impl Search<'_, '_> {
             count => found.iter().sum::<f64>() / count as f64,
         };
         Ok(found.iter().zip(start).map(middle).collect())
+    }
+
+    /// From `start`, and out of the local minima on the way. Where the low orders agree with the
+    /// recordings only the ringing is wrong, and a kick may do; elsewhere they come first.
+    fn locally(&mut self, start: &[f64]) -> Result<(), Error> {
+        self.descend(None, start)?;
+        if self.ended() {
+            return Ok(());
+        }
+        self.spent += 1;
+        let loose = Likelihood::coarse(self.problem, LOOSE);
+        if misfit(&loose.residuals(&self.best.x)) > NOISE {
+            self.continuation(start)?;
+        }
+        while !self.ended() && self.kicked()? {}
+        Ok(())
+    }
+
+    /// From the best of many points around `start`.
+    fn elsewhere(&mut self, start: &[f64], seed: u64) -> Result<(), Error> {
+        let coarse = Likelihood::coarse(self.problem, TIMINGS[0]);
+        let spread = spread(start, &coarse.bounds(), seed);
+        for start in self.promising(&coarse, spread, STARTS) {
+            if self.ended() {
+                break;
+            }
+            self.continuation(&start)?;
+        }
+        Ok(())
     }
 
     /// From `start` with the low orders first.

@@ -40,8 +40,11 @@ pub(crate) fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> 
 fn alone(problem: &Problem, name: &str) -> ThrowAlone {
     let belongs = |path: &str| throw(path).is_none_or(|of| of == name);
     let mut tree = problem.tree.clone();
-    if let Some(Value::Array(throws)) = tree.get_mut("throws") {
-        throws.retain(|throw| throw.get("name").and_then(Value::as_str) == Some(name));
+    keep(&mut tree, "throws", |item| word(item, "name") == Some(name));
+    for list in ["sensors", "effects"] {
+        keep(&mut tree, list, |item| {
+            word(item, "throw").is_none_or(|of| of == name)
+        });
     }
     let parameters: Vec<usize> = (0..problem.parameters.len())
         .filter(|i| belongs(&problem.parameters[*i].path))
@@ -75,4 +78,14 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
         },
         parameters,
     }
+}
+
+fn keep(tree: &mut Value, list: &str, whether: impl Fn(&Value) -> bool) {
+    if let Some(Value::Array(items)) = tree.get_mut(list) {
+        items.retain(whether);
+    }
+}
+
+fn word<'a>(item: &'a Value, key: &str) -> Option<&'a str> {
+    item.get(key).and_then(Value::as_str)
 }
