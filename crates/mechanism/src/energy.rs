@@ -4,8 +4,8 @@
 //! Δ(kinetic + potential + elastic) = work of gas + work of drive − friction loss − damping loss
 //! ```
 
-use crate::dynamics::{Evaluation, ThrowEvaluation};
 use crate::effects::Acting;
+use crate::evaluation::{Evaluation, ThrowEvaluation};
 use crate::joints::guide::Guide;
 use crate::joints::revolute::{JointState, Revolute};
 use crate::machine::{Machine, Throw};
