@@ -65,7 +65,11 @@ impl Parameter {
         let found = Found::at(tree, path)?;
         let last = path.rsplit('.').next().unwrap_or(path);
         let nominal = found.nominal;
-        let bounds = if path.contains(".relation.") {
+        let effect = input::effects::at_path(path);
+        let bounds = if let Some(effect) = effect.filter(|e| e.absent.is_none() || nominal != 0.0) {
+            let [low, high] = effect.bounds;
+            [low.min(nominal), high.max(nominal)]
+        } else if path.contains(".relation.") {
             [
                 EXPONENTS[0].min(nominal - 0.5),
                 EXPONENTS[1].max(nominal + 0.5),
@@ -97,7 +101,19 @@ impl Parameter {
     /// As [`Parameter::of`]; bounds that do not enclose the nominal value.
     pub fn within(tree: &Value, path: &str, bounds: [f64; 2]) -> Result<Self, Error> {
         let found = Found::at(tree, path)?;
-        let [low, high] = bounds;
+        let [mut low, high] = bounds;
+        // An effect without amplitude is none, and has no derivative.
+        if let Some(effect) = input::effects::at_path(path)
+            && low == 0.0
+            && effect.absent == Some(0.0)
+        {
+            if found.nominal == 0.0 {
+                let reason = "its value is 0, where the effect is absent; start above it";
+                return Err(refusal(path, reason));
+            }
+            low = effect.bounds[0].min(found.nominal);
+        }
+        let bounds = [low, high];
         if !(low < high && (low..=high).contains(&found.nominal)) {
             let reason = format!(
                 "its bounds are {low} and {high}, and do not enclose its value {} (in SI)",
@@ -280,6 +296,25 @@ mod tests {
         }
         let apart = Parameter::of(&tree, "joints.*.contact.stiffness").unwrap_err();
         assert!(apart.to_string().contains("differ"), "{apart}");
+    }
+
+    #[test]
+    fn effects_are_searched_within_the_bounds_of_the_catalogue() {
+        let mut tree = machine("single-stage.yaml");
+        let section = json!({"discharge": "3 %", "discharge_phase": "0 deg"});
+        tree["effects"] = json!([{"gas_pulsation": section}]);
+        let path = "effects.gas_pulsation.discharge";
+        let amplitude = Parameter::of(&tree, path).unwrap();
+        assert_eq!(amplitude.bounds, [0.001, 0.2]);
+        let phase = Parameter::of(&tree, "effects.0.gas_pulsation.discharge_phase").unwrap();
+        assert_eq!(phase.bounds, [0.0, std::f64::consts::TAU]);
+        // Where nothing is left of it, it has no derivative.
+        let within = Parameter::within(&tree, path, [0.0, 0.1]).unwrap();
+        assert_eq!(within.bounds, [0.001, 0.1]);
+        amplitude.write(&mut tree, 0.0).unwrap();
+        assert_eq!(at(&tree, path), json!("0 %"));
+        assert!(Parameter::of(&tree, path).is_err());
+        assert!(Parameter::within(&tree, path, [0.0, 0.1]).is_err());
     }
 
     #[test]

@@ -347,7 +347,7 @@ fn paths_reach_throws_effects_and_sensors_by_name_or_index() {
     assert_eq!(one.big_end.clear().unwrap().journal_radius, 0.11);
     assert_eq!(two.big_end.clear().unwrap().clearance, 2e-4);
     assert_eq!(two.crosshead.mass, 250.0);
-    let mechanism::effects::Effect::ValveLoss(loss) = &resolved.machine.effects[0] else {
+    let mechanism::effects::Law::ValveLoss(loss) = &resolved.machine.effects[0].law else {
         panic!()
     };
     assert_eq!([loss.suction, loss.discharge], [0.2, 0.3]);

@@ -3,16 +3,17 @@
 use crate::drive::Drive;
 use crate::effects::{Acting, AtJoint, Joint};
 use crate::energy::{self, Energy};
-use crate::gas::{CylinderAt, Gas};
-use crate::joints::guide::{Guide, GuideState};
+use crate::evaluation::{
+    Evaluation, Standing, ThrowEvaluation, along_x, direction, pair, revolute_state,
+};
 use crate::joints::revolute::{JointModel, JointState, Revolute};
-use crate::machine::{Direction, Machine, Throw};
+use crate::machine::Machine;
 use crate::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
 use crate::plane::{Vec2, moment, origin, turned};
 use crate::shaft::{Shaft, ShaftMotion, Turning};
-use crate::state::{Layout, ThrowLayout};
+use crate::state::Layout;
 use crate::system;
-use crate::throw::{Accelerations, Joints, Loads, Motion, Response, following_target};
+use crate::throw::{Response, following_target};
 use scalar::Scalar;
 
 /// A machine in motion: parameters, mode, and what the last evaluation found.
@@ -25,54 +26,6 @@ pub struct Dynamics<S> {
     evaluation: Evaluation<S>,
     /// Room for the throws' eliminated joints, so that an evaluation allocates nothing.
     responses: Vec<Response<S>>,
-}
-
-/// Everything that one evaluation of the equations of motion finds.
-#[derive(Clone, Debug)]
-pub struct Evaluation<S> {
-    /// Crank angle θ, unwrapped, rad.
-    pub angle: S,
-    /// Its rate, rad/s.
-    pub speed: S,
-    /// The shaft.
-    pub shaft: ShaftMotion<S>,
-    /// The main bearing.
-    pub main: JointState<S>,
-    /// Each throw.
-    pub throws: Vec<ThrowEvaluation<S>>,
-    /// Acceleration of the frame against its springs, m/s²; 0 without one.
-    pub frame: Vec2<S>,
-    /// Acceleration that effects give the frame and everything on it, m/s².
-    pub(crate) shaken: Option<Vec2<S>>,
-    /// Force of the machine on the frame, N.
-    pub frame_force: Vec2<S>,
-}
-
-impl<S: Scalar> Evaluation<S> {
-    /// Acceleration of the frame, m/s²: on its springs, and as effects shake it.
-    pub fn frame_acceleration(&self) -> Vec2<S> {
-        match self.shaken {
-            None => self.frame,
-            Some(shaken) => self.frame + shaken,
-        }
-    }
-}
-
-/// One throw's part of an [`Evaluation`].
-#[derive(Clone, Copy, Debug)]
-pub struct ThrowEvaluation<S> {
-    /// Poses and rates.
-    pub motion: Motion<S>,
-    /// Joints, with their contact forces.
-    pub joints: Joints<S>,
-    /// Gas.
-    pub gas: Gas<S>,
-    /// Accelerations and rigid joints' forces.
-    pub accelerations: Accelerations<S>,
-    /// Acceleration along x of what the throw stands on, m/s²: what a sensor on the crosshead feels
-    /// beside the crosshead's own. 0 where the frame does not carry.
-    pub carried: S,
-    pub(crate) loads: Loads<S>,
 }
 
 impl<S: Scalar> Dynamics<S> {
@@ -282,7 +235,10 @@ impl<S: Scalar> Dynamics<S> {
             &AtJoint {
                 acting: on_shaft,
                 joint: Joint::Main,
-                axis: Vec2::new(S::one(), S::zero()),
+                axes: [
+                    along_x(),
+                    self.layout.main.map_or(along_x(), |_| direction(angle)),
+                ],
             },
         );
         evaluation.throws.clear();
@@ -417,7 +373,7 @@ impl<S: Scalar> Dynamics<S> {
         }
         if let Some(carried) = carried {
             for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
-                at.carried = throw.local(carried).x;
+                at.carried = throw.local(carried);
             }
         }
     }
@@ -437,134 +393,6 @@ pub(crate) enum Place {
     BigEnd(usize),
     /// The small end of a throw.
     SmallEnd(usize),
-}
-
-/// Where and how a throw stands: what its evaluation needs beside the machine.
-struct Standing<'a, S> {
-    layout: &'a ThrowLayout,
-    mode: &'a ThrowMode<S>,
-    shaft: [Vec2<S>; 2],
-    angle: S,
-    speed: S,
-    gravity: Vec2<S>,
-}
-
-impl<S: Scalar> ThrowEvaluation<S> {
-    fn new(throw: &Throw<S>, effects: Acting<'_, S>, at: Standing<'_, S>, y: &[S]) -> Self {
-        let big = pair(y, at.layout.big_end);
-        let small = pair(y, at.layout.small_end);
-        let guide = pair(y, at.layout.guide);
-        let two = |i: usize| [y[i], y[i + 1]];
-        let stretch = at.layout.rod.map_or([S::zero(); 2], two);
-        let motion = Motion::new(
-            throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
-        );
-        let spin = motion.rod_rate;
-        // Both ends' bearings are in the rod.
-        let at_joint = |joint| AtJoint {
-            acting: effects,
-            joint,
-            axis: motion.along_rod(),
-        };
-        let joints = Joints {
-            big_end: revolute_state(
-                &throw.big_end,
-                big,
-                [at.speed, spin],
-                &at.mode.big_end,
-                &at_joint(Joint::BigEnd),
-            ),
-            small_end: revolute_state(
-                &throw.small_end,
-                small,
-                [guide[1].y, spin],
-                &at.mode.small_end,
-                &at_joint(Joint::SmallEnd),
-            ),
-            guide: match &throw.guide {
-                Guide::Ideal => GuideState::ideal(),
-                Guide::Clear(clear) => {
-                    clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide)
-                }
-            },
-        };
-        let cylinder = CylinderAt {
-            throw,
-            effects,
-            motion: &motion,
-            speed: at.speed,
-            mode: at.mode,
-            drift: at.layout.gas.map(two),
-        };
-        let gas = cylinder.gas();
-        let spring = effects.rod();
-        let loads = Loads::new(
-            throw,
-            spring.as_ref(),
-            at.gravity,
-            at.speed,
-            &motion,
-            &joints,
-            &gas,
-        );
-        Self {
-            motion,
-            joints,
-            gas,
-            loads,
-            accelerations: Accelerations {
-                crosshead: S::zero(),
-                big_end: origin(),
-                small_end: origin(),
-                guide: origin(),
-                big_force: origin(),
-                small_force: origin(),
-                rod: S::zero(),
-                stretch: S::zero(),
-            },
-            carried: S::zero(),
-        }
-    }
-}
-
-impl<S: Scalar> Throw<S> {
-    /// Angle since this throw's own top dead centre, rad.
-    pub fn local_angle(&self, angle: S) -> S {
-        match self.direction {
-            Direction::Forward => angle + self.pin_angle,
-            Direction::Opposed => angle + self.pin_angle - std::f64::consts::PI,
-        }
-    }
-
-    /// A vector of the machine's frame in the throw's own, and back: an opposed throw's frame is
-    /// turned by half a revolution.
-    pub(crate) fn local(&self, v: Vec2<S>) -> Vec2<S> {
-        match self.direction {
-            Direction::Forward => v,
-            Direction::Opposed => -v,
-        }
-    }
-}
-
-/// Two vectors at `at`: position and rate; zeros where there is nothing.
-fn pair<S: Scalar>(y: &[S], at: Option<usize>) -> [Vec2<S>; 2] {
-    match at {
-        None => [origin(); 2],
-        Some(i) => [Vec2::new(y[i], y[i + 1]), Vec2::new(y[i + 2], y[i + 3])],
-    }
-}
-
-fn revolute_state<S: Scalar>(
-    joint: &Revolute<S>,
-    [offset, rate]: [Vec2<S>; 2],
-    spins: [S; 2],
-    mode: &ContactMode<S>,
-    effects: &AtJoint<'_, S>,
-) -> JointState<S> {
-    match joint {
-        Revolute::Ideal => JointState::ideal(),
-        Revolute::Clear(clear) => clear.state(offset, rate, spins, mode, effects),
-    }
 }
 
 fn place_on_link<S: Scalar>(joint: &Revolute<S>, at: Option<usize>, y: &mut [S]) {

@@ -4,8 +4,8 @@
 //! Δ(kinetic + potential + elastic) = work of gas + work of drive − friction loss − damping loss
 //! ```
 
-use crate::dynamics::{Evaluation, ThrowEvaluation};
 use crate::effects::Acting;
+use crate::evaluation::{Evaluation, ThrowEvaluation};
 use crate::joints::guide::Guide;
 use crate::joints::revolute::{JointState, Revolute};
 use crate::machine::{Machine, Throw};
@@ -60,7 +60,7 @@ pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<
         let down = throw.local(gravity);
         let motion = &part.motion;
         let [centre, velocity] = part.rod_centre(throw);
-        let spin = motion.stretch * motion.rod_rate;
+        let spin = motion.lengthening() * motion.rod_rate;
         let guide = &part.joints.guide;
         let crosshead = Vec2::new(motion.crosshead, guide.position.x);
         let crosshead_rate = Vec2::new(motion.crosshead_rate, guide.rate.x);
@@ -74,7 +74,7 @@ pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<
         energy.elastic += stored(&throw.big_end, &part.joints.big_end);
         energy.elastic += stored(&throw.small_end, &part.joints.small_end);
         if let Some(spring) = Acting::on_throw(&machine.effects, i).rod() {
-            let longer = (motion.stretch - 1.0) * throw.rod.length;
+            let longer = motion.stretch * throw.rod.length;
             energy.elastic += spring.stiffness * longer * longer * 0.5;
         }
         if let Guide::Clear(clear) = &throw.guide {
@@ -114,7 +114,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
     fn rod_centre(&self, throw: &Throw<S>) -> [Vec2<S>; 2] {
         let motion = &self.motion;
         let along = motion.along_rod() * throw.rod.centre_of_mass;
-        let arm = along * motion.stretch;
+        let arm = along * motion.lengthening();
         let growth = along * motion.stretch_rate;
         let [eye, rate] = motion.big_eye;
         [eye + arm, rate + turned(arm) * motion.rod_rate + growth]

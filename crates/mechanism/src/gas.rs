@@ -80,9 +80,10 @@ impl<S: Scalar> GasState<S> {
     /// same gas in that stroke: 0, as the valve that was open leaves the line's pressure behind,
     /// unless it never opened.
     pub(crate) fn carried(&self, next: &Self, expanding: S) -> S {
-        let left = (self.closed / next.closed).ln();
         let zero = S::zero();
-        flagged(expanding, left.min(zero), left.max(zero))
+        let short = (self.closed / next.closed).ln().min(zero);
+        let full = (self.closed / next.open[0]).ln().max(zero);
+        flagged(expanding, short, full)
     }
 
     /// Guards of the suction and the discharge valve's state in `mode`.
@@ -134,7 +135,7 @@ impl<S: Scalar> Chamber<S> {
         let exponent = flagged(expanding, expansion, compression);
         let mut closed = from * (start / distance).powf(exponent);
         if let Some(drift) = drift {
-            closed = closed * drift.exp();
+            closed *= drift.exp();
         }
         let pressure = flagged(
             mode.discharge,

@@ -12,6 +12,7 @@ pub mod drive;
 pub mod dynamics;
 pub mod effects;
 pub mod energy;
+mod evaluation;
 pub mod frame;
 pub mod gas;
 mod impact;
@@ -25,5 +26,6 @@ pub mod state;
 mod system;
 pub mod throw;
 
-pub use dynamics::{Dynamics, Evaluation};
+pub use dynamics::Dynamics;
+pub use evaluation::{Evaluation, ThrowEvaluation};
 pub use machine::{Crankshaft, Crosshead, Direction, Machine, Rod, Throw};

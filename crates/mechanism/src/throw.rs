@@ -40,7 +40,7 @@ pub struct Motion<S> {
     pub crosshead: S,
     /// Its speed, m/s.
     pub crosshead_rate: S,
-    /// Length of the rod over that without load: 1 + η.
+    /// Stretch η of the rod: by how much it is longer than without load, over its length.
     pub stretch: S,
     /// Its rate η̇, 1/s.
     pub stretch_rate: S,
@@ -225,8 +225,7 @@ impl<S: Scalar> Motion<S> {
         // The small-end eye's height follows from the crosshead's, and gives the rod's angle.
         let rise = guide[0].x - small[0].y - eye.y;
         let rise_rate = guide[1].x - small[1].y - eye_rate.y;
-        let stretch = S::one() + stretch;
-        let length = throw.rod.length * stretch;
+        let length = throw.rod.length * (stretch + 1.0);
         let length_rate = throw.rod.length * stretch_rate;
         let rod_sine = rise / length;
         let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
@@ -245,6 +244,11 @@ impl<S: Scalar> Motion<S> {
             stretch,
             stretch_rate,
         }
+    }
+
+    /// Length of the rod over that without load, 1 + η.
+    pub(crate) fn lengthening(&self) -> S {
+        self.stretch + 1.0
     }
 
     /// Unit vector along the rod, from big to small end.
@@ -282,7 +286,7 @@ impl<S: Scalar> Loads<S> {
         let whirl = motion.stretch_rate * motion.rod_rate * 2.0;
         loads.rod_moment = -moment(arms.big_force, big.force)
             - moment(arms.small_force, small.force)
-            - throw.rod.inertia * motion.stretch * whirl;
+            - throw.rod.inertia * motion.lengthening() * whirl;
         loads.crosshead_force = gravity * throw.crosshead.mass
             + small.force
             + joints.guide.force
@@ -298,7 +302,7 @@ impl<S: Scalar> Loads<S> {
         loads.small_bias = across * (of_small * whirl) - arms.small * rate2;
         loads.stretch = spring.map(|spring| {
             let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
-            motion.stretch * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
+            motion.lengthening() * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
         });
         loads.big_target = following_target(big);
         loads.small_target = following_target(small);
@@ -313,7 +317,7 @@ impl<S: Scalar> Arms<S> {
             -throw.rod.centre_of_mass,
             throw.rod.length - throw.rod.centre_of_mass,
         ];
-        let [big, small] = shares.map(|share| along * (share * motion.stretch));
+        let [big, small] = shares.map(|share| along * (share * motion.lengthening()));
         Self {
             along,
             shares,
@@ -328,7 +332,7 @@ impl<S: Scalar> Arms<S> {
 impl<S: Scalar> Arms<S> {
     /// Moment of inertia of the stretched rod about its centre of mass, kg m².
     fn inertia(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
-        throw.rod.inertia * motion.stretch * motion.stretch
+        throw.rod.inertia * motion.lengthening() * motion.lengthening()
     }
 }
 
@@ -337,8 +341,8 @@ impl<S: Scalar> RodSpring<S> {
     /// the free rod has the damping ratio.
     fn pull(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
         let length = throw.rod.length;
-        let stretch = motion.stretch - 1.0;
-        -(self.stiffness * length * length * stretch) - self.damping(throw) * motion.stretch_rate
+        -(self.stiffness * length * length * motion.stretch)
+            - self.damping(throw) * motion.stretch_rate
     }
 
     /// Damping L² c of the stretch, N m s.

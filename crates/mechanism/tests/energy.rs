@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::random::{MODELS, cases, machine};
+use common::random::{MODELS, cases, machine, machine_with_effects};
 use common::{REVOLUTION, Run, joint, single_stage, with_clearance};
 use mechanism::drive::{Drive, Fluctuation, MotorLine};
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
@@ -223,6 +223,11 @@ proptest! {
 
     #[test]
     fn any_machine(machine in machine(MODELS)) {
+        let worst = imbalance(machine, 3);
+        prop_assert!(worst < 1e-7, "{worst:e}");
+    }
+    #[test]
+    fn any_machine_with_effects(machine in machine_with_effects(MODELS)) {
         let worst = imbalance(machine, 3);
         prop_assert!(worst < 1e-7, "{worst:e}");
     }

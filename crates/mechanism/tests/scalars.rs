@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::random::{MODELS, SEEDS, cases, machine, random_state, settle};
+use common::random::{MODELS, SEEDS, cases, machine_with_effects, random_state, settle};
 use common::with_clearance;
 use integrate::{Integrator, Real, System};
 use mechanism::drive::{Drive, MotorLine};
@@ -101,6 +101,7 @@ fn numbers<S: Scalar>(dynamics: &Dynamics<S>) -> Vec<S> {
         ));
         vector(Vec2::new(found.crosshead, found.rod));
         vector(Vec2::new(joints.guide.moment, part.gas.force));
+        vector(Vec2::new(part.gas.effects, part.carried.x));
     }
     row
 }
@@ -151,7 +152,7 @@ proptest! {
 
     #[test]
     fn lanes_give_the_bits_of_each_case_alone(
-        machine in machine(MODELS),
+        machine in machine_with_effects(MODELS),
         t in 0.001..0.05_f64,
         seeds in proptest::collection::vec(-1.0..1.0_f64, SEEDS),
     ) {
@@ -161,7 +162,7 @@ proptest! {
 
     #[test]
     fn dual_numbers_give_the_derivative_along_any_line(
-        machine in machine(MODELS),
+        machine in machine_with_effects(MODELS),
         t in 0.001..0.119_f64,
         seeds in proptest::collection::vec(-1.0..1.0_f64, SEEDS),
     ) {

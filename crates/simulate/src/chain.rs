@@ -141,10 +141,11 @@ impl Measured {
         match *self {
             Measured::CrossheadAcceleration { throw } => {
                 let throw = &at.throws[throw];
-                throw.accelerations.crosshead + throw.carried
+                throw.accelerations.crosshead + throw.carried.x
             }
             Measured::CrossheadLateralAcceleration { throw } => {
-                at.throws[throw].accelerations.guide.x
+                let throw = &at.throws[throw];
+                throw.accelerations.guide.x + throw.carried.y
             }
             Measured::FrameAcceleration { axis: Axis::X } => at.frame_acceleration().x,
             Measured::FrameAcceleration { axis: Axis::Y } => at.frame_acceleration().y,

@@ -8,10 +8,11 @@
 use crate::chain::Sampling;
 use crate::record::Error;
 use crate::run::Run;
-use crate::sensor::Sensor;
+use crate::sensor::{Measured, Sensor};
 use crate::settings::Settings;
 use mechanism::{Machine, lift};
 use scalar::Dual;
+use std::f64::consts::TAU;
 
 /// A machine and its sensors with one parameter moved by one unit.
 ///
@@ -107,8 +108,15 @@ fn tangents<const N: usize>(
         // What moves in the chain itself comes on top.
         if moved.sensors != sensors {
             let other = record(&moved.sensors, &values)?;
-            for ((d, other), series) in derivative.iter_mut().zip(&other).zip(&series) {
-                let changes = other.iter().zip(series).map(|(a, b)| a - b);
+            let parts = derivative.iter_mut().zip(&other).zip(&series);
+            for (((d, other), series), sensor) in parts.zip(sensors) {
+                let turn = match sensor.measured {
+                    Measured::CrankAngle => TAU,
+                    _ => f64::INFINITY,
+                };
+                // An angle that passes a whole turn jumps back.
+                let change = |a: f64, b: f64| a - b - ((a - b) / turn).round() * TAU;
+                let changes = other.iter().zip(series).map(|(a, b)| change(*a, *b));
                 d.iter_mut()
                     .zip(changes)
                     .for_each(|(d, change)| *d += change);

@@ -418,3 +418,47 @@ splits: {{train: {train} %, test: {} %}}
         prop_assert_eq!(Plan::shards(&self::plan(&shorter).unwrap()), plan.cases().div_ceil(3));
     }
 }
+
+#[test]
+fn effects_of_the_catalogue_vary() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = root().join("data/machines/single-stage.yaml");
+    let machine = std::fs::read_to_string(shipped).unwrap();
+    let (machine, _) = machine.split_once("effects:").unwrap();
+    let effects = "\
+effects:
+  - ring_friction: {coulomb_force: 10 N}
+  - extra_clearance: {joint: small_end, clearance: 0.1 mm}
+";
+    let path = folder.path().join("machine.yaml");
+    std::fs::write(&path, format!("{machine}{effects}")).unwrap();
+    let text = "\
+name: test
+machine: machine.yaml
+run: {revolutions: 4, transient: 2}
+cases:
+  - grid:
+      effects.ring_friction.coulomb_force: [0 N, 100 N]
+      effects.extra_clearance.clearance: [0.1 mm, 0.2 mm]
+";
+    let document = Document::parse(text, "sweep.yaml").unwrap();
+    let plan = Plan::new(&document, folder.path()).unwrap();
+    let columns: Vec<&str> = plan.parameters.iter().map(|p| p.column.as_str()).collect();
+    assert_eq!(
+        columns,
+        [
+            "effects.ring_friction.coulomb_force_n",
+            "effects.extra_clearance.clearance_m"
+        ]
+    );
+    let found = all(&plan, |case| {
+        let machine = &case.resolved.machine;
+        let clearance = machine.throws[0].small_end.clear().unwrap().clearance;
+        // The label says what the joint really has.
+        assert_eq!(case.labels.clearances_m[2], clearance);
+        (machine.effects.len(), (clearance * 1e6).round())
+    });
+    let expected = [(0, 100.0), (0, 200.0), (1, 100.0), (1, 200.0)];
+    let found: BTreeSet<String> = found.iter().map(|f| format!("{f:?}")).collect();
+    assert_eq!(found, expected.iter().map(|e| format!("{e:?}")).collect());
+}

@@ -45,9 +45,9 @@ pub(crate) trait Acts<S: Scalar> {
         None
     }
 
-    /// How much wider than its clearance a bearing is in the direction of angle γ (cosine, sine)
-    /// from its own x axis, m, and the derivative of that by γ, m/rad; none where it is round.
-    fn bearing_shape(&self, _direction: Vec2<S>) -> Option<[S; 2]> {
+    /// By how much bearing and journal are out of round in the directions (cosine, sine) from the x
+    /// axes of the two; none where both are round.
+    fn shape(&self, _bearing: Vec2<S>, _journal: Vec2<S>) -> Option<Shape<S>> {
         None
     }
 
@@ -113,6 +113,16 @@ pub(crate) struct JointAt<S> {
     pub clearance: S,
     /// Radius of the journal, m.
     pub journal_radius: S,
+}
+
+/// How far a joint is out of round in the direction of contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shape<S> {
+    /// By how much the clearance is wider, m.
+    pub wider: S,
+    /// Derivative of that by the angle in the bearing, as far as the bearing is out of round, and by
+    /// the angle in the journal, m/rad.
+    pub change: [S; 2],
 }
 
 /// An elastic connecting rod.
@@ -182,22 +192,28 @@ impl<'a, S: Scalar> Acting<'a, S> {
     }
 }
 
-/// The effects at one joint, whose bearing's x axis points along `axis`.
+/// The effects at one joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AtJoint<'a, S> {
+    /// The effects.
     pub acting: Acting<'a, S>,
+    /// The joint.
     pub joint: Joint,
-    pub axis: Vec2<S>,
+    /// Where the x axes of bearing and journal point.
+    pub axes: [Vec2<S>; 2],
 }
 
 impl<S: Scalar> AtJoint<'_, S> {
-    /// How much wider the bearing is in the direction `normal`, m, and the derivative of that by
-    /// the angle, m/rad; none where it is round.
-    pub fn bearing_shape(&self, normal: Vec2<S>) -> Option<[S; 2]> {
-        let direction = Vec2::new(self.axis.dot(&normal), turned(self.axis).dot(&normal));
+    /// How far the joint is out of round in the direction `normal`; none where it is round.
+    pub fn shape(&self, normal: Vec2<S>) -> Option<Shape<S>> {
+        let within = |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal));
+        let [bearing, journal] = self.axes;
         let effects = self.acting.at_joint(self.joint);
-        let shapes = effects.filter_map(|effect| effect.bearing_shape(direction));
-        shapes.reduce(|[a, b], [c, d]| [a + c, b + d])
+        let shapes = effects.filter_map(|effect| effect.shape(within(bearing), within(journal)));
+        shapes.reduce(|a, b| Shape {
+            wider: a.wider + b.wider,
+            change: [a.change[0] + b.change[0], a.change[1] + b.change[1]],
+        })
     }
 
     /// Force of the film on the journal along the normal, N.

@@ -7,7 +7,7 @@
 
 mod acting;
 
-pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring};
+pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
 
 use crate::lift::{alternatives, parameters};
 
@@ -49,6 +49,7 @@ catalogue! {
     bearing_ovality::BearingOvality,
 }
 
+pub use bearing_ovality::Oval;
 pub use rotating_unbalance::Shaken;
 
 parameters! {

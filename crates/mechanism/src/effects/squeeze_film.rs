@@ -1,5 +1,5 @@
 //! Oil that is squeezed out between journal and bearing: the squeeze force of the short bearing's
-//! full film (Ocvirk and DuBois 1953; Hamrock 1994, section 11.6).
+//! full film (DuBois and Ocvirk 1953, NACA report 1157).
 //!
 //! ```text
 //! F = −π μ R l³/c³ · (1 + 2 ε²) / (1 − ε²)^(5/2) · ė         ε = |e|/c

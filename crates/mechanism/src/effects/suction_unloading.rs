@@ -1,7 +1,7 @@
 //! Suction valve that closes late: held open by an unloader, sticking, or with a weak spring, until
 //! the crank has passed the dead centre by an angle. The gas flows back into the suction line, and
-//! the compression starts from what volume is left (stepless unloading: Hoerbiger; Bloch and
-//! Hoefner 1996, Reciprocating Compressors, chapter 5).
+//! the compression starts from what volume is left (Bloch and Hoefner 1996, Reciprocating
+//! Compressors, on stepless capacity control).
 //!
 //! ```text
 //! compression: p = max(ps, ps (x_c / x)^m)      x_c: distance from piston to cover at the angle

@@ -2,7 +2,7 @@
 
 use super::contact::{ContactLaw, NormalForce};
 use super::friction::FrictionLaw;
-use crate::effects::{AtJoint, JointAt};
+use crate::effects::{AtJoint, JointAt, Shape};
 use crate::lift::{Lift, parameters};
 use crate::mode::{ContactMode, flagged};
 use crate::plane::{Vec2, origin, turned};
@@ -117,11 +117,18 @@ pub struct JointState<S> {
 /// The surfaces of a joint at an instant.
 struct Surface<S> {
     normal: Vec2<S>,
-    /// Length of the penetration's gradient; none where it is 1.
-    steepness: Option<S>,
+    uneven: Option<Uneven<S>>,
     penetration: S,
     penetration_rate: S,
     slip: S,
+}
+
+/// What makes the surfaces of a joint differ from circles.
+struct Uneven<S> {
+    /// Length of the penetration's gradient.
+    steepness: S,
+    /// Derivative of the clearance by the angle in the journal, m/rad.
+    change: S,
 }
 
 impl<S: Scalar> JointState<S> {
@@ -161,7 +168,7 @@ impl<S: Scalar> Clearance<S> {
         let surface = self.surface(offset, rate, spins, effects);
         let Surface {
             normal,
-            steepness,
+            uneven,
             penetration,
             penetration_rate,
             slip,
@@ -177,21 +184,23 @@ impl<S: Scalar> Clearance<S> {
         };
         let pressed = flagged(mode.pressed, raw, S::zero());
         let stored = flagged(mode.touching, elastic, S::zero());
-        let normal_force = match steepness {
-            None => pressed,
-            Some(steepness) => pressed * steepness,
-        };
-        let friction_force = coefficient * normal_force;
-        let arm = match self.model {
-            JointModel::MasslessLink => origin(),
-            JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
-        };
         let film = effects.film_force(&JointAt {
             penetration,
             rate: penetration_rate,
             clearance: self.clearance,
             journal_radius: self.journal_radius,
         });
+        let mut arm = match self.model {
+            JointModel::MasslessLink => origin(),
+            JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
+        };
+        let (mut normal_force, mut film_force) = (pressed, film);
+        if let Some(uneven) = uneven {
+            normal_force *= uneven.steepness;
+            film_force *= uneven.steepness;
+            arm -= tangent * (uneven.change / uneven.steepness);
+        }
+        let friction_force = coefficient * normal_force;
         JointState {
             offset,
             rate,
@@ -201,7 +210,7 @@ impl<S: Scalar> Clearance<S> {
             slip,
             normal_force,
             friction_force,
-            force: -(normal * (normal_force - film)) - tangent * friction_force,
+            force: -(normal * (normal_force - film_force)) - tangent * friction_force,
             sign,
             damping_power: (pressed - stored - film) * penetration_rate,
             arm,
@@ -209,11 +218,12 @@ impl<S: Scalar> Clearance<S> {
         }
     }
 
-    /// The surfaces at offset `e`, as the bearing's shape has them.
+    /// The surfaces at offset `e`, as the shapes of bearing and journal have them.
     ///
-    /// With a clearance c(γ) in the direction γ the penetration is δ = |e| − c(γ − φ), φ being the
-    /// bearing's angle. Its gradient n − (c'/|e|) t is the normal; that the force follows it, through
-    /// the journal's centre, conserves energy.
+    /// With a clearance c that depends on the angles γ − φ of the direction in the bearing and γ − ψ
+    /// in the journal the penetration is δ = |e| − c, and its gradient n − (c'/|e|) t the normal. The
+    /// force along it has the moments −F ∂c/∂φ on the bearing and −F ∂c/∂ψ on the journal: then energy
+    /// is conserved.
     #[inline]
     fn surface(
         &self,
@@ -231,25 +241,32 @@ impl<S: Scalar> Clearance<S> {
             tangent.dot(&rate) + journal * self.journal_radius
                 - bearing * (self.journal_radius + distance)
         };
-        let Some([wider, change]) = effects.bearing_shape(normal) else {
+        let shape = match self.model {
+            JointModel::ThreeMode => effects.shape(normal),
+            JointModel::TwoMode | JointModel::MasslessLink => None,
+        };
+        let Some(Shape { wider, change }) = shape else {
             return Surface {
                 normal,
-                steepness: None,
+                uneven: None,
                 penetration: distance - self.clearance,
                 penetration_rate: normal.dot(&rate),
                 slip: slip(turned(normal), distance),
             };
         };
         // Near the centre, where nothing touches, the direction of the gradient does not matter.
-        let tilt = change / distance.max(self.clearance * 0.1);
+        let tilt = (change[0] + change[1]) / distance.max(self.clearance * 0.1);
         let gradient = normal - turned(normal) * tilt;
         let steepness = (tilt * tilt + 1.0).sqrt();
         let normal = gradient / steepness;
         Surface {
             normal,
-            steepness: Some(steepness),
+            uneven: Some(Uneven {
+                steepness,
+                change: change[1],
+            }),
             penetration: distance - self.clearance - wider,
-            penetration_rate: gradient.dot(&rate) + change * bearing,
+            penetration_rate: gradient.dot(&rate) + change[0] * bearing + change[1] * journal,
             slip: slip(turned(normal), normal.dot(&offset)),
         }
     }

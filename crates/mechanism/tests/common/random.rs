@@ -3,7 +3,11 @@
 use super::single_stage;
 use integrate::System;
 use mechanism::drive::{Drive, MotorLine};
-use mechanism::effects::{Effect, Law, RingFriction, ValveLoss};
+use mechanism::effects::{
+    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Oval, Place,
+    RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance, Shaken, SqueezeFilm,
+    SuctionUnloading, ValveLoss,
+};
 use mechanism::gas::CrankEnd;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
 use mechanism::joints::friction::{Adams, Ambrosio, Coulomb, FrictionLaw};
@@ -168,6 +172,142 @@ fn effects() -> impl Strategy<Value = Vec<Effect>> {
     proptest::sample::subsequence(all, 0..=2)
 }
 
+/// One of every effect that acts in the equations, each at one of its places.
+pub fn catalogue() -> Vec<Effect> {
+    let at = |law: Law, joint, end| Effect {
+        law,
+        place: Place {
+            throw: None,
+            joint,
+            end,
+        },
+    };
+    vec![
+        at(
+            Law::ValveLoss(ValveLoss {
+                suction: 0.1,
+                discharge: 0.2,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::RingFriction(RingFriction {
+                coulomb_force: 30.0,
+                per_pressure: 2e-4,
+                slip_speed: 0.02,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::SuctionUnloading(SuctionUnloading { held: 0.9 }),
+            None,
+            Some(End::Head),
+        ),
+        at(
+            Law::RingLeakage(RingLeakage {
+                area: 5e-6,
+                gas_speed: 290.0,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::HeatTransfer(HeatTransfer {
+                stanton: 0.02,
+                wall_temperature: 1.2,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::GasPulsation(GasPulsation {
+                order: 3.0,
+                suction: 0.02,
+                suction_phase: 0.4,
+                discharge: 0.05,
+                discharge_phase: 1.1,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::RotatingUnbalance(RotatingUnbalance {
+                eccentricity: 1e-3,
+                phase: 0.7,
+                body: Shaken::Frame,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::RotatingUnbalance(RotatingUnbalance {
+                eccentricity: 2e-3,
+                phase: 0.1,
+                body: Shaken::Crosshead,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::Misalignment(Misalignment {
+                first: 200.0,
+                first_phase: 0.3,
+                second: 100.0,
+                second_phase: 1.9,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::RodFlexibility(RodFlexibility {
+                compliance: 5e-9,
+                damping_ratio: 0.02,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::SqueezeFilm(SqueezeFilm {
+                viscosity: 0.02,
+                length: 2e-3,
+                roughness: 0.1,
+            }),
+            Some(Joint::SmallEnd),
+            None,
+        ),
+        at(
+            Law::BearingOvality(BearingOvality {
+                amplitude: 2e-5,
+                direction: 0.6,
+                oval: Oval::Bearing,
+            }),
+            Some(Joint::BigEnd),
+            None,
+        ),
+        at(
+            Law::BearingOvality(BearingOvality {
+                amplitude: 1e-5,
+                direction: 2.0,
+                oval: Oval::Journal,
+            }),
+            None,
+            None,
+        ),
+    ]
+}
+
+/// A machine with some of all the effects.
+pub fn machine_with_effects(models: &'static [JointModel]) -> impl Strategy<Value = Machine> {
+    let all = catalogue();
+    let some = proptest::sample::subsequence(all.clone(), 0..=all.len());
+    (machine(models), some).prop_map(|(mut machine, effects)| {
+        machine.effects = effects;
+        machine
+    })
+}
+
 /// A machine of one or two throws whose joints are of the given models, on a free crank or not,
 /// in any direction of gravity.
 pub fn machine(models: &'static [JointModel]) -> impl Strategy<Value = Machine> {
@@ -240,6 +380,16 @@ pub fn random_state(dynamics: &Dynamics<f64>, seeds: &[f64]) -> Vec<f64> {
                 at.guide,
                 [guide.clearance, guide.clearance / guide.half_length],
             );
+        }
+    }
+    for at in &layout.throws {
+        if let Some(i) = at.rod {
+            y[i] = 1e-4 * one();
+            y[i + 1] = 0.1 * one();
+        }
+        if let Some(i) = at.gas {
+            y[i] = 0.05 * one();
+            y[i + 1] = 0.05 * one();
         }
     }
     if let (Some(i), Drive::Free(_)) = (layout.crank, &machine.drive) {

@@ -1,20 +1,21 @@
 //! A bearing that is not round.
 
-use super::section::{Act, effect};
+use super::section::{Act, Part, effect};
 use crate::error::Error;
 use crate::quantity::{Angle, Length, NonNegative, Quantity};
 use mechanism::Machine;
-use mechanism::effects::{self, Joint, Law, Place};
+use mechanism::effects::{self, Joint, Law, Oval, Place};
 
 effect! {
-    /// An oval bearing: clearance + amplitude cos 2(direction from the rod's axis − direction).
+    /// An oval bearing or journal: clearance + amplitude cos 2(direction of contact − direction).
     /// Nothing in an ideal joint.
-    BearingOvality at [throw, joint]:
-    "The bearing is worn oval: it has more play in one direction than in the other." {
+    BearingOvality at [throw, joint, part]:
+    "The bearing, or its journal, is worn oval: it has more play in one direction than in the other." {
         /// By how much the clearance is larger in the widest direction and smaller across it.
         amplitude: NonNegative<Length>, 1e-6 to 2e-4, start 3e-5, absent 0.0;
-        /// Widest direction, from the rod's axis (from the cylinder's, at the main bearing); 0 deg
-        /// where it is left out.
+        /// Widest direction, 0 deg where it is left out: in the bearing from the rod's axis (at the
+        /// main bearing from the cylinder's), in the journal from the crank's direction (at the small
+        /// end from the cylinder's).
         direction: Quantity<Angle>, half_turn, start 0.0;
     }
 }
@@ -24,6 +25,10 @@ impl Act for BearingOvality {
         Some(Law::BearingOvality(effects::BearingOvality {
             amplitude: self.amplitude(),
             direction: self.direction(),
+            oval: match self.part {
+                None | Some(Part::Bearing) => Oval::Bearing,
+                Some(Part::Journal) => Oval::Journal,
+            },
         }))
     }
 

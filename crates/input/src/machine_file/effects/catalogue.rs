@@ -49,7 +49,7 @@ pub struct Choice {
     /// What may stand there; none for the names of the machine's throws.
     pub words: &'static [&'static str],
     /// True where the key must be there. Where another is left out, the effect acts at every place
-    /// (of `measure` and `body`: at the first).
+    /// (of `measure`, `body` and `part`: at the first).
     pub required: bool,
 }
 
@@ -93,4 +93,12 @@ impl Entry {
 /// The entry called `name`.
 pub fn entry(name: &str) -> Option<&'static Entry> {
     super::CATALOGUE.iter().find(|entry| entry.name == name)
+}
+
+/// The parameter that a path of the machine file leads to: `effects.valve_loss.discharge`,
+/// `effects.2.squeeze_film.viscosity`.
+pub fn at_path(path: &str) -> Option<&'static Parameter> {
+    let (rest, key) = path.strip_prefix("effects.")?.rsplit_once('.')?;
+    let name = rest.rsplit('.').next()?;
+    entry(name)?.parameter(key)
 }

@@ -7,7 +7,7 @@
 mod catalogue;
 mod section;
 
-pub use catalogue::{Choice, Entry, Parameter, entry};
+pub use catalogue::{Choice, Entry, Parameter, at_path, entry};
 
 use super::Sections;
 use crate::error::{Error, Problem};

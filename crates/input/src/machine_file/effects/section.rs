@@ -56,6 +56,16 @@ pub(in crate::machine_file) enum Body {
     Crosshead,
 }
 
+/// A part of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(in crate::machine_file) enum Part {
+    /// What the journal lies in.
+    Bearing,
+    /// The pin.
+    Journal,
+}
+
 /// Where a section says that its effect acts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::machine_file) struct Place {
@@ -64,6 +74,7 @@ pub(in crate::machine_file) struct Place {
     pub end: Option<End>,
     pub measure: Option<Measure>,
     pub body: Option<Body>,
+    pub part: Option<Part>,
 }
 
 impl Place {
@@ -330,6 +341,13 @@ macro_rules! effect {
             body: Option<super::section::Body>,
         ] $($rest)* }
     };
+    (@section $head:tt [$($fields:tt)*] part $($rest:ident)*) => {
+        effect! { @section $head [$($fields)*
+            /// Which of the two; bearing where it is left out.
+            #[serde(default)]
+            part: Option<super::section::Part>,
+        ] $($rest)* }
+    };
     (@section [$(#[$meta:meta])+ $name:ident] [$($fields:tt)*]) => {
         $(#[$meta])+
         #[derive(Clone, Debug, PartialEq, serde::Deserialize, schemars::JsonSchema)]
@@ -360,6 +378,9 @@ macro_rules! effect {
     };
     (@choice body) => {
         effect!(@choice "body", ["frame", "crosshead"], false)
+    };
+    (@choice part) => {
+        effect!(@choice "part", ["bearing", "journal"], false)
     };
     (@choice $key:literal, $words:expr, $required:literal) => {
         super::Choice { key: $key, words: &$words, required: $required }

@@ -4,8 +4,7 @@
 //! θ̇ = ω (1 + d1 cos(ω t + ψ1) + d2 cos(2 ω t + ψ2))
 //! ```
 //!
-//! Torque and inertia make it so (J ω dθ̇/dθ = T − load; Den Hartog 1956, chapter 5, on the flywheel's
-//! coefficient of fluctuation); here it is given by its first two harmonics. The motion is
+//! Torque and inertia make it so (J ω dθ̇/dθ = T − load; Den Hartog 1956 on torque variation); here it is given by its first two harmonics. The motion is
 //! [`mechanism::drive::GivenSpeed`]'s. Signature: angles and times disagree; orders beside each strong
 //! one.
 

@@ -26,7 +26,7 @@ effect! {
         /// Change of the radial clearance at at_speed.
         change: Quantity<Length>, -2e-4 to 2e-4, start 3e-5, absent 0.0;
         /// Speed at which it changes by that much; 500 rpm where it is left out.
-        at_speed: Positive<Speed>, 10.0 to 200.0, start 52.359877559829886;
+        at_speed: Positive<Speed>, 10.0 to 200.0, start 52.359_877_559_829_88;
         /// Power of the speed: 1 for dry friction (where it is left out), 2 for oil.
         exponent: Number<FromZero>, 0.5 to 3.0, start 1.0;
     }
