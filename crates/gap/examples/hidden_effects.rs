@@ -79,9 +79,15 @@ fn main() -> Result<(), Box<dyn Error>> {
                 held_out: held_out.collect(),
                 evaluations: EVALUATIONS,
             };
-            let found = gap::explain(&problem, &[], &effort, &|_| (), &|| {
-                ControlFlow::Continue(())
-            })?;
+            let tell = |stage: &gap::Stage| {
+                let seconds = start.elapsed().as_secs_f64();
+                eprintln!(
+                    "{seconds:.0} s: {}, misfit {:.2}",
+                    stage.words, stage.misfit
+                );
+            };
+            let watch = || ControlFlow::Continue(());
+            let found = gap::explain(&problem, &[], &effort, &tell, &watch)?;
             println!(
                 "{label}: {}, {:.0} s",
                 told(&found),

@@ -99,8 +99,7 @@ impl Candidate {
         let there = problem.tree.get("effects").and_then(Value::as_array);
         !there.into_iter().flatten().any(|item| {
             item.get(self.entry.name).is_some_and(|section| {
-                let same =
-                    |(key, word): &(&str, String)| section[*key] == Value::from(word.as_str());
+                let same = |(key, word): &(&str, String)| section[*key] == word.as_str();
                 let index = |i: usize| self.entry.parameters[i].key;
                 let fixed = |(i, value): &(usize, f64)| section[index(*i)].as_f64() == Some(*value);
                 self.place.iter().all(same) && self.fixed.iter().all(fixed)

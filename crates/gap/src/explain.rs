@@ -18,11 +18,13 @@ pub const NOISE: f64 = 1.15;
 /// Pressures this near to the noise show no effect.
 const GAS_NOISE: f64 = 2.0;
 /// Most evaluations of the calibration to begin with.
-const CALIBRATION: u64 = 300;
+const CALIBRATION: u64 = 200;
 /// A model this near to the noise explains what was missing.
 pub const EXPLAINED: f64 = 1.5;
 /// Candidates that are fitted, of those that were screened: the linear score may be wrong.
 const FITTED: usize = 8;
+/// How many are fitted at once, before it is looked whether one has reached the noise.
+const TOGETHER: usize = 2;
 /// Of these, how many are fitted to all runs.
 const FINAL: usize = 3;
 /// Runs that the first fits of candidates use.
@@ -392,26 +394,20 @@ impl Search<'_> {
     /// The most promising candidates, fitted together with everything else, the best first.
     fn refit(&self, model: &Model, screened: Vec<Screened>) -> Result<Vec<(Tried, Model)>, Error> {
         let few = few(model, self.effort);
-        let roughly = |screened: Screened| -> Result<(Screened, Model), Error> {
-            (self.say)(&screened.candidate.label(), model.fitted);
-            let added = screened.candidate.added(&few.problem, &screened.values)?;
-            let from = |x: &[f64]| {
-                let mut x = x.to_vec();
-                x.resize(added.parameters.len(), 0.0);
-                Model::fit(added.clone(), &x, self.effort, self.watch)
-            };
-            // Without the effect the calibration may have gone far astray.
-            let fitted = from(&few.x)?.better(from(&vec![0.0; few.x.len()])?);
-            (self.say)(
-                &format!("{} fitted", screened.candidate.label()),
-                fitted.fitted,
-            );
-            Ok((screened, fitted))
-        };
-        let chosen: Vec<Screened> = screened.into_iter().take(FITTED).collect();
-        let rough = chosen.into_par_iter().map(roughly);
-        let mut rough = rough.collect::<Result<Vec<_>, _>>()?;
+        let mut rough: Vec<(Screened, Model)> = Vec::new();
+        let mut chosen = screened.into_iter().take(FITTED).peekable();
+        while chosen.peek().is_some() {
+            let together: Vec<Screened> = chosen.by_ref().take(TOGETHER).collect();
+            let mut fits = rough.iter().map(|(_, fitted)| fitted);
+            let near = fits.find(|fitted| fitted.fitted < NOISE).cloned();
+            let fitted = together.into_par_iter().map(|screened| {
+                let fitted = self.candidate(&few, &screened, near.as_ref())?;
+                Ok((screened, fitted))
+            });
+            rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
+        }
         rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
         let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
         let mut tried = Vec::new();
         for (i, (screened, fitted)) in rough.into_iter().enumerate() {
@@ -420,7 +416,8 @@ impl Search<'_> {
                 score,
                 values,
             } = screened;
-            let (before, after) = if i < FINAL {
+            let close = fitted.fitted < RIVAL * least.max(1.0);
+            let (before, after) = if i == 0 || (i < FINAL && close) {
                 (self.say)(&candidate.label(), fitted.fitted);
                 let added = candidate.added(&model.problem, &values)?;
                 let after = Model::fit(added, &fitted.x, self.effort, self.watch)?;
@@ -439,9 +436,36 @@ impl Search<'_> {
             ));
         }
         let order = |tried: &(Tried, Model)| tried.0.evidence.misfit[1];
-        let last = tried.len().min(FINAL);
+        let whole =
+            |tried: &&(Tried, Model)| tried.1.problem.runs.len() == model.problem.runs.len();
+        let last = tried.iter().take_while(whole).count();
         tried[..last].sort_by(|a, b| order(a).total_cmp(&order(b)));
         Ok(tried)
+    }
+
+    /// A candidate fitted to `few` runs together with everything else. Where another one has reached
+    /// the noise, what the calibrated parameters are is known from it.
+    fn candidate(
+        &self,
+        few: &Model,
+        screened: &Screened,
+        near: Option<&Model>,
+    ) -> Result<Model, Error> {
+        let label = screened.candidate.label();
+        (self.say)(&label, few.fitted);
+        let added = screened.candidate.added(&few.problem, &screened.values)?;
+        let from = |x: &[f64]| {
+            let mut x = x[..few.x.len()].to_vec();
+            x.resize(added.parameters.len(), 0.0);
+            Model::fit(added.clone(), &x, self.effort, self.watch)
+        };
+        let fitted = match near {
+            Some(near) => from(&near.x)?,
+            // Without the effect the calibration may have gone far astray.
+            None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
+        };
+        (self.say)(&format!("{label} fitted"), fitted.fitted);
+        Ok(fitted)
     }
 }
 

@@ -21,9 +21,6 @@ impl Bar {
     }
 
     pub fn tell(&self, stage: &Stage) {
-        if std::env::var_os("GAP_TRACE").is_some() {
-            eprintln!("{:?} {stage:?}", self.0.elapsed());
-        }
         let misfit = match stage.misfit.is_finite() {
             true => format!(", misfit {:.2}", stage.misfit),
             false => String::new(),
