@@ -19,8 +19,10 @@ pub struct Candidate {
     pub fixed: Vec<(usize, f64)>,
 }
 
-/// Places that tell nothing new by their names: what holds at every one is tried instead.
-const EVERYWHERE: [&str; 2] = ["end", "measure"];
+/// A place that is not tried one by one: what holds at every one is tried instead.
+const EVERYWHERE: &str = "measure";
+/// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
+const EITHER: &str = "end";
 /// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with.
 const ELSEWHERE: [&str; 2] = ["mains_hum", "crank_angle_offset"];
 /// What the pressure of a cylinder shows whatever the joints do.
@@ -44,9 +46,10 @@ impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
     pub fn all(problem: &Problem) -> Vec<Self> {
         let throws = throws(&problem.tree);
+        let both_ends = has_crank_end(&problem.tree);
         let mut all = Vec::new();
         for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
-            for place in places(entry, &throws) {
+            for place in places(entry, &throws, both_ends) {
                 for fixed in orders(entry) {
                     let place = place.clone();
                     let candidate = Self {
@@ -230,11 +233,22 @@ fn throws(tree: &Value) -> Vec<String> {
     names.map(str::to_owned).collect()
 }
 
+/// Whether a cylinder of the machine has a second chamber.
+fn has_crank_end(tree: &Value) -> bool {
+    let has = |tree: &Value| tree["cylinder"]["crank_end"].is_object();
+    let throws = tree.get("throws").and_then(Value::as_array);
+    has(tree) || throws.into_iter().flatten().any(has)
+}
+
 /// The places where an effect can act. Without a throw of its own an effect acts at all of them;
 /// a joint must be one.
-fn places(entry: &Entry, throws: &[String]) -> Vec<Vec<(&'static str, String)>> {
+fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'static str, String)>> {
     let mut places: Vec<Vec<(&'static str, String)>> = vec![Vec::new()];
-    for choice in entry.places.iter().filter(|c| !EVERYWHERE.contains(&c.key)) {
+    for choice in entry
+        .places
+        .iter()
+        .filter(|c| c.key != EVERYWHERE && (c.key != EITHER || both_ends))
+    {
         let words: Vec<String> = match choice.key {
             "throw" => throws.to_vec(),
             _ => choice.words.iter().map(|word| (*word).to_owned()).collect(),
@@ -242,6 +256,10 @@ fn places(entry: &Entry, throws: &[String]) -> Vec<Vec<(&'static str, String)>> 
         if words.is_empty() {
             continue;
         }
+        let everywhere = match choice.key == EITHER {
+            true => places.clone(),
+            false => Vec::new(),
+        };
         let each = places.iter().flat_map(|place| {
             words.iter().map(move |word| {
                 let mut place = place.clone();
@@ -249,7 +267,7 @@ fn places(entry: &Entry, throws: &[String]) -> Vec<Vec<(&'static str, String)>> 
                 place
             })
         });
-        places = each.collect();
+        places = everywhere.into_iter().chain(each).collect();
     }
     places
 }

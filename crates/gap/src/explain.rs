@@ -5,13 +5,12 @@ use crate::error::Error;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::model::{Effort, Model, Watch};
+use crate::pressures::{pressures, shows_pressure};
 use crate::screening::{Screened, screen};
 use calibrate::Problem;
 use calibrate::fit::{Estimate, FitSettings, Optimiser};
-use calibrate::likelihood::Likelihood;
 use rayon::prelude::*;
 use serde::Serialize;
-use serde_json::Value;
 
 /// A misfit below this is noise.
 pub const NOISE: f64 = 1.15;
@@ -198,71 +197,6 @@ pub fn explain(
         verdict,
         refused,
     })
-}
-
-/// The same problem with the pressures alone, in a machine of ideal joints, which is simulated much
-/// faster; none where there are none. What clear joints do to the pressures is taken off the recorded
-/// ones, as the nominal machine has it.
-///
-/// # Errors
-/// A machine that cannot be simulated.
-fn pressures(problem: &Problem) -> Result<Option<Problem>, Error> {
-    let mut clear = problem.clone();
-    clear
-        .parameters
-        .retain(|p| p.is_crank_angle_offset() || p.path.contains("cylinder."));
-    for run in &mut clear.runs {
-        run.channels
-            .retain(|channel| channel.column.contains("cylinder_pressure"));
-    }
-    clear.runs.retain(|run| !run.channels.is_empty());
-    if clear.runs.is_empty() {
-        return Ok(None);
-    }
-    let mut ideal = clear.clone();
-    idealise(&mut ideal.tree);
-    let settings = ideal.runs.iter_mut().flat_map(|run| &mut run.settings);
-    for (_, value) in settings.filter(|(path, _)| path.ends_with(".clearance")) {
-        *value = "ideal".into();
-    }
-    let nominal = vec![0.0; clear.parameters.len()];
-    let [with, without] = [&clear, &ideal].map(|p| Likelihood::new(p).predictions(&nominal));
-    for (run, (with, without)) in ideal.runs.iter_mut().zip(with?.iter().zip(&without?)) {
-        let lines = with.lines.iter().zip(&without.lines);
-        for (channel, (with, without)) in run.channels.iter_mut().zip(lines) {
-            let both = with.amplitude.iter().zip(&without.amplitude);
-            for (recorded, (with, without)) in channel.lines.amplitude.iter_mut().zip(both) {
-                *recorded -= with - without;
-            }
-        }
-    }
-    Ok(Some(ideal))
-}
-
-fn shows_pressure(problem: &Problem) -> bool {
-    let mut channels = problem.runs.iter().flat_map(|run| &run.channels);
-    channels.any(|channel| channel.column.contains("cylinder_pressure"))
-}
-
-/// Makes every joint of a machine file ideal.
-fn idealise(tree: &mut Value) {
-    match tree {
-        Value::Object(section) => {
-            for (key, value) in section {
-                if key == "joints" {
-                    for joint in value.as_object_mut().into_iter().flatten() {
-                        if let Some(clearance) = joint.1.get_mut("clearance") {
-                            *clearance = "ideal".into();
-                        }
-                    }
-                } else {
-                    idealise(value);
-                }
-            }
-        }
-        Value::Array(items) => items.iter_mut().for_each(idealise),
-        _ => {}
-    }
 }
 
 /// How effects are searched.

@@ -15,6 +15,7 @@ pub mod mains_hum;
 mod measuring_chain;
 pub mod model;
 mod next_recording;
+mod pressures;
 pub mod residual_map;
 pub mod screening;
 
