@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 /// Harmonics of the speed that are kept: gas and inertia of a few throws have no higher ones that
 /// a flywheel lets through.
 const HARMONICS: usize = 8;
+/// Rounds in which speed and harmonics are found; each leaves a small part of the error.
+const ROUNDS: usize = 4;
 /// Recordings shorter than this say nothing of what repeats from revolution to revolution.
 const REVOLUTIONS: f64 = 2.0;
 
@@ -20,41 +22,74 @@ pub enum CrankMotion {
     Recorded,
 }
 
-/// The motion of a recorded crank: the mean over whole revolutions of θ − φ, where φ = ω t turns
-/// evenly, in harmonics of φ.
+/// The motion of a recorded crank: θ − φ in harmonics of φ = ω t + φ0, which turns evenly. Speed and
+/// harmonics depend on each other where the recording ends within a revolution, and are found in turn.
 pub(crate) fn recorded(angle: &CrankAngle, sample_rate: f64) -> GivenSpeed {
-    let angles = angle.angles();
-    let per_revolution = angle.samples_per_revolution();
-    let step = TAU / per_revolution;
-    let speed = step * sample_rate;
-    if angle.revolutions() < REVOLUTIONS {
-        return GivenSpeed {
-            speed,
-            fluctuation: Vec::new(),
-        };
-    }
-    let count = (angle.revolutions().floor() * per_revolution).round() as usize;
-    let angles = &angles[..count.min(angles.len())];
-    let ahead = |i: usize| angles[i] - step * i as f64;
-    let start = (0..angles.len()).map(ahead).sum::<f64>() / angles.len() as f64;
-    let share = 2.0 / angles.len() as f64;
-    let fluctuation = (1..=HARMONICS).map(|k| {
-        let order = k as f64;
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for i in 0..angles.len() {
-            let (s, c) = (order * (start + step * i as f64)).sin_cos();
-            sine += share * s * (ahead(i) - start);
-            cosine += share * c * (ahead(i) - start);
+    let mut step = TAU / angle.samples_per_revolution();
+    let mut fluctuation = Vec::new();
+    if angle.revolutions() >= REVOLUTIONS {
+        let angles = angle.angles();
+        let last = angles.len() - 1;
+        for _ in 0..ROUNDS {
+            let even = Even::of(angles, step);
+            fluctuation = (1..=HARMONICS).map(|k| even.harmonic(k)).collect();
+            let turned = |i: usize| angles[i] - ahead(&fluctuation, even.angle(i));
+            step = (turned(last) - turned(0)) / last as f64;
         }
-        // (d/k) sin(k φ + ψ) = (d/k) cos ψ sin k φ + (d/k) sin ψ cos k φ.
+    }
+    GivenSpeed {
+        speed: step * sample_rate,
+        fluctuation,
+    }
+}
+
+/// By how much a crank that fluctuates is ahead of one that turns evenly and stands at `phi`, rad.
+fn ahead(fluctuation: &[Fluctuation], phi: f64) -> f64 {
+    let harmonics = (1..).map(f64::from).zip(fluctuation);
+    harmonics
+        .map(|(k, h)| h.amplitude / k * (k * phi + h.phase).sin())
+        .sum()
+}
+
+/// A recorded angle beside one that turns evenly, over whole revolutions.
+struct Even<'a> {
+    angles: &'a [f64],
+    start: f64,
+    step: f64,
+}
+
+impl<'a> Even<'a> {
+    fn of(angles: &'a [f64], step: f64) -> Self {
+        let revolutions = (angles.len() as f64 * step / TAU).floor();
+        let count = ((revolutions * TAU / step).round() as usize).min(angles.len());
+        let angles = &angles[..count];
+        let apart = angles.iter().enumerate().map(|(i, a)| a - step * i as f64);
+        let start = apart.sum::<f64>() / count as f64;
+        Self {
+            angles,
+            start,
+            step,
+        }
+    }
+
+    fn angle(&self, i: usize) -> f64 {
+        self.start + self.step * i as f64
+    }
+
+    /// (d/k) sin(k φ + ψ) = (d/k) cos ψ sin k φ + (d/k) sin ψ cos k φ.
+    fn harmonic(&self, k: usize) -> Fluctuation {
+        let order = k as f64;
+        let share = 2.0 / self.angles.len() as f64;
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (i, angle) in self.angles.iter().enumerate() {
+            let (s, c) = (order * self.angle(i)).sin_cos();
+            sine += share * s * (angle - self.angle(i));
+            cosine += share * c * (angle - self.angle(i));
+        }
         Fluctuation {
             amplitude: order * sine.hypot(cosine),
             phase: cosine.atan2(sine),
         }
-    });
-    GivenSpeed {
-        speed,
-        fluctuation: fluctuation.collect(),
     }
 }
 
