@@ -41,6 +41,33 @@ pub struct Effort {
 }
 
 impl Effort {
+    /// The effort for a problem of which these runs are held out. So are those in which the nominal
+    /// machine does not repeat itself, if others are left: they have no derivatives.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn new(
+        problem: &Problem,
+        mut held_out: Vec<String>,
+        evaluations: u64,
+    ) -> Result<Self, Error> {
+        let nominal = vec![0.0; problem.parameters.len()];
+        let predictions = Likelihood::new(problem).predictions(&nominal)?;
+        let runs = problem.runs.iter().zip(&predictions);
+        let (periodic, others): (Vec<_>, Vec<_>) = runs.partition(|(_, shown)| shown.periodic);
+        if periodic.iter().any(|(run, _)| !held_out.contains(&run.id)) {
+            for (run, _) in others {
+                if !held_out.contains(&run.id) {
+                    held_out.push(run.id.clone());
+                }
+            }
+        }
+        Ok(Self {
+            held_out,
+            evaluations,
+        })
+    }
+
     fn fits(&self, run: &str) -> bool {
         !self.held_out.iter().any(|held| held == run)
     }

@@ -83,10 +83,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let effort = Effort {
-        held_out: task.settings.held_out.clone(),
-        evaluations: EVALUATIONS,
-    };
+    let held_out = task.settings.held_out.clone();
+    let effort = Effort::new(&task.problem, held_out, EVALUATIONS).map_err(Failure::work)?;
     let start = Instant::now();
     let bar = progress::Bar::new();
     let hum = gap::remove_hum(&mut task.problem, &mut task.runs).map_err(Failure::work)?;
