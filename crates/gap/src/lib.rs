@@ -9,6 +9,7 @@
 //! ```
 
 pub mod candidate;
+pub mod decision;
 pub mod error;
 pub mod explain;
 pub mod mains_hum;
@@ -16,12 +17,14 @@ mod measuring_chain;
 pub mod model;
 mod next_recording;
 mod pressures;
+mod refit;
 pub mod residual_map;
 pub mod screening;
 
 pub use candidate::Candidate;
+pub use decision::{Evidence, Verdict};
 pub use error::Error;
-pub use explain::{Evidence, Explanation, Found, Stage, Tried, Verdict, explain};
+pub use explain::{Explanation, Found, Stage, Tried, explain};
 pub use mains_hum::{Hum, remove_hum};
 pub use model::{Effort, Model};
 pub use next_recording::next_recording;

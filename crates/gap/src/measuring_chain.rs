@@ -1,7 +1,8 @@
 //! What is wrong with the measuring and not with the machine: told as effects like any other.
 
 use crate::candidate::Candidate;
-use crate::explain::{Evidence, Found};
+use crate::decision::Evidence;
+use crate::explain::Found;
 use crate::mains_hum::Hum;
 use crate::model::Model;
 use calibrate::fit::Estimate;

@@ -1,0 +1,85 @@
+//! Whether an effect has earned its place, and what an explanation comes to.
+
+use crate::model::Model;
+use serde::Serialize;
+
+/// A misfit below this is noise.
+pub const NOISE: f64 = 1.15;
+/// Pressures this near to the noise show no effect.
+pub(crate) const GAS_NOISE: f64 = 2.0;
+/// A model this near to the noise explains what was missing.
+pub const EXPLAINED: f64 = 1.5;
+/// Candidates whose misfit is within this factor of the best one's are its rivals.
+pub(crate) const RIVAL: f64 = 3.0;
+/// An effect earns its place where it takes this share of the misfit, squared above the noise, of
+/// fitted and of held-out runs.
+pub(crate) const EARNED: f64 = 0.3;
+/// Share of the distance to the noise that must be gone for a part to count as an explanation.
+pub(crate) const PARTLY: f64 = 0.8;
+
+/// What an explanation comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The calibrated model is at the noise.
+    NoGap,
+    /// With the effects it is.
+    Explained,
+    /// With the effects it is much nearer, and something is left.
+    PartlyExplained,
+    /// Nothing in the catalogue brings it near.
+    Unexplained,
+}
+
+/// What speaks for an effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Evidence {
+    /// Share of the residual that the score test lets it explain.
+    pub score: f64,
+    /// Misfit of the fitted runs without and with it, in standard deviations of the noise.
+    pub misfit: [f64; 2],
+    /// The same of the held-out runs.
+    pub heldout_misfit: Option<[f64; 2]>,
+    /// Bayesian information criterion with it less that without it, revolutions' lines counted as
+    /// one observation each: below −10 is strong evidence.
+    pub delta_bic: f64,
+}
+
+/// What speaks for `after`, which has an effect that `before` has not.
+pub(crate) fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
+    let held_out = before.held_out.zip(after.held_out);
+    Evidence {
+        score,
+        misfit: [before.fitted, after.fitted],
+        heldout_misfit: held_out.map(|(before, after)| [before, after]),
+        delta_bic: before.bic_to(after),
+    }
+}
+
+/// Whether the effect that `after` has and `before` has not earns its place.
+pub(crate) fn earns(before: &Model, after: &Model) -> bool {
+    let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
+    let takes = |before: f64, after: f64| excess(after) <= (1.0 - EARNED) * excess(before);
+    let held_out = before.held_out.zip(after.held_out);
+    takes(before.fitted, after.fitted)
+        && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))
+}
+
+/// What a model with so many effects comes to.
+pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdict {
+    if effects == 0 && baseline.fitted <= NOISE {
+        return Verdict::NoGap;
+    }
+    let worst = model
+        .held_out
+        .map_or(model.fitted, |held| held.max(model.fitted));
+    if effects == 0 {
+        Verdict::Unexplained
+    } else if worst <= EXPLAINED {
+        Verdict::Explained
+    } else if worst - 1.0 <= (1.0 - PARTLY) * (baseline.fitted - 1.0) {
+        Verdict::PartlyExplained
+    } else {
+        Verdict::Unexplained
+    }
+}

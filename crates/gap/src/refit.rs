@@ -1,0 +1,124 @@
+//! The most promising candidates, fitted together with everything else.
+
+use crate::decision::{NOISE, RIVAL, evidence};
+use crate::error::Error;
+use crate::explain::{Search, Tried};
+use crate::model::{Effort, Model};
+use crate::screening::Screened;
+use rayon::prelude::*;
+
+/// Candidates that are fitted, of those that were screened: the linear score may be wrong.
+pub(crate) const FITTED: usize = 8;
+/// How many are fitted at once, before it is looked whether one has reached the noise.
+pub(crate) const TOGETHER: usize = 2;
+/// Of these, how many are fitted to all runs.
+pub(crate) const FINAL: usize = 3;
+/// Runs that the first fits of candidates use.
+pub(crate) const FEW: usize = 3;
+
+impl Search<'_> {
+    /// The most promising candidates, fitted together with everything else, the best first.
+    pub(crate) fn refit(
+        &self,
+        model: &Model,
+        screened: Vec<Screened>,
+    ) -> Result<Vec<(Tried, Model)>, Error> {
+        let few = few(model, self.effort);
+        let mut rough: Vec<(Screened, Model)> = Vec::new();
+        let mut chosen = screened.into_iter().take(FITTED).peekable();
+        while chosen.peek().is_some() {
+            let together: Vec<Screened> = chosen.by_ref().take(TOGETHER).collect();
+            let mut fits = rough.iter().map(|(_, fitted)| fitted);
+            let near = fits.find(|fitted| fitted.fitted < NOISE).cloned();
+            let fitted = together.into_par_iter().map(|screened| {
+                let fitted = self.candidate(&few, &screened, near.as_ref())?;
+                Ok((screened, fitted))
+            });
+            rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
+        }
+        rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
+        let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
+        let mut tried = Vec::new();
+        for (i, (screened, fitted)) in rough.into_iter().enumerate() {
+            let Screened {
+                candidate,
+                score,
+                values,
+            } = screened;
+            let close = fitted.fitted < RIVAL * least.max(1.0);
+            let (before, after) = if i == 0 || (i < FINAL && close) {
+                (self.say)(&candidate.label(), fitted.fitted);
+                let added = candidate.added(&model.problem, &values)?;
+                let after = Model::fit(added, &fitted.x, self.effort, self.watch)?;
+                (model, after)
+            } else {
+                (&before, fitted)
+            };
+            let evidence = evidence(before, &after, score);
+            tried.push((
+                Tried {
+                    candidate,
+                    evidence,
+                    by_run: after.misfits(),
+                },
+                after,
+            ));
+        }
+        let order = |tried: &(Tried, Model)| tried.0.evidence.misfit[1];
+        let whole =
+            |tried: &&(Tried, Model)| tried.1.problem.runs.len() == model.problem.runs.len();
+        let last = tried.iter().take_while(whole).count();
+        tried[..last].sort_by(|a, b| order(a).total_cmp(&order(b)));
+        Ok(tried)
+    }
+
+    /// A candidate fitted to `few` runs together with everything else. Where another one has reached
+    /// the noise, what the calibrated parameters are is known from it.
+    fn candidate(
+        &self,
+        few: &Model,
+        screened: &Screened,
+        near: Option<&Model>,
+    ) -> Result<Model, Error> {
+        let label = screened.candidate.label();
+        (self.say)(&label, few.fitted);
+        let added = screened.candidate.added(&few.problem, &screened.values)?;
+        let from = |x: &[f64]| {
+            let mut x = x[..few.x.len()].to_vec();
+            x.resize(added.parameters.len(), 0.0);
+            Model::fit(added.clone(), &x, self.effort, self.watch)
+        };
+        let fitted = match near {
+            Some(near) => from(&near.x)?,
+            // Without the effect the calibration may have gone far astray.
+            None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
+        };
+        (self.say)(&format!("{label} fitted"), fitted.fitted);
+        Ok(fitted)
+    }
+}
+
+/// The model with a few of the runs that it is fitted to, of speeds as different as there are.
+pub(crate) fn few(model: &Model, effort: &Effort) -> Model {
+    let fitted = |id: &str| !effort.held_out.iter().any(|held| held == id);
+    let mut runs: Vec<_> = model
+        .problem
+        .runs
+        .iter()
+        .filter(|run| fitted(&run.id))
+        .collect();
+    runs.sort_by(|a, b| a.crank.speed.total_cmp(&b.crank.speed));
+    let last = runs.len().saturating_sub(1);
+    let parts = FEW.saturating_sub(1).max(1);
+    let chosen: Vec<&str> = (0..FEW)
+        .filter_map(|i| runs.get(i * last / parts))
+        .map(|r| r.id.as_str())
+        .collect();
+    Model {
+        problem: model
+            .problem
+            .with_runs(|run| chosen.contains(&run.id.as_str())),
+        ..model.clone()
+    }
+}
