@@ -177,6 +177,12 @@ impl Parameter {
         self.run.as_ref().is_none_or(|of| of == run)
     }
 
+    /// Whether it changes the motion in a run of this name: not where it is a condition of another run,
+    /// nor where all that it turns is the reading of the crank angle.
+    pub(crate) fn moves(&self, run: &str) -> bool {
+        self.holds_in(run) && !self.is_crank_angle_offset()
+    }
+
     /// Whether it is by how much the recorded crank angle is ahead of the crank.
     pub fn is_crank_angle_offset(&self) -> bool {
         self.places.is_empty()

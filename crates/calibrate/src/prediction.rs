@@ -58,13 +58,13 @@ pub fn predict_with_derivatives(
     prediction(problem, run, x, true, false)
 }
 
-/// The prediction, with or without derivatives; a coarse one where a few thousandths are accurate
+/// The prediction, with derivatives where they are `wanted`; a coarse one where a few thousandths are accurate
 /// enough, with throws that do not feel each other.
 pub(crate) fn prediction(
     problem: &Problem,
     run: &Observation,
     x: &[f64],
-    derivatives: bool,
+    wanted: bool,
     coarse: bool,
 ) -> Result<Prediction, Error> {
     let machine = problem.machine(run, x)?;
@@ -84,13 +84,17 @@ pub(crate) fn prediction(
         },
         revolutions: PERIODIC + u32::from(free),
         sample_rate,
+        inner_rate: inner_rate(&machine),
         tolerance: TOLERANCE * looser,
     };
-    let groups = match derivatives {
+    let mut groups = match wanted {
         false => Vec::new(),
         true if coarse => problem.independent(),
         true => (0..x.len()).map(|i| vec![i]).collect(),
     };
+    let moving = |i: &usize| problem.parameters[*i].moves(&run.id);
+    groups.iter_mut().for_each(|group| group.retain(moving));
+    groups.retain(|group| !group.is_empty());
     let moved = problem.moved(run, x, &groups)?;
     let mut record = in_parallel(&machine, &moved, &settings).map_err(failed)?;
     let periodic = record.settled;
@@ -135,8 +139,8 @@ pub(crate) fn prediction(
                 .collect()
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
-    if !derivatives.is_empty() {
-        derivatives = apart(problem, run, &groups, derivatives);
+    if wanted && periodic {
+        derivatives = apart(problem, run, &groups, derivatives, &lines);
     }
     for (of_parameter, slope) in derivatives.iter_mut().zip(&offset_slopes) {
         for (of_channel, lines) in of_parameter.iter_mut().zip(&lines) {
@@ -150,6 +154,18 @@ pub(crate) fn prediction(
         derivatives,
         periodic,
     })
+}
+
+/// The rate at which the motion is sampled, Hz. Without filters between motion and recorder four
+/// samples to each that is recorded are enough: order 3700 is the first to fold down to those that are
+/// compared.
+fn inner_rate(machine: &Resolved) -> f64 {
+    let chains = machine.sensors.iter().map(|sensor| &sensor.chain);
+    let mut filtered = chains.filter(|chain| chain.mounting.is_some() || chain.low_pass.is_some());
+    match filtered.next() {
+        Some(_) => Settings::default().inner_rate,
+        None => 0.0,
+    }
 }
 
 /// The lines over a crank angle that reads `offset` more than the crank has turned.
@@ -182,14 +198,17 @@ fn in_parallel(
 }
 
 /// The derivatives of each parameter from those of groups: a channel that belongs to a throw feels
-/// the one of the group that belongs to this throw.
+/// the one of the group that belongs to this throw. What is in no group moves nothing.
 fn apart(
     problem: &Problem,
     run: &Observation,
     groups: &[Vec<usize>],
     of_groups: Vec<Vec<Vec<Complex64>>>,
+    lines: &[OrderLines],
 ) -> Vec<Vec<Vec<Complex64>>> {
-    let mut all = vec![Vec::new(); problem.parameters.len()];
+    let still = lines.iter().map(|of| vec![Complex64::ZERO; of.amplitude.len()]);
+    let still: Vec<Vec<Complex64>> = still.collect();
+    let mut all = vec![still; problem.parameters.len()];
     for (group, of_group) in groups.iter().zip(of_groups) {
         for i in group {
             let own = throw(&problem.parameters[*i].path);

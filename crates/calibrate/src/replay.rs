@@ -230,6 +230,7 @@ impl Instants {
                 // One to spare: rounding must not lose the last sample.
                 revolutions: (length / revolution).ceil() as u32 + 1,
                 sample_rate: run.sample_rate,
+                inner_rate: Settings::default().inner_rate,
                 tolerance: TOLERANCE,
             },
             count,

@@ -55,6 +55,7 @@ fn recorded(machine: &str, changes: &[(&str, &str)], delay: f64) -> (Problem, Ru
         },
         revolutions: 6,
         sample_rate: SAMPLE_RATE,
+        inner_rate: 80_000.0,
         tolerance: 1e-9,
     };
     let record = simulate_later(&resolved.machine, &sensors, &settings, delay, false).unwrap();

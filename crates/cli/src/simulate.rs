@@ -196,6 +196,7 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
         revolutions: arguments.revolutions,
         sample_rate: rate.si(),
         tolerance,
+        ..Settings::default()
     })
 }
 

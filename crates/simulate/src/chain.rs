@@ -2,6 +2,7 @@
 
 use crate::record::Error;
 use crate::sensor::{Axis, ChamberEnd, Measured, Sensor};
+use crate::settings::Settings;
 use integrate::Real;
 use mechanism::{Evaluation, Machine};
 use scalar::Scalar;
@@ -11,9 +12,6 @@ use std::f64::consts::TAU;
 
 use crate::run::Instants;
 
-/// Lowest rate at which the motion is sampled before decimation, Hz: contacts ring at a few kHz,
-/// and what lies above half of this rate is weak enough to fold down unnoticed.
-const INNER_RATE: f64 = 80_000.0;
 /// Fewest inner samples per recorded one.
 const LEAST_FACTOR: f64 = 4.0;
 /// Most inner samples per recorded one: a slow recording still sees the contacts.
@@ -31,9 +29,10 @@ pub(crate) struct Sampling {
 }
 
 impl Sampling {
-    /// `length` seconds at `rate`, Hz.
-    pub(crate) fn new(rate: f64, length: f64) -> Result<Self, Error> {
-        let factor = (INNER_RATE / rate).clamp(LEAST_FACTOR, MOST_FACTOR).ceil();
+    /// `length` seconds as `settings` say.
+    pub(crate) fn new(settings: &Settings, length: f64) -> Result<Self, Error> {
+        let rate = settings.sample_rate;
+        let factor = (settings.inner_rate / rate).clamp(LEAST_FACTOR, MOST_FACTOR).ceil();
         let decimator = Decimator::new(factor as usize).map_err(|source| Error::Sensor {
             column: "all".into(),
             source,

@@ -88,7 +88,7 @@ pub fn simulate_later(
     let (transient, period) = run.leave_transient(settings.transient)?;
     let start = f64::from(transient) * run.revolution() + delay;
     let length = f64::from(settings.revolutions) * run.revolution();
-    let sampling = Sampling::new(settings.sample_rate, length)?;
+    let sampling = Sampling::new(settings, length)?;
     let mut trace = traced.then(|| Trace::new(machine, sampling.factor));
     let lead = sampling.lead();
     let recorded = lead..lead + sampling.samples * sampling.factor;

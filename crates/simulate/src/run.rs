@@ -112,6 +112,11 @@ impl<S: Real> Run<S> {
         self.advance(self.integrator.time() + ahead / speed)
     }
 
+    /// Whether the crank turns as the forces on it make it.
+    pub(crate) fn is_free(&self) -> bool {
+        self.dynamics.layout().crank.is_some()
+    }
+
     /// Angle and mean speed of a crank that is free, rad and rad/s.
     fn free_crank(&self) -> Option<(f64, f64)> {
         let at = self.dynamics.layout().crank?;

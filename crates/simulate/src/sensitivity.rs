@@ -38,7 +38,8 @@ pub struct Sensitivities {
 }
 
 /// Runs `machine` and records `sensors` with the derivatives toward each of `moved`. Of a motion that
-/// settles no more is recorded than one revolution beyond its period.
+/// settles no more is recorded than its period, and a revolution beyond where the crank is free and
+/// does not keep to its reference speed.
 ///
 /// # Errors
 /// As [`simulate`](crate::simulate()).
@@ -75,10 +76,11 @@ fn tangents<const N: usize>(
     let mut run = Run::<Dual<f64, N>>::start(lifted, settings.tolerance, false);
     let (transient, period) = run.leave_transient(settings.transient)?;
     let start = f64::from(transient) * run.revolution();
-    let enough = period.map_or(settings.revolutions, |period| period + 1);
+    let spare = u32::from(run.is_free());
+    let enough = period.map_or(settings.revolutions, |period| period + spare);
     let revolutions = settings.revolutions.min(enough);
     let length = f64::from(revolutions) * run.revolution();
-    let sampling = Sampling::new(settings.sample_rate, length)?;
+    let sampling = Sampling::new(settings, length)?;
     let mut inner: Vec<Vec<Dual<f64, N>>> = vec![Vec::new(); sensors.len()];
     run.show(sampling.instants(start), |at| {
         for (sensor, inner) in sensors.iter().zip(&mut inner) {

@@ -153,6 +153,7 @@ fn clean(id: &str, settings: &[(String, Value)], tree: &Value) -> Result<Clean, 
         transient: Transient::Revolutions(40),
         revolutions: REVOLUTIONS,
         sample_rate: SAMPLE_RATE,
+        inner_rate: 80_000.0,
         tolerance: TOLERANCE,
     };
     let record = simulate::simulate(&machine.machine, &sensors, &settings_of_run, false)?;

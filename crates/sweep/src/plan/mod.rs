@@ -509,6 +509,7 @@ fn settings(run: &Run) -> Result<Settings, Error> {
             .sample_rate
             .map_or(default.sample_rate, |rate| rate.si()),
         tolerance,
+        ..default
     })
 }
 
