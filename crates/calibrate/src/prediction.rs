@@ -12,7 +12,7 @@ use signal::order_lines::OrderLines;
 use simulate::{Moved, Sensitivities, Settings, Transient, sensitivities};
 
 /// Relative local error of the integration; far below the noise of any sensor.
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-6;
 /// Change from revolution to revolution at which a motion counts as settled, and revolutions that
 /// it is given.
 const SETTLED: f64 = 1e-5;
@@ -206,7 +206,9 @@ fn apart(
     of_groups: Vec<Vec<Vec<Complex64>>>,
     lines: &[OrderLines],
 ) -> Vec<Vec<Vec<Complex64>>> {
-    let still = lines.iter().map(|of| vec![Complex64::ZERO; of.amplitude.len()]);
+    let still = lines
+        .iter()
+        .map(|of| vec![Complex64::ZERO; of.amplitude.len()]);
     let still: Vec<Vec<Complex64>> = still.collect();
     let mut all = vec![still; problem.parameters.len()];
     for (group, of_group) in groups.iter().zip(of_groups) {

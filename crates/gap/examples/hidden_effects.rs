@@ -78,6 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let effort = Effort {
                 held_out: held_out.collect(),
                 evaluations: EVALUATIONS,
+                journal: gap::Journal::default(),
             };
             let tell = |stage: &gap::Stage| {
                 let seconds = start.elapsed().as_secs_f64();

@@ -12,6 +12,14 @@ pub enum Error {
     /// A list of effects that is none.
     #[error("effects: found something else than a list of effects")]
     Effects,
+    /// A file of finished work that cannot be read or written.
+    #[error("{path}: {source}", path = path.display())]
+    Journal {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What is wrong with it.
+        source: std::io::Error,
+    },
     /// Stopped by the user.
     #[error("stopped before an explanation was found")]
     Stopped,

@@ -184,15 +184,16 @@ impl Search<'_> {
             held_out: self.effort.held_out.clone(),
             start: None,
         };
-        let fit = calibrate::calibrate(problem, &settings, |_| (self.watch)())?;
-        if !fit.complete && (self.watch)().is_break() {
-            return Err(Error::Stopped);
-        }
-        let x = fit
-            .estimates
-            .iter()
-            .map(|e| e.parameter.coordinate(e.value));
-        Model::at(problem.clone(), x.collect(), self.effort)
+        let search = || {
+            let fit = calibrate::calibrate(problem, &settings, |_| (self.watch)())?;
+            if !fit.complete && (self.watch)().is_break() {
+                return Err(Error::Stopped);
+            }
+            let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
+            Ok(fit.estimates.iter().map(coordinate).collect())
+        };
+        let x = self.effort.journal.once(&(problem, &settings), search)?;
+        Model::at(problem.clone(), x, self.effort)
     }
 
     /// The model without those of its effects that no longer earn their place beside the others.
@@ -252,7 +253,8 @@ impl Search<'_> {
         while model.fitted > noise && found.len() < most {
             (self.say)("screening", model.fitted);
             let few = few(&model, self.effort);
-            let screened = screen(&few, candidates(&model.problem), self.watch)?;
+            let candidates = candidates(&model.problem);
+            let screened = screen(&few, candidates, &self.effort.journal, self.watch)?;
             let mut tried = self.refit(&model, screened)?;
             if tried.is_empty() {
                 break;

@@ -1,6 +1,7 @@
 //! A machine with what was fitted of it, and how far it is from the recordings.
 
 use crate::error::Error;
+use crate::journal::Journal;
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
 use calibrate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
@@ -38,6 +39,8 @@ pub struct Effort {
     pub held_out: Vec<String>,
     /// Most evaluations of a descent.
     pub evaluations: u64,
+    /// What was found before.
+    pub journal: Journal,
 }
 
 impl Effort {
@@ -50,6 +53,7 @@ impl Effort {
         problem: &Problem,
         mut held_out: Vec<String>,
         evaluations: u64,
+        journal: Journal,
     ) -> Result<Self, Error> {
         let nominal = vec![0.0; problem.parameters.len()];
         let predictions = Likelihood::new(problem).predictions(&nominal)?;
@@ -65,6 +69,7 @@ impl Effort {
         Ok(Self {
             held_out,
             evaluations,
+            journal,
         })
     }
 
@@ -109,16 +114,15 @@ impl Model {
             return Self::at(problem, Vec::new(), effort);
         }
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
-        let rough = descend(
-            &Likelihood::coarse(&fitted, LOOSE),
-            start,
-            ROUGH,
-            effort,
-            watch,
-        )?;
-        let likelihood = Likelihood::new(&fitted);
-        let full = descend(&likelihood, &rough.x, FULL, effort, watch)?;
-        Self::at(problem, full.x, effort)
+        let descents = || {
+            let coarse = Likelihood::coarse(&fitted, LOOSE);
+            let rough = descend(&coarse, start, ROUGH, effort, watch)?;
+            let likelihood = Likelihood::new(&fitted);
+            Ok(descend(&likelihood, &rough.x, FULL, effort, watch)?.x)
+        };
+        let input = ("fit", &fitted, start, effort.evaluations);
+        let x = effort.journal.once(&input, descents)?;
+        Self::at(problem, x, effort)
     }
 
     /// The same with other free parameters held where they are, by their paths.

@@ -11,8 +11,13 @@ use rayon::prelude::*;
 pub(crate) const FITTED: usize = 8;
 /// How many are fitted at once, before it is looked whether one has reached the noise.
 pub(crate) const TOGETHER: usize = 2;
+/// How many are fitted after one has reached the noise, itself included: its rivals.
+const AFTERWARDS: usize = 6;
 /// Of these, how many are fitted to all runs.
 pub(crate) const FINAL: usize = 3;
+/// Most evaluations of a descent for a candidate that can be no more than a rival of one that has
+/// reached the noise.
+const RIVALS: u64 = 40;
 /// Runs that the first fits of candidates use.
 pub(crate) const FEW: usize = 3;
 
@@ -28,8 +33,11 @@ impl Search<'_> {
         let mut chosen = screened.into_iter().take(FITTED).peekable();
         while chosen.peek().is_some() {
             let together: Vec<Screened> = chosen.by_ref().take(TOGETHER).collect();
-            let mut fits = rough.iter().map(|(_, fitted)| fitted);
-            let near = fits.find(|fitted| fitted.fitted < NOISE).cloned();
+            let near = rough.iter().position(|(_, fitted)| fitted.fitted < NOISE);
+            if near.is_some_and(|i| rough.len() - i >= AFTERWARDS) {
+                break;
+            }
+            let near = near.map(|i| rough[i].1.clone());
             let fitted = together.into_par_iter().map(|screened| {
                 let fitted = self.candidate(&few, &screened, near.as_ref())?;
                 Ok((screened, fitted))
@@ -84,15 +92,24 @@ impl Search<'_> {
         let label = screened.candidate.label();
         (self.say)(&label, few.fitted);
         let added = screened.candidate.added(&few.problem, &screened.values)?;
-        let from = |x: &[f64]| {
+        let from = |x: &[f64], effort: &Effort| {
             let mut x = x[..few.x.len()].to_vec();
             x.resize(added.parameters.len(), 0.0);
-            Model::fit(added.clone(), &x, self.effort, self.watch)
+            Model::fit(added.clone(), &x, effort, self.watch)
         };
         let fitted = match near {
-            Some(near) => from(&near.x)?,
+            Some(near) => {
+                let effort = Effort {
+                    evaluations: RIVALS.min(self.effort.evaluations),
+                    ..self.effort.clone()
+                };
+                from(&near.x, &effort)?
+            }
             // Without the effect the calibration may have gone far astray.
-            None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
+            None => {
+                let nominal = vec![0.0; few.x.len()];
+                from(&few.x, self.effort)?.better(from(&nominal, self.effort)?)
+            }
         };
         (self.say)(&format!("{label} fitted"), fitted.fitted);
         Ok(fitted)

@@ -12,6 +12,7 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
+use crate::journal::Journal;
 use crate::model::{LOOSE, Model, Watch};
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
@@ -39,13 +40,15 @@ pub struct Screened {
 pub fn screen(
     model: &Model,
     candidates: Vec<Candidate>,
+    journal: &Journal,
     watch: Watch,
 ) -> Result<Vec<Screened>, Error> {
     let likelihood = Likelihood::coarse(&model.problem, LOOSE);
     let residual = DVector::from_vec(likelihood.residuals(&model.x));
     let projector = Projector::new(&likelihood.jacobian(&model.x));
     let base = projector.apply(&residual);
-    let of = |candidate: Candidate| -> Result<Option<Screened>, Error> {
+    // The score and the values there; nothing for what cannot be simulated.
+    let of = |candidate: &Candidate| -> Result<Vec<f64>, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         for values in candidate.probes() {
             if watch().is_break() {
@@ -68,14 +71,25 @@ pub fn screen(
                 best = Some((1.0 - left, values));
             }
         }
-        Ok(best.map(|(score, values)| Screened {
+        let found = best.into_iter();
+        Ok(found
+            .flat_map(|(score, values)| [vec![score], values].concat())
+            .collect())
+    };
+    let screened = candidates.into_par_iter().map(|candidate| {
+        let input = ("screen", &model.problem, &model.x, candidate.label());
+        let numbers = journal.once(&input, || of(&candidate))?;
+        let found = numbers
+            .split_first()
+            .map(|(score, values)| (*score, values.to_vec()));
+        Ok(found.map(|(score, values)| Screened {
             candidate,
             score,
             values,
         }))
-    };
-    let screened: Result<Vec<_>, Error> = candidates.into_par_iter().map(of).collect();
-    let mut screened: Vec<Screened> = screened?.into_iter().flatten().collect();
+    });
+    let screened = screened.collect::<Result<Vec<_>, Error>>()?;
+    let mut screened: Vec<Screened> = screened.into_iter().flatten().collect();
     screened.sort_by(|a, b| b.score.total_cmp(&a.score));
     Ok(screened)
 }

@@ -32,7 +32,9 @@ impl Sampling {
     /// `length` seconds as `settings` say.
     pub(crate) fn new(settings: &Settings, length: f64) -> Result<Self, Error> {
         let rate = settings.sample_rate;
-        let factor = (settings.inner_rate / rate).clamp(LEAST_FACTOR, MOST_FACTOR).ceil();
+        let factor = (settings.inner_rate / rate)
+            .clamp(LEAST_FACTOR, MOST_FACTOR)
+            .ceil();
         let decimator = Decimator::new(factor as usize).map_err(|source| Error::Sensor {
             column: "all".into(),
             source,
