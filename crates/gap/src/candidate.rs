@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::model::Model;
+use crate::pressures::shows_pressure;
 use calibrate::Problem;
 use input::MachineFile;
 use input::effects::{CATALOGUE, Entry, Parameter};
@@ -19,8 +20,11 @@ pub struct Candidate {
     pub fixed: Vec<(usize, f64)>,
 }
 
-/// A place that is not tried one by one: what holds at every one is tried instead.
-const EVERYWHERE: &str = "measure";
+/// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
+/// acceleration, which is meant where it is left out; and this effect on that of the pressure too.
+const MEASURE: &str = "measure";
+const GAIN: &str = "sensor_gain";
+const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
 /// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with.
@@ -47,6 +51,7 @@ impl Candidate {
     pub fn all(problem: &Problem) -> Vec<Self> {
         let throws = throws(&problem.tree);
         let both_ends = has_crank_end(&problem.tree);
+        let known = shows_pressure(problem);
         let mut all = Vec::new();
         for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
             for place in places(entry, &throws, both_ends) {
@@ -58,7 +63,9 @@ impl Candidate {
                         fixed,
                     };
                     let usual: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
-                    if candidate.is_new(problem) && candidate.added(problem, &usual).is_ok() {
+                    let seen = known || !candidate.place.iter().any(|(_, word)| word == PRESSURE);
+                    let new = seen && candidate.is_new(problem);
+                    if new && candidate.added(problem, &usual).is_ok() {
                         all.push(candidate);
                     }
                 }
@@ -67,9 +74,10 @@ impl Candidate {
         all
     }
 
-    /// Whether it acts on the gas, so that the pressures show it.
+    /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
-        GAS.contains(&self.entry.name)
+        let measures = |(_, word): &(&str, String)| word == PRESSURE;
+        GAS.contains(&self.entry.name) || self.place.iter().any(measures)
     }
 
     /// Its joint, where it has one.
@@ -105,7 +113,9 @@ impl Candidate {
                 let same = |(key, word): &(&str, String)| section[*key] == word.as_str();
                 let index = |i: usize| self.entry.parameters[i].key;
                 let fixed = |(i, value): &(usize, f64)| section[index(*i)].as_f64() == Some(*value);
-                self.place.iter().all(same) && self.fixed.iter().all(fixed)
+                let sensor = self.place.iter().find(|(key, _)| *key == MEASURE);
+                let sensor = section[MEASURE].as_str() == sensor.map(|(_, word)| word.as_str());
+                sensor && self.place.iter().all(same) && self.fixed.iter().all(fixed)
             })
         })
     }
@@ -247,18 +257,20 @@ fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'stati
     for choice in entry
         .places
         .iter()
-        .filter(|c| c.key != EVERYWHERE && (c.key != EITHER || both_ends))
+        .filter(|c| c.key != MEASURE || entry.name == GAIN)
+        .filter(|c| c.key != EITHER || both_ends)
     {
         let words: Vec<String> = match choice.key {
             "throw" => throws.to_vec(),
+            MEASURE => vec![PRESSURE.to_owned()],
             _ => choice.words.iter().map(|word| (*word).to_owned()).collect(),
         };
         if words.is_empty() {
             continue;
         }
-        let everywhere = match choice.key == EITHER {
-            true => places.clone(),
-            false => Vec::new(),
+        let everywhere = match choice.key {
+            EITHER | MEASURE => places.clone(),
+            _ => Vec::new(),
         };
         let each = places.iter().flat_map(|place| {
             words.iter().map(move |word| {
