@@ -8,6 +8,7 @@ use crate::{Failure, replay, report};
 use clap::Args;
 use gap::Effort;
 use input::calibration::Calibration;
+use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -70,15 +71,32 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration.hold_out = Some(arguments.hold_out.clone());
     }
     calibration.leave_out = arguments.leave_out.clone();
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let results = into_folder(&calibration, out, &cancel)?;
+    output::summary(&results);
+    println!("{}", out.join(output::MACHINE).display());
+    println!("{}", out.join(report::PAGE).display());
+    Ok(())
+}
+
+/// Explains the gap between a machine and the recordings of one bundle into the folder `out`, and gives
+/// back what `gap.json` says. `cancel` stops it.
+///
+/// # Errors
+/// As [`run`]; [`Failure::Work`] where it was stopped.
+pub fn into_folder(
+    calibration: &Calibration,
+    out: &Path,
+    cancel: &AtomicBool,
+) -> Result<Value, Failure> {
     let mut task = task(&Settings {
-        calibration: &calibration,
+        calibration,
         base: Path::new(""),
         machine: None,
         locate: &|error| error,
     })?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
     let watch = || match cancel.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
@@ -104,9 +122,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .fitted(&baseline.x)
         .map_err(Failure::work)?;
     let explained = output::tree(&explanation, |name| name != "mains_hum")?;
+    let bundle = &calibration.bundles()[0];
     for (folder, tree) in [("simulated", explained), ("baseline", baseline)] {
         let folder = out.join(folder);
-        replay::into_folder(&arguments.bundle, tree, &arguments.leave_out, &folder)?;
+        replay::into_folder(bundle, tree, &calibration.leave_out, &folder)?;
     }
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
@@ -114,8 +133,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     pictures::write(out, &compared)?;
     let results = output::write(out, &explanation, &effort, start.elapsed().as_secs_f64())?;
     report::write_gap(out, &out.join(report::PAGE))?;
-    output::summary(&results);
-    println!("{}", out.join(output::MACHINE).display());
-    println!("{}", out.join(report::PAGE).display());
-    Ok(())
+    Ok(results)
 }
