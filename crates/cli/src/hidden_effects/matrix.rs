@@ -312,3 +312,109 @@ fn median(sorted: &[f64]) -> Option<f64> {
 fn number(value: Option<f64>) -> String {
     value.map_or("–".into(), |value| format!("{value:.2}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::outcome::{Explained, Hidden, Named};
+    use super::*;
+
+    /// A case that hides `hidden` and in which `named` is found, each with one rival after a slash;
+    /// misfits on fitted and held-out runs alike.
+    fn outcome(hidden: &[&str], named: &[&str], [before, after]: [f64; 2]) -> Outcome {
+        let named = named.iter().map(|name| {
+            let (name, rival) = name.split_once('/').unwrap_or((name, ""));
+            Named {
+                effect: name.into(),
+                joint: Some("big_end".into()),
+                throw: None,
+                rivals: vec![rival.into()],
+            }
+        });
+        Outcome {
+            case: 1,
+            fingerprint: String::new(),
+            machine: "a".into(),
+            noise: 0.02,
+            size: 1.0,
+            hidden: hidden
+                .iter()
+                .map(|effect| Hidden {
+                    section: json!({"joint": "small_end"}),
+                    ..Hidden::somewhere(effect)
+                })
+                .collect(),
+            other_contact_law: false,
+            found: Some(Explained {
+                verdict: "explained".into(),
+                named: named.collect(),
+                gap: Gap {
+                    noise_floor: 1.0,
+                    before,
+                    after,
+                    heldout_before: Some(before),
+                    heldout_after: Some(after),
+                },
+                seconds: 1.0,
+            }),
+            error: None,
+            cpu_seconds: None,
+        }
+    }
+
+    #[test]
+    fn cases_are_counted() {
+        let failed = Outcome {
+            found: None,
+            error: Some("no".into()),
+            ..outcome(&["x"], &[], [5.0, 5.0])
+        };
+        let outcomes = [
+            outcome(&["x"], &["x"], [5.0, 1.0]),
+            outcome(&["x"], &["y/x", "z"], [5.0, 4.0]),
+            outcome(&["y"], &["z"], [11.0, 2.0]),
+            outcome(&["y"], &["y"], [11.0, 4.0]),
+            outcome(&["y"], &[], [2.0, 2.0]),
+            outcome(&[], &[], [0.9, 0.9]),
+            outcome(&[], &["x"], [1.5, 1.0]),
+            outcome(&["x", "y"], &["y", "x"], [9.0, 1.0]),
+            outcome(&["x", "y"], &["y/x"], [9.0, 3.0]),
+            failed,
+        ];
+        let found = Matrix::of(&outcomes).json();
+        let share = |so: usize, of: usize| json!({"so": so, "of": of});
+        assert_eq!(found["cases"], 10);
+        assert_eq!(found["failed"], 1);
+        let middle = &found["recall"]["3 to 10"];
+        assert_eq!(middle["named_first"], share(1, 2));
+        assert_eq!(middle["among_rivals"], share(2, 2));
+        assert_eq!(middle["at_its_place"], share(0, 2));
+        assert_eq!(found["recall"]["10 and more"]["named_first"], share(1, 2));
+        assert_eq!(found["recall"]["below 3"]["named_first"], share(0, 1));
+        assert_eq!(found["false_discoveries"], share(1, 2));
+        assert_eq!(found["pairs_found"], share(1, 2));
+        // Named first are two: from 5 to 1, and from 11 to 4.
+        assert_eq!(found["held_out_gap_closed"]["by_80_percent"], share(1, 2));
+        assert_eq!(found["held_out_gap_closed"]["median"], 0.85);
+        assert_eq!(
+            found["hidden_against_named"]["x"],
+            json!({"failed": 1, "x": 1, "y": 1})
+        );
+        assert_eq!(
+            found["hidden_against_named"]["nothing"],
+            json!({"explained": 1, "x": 1})
+        );
+        let page = Matrix::of(&outcomes).markdown();
+        assert!(page.contains("| 3 to 10 | 1 of 2 (50 %) | 0 of 2 (0 %) | 2 of 2 (100 %) |"));
+        assert!(
+            page.contains("| x + y | y 2 | 9.00 | 2.00 | 9.00 | 2.00 |"),
+            "{page}"
+        );
+    }
+
+    #[test]
+    fn nothing_comes_to_nothing() {
+        let found = Matrix::of(&[]).json();
+        assert_eq!(found["held_out_gap_closed"]["median"], Value::Null);
+        assert!(Matrix::of(&[]).markdown().contains("| below 3 | – |"));
+    }
+}

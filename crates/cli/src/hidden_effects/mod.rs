@@ -139,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (i, case) in open.enumerate() {
         let outcome = bench.outcome(case, &cancel);
         if cancel.load(Ordering::Relaxed) {
-            tell(&ledger.read()?, out)?;
+            write(&Matrix::of(&ledger.read()?), out)?;
             return Err(Failure::work(format!(
                 "stopped: {i} of {count} cases are done; --resume goes on from there"
             )));
@@ -148,7 +148,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ledger.add(&outcome)?;
         eprintln!("{} of {count}: {}", i + 1, told(case, &outcome));
     }
-    tell(&ledger.read()?, out)
+    let done = ledger.read()?;
+    let matrix = Matrix::of(&done);
+    write(&matrix, out)?;
+    print!("{}", matrix.summary());
+    println!("{}", out.join(MATRIX[1]).display());
+    Ok(())
 }
 
 /// The cases that are asked for.
@@ -215,15 +220,11 @@ fn told(case: &Case, outcome: &Outcome) -> String {
     format!("case {}, {}: {what}{seconds}", case.number, case.label())
 }
 
-/// Writes and prints what the cases come to.
-fn tell(outcomes: &[Outcome], out: &Path) -> Result<(), Failure> {
-    let matrix = Matrix::of(outcomes);
+/// Writes what the cases come to.
+fn write(matrix: &Matrix, out: &Path) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(&matrix.json()).map_err(Failure::work)?;
     write_file(&out.join(MATRIX[0]), text.as_bytes())?;
-    write_file(&out.join(MATRIX[1]), matrix.markdown().as_bytes())?;
-    print!("{}", matrix.summary());
-    println!("{}", out.join(MATRIX[1]).display());
-    Ok(())
+    write_file(&out.join(MATRIX[1]), matrix.markdown().as_bytes())
 }
 
 /// Makes and explains cases.
