@@ -101,21 +101,18 @@ fn value(parameter: &effects::Parameter, size: f64, random: &mut Stream) -> f64 
     if parameter.whole {
         return random.random_range(low..high + 1.0).floor();
     }
-    let spread = match parameter.absent {
-        Some(_) => AMPLITUDE,
-        None => CONSTANT,
+    let Some(absent) = parameter.absent else {
+        // Evenly on a logarithmic scale, as far as the bounds go.
+        let from = low.max(parameter.start / CONSTANT);
+        let to = high.min(parameter.start * CONSTANT);
+        return from * (to / from).powf(random.random());
     };
-    let factor = spread.powf(random.random_range(-1.0..1.0));
-    let drawn = match parameter.absent {
-        Some(absent) => {
-            let sign = match absent > low && random.random::<bool>() {
-                true => -1.0,
-                false => 1.0,
-            };
-            absent + sign * size * factor * (parameter.start - absent)
-        }
-        None => parameter.start * factor,
+    let sign = match absent > low && random.random::<bool>() {
+        true => -1.0,
+        false => 1.0,
     };
+    let factor = AMPLITUDE.powf(random.random_range(-1.0..1.0));
+    let drawn = absent + sign * size * factor * (parameter.start - absent);
     drawn.clamp(low, high)
 }
 
