@@ -177,3 +177,40 @@ fn cases_are_chosen_and_listed() {
     assert!(said(&none).contains("none of the"), "{}", said(&none));
     assert!(!out.exists());
 }
+
+#[test]
+fn mistakes_tell_where_they_stand() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("proof");
+    let example = project("data/recordings/example-hidden-effect");
+    let file = folder.path().join("bench.yaml");
+    for (entry, expected) in [
+        (
+            "runs: [run02, run99]",
+            "bench.yaml:4:19: machines.0.runs.1: found 'run99', expected one of run01",
+        ),
+        (
+            "machine: {crosshead_mass: 25.0}",
+            "bench.yaml:4:15: machines.0.machine.crosshead_mass: unknown key",
+        ),
+        (
+            "machine: {crosshead_mass_kg: heavy}",
+            "bench.yaml:4:34: machines.0.machine.crosshead_mass_kg: found 'heavy'",
+        ),
+    ] {
+        let text = format!(
+            "machines:\n  - name: a\n    bundle: {}\n    {entry}\nsizes: [1]\nnoises: [2 %]\n",
+            example.display()
+        );
+        fs::write(&file, text).unwrap();
+        let refused = hidden_effects(&file, &out, &[]);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(said(&refused).contains(expected), "{}", said(&refused));
+    }
+    let text = "machines: [{name: a, bundle: nowhere}]\nsizes: [1]\nnoises: [2 %]\n";
+    fs::write(&file, text).unwrap();
+    let refused = hidden_effects(&file, &out, &[]);
+    let expected = "bench.yaml:1:30: machines.0.bundle: found 'nowhere', expected a folder";
+    assert!(said(&refused).contains(expected), "{}", said(&refused));
+    assert!(!out.exists());
+}

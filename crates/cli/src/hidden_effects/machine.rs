@@ -1,6 +1,5 @@
 //! A machine of a test bench, and the conditions of its runs.
 
-use crate::Failure;
 use ::calibrate::ClearJoint;
 use input::bundle::Bundle;
 use input::hidden_effects::BenchMachine;
@@ -38,41 +37,64 @@ impl Machine {
     /// The machine that an entry of the file tells; paths start from the folder `base`.
     ///
     /// # Errors
-    /// A bundle or a machine section that is none, or runs that it does not have.
-    pub fn open(entry: &BenchMachine, base: &Path) -> Result<Self, Failure> {
-        let bundle = Bundle::read(&base.join(&entry.bundle))?;
-        let named =
-            |error: input::Error| Failure::input(format!("machine {}: {error}", entry.name));
+    /// A bundle or a machine section that is none, or runs that it does not have; keys of mistakes in
+    /// the entry are its own.
+    pub fn open(entry: &BenchMachine, base: &Path) -> Result<Self, input::Error> {
+        let folder = base.join(&entry.bundle);
+        if !Bundle::is_at(&folder) {
+            return Err(input::Error::clash(
+                "bundle",
+                "a folder with recordings.yaml",
+            ));
+        }
+        let bundle = Bundle::read(&folder)?;
         let mut section = bundle.machine.clone();
         if let Value::Object(section) = &mut section {
             section.extend(entry.machine.clone());
         }
-        let mut tree = input::from_bundle(&section).map_err(named)?;
+        let mut tree = input::from_bundle(&section).map_err(|error| {
+            let key = error.key().split('.').next().unwrap_or_default();
+            let own = entry.machine.contains_key(key);
+            let error = error.under("machine");
+            if own { error } else { bundle.locate(error) }
+        })?;
         let ids: Vec<&str> = bundle.runs.iter().map(|run| run.id.as_str()).collect();
-        let asked = entry.runs.as_deref().unwrap_or_default();
-        crate::bundle::known_runs(&format!("machine {}: runs", entry.name), asked, &ids)?;
-        let taken = |id: &String| entry.runs.is_none() || asked.contains(id);
+        for (i, id) in entry.runs.iter().flatten().enumerate() {
+            if !ids.contains(&id.as_str()) {
+                return Err(input::Error::unknown_name(format!("runs.{i}"), id, &ids));
+            }
+        }
         let mut runs = Vec::new();
-        for run in bundle.runs.iter().filter(|run| taken(&run.id)) {
-            let conditions = conditions(&run.section, entry);
-            let settings = input::run_settings(&conditions.clone().into(), &tree).map_err(named)?;
+        for (i, run) in bundle.runs.iter().enumerate() {
+            if entry
+                .runs
+                .as_ref()
+                .is_some_and(|runs| !runs.contains(&run.id))
+            {
+                continue;
+            }
+            let section = conditions(&run.section, entry);
+            let settings = input::run_settings(&section.clone().into(), &tree)
+                .map_err(|error| bundle.locate(error.under(format!("runs.{i}"))))?;
             runs.push(RunConditions {
                 id: run.id.clone(),
-                section: conditions,
+                section,
                 settings,
             });
         }
         let Some(first) = runs.first() else {
-            return Err(Failure::input(format!("machine {}: no runs", entry.name)));
+            return Err(input::Error::clash("runs", "one run or more"));
         };
         for (path, value) in &first.settings {
-            paths::set(&mut tree, path, value.clone()).map_err(named)?;
+            paths::set(&mut tree, path, value.clone())?;
         }
         let of_runs = runs.iter().map(|run| &run.settings[..]);
+        let joints = ClearJoint::of(&tree, of_runs);
+        let joints = joints.map_err(|error| input::Error::clash("machine", error))?;
         Ok(Self {
             name: entry.name.clone(),
             section,
-            joints: ClearJoint::of(&tree, of_runs).map_err(Failure::input)?,
+            joints,
             tree,
             runs,
             pressure: entry.pressure.unwrap_or(true),

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Classes of an effect's size over the noise: the misfit of the calibrated machine without it.
-const CLASSES: [(&str, [f64; 2]); 3] = [
+const CLASSES: [(&str, [f64; 2]); 4] = [
     ("below 3", [0.0, 3.0]),
     ("3 to 10", [3.0, 10.0]),
     ("10 and more", [10.0, f64::INFINITY]),
+    ("3 and more", [3.0, f64::INFINITY]),
 ];
 /// Share of the distance to the noise that counts as closed.
 const CLOSED: f64 = 0.8;
@@ -389,6 +390,7 @@ mod tests {
         assert_eq!(middle["among_rivals"], share(2, 2));
         assert_eq!(middle["at_its_place"], share(0, 2));
         assert_eq!(found["recall"]["10 and more"]["named_first"], share(1, 2));
+        assert_eq!(found["recall"]["3 and more"]["among_rivals"], share(3, 4));
         assert_eq!(found["recall"]["below 3"]["named_first"], share(0, 1));
         assert_eq!(found["false_discoveries"], share(1, 2));
         assert_eq!(found["pairs_found"], share(1, 2));

@@ -90,11 +90,17 @@ fn numbers(text: &str) -> Result<RangeInclusive<u64>, String> {
 /// Settings or machines that are none, a folder with the cases of others, or files that cannot be
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (settings, _) = HiddenEffects::read(&arguments.settings)?;
+    let (settings, document) = HiddenEffects::read(&arguments.settings)?;
     let base = arguments.settings.parent().unwrap_or(Path::new(""));
-    let machines = settings.machines.iter();
+    let machines = settings.machines.iter().enumerate();
     let machines: Vec<Machine> = machines
-        .map(|entry| Machine::open(entry, base))
+        .map(|(i, entry)| {
+            let own = |error: input::Error| document.locate(error.under(format!("machines.{i}")));
+            Machine::open(entry, base).map_err(|error| match error.place() {
+                Some(_) => error,
+                None => own(error),
+            })
+        })
         .collect::<Result<_, _>>()?;
     let cases = chosen(arguments, plan::cases(&settings))?;
     if arguments.dry_run {
