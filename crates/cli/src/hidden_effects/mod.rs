@@ -29,6 +29,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Names of the files with what all cases come to.
 pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
+
 /// Arguments of `crosshead hidden-effects`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
