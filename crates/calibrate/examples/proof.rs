@@ -63,7 +63,7 @@ fn coverage(bench: &Bench, machines: u64, copies: u64, seed: u64) -> Result<(), 
     let (mut inside, mut told, mut all) = (0, 0, 0);
     for machine in 0..machines {
         let truth = bench.truth(seed, machine);
-        let clean = bench.simulated(&truth, &[])?;
+        let clean = bench.simulated(&truth)?;
         for copy in 0..copies {
             let problem = bench.problem(&clean, seed, machine * copies + copy)?;
             let start = Instant::now();
@@ -124,7 +124,7 @@ fn told_inside(fit: &Fit, truth: &[f64]) -> usize {
 /// The misfit of each run and channel at the truth.
 fn truth(bench: &Bench, seed: u64) -> Result<(), Box<dyn Error>> {
     let truth = bench.truth(seed, 0);
-    let problem = bench.problem(&bench.simulated(&truth, &[])?, seed, 0)?;
+    let problem = bench.problem(&bench.simulated(&truth)?, seed, 0)?;
     let parameters = problem.parameters.iter().zip(&truth);
     let x: Vec<f64> = parameters.map(|(p, value)| p.coordinate(*value)).collect();
     for run in &problem.runs {
@@ -168,7 +168,7 @@ const SEARCHED: [f64; 2] = [0.5, 2.0];
 /// tenth of the best.
 fn compare(bench: &Bench, seed: u64, most: u64) -> Result<(), Box<dyn Error>> {
     let truth = bench.truth(seed, 0);
-    let mut problem = bench.problem(&bench.simulated(&truth, &[])?, seed, 0)?;
+    let mut problem = bench.problem(&bench.simulated(&truth)?, seed, 0)?;
     for parameter in &mut problem.parameters {
         if parameter.path != CRANK_ANGLE_OFFSET {
             parameter.bounds = SEARCHED.map(|share| share * parameter.nominal);

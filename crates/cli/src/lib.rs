@@ -11,6 +11,7 @@ pub mod explain_gap;
 pub mod failure;
 pub mod features;
 pub mod gen_dataset;
+pub mod hidden_effects;
 pub mod replay;
 pub mod report;
 pub mod schema;

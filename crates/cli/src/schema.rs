@@ -21,6 +21,8 @@ enum File {
     Bundle,
     /// calibration.yaml: what is fitted to a bundle
     Calibration,
+    /// hidden-effects.yaml: a test bench of effects hidden in recordings
+    HiddenEffects,
 }
 
 /// Prints the schema.
@@ -33,6 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         File::Sweep => sweep::sweep_file::schema(),
         File::Bundle => input::schema::bundle_schema(),
         File::Calibration => input::calibration::schema(),
+        File::HiddenEffects => input::hidden_effects::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");

@@ -21,6 +21,6 @@ pub enum Error {
         source: std::io::Error,
     },
     /// Stopped by the user.
-    #[error("stopped before an explanation was found")]
+    #[error("stopped before an explanation was found; the same command goes on from there")]
     Stopped,
 }

@@ -87,17 +87,12 @@ impl Bench {
             .collect()
     }
 
-    /// The runs without noise, of a machine with the contact parameters `truth` and these effects.
-    pub fn simulated(
-        &self,
-        truth: &[f64],
-        effects: &[Value],
-    ) -> Result<Vec<Clean>, Box<dyn Error>> {
+    /// The runs without noise, of a machine with the contact parameters `truth`.
+    pub fn simulated(&self, truth: &[f64]) -> Result<Vec<Clean>, Box<dyn Error>> {
         let mut tree = self.tree.clone();
         for (parameter, value) in self.parameters.iter().zip(truth) {
             parameter.write(&mut tree, *value)?;
         }
-        tree["effects"] = effects.to_vec().into();
         self.runs
             .iter()
             .map(|(id, settings)| {

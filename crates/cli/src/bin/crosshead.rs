@@ -25,6 +25,8 @@ enum Verb {
     Calibrate(cli::calibrate::Arguments),
     /// Find which effect a model lacks that recordings show, and add it
     ExplainGap(cli::explain_gap::Arguments),
+    /// Hide effects in recordings made here, and count which of them explain-gap finds
+    HiddenEffects(cli::hidden_effects::Arguments),
     /// Simulate the runs of a bundle in place of their recordings, and tell how far they differ
     Replay(cli::replay::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Calibrate(arguments) => cli::calibrate::run(&arguments),
         Verb::ExplainGap(arguments) => cli::explain_gap::run(&arguments),
+        Verb::HiddenEffects(arguments) => cli::hidden_effects::run(&arguments),
         Verb::Replay(arguments) => cli::replay::run(&arguments),
         Verb::Schema(arguments) => cli::schema::run(&arguments),
     })

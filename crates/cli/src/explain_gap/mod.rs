@@ -6,14 +6,17 @@ mod progress;
 use crate::calibrate::{Settings, pictures, task};
 use crate::{Failure, replay, report};
 use clap::Args;
-use gap::Effort;
+use gap::{Effort, Journal};
 use input::calibration::Calibration;
+use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+/// Name of the file of finished work, with which an explanation that was stopped goes on.
+const FINISHED: &str = "finished.jsonl";
 /// Most evaluations of the model in one descent.
 const EVALUATIONS: u64 = 120;
 
@@ -22,7 +25,8 @@ const EVALUATIONS: u64 = 120;
 #[command(after_help = "\
 The machine is calibrated to the recordings first. Where that leaves more than noise, the effects of
 the catalogue are tried one after another, and those that the recordings show, and that predict the
-runs that were held out, are added to the machine file.
+runs that were held out, are added to the machine file. Stopped with Ctrl-C, the same command goes on
+from what was finished.
 
 Examples:
   crosshead explain-gap my-bundle --out explained
@@ -70,21 +74,42 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration.hold_out = Some(arguments.hold_out.clone());
     }
     calibration.leave_out = arguments.leave_out.clone();
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let results = into_folder(&calibration, out, &cancel)?;
+    output::summary(&results);
+    println!("{}", out.join(output::MACHINE).display());
+    println!("{}", out.join(report::PAGE).display());
+    Ok(())
+}
+
+/// Explains the gap between a machine and the recordings of one bundle into the folder `out`, and gives
+/// back what `gap.json` says. `cancel` stops it.
+///
+/// # Errors
+/// As [`run`]; [`Failure::Work`] where it was stopped.
+pub fn into_folder(
+    calibration: &Calibration,
+    out: &Path,
+    cancel: &AtomicBool,
+) -> Result<Value, Failure> {
     let mut task = task(&Settings {
-        calibration: &calibration,
+        calibration,
         base: Path::new(""),
         machine: None,
         locate: &|error| error,
     })?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
     let watch = || match cancel.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
     let held_out = task.settings.held_out.clone();
-    let effort = Effort::new(&task.problem, held_out, EVALUATIONS).map_err(Failure::work)?;
+    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
+    let finished = out.join(FINISHED);
+    let journal = Journal::open(&finished).map_err(Failure::work)?;
+    let effort =
+        Effort::new(&task.problem, held_out, EVALUATIONS, journal).map_err(Failure::work)?;
     let start = Instant::now();
     let bar = progress::Bar::new();
     let hum = gap::remove_hum(&mut task.problem, &mut task.runs).map_err(Failure::work)?;
@@ -97,16 +122,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     );
     bar.finish();
     let explanation = explanation.map_err(Failure::work)?;
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
     let baseline = &explanation.baseline;
     let baseline = baseline
         .problem
         .fitted(&baseline.x)
         .map_err(Failure::work)?;
     let explained = output::tree(&explanation, |name| name != "mains_hum")?;
+    let bundle = &calibration.bundles()[0];
     for (folder, tree) in [("simulated", explained), ("baseline", baseline)] {
         let folder = out.join(folder);
-        replay::into_folder(&arguments.bundle, tree, &arguments.leave_out, &folder)?;
+        replay::into_folder(bundle, tree, &calibration.leave_out, &folder)?;
     }
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
@@ -114,8 +139,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     pictures::write(out, &compared)?;
     let results = output::write(out, &explanation, &effort, start.elapsed().as_secs_f64())?;
     report::write_gap(out, &out.join(report::PAGE))?;
-    output::summary(&results);
-    println!("{}", out.join(output::MACHINE).display());
-    println!("{}", out.join(report::PAGE).display());
-    Ok(())
+    std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;
+    Ok(results)
 }

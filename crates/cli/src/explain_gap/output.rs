@@ -77,6 +77,7 @@ pub fn write(
             "heldout_after": model.held_out,
         },
         "where": gap::places(&maps[0], PLACES),
+        "scaling": gap::scaling(before, &maps[0]).map_err(Failure::work)?,
         "heldout_runs": effort.held_out,
         "next_recording": gap::next_recording(&explanation.found),
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
