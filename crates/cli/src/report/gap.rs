@@ -3,7 +3,7 @@
 use super::calibration::{Results, bounded, machine_name, runs};
 use crate::Failure;
 use crate::explain_gap::output::{MACHINE, RESULTS};
-use ::report::gap_page::{CALIBRATED, Effect, GapPage, Map, Parameter, Step};
+use ::report::gap_page::{CALIBRATED, Effect, GapPage, Map, Parameter, Scaling, Step};
 use input::effects::entry;
 use serde_json::Value;
 use std::path::Path;
@@ -68,6 +68,7 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         effects: effects.iter().map(effect).collect(),
         refused: tried(&content["refused"]),
         maps: maps(&content["maps"]),
+        scaling: list(&content["scaling"]).iter().map(scaling).collect(),
         runs: runs(folder, &results, ["before", "after"])?,
         next_recording: text(&content["next_recording"]),
         seconds: number(&content["seconds"]),
@@ -92,6 +93,18 @@ fn parameters(effect: &Value) -> Vec<Parameter> {
         .flatten()
         .map(of)
         .collect()
+}
+
+fn scaling(content: &Value) -> Scaling {
+    let exponents = list(&content["exponents"]);
+    let of = |e: &Value| {
+        let error = e["standard_error"].as_f64();
+        (text(&e["with"]), number(&e["exponent"]), error)
+    };
+    Scaling {
+        channel: text(&content["channel"]),
+        exponents: exponents.iter().map(of).collect(),
+    }
 }
 
 /// The maps before, each beside the one after.

@@ -27,6 +27,8 @@ pub struct GapPage {
     pub refused: Vec<(String, f64)>,
     /// Where the gap was and is.
     pub maps: Vec<Map>,
+    /// How the gap grows from run to run, before an effect was added.
+    pub scaling: Vec<Scaling>,
     /// The runs.
     pub runs: Vec<Run>,
     /// What to measure next; empty where nothing is asked for.
@@ -44,6 +46,15 @@ pub struct Step {
     pub fitted: f64,
     /// Misfit of those held out.
     pub held_out: Option<f64>,
+}
+
+/// How the residual of a channel grows with the conditions of the runs.
+#[derive(Clone, Debug, Default)]
+pub struct Scaling {
+    /// The channel's column.
+    pub channel: String,
+    /// The condition, the power of it with which the residual grows, and its standard error.
+    pub exponents: Vec<(String, f64, Option<f64>)>,
 }
 
 /// An effect that was added.

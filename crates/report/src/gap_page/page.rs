@@ -1,6 +1,6 @@
 //! The page itself.
 
-use super::{Effect, GapPage, Parameter, figures};
+use super::{Effect, GapPage, Parameter, Scaling, figures};
 use crate::calibration_page::{verdict::size, waveforms};
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
@@ -113,6 +113,21 @@ impl View<'_> {
 
     fn key(parameter: &Parameter) -> String {
         text::words(&parameter.key)
+    }
+
+    fn law(scaling: &Scaling) -> String {
+        let power = |(with, exponent, error): &(String, f64, Option<f64>)| {
+            let exponent = text::number(*exponent, 2);
+            match error {
+                Some(error) => format!(
+                    "{with} to the power of {exponent} ± {}",
+                    text::number(*error, 1)
+                ),
+                None => format!("{with} to the power of {exponent}"),
+            }
+        };
+        let powers: Vec<String> = scaling.exponents.iter().map(power).collect();
+        format!("{}: {}", text::words(&scaling.channel), powers.join(", "))
     }
 
     fn has_rivals(effect: &Effect) -> bool {
