@@ -100,7 +100,8 @@ pub fn explain(
     for gas in &found {
         with_gas = gas.candidate.added(&with_gas, &gas.values)?;
     }
-    let model = search.calibrated(&with_gas)?;
+    say("calibrating", f64::NAN);
+    let model = search.searched(&with_gas, None, CALIBRATION)?;
     let baseline = match found.is_empty() {
         true => model.clone(),
         false => {
@@ -174,15 +175,19 @@ impl Search<'_> {
         Ok(self.while_they_earn(model, GAS_NOISE, MOST, candidates)?.1)
     }
 
-    /// The problem's machine, calibrated as well as it can be.
-    fn calibrated(&self, problem: &Problem) -> Result<Model, Error> {
-        (self.say)("calibrating", f64::NAN);
+    /// The problem's machine, calibrated as well as it can be with so many evaluations.
+    pub(crate) fn searched(
+        &self,
+        problem: &Problem,
+        start: Option<Vec<f64>>,
+        evaluations: u64,
+    ) -> Result<Model, Error> {
         let settings = FitSettings {
             optimiser: Optimiser::Default,
             seed: 0,
-            evaluations: CALIBRATION,
+            evaluations,
             held_out: self.effort.held_out.clone(),
-            start: None,
+            start,
         };
         let search = || {
             let fit = calibrate::calibrate(problem, &settings, |_| (self.watch)())?;

@@ -15,6 +15,9 @@ pub(crate) const TOGETHER: usize = 2;
 const AFTERWARDS: usize = 6;
 /// Of these, how many are fitted to all runs.
 pub(crate) const FINAL: usize = 3;
+/// How many are searched further where none has reached the noise, and the evaluations of it.
+const DEEPER: usize = 2;
+const SEARCH: u64 = 300;
 /// Most evaluations of a descent for a candidate that can be no more than a rival of one that has
 /// reached the noise.
 const RIVALS: u64 = 40;
@@ -45,6 +48,15 @@ impl Search<'_> {
             rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
         }
         rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        if rough.first().is_some_and(|(_, best)| best.fitted > NOISE) {
+            let later = rough.split_off(rough.len().min(DEEPER));
+            let deeper = rough
+                .into_par_iter()
+                .map(|(screened, fitted)| Ok((screened, self.deeper(fitted)?)));
+            rough = deeper.collect::<Result<Vec<_>, Error>>()?;
+            rough.extend(later);
+            rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        }
         let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
         let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
         let mut tried = Vec::new();
@@ -79,6 +91,14 @@ impl Search<'_> {
         let last = tried.iter().take_while(whole).count();
         tried[..last].sort_by(|a, b| order(a).total_cmp(&order(b)));
         Ok(tried)
+    }
+
+    /// The best that a search from this model finds: out of the local minima of a ringing whose pitch
+    /// is wrong.
+    fn deeper(&self, model: Model) -> Result<Model, Error> {
+        (self.say)("searching further", model.fitted);
+        let found = self.searched(&model.problem, Some(model.x.clone()), SEARCH)?;
+        Ok(model.better(found))
     }
 
     /// A candidate fitted to `few` runs together with everything else. Where another one has reached
