@@ -1,6 +1,6 @@
 //! A force on the crosshead whose law was found in recordings.
 
-use super::section::{Act, Section, effect};
+use super::section::{Act, effect};
 use crate::quantity::{Force, Positive, Quantity, Velocity};
 use mechanism::effects::{self, Law};
 
@@ -78,12 +78,5 @@ impl Act for EmpiricalForce {
             gas_force: self.gas_force(),
             offsets: [self.big_end_offset(), self.small_end_offset()],
         }))
-    }
-
-    fn order(&self) -> Option<u32> {
-        // Forces of different terms add up.
-        let stated = self.stated();
-        let terms = stated.iter().enumerate().filter(|(_, stated)| **stated);
-        Some(terms.fold(0, |mask, (i, _)| mask | 1 << i))
     }
 }
