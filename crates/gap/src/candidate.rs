@@ -27,8 +27,9 @@ const GAIN: &str = "sensor_gain";
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
-/// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with.
-const ELSEWHERE: [&str; 2] = ["mains_hum", "crank_angle_offset"];
+/// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with; a
+/// law of no name comes last.
+const ELSEWHERE: [&str; 3] = ["mains_hum", "crank_angle_offset", "empirical_force"];
 /// What the pressure of a cylinder shows whatever the joints do.
 const GAS: [&str; 5] = [
     "valve_loss",
@@ -74,6 +75,25 @@ impl Candidate {
         all
     }
 
+    /// The same with only the parameters of these indices free, and the others without effect or as
+    /// usual.
+    pub(crate) fn restricted(&self, free: &[usize]) -> Self {
+        let parameters = self.entry.parameters.iter().enumerate();
+        let others = parameters.filter(|(i, _)| !free.contains(i));
+        Self {
+            fixed: others
+                .map(|(i, p)| (i, p.absent.unwrap_or(p.start)))
+                .collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The parameters that are searched, by their indices.
+    pub(crate) fn free(&self) -> impl Iterator<Item = usize> + '_ {
+        let fixed = |i: &usize| self.fixed.iter().any(|(fixed, _)| fixed == i);
+        (0..self.entry.parameters.len()).filter(move |i| !fixed(i))
+    }
+
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
         let measures = |(_, word): &(&str, String)| word == PRESSURE;
@@ -99,7 +119,11 @@ impl Candidate {
             label.push(' ');
             label.push_str(word);
         }
-        for (index, value) in &self.fixed {
+        for (index, value) in self
+            .fixed
+            .iter()
+            .filter(|(i, _)| self.entry.parameters[*i].whole)
+        {
             label.push_str(&format!(" {} {value}", self.entry.parameters[*index].key));
         }
         label
@@ -138,7 +162,17 @@ impl Candidate {
         }
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
-        items.push(self.entry.item(&place, &values));
+        let mut item = self.entry.item(&place, &values);
+        if let Some(section) = item[self.entry.name].as_object_mut() {
+            // What is left out has no effect or is as usual.
+            section.retain(|key, _| {
+                !self.fixed.iter().any(|(i, _)| {
+                    let parameter = &self.entry.parameters[*i];
+                    !parameter.whole && parameter.key == key
+                })
+            });
+        }
+        items.push(item);
         MachineFile::from_tree(&added.tree)?.resolve()?;
         for (i, parameter) in self.entry.parameters.iter().enumerate() {
             if self.fixed.iter().any(|(fixed, _)| *fixed == i) {
@@ -234,7 +268,7 @@ impl Candidate {
     }
 }
 
-fn throws(tree: &Value) -> Vec<String> {
+pub(crate) fn throws(tree: &Value) -> Vec<String> {
     let throws = tree.get("throws").and_then(Value::as_array);
     let names = throws
         .into_iter()

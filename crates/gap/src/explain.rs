@@ -5,6 +5,7 @@ use crate::decision::{Evidence, GAS_NOISE, NOISE, RIVAL, Verdict, earns, verdict
 use crate::error::Error;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
+use crate::missing_force::MissingForce;
 use crate::model::{Effort, Model, Watch};
 use crate::pressures::{pressures, shows_pressure};
 use crate::refit::few;
@@ -36,6 +37,8 @@ pub struct Explanation {
     pub nominal: Model,
     /// What the parameters of the explained model are known to.
     pub estimates: Vec<Estimate>,
+    /// The force that is missing where the catalogue explains too little; empty elsewhere.
+    pub missing_force: Vec<MissingForce>,
 }
 
 /// An effect that was added.
@@ -123,6 +126,7 @@ pub fn explain(
     let (model, others, refused) = search.while_they_earn(model, NOISE, MOST, candidates)?;
     found.extend(others);
     let (model, found) = search.pruned(problem, model, found)?;
+    let (model, found, missing_force) = search.with_force(problem, &baseline, model, found)?;
     say("finding bounds", model.fitted);
     let estimates = search.bounds(&model)?;
     let nothing = vec![0.0; problem.parameters.len()];
@@ -148,6 +152,7 @@ pub fn explain(
         found,
         verdict,
         refused,
+        missing_force,
     })
 }
 
@@ -285,6 +290,6 @@ impl Search<'_> {
 }
 
 /// How many effects a problem's machine has.
-fn effects(problem: &Problem) -> usize {
+pub(crate) fn effects(problem: &Problem) -> usize {
     problem.tree["effects"].as_array().map_or(0, Vec::len)
 }

@@ -10,11 +10,14 @@
 
 pub mod candidate;
 pub mod decision;
+pub mod empirical_force;
 pub mod error;
 pub mod explain;
 pub mod journal;
+mod linearised;
 pub mod mains_hum;
 mod measuring_chain;
+pub mod missing_force;
 pub mod model;
 mod next_recording;
 mod pressures;
@@ -22,13 +25,16 @@ mod refit;
 pub mod residual_map;
 pub mod scaling;
 pub mod screening;
+mod stability_selection;
 
 pub use candidate::Candidate;
 pub use decision::{Evidence, Verdict};
+pub use empirical_force::{Force, Law, empirical_force};
 pub use error::Error;
 pub use explain::{Explanation, Found, Stage, Tried, explain};
 pub use journal::Journal;
 pub use mains_hum::{Hum, remove_hum};
+pub use missing_force::MissingForce;
 pub use model::{Effort, Model};
 pub use next_recording::next_recording;
 pub use residual_map::{Place, ResidualMap, band_names, places, residual_maps};

@@ -76,6 +76,7 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
         "sensor_resonance",
         "sensor_gain",
         "mains_hum",
+        "empirical_force",
     ] {
         assert!(names.contains(&name), "{name}");
         assert_eq!(input::effects::entry(name).unwrap().name, name);
@@ -315,6 +316,33 @@ fn several_throws_have_effects_of_their_own() {
 }
 
 #[test]
+fn an_empirical_force_is_the_terms_that_are_stated() {
+    let section = json!({"velocity_sign": "-120 N", "cos_2": "35 N"});
+    let mut tree = with(json!([{"empirical_force": section}]));
+    let force = |tree: &Value| match &resolve(tree).machine.effects[0].law {
+        Law::EmpiricalForce(force) => force.clone(),
+        other => panic!("{other:?}"),
+    };
+    let found = force(&tree);
+    assert_eq!(found.friction, [-120.0, 0.0, 0.0]);
+    assert_eq!(found.cosines, [0.0, 35.0, 0.0, 0.0]);
+    assert_eq!(
+        (found.sines, found.velocity, found.slip_speed),
+        ([0.0; 4], [0.0; 3], 0.05)
+    );
+    paths::set(
+        &mut tree,
+        "effects.0.empirical_force.velocity_sign",
+        json!("-90 N"),
+    )
+    .unwrap();
+    assert_eq!(force(&tree).friction[0], -90.0);
+    // The file says the same when it is written and read again.
+    let written = MachineFile::from_tree(&tree).unwrap().to_yaml().unwrap();
+    assert!(written.contains("velocity_sign: -90 N"), "{written}");
+}
+
+#[test]
 fn effects_on_sensors_reach_those_that_no_file_has() {
     let resolved = resolve(&with(json!([
         {"sensor_gain": {"error": "5 %"}},
@@ -372,6 +400,14 @@ fn messages() {
         (
             json!([{"speed_fluctuation": {"first": "60 %"}}]),
             "effects.0.speed_fluctuation.first: found '60 %', expected a percentage up to 50 %",
+        ),
+        (
+            json!([{"empirical_force": {"velocity_sgn": "-120 N"}}]),
+            "effects.0.empirical_force.velocity_sgn: unknown key; expected one of constant, cos_1, sin_1, cos_2, sin_2, cos_3, sin_3, cos_4, sin_4, displacement, displacement_cubed, velocity, velocity_squared, velocity_cubed, velocity_sign, pressure_sign, side_force_sign, acceleration, gas_force, big_end_offset, small_end_offset, slip_speed, throw; did you mean 'velocity_sign'?",
+        ),
+        (
+            json!([{"empirical_force": {"cos_2": "30"}}]),
+            "effects.0.empirical_force.cos_2: found '30' (no unit), expected a force with its unit, e.g. '200 N'",
         ),
     ] {
         assert_eq!(message(items), expected);

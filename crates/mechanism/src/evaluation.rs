@@ -121,6 +121,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             effects,
             motion: &motion,
             speed: at.speed,
+            offsets: [big[0], small[0]],
             mode: at.mode,
             drift: at.layout.gas.map(two),
         };

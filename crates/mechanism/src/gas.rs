@@ -1,9 +1,11 @@
 //! Gas force with ideal valves, single or double acting (MODEL.md, sections 3 and 6).
 
 use crate::effects::{Acting, ChamberAt, End, PistonAt};
+use crate::joints::revolute::Revolute;
 use crate::lift::parameters;
 use crate::machine::Throw;
 use crate::mode::{ChamberMode, ThrowMode, flagged};
+use crate::plane::Vec2;
 use crate::throw::Motion;
 use scalar::Scalar;
 use std::f64::consts::PI;
@@ -191,6 +193,8 @@ pub(crate) struct CylinderAt<'a, S> {
     pub motion: &'a Motion<S>,
     /// Speed of the crank, rad/s.
     pub speed: S,
+    /// Offsets of big and small end, m.
+    pub offsets: [Vec2<S>; 2],
     /// Its mode.
     pub mode: &'a ThrowMode<S>,
     /// Logarithms of how far head end and crank end have left their polytropes.
@@ -220,19 +224,36 @@ impl<S: Scalar> CylinderAt<'_, S> {
                 (gas, force)
             }
         };
-        let piston = PistonAt {
+        let piston = || PistonAt {
             speed: motion.crosshead_rate,
             pressure: head_end.pressure,
             angle: motion.angle,
             crank_speed: self.speed,
             mass: throw.crosshead.mass,
+            displacement: motion.crosshead - throw.rod.length,
+            crank_radius: throw.crank_radius,
+            rod_length: throw.rod.length,
+            rod_slope: motion.rod_sin_cos.0 / motion.rod_sin_cos.1,
+            gas_force: force,
+            area: face,
+            offsets: [
+                eccentricity(&throw.big_end, self.offsets[0]),
+                eccentricity(&throw.small_end, self.offsets[1]),
+            ],
         };
-        let effects = self.effects.all();
+        let mut acting = self.effects.all().peekable();
+        let effects = match acting.peek() {
+            None => S::zero(),
+            Some(_) => {
+                let piston = piston();
+                acting.fold(S::zero(), |sum, effect| sum + effect.piston_force(&piston))
+            }
+        };
         Gas {
             head_end,
             crank_end,
             force,
-            effects: effects.fold(S::zero(), |sum, effect| sum + effect.piston_force(&piston)),
+            effects,
             drift: self.drifts([Some(seen), across]),
         }
     }
@@ -331,6 +352,14 @@ impl<S: Scalar> CylinderAt<'_, S> {
             let effects = self.effects.at_end(end);
             chamber.closed * effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber))
         })
+    }
+}
+
+/// Offset of a joint along x over its clearance; 0 in an ideal one.
+fn eccentricity<S: Scalar>(joint: &Revolute<S>, offset: Vec2<S>) -> S {
+    match joint.clear() {
+        None => S::zero(),
+        Some(clear) => offset.x / clear.clearance,
     }
 }
 

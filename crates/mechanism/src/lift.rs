@@ -52,6 +52,16 @@ impl<S, T: Lift<S>> Lift<S> for Vec<T> {
     }
 }
 
+impl<S, T: Lift<S>, const N: usize> Lift<S> for [T; N] {
+    type Lifted = [T::Lifted; N];
+    fn lift(machines: &[&Self], pack: &mut dyn FnMut(&[f64]) -> S) -> Self::Lifted {
+        std::array::from_fn(|i| {
+            let parts: Vec<&T> = machines.iter().map(|m| &m[i]).collect();
+            T::lift(&parts, pack)
+        })
+    }
+}
+
 /// `plain` with every number a constant of the scalar `S`.
 pub fn constants<S: Scalar, T: Lift<S>>(plain: &T) -> T::Lifted {
     T::lift(&[plain], &mut |x| S::constant(x[0]))

@@ -4,9 +4,9 @@ mod common;
 
 use common::{REVOLUTION, Run, SPEED, single_stage, with_clearance};
 use mechanism::effects::{
-    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Oval, Place,
-    RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance, Shaken, SqueezeFilm,
-    SuctionUnloading, ValveLoss,
+    BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
+    Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveLoss,
 };
 use mechanism::frame::Frame;
 use mechanism::gas::CrankEnd;
@@ -333,6 +333,136 @@ fn misalignment_has_once_and_twice_the_speed_and_nothing_else() {
         let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
         assert!(off < 1e-9, "order {k}: {found:?}");
     }
+}
+
+/// An empirical force without any term.
+fn no_force() -> EmpiricalForce {
+    EmpiricalForce {
+        constant: 0.0,
+        cosines: [0.0; 4],
+        sines: [0.0; 4],
+        displacement: [0.0; 2],
+        velocity: [0.0; 3],
+        friction: [0.0; 3],
+        slip_speed: 0.05,
+        acceleration: 0.0,
+        gas_force: 0.0,
+        offsets: [0.0; 2],
+    }
+}
+
+#[test]
+fn terms_of_an_empirical_force_are_what_they_say() {
+    const BAR: f64 = 1e5;
+    let degrees = revolution(48);
+    let check = |force: EmpiricalForce, expected: &dyn Fn(f64, &Evaluation<f64>) -> f64| {
+        let machine = ideal(Law::EmpiricalForce(force));
+        let found = at_angles(machine, &degrees, |at| {
+            (at.throws[0].gas.effects, at.clone())
+        });
+        for (degrees, (found, at)) in degrees.iter().zip(found) {
+            let expected = expected(degrees.to_radians(), &at);
+            let off = (found - expected).abs();
+            assert!(
+                off < 1e-8 * expected.abs() + 1e-9,
+                "{degrees}: {found} {expected}"
+            );
+        }
+    };
+    let plain = no_force();
+    let (cosines, sines) = ([10.0, -20.0, 30.0, 40.0], [5.0, 6.0, -7.0, 8.0]);
+    let harmonics = EmpiricalForce {
+        constant: 3.0,
+        cosines,
+        sines,
+        ..plain.clone()
+    };
+    check(harmonics, &|angle, _| {
+        let orders = (1..=4).map(f64::from).zip(cosines.iter().zip(&sines));
+        orders.fold(3.0, |sum, (k, (a, b))| {
+            sum + a * (k * angle).cos() + b * (k * angle).sin()
+        })
+    });
+    let spring = EmpiricalForce {
+        displacement: [50.0, 20.0],
+        ..plain.clone()
+    };
+    check(spring, &|angle, _| {
+        let x = (RADIUS + DEAD - distance(angle)) / RADIUS;
+        50.0 * x + 20.0 * x * x * x
+    });
+    // The velocity along x, toward the head, in m/s.
+    let v = |angle: f64| -speed(angle) * RADIUS * SPEED;
+    let damper = EmpiricalForce {
+        velocity: [-30.0, -4.0, 0.5],
+        ..plain.clone()
+    };
+    check(damper, &|angle, _| {
+        let v = v(angle);
+        -30.0 * v - 4.0 * v * v.abs() + 0.5 * v * v * v
+    });
+    let inertia = EmpiricalForce {
+        acceleration: 9.80665,
+        ..plain.clone()
+    };
+    check(inertia, &|_, at| at.throws[0].accelerations.crosshead);
+    let area = PI * PISTON * PISTON;
+    let gas = EmpiricalForce {
+        gas_force: area * BAR,
+        ..plain.clone()
+    };
+    check(gas, &|_, at| at.throws[0].gas.force);
+    let guide = EmpiricalForce {
+        friction: [0.0, 0.0, -0.05 * area * BAR],
+        ..plain.clone()
+    };
+    check(guide, &|angle, at| {
+        let (sine, v) = (RADIUS / LENGTH * angle.sin(), v(angle));
+        let side = at.throws[0].gas.force * sine / (1.0 - sine * sine).sqrt();
+        -0.05 * side.abs() * v / v.hypot(0.05)
+    });
+    let joints = EmpiricalForce {
+        offsets: [100.0, 50.0],
+        ..plain
+    };
+    check(joints.clone(), &|_, _| 0.0);
+    // With both ends clear the journals' offsets count.
+    let mut machine = with_clearance(2e-4, 1e-4, 2e4);
+    machine.effects = vec![Law::EmpiricalForce(joints).everywhere()];
+    let at = at_angles(machine, &[100.0], Evaluation::clone).remove(0);
+    let throw = &at.throws[0];
+    let [big, small] = [&throw.joints.big_end, &throw.joints.small_end].map(|j| j.offset.x);
+    near(
+        throw.gas.effects,
+        100.0 * big / 2e-4 + 50.0 * small / 1e-4,
+        1e-12,
+    );
+}
+
+#[test]
+fn ring_friction_is_a_special_empirical_force() {
+    let rings = Law::RingFriction(RingFriction {
+        coulomb_force: 120.0,
+        per_pressure: 2e-4,
+        slip_speed: 0.02,
+    });
+    let force = Law::EmpiricalForce(EmpiricalForce {
+        friction: [-120.0, -20.0, 0.0],
+        slip_speed: 0.02,
+        ..no_force()
+    });
+    let lost = |law: Law| {
+        let mut run = Run::start(ideal(law), 1e-11, true);
+        let ledger = run.dynamics.layout().ledger.unwrap();
+        run.advance(REVOLUTION);
+        run.integrator.state()[ledger..ledger + 4].to_vec()
+    };
+    let [rings, force] = [rings, force].map(lost);
+    // Gas, drive, friction, damping. 120 N over 0.48 m, and something more with the pressure.
+    for (a, b) in rings.iter().zip(&force) {
+        assert!((a - b).abs() < 1e-7 * a.abs() + 1e-9, "{a} {b}");
+    }
+    assert!((58.0..90.0).contains(&force[2]), "{}", force[2]);
 }
 
 #[test]

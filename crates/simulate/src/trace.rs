@@ -30,6 +30,8 @@ pub struct ThrowTrace {
     pub acceleration: Vec<f64>,
     /// Gas pressure at the head end, Pa.
     pub pressure: Vec<f64>,
+    /// Force of the effects on the crosshead toward the head, N.
+    pub effects: Vec<f64>,
     /// The big end, where it has clearance.
     pub big_end: Option<JointTrace>,
     /// The small end, where it has clearance.
@@ -99,6 +101,7 @@ impl Trace {
             trace.velocity.push(throw.motion.crosshead_rate);
             trace.acceleration.push(throw.accelerations.crosshead);
             trace.pressure.push(throw.gas.head_end.pressure);
+            trace.effects.push(throw.gas.effects);
             if let Some(big) = &mut trace.big_end {
                 big.push(&throw.joints.big_end);
             }

@@ -80,6 +80,7 @@ pub fn write(
         "scaling": gap::scaling(before, &maps[0]).map_err(Failure::work)?,
         "heldout_runs": effort.held_out,
         "next_recording": gap::next_recording(&explanation.found),
+        "missing_force": explanation.missing_force,
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
         "seconds": seconds,
         "runs": runs,
@@ -114,7 +115,12 @@ pub fn tree(explanation: &Explanation, keep: impl Fn(&str) -> bool) -> Result<Va
 fn effect((index, found): (usize, &Found), estimates: &[Estimate]) -> Value {
     let entry = found.candidate.entry;
     let mut parameters = Map::new();
+    let mut terms = Vec::new();
     for (i, parameter) in entry.parameters.iter().enumerate() {
+        if parameter.absent.is_some() && found.candidate.fixed.iter().any(|(f, _)| *f == i) {
+            // A term that the law does not have.
+            continue;
+        }
         let path = format!("effects.{index}.{}.{}", entry.name, parameter.key);
         let content = match estimates.iter().find(|e| e.parameter.path == path) {
             Some(estimate) => {
@@ -126,6 +132,7 @@ fn effect((index, found): (usize, &Found), estimates: &[Estimate]) -> Value {
                 json!({"value": found.values[i], "low": found.values[i], "high": found.values[i]})
             }
         };
+        terms.push((parameter.key, content["value"].as_f64().unwrap_or(f64::NAN)));
         parameters.insert(parameter.key.to_owned(), content);
     }
     json!({
@@ -135,7 +142,7 @@ fn effect((index, found): (usize, &Found), estimates: &[Estimate]) -> Value {
         "joint": found.candidate.joint(),
         "sentence": entry.sentence,
         "parameters": parameters,
-        "expression": Value::Null,
+        "expression": (entry.name == gap::empirical_force::NAME).then(|| gap::empirical_force::expression(terms)),
         "evidence": found.evidence,
         "rivals": found.rivals.iter().map(rival).collect::<Vec<_>>(),
     })
@@ -159,6 +166,9 @@ pub fn summary(results: &Value) {
     println!("{}", word(&results["verdict"]));
     for effect in results["effects"].as_array().into_iter().flatten() {
         println!("{}: {}", word(&effect["effect"]), word(&effect["sentence"]));
+        if let Some(expression) = effect["expression"].as_str() {
+            println!("  F = {expression}");
+        }
         for (key, parameter) in effect["parameters"].as_object().into_iter().flatten() {
             println!("  {key}: {:.4e}", number(&parameter["value"]));
         }

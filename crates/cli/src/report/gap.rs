@@ -3,7 +3,7 @@
 use super::calibration::{Results, bounded, machine_name, runs};
 use crate::Failure;
 use crate::explain_gap::output::{MACHINE, RESULTS};
-use ::report::gap_page::{CALIBRATED, Effect, GapPage, Map, Parameter, Scaling, Step};
+use ::report::gap_page::{CALIBRATED, Effect, Force, GapPage, Map, Parameter, Scaling, Step};
 use input::effects::entry;
 use serde_json::Value;
 use std::path::Path;
@@ -57,6 +57,7 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
     let effect = |content: &Value| Effect {
         label: text(&content["label"]),
         sentence: text(&content["sentence"]),
+        expression: text(&content["expression"]),
         parameters: parameters(content),
         rivals: tried(&content["rivals"]),
     };
@@ -67,12 +68,22 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         steps,
         effects: effects.iter().map(effect).collect(),
         refused: tried(&content["refused"]),
+        forces: list(&content["missing_force"]).iter().map(force).collect(),
         maps: maps(&content["maps"]),
         scaling: list(&content["scaling"]).iter().map(scaling).collect(),
         runs: runs(folder, &results, ["before", "after"])?,
         next_recording: text(&content["next_recording"]),
         seconds: number(&content["seconds"]),
     })
+}
+
+fn force(content: &Value) -> Force {
+    let label = format!("{} {}", text(&content["run"]), text(&content["throw"]));
+    let force = list(&content["force"]);
+    Force {
+        label: label.trim().to_owned(),
+        force: force.iter().map(number).collect(),
+    }
 }
 
 fn parameters(effect: &Value) -> Vec<Parameter> {

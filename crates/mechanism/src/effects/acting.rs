@@ -100,6 +100,34 @@ pub(crate) struct PistonAt<S> {
     pub crank_speed: S,
     /// Mass of crosshead, piston rod and piston, kg.
     pub mass: S,
+    /// Displacement along x from the middle of the ideal stroke, m.
+    pub displacement: S,
+    /// Length of the crank, m.
+    pub crank_radius: S,
+    /// Length of the rod, m.
+    pub rod_length: S,
+    /// Tangent of the rod's angle.
+    pub rod_slope: S,
+    /// Force of the gas along x, N.
+    pub gas_force: S,
+    /// Area of the piston, m².
+    pub area: S,
+    /// Offsets of big and small end along x, over their clearances.
+    pub offsets: [S; 2],
+}
+
+impl<S: Scalar> PistonAt<S> {
+    /// Acceleration along x with ideal joints and an even speed, m/s²: the second derivative of
+    /// r cos α + √(L² − r² sin² α).
+    pub fn ideal_acceleration(&self) -> S {
+        let (r, l) = (self.crank_radius, self.rod_length);
+        let (sine, cosine) = self.angle.sin_cos();
+        let (height, reach) = (r * sine, r * cosine);
+        let along = (l * l - height * height).sqrt();
+        let slope = height * reach / along;
+        let second = reach + (reach * reach - height * height + slope * slope) / along;
+        -(second * self.crank_speed * self.crank_speed)
+    }
 }
 
 /// A joint with clearance at an instant, as effects see it.

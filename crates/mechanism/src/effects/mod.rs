@@ -47,6 +47,7 @@ catalogue! {
     rod_flexibility::RodFlexibility,
     squeeze_film::SqueezeFilm,
     bearing_ovality::BearingOvality,
+    empirical_force::EmpiricalForce,
 }
 
 pub use bearing_ovality::Oval;

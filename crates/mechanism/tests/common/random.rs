@@ -4,9 +4,9 @@ use super::single_stage;
 use integrate::System;
 use mechanism::drive::{Drive, MotorLine};
 use mechanism::effects::{
-    BearingOvality, Effect, End, GasPulsation, HeatTransfer, Joint, Law, Misalignment, Oval, Place,
-    RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance, Shaken, SqueezeFilm,
-    SuctionUnloading, ValveLoss,
+    BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
+    Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveLoss,
 };
 use mechanism::gas::CrankEnd;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
@@ -291,6 +291,22 @@ pub fn catalogue() -> Vec<Effect> {
                 amplitude: 1e-5,
                 direction: 2.0,
                 oval: Oval::Journal,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::EmpiricalForce(EmpiricalForce {
+                constant: 40.0,
+                cosines: [50.0, -30.0, 20.0, 10.0],
+                sines: [-20.0, 40.0, 10.0, -10.0],
+                displacement: [100.0, 60.0],
+                velocity: [-10.0, -3.0, 0.2],
+                friction: [-60.0, -10.0, -20.0],
+                slip_speed: 0.05,
+                acceleration: 2.0,
+                gas_force: 15.0,
+                offsets: [30.0, -40.0],
             }),
             None,
             None,

@@ -60,6 +60,35 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
     })
 }
 
+/// The force that is missing over the crank angle.
+pub(super) fn forces(page: &GapPage) -> Option<Plate> {
+    let last = page.forces.len().checked_sub(1)?;
+    let line = |(i, force): (usize, &super::Force)| {
+        let step = 360.0 / force.force.len().max(1) as f64;
+        let points = force.force.iter().enumerate();
+        let points: Vec<[f64; 2]> = points.map(|(i, f)| [i as f64 * step, *f]).collect();
+        let colour = Colour::Ordered(i as f64 / last.max(1) as f64);
+        Series::new(&force.label, colour, Mark::Line, points)
+    };
+    let panel = Panel {
+        x: Axis::crank_angle(),
+        y: Axis::linear("force toward the head (N)"),
+        series: page.forces.iter().enumerate().map(line).collect(),
+        ..Panel::default()
+    };
+    Some(Plate {
+        heading: "The force that is missing".to_owned(),
+        caption: "Force of all effects on the crosshead with which the model comes nearest to the recordings, estimated without \
+                  a law: what a name or a formula would have to give."
+            .to_owned(),
+        svg: Figure {
+            rows: vec![vec![panel]],
+            ..Figure::default()
+        }
+        .svg(),
+    })
+}
+
 /// Where the gap was and is, for the channels in which it was greatest.
 pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
     let greatest = |map: &Map| map.before.iter().flatten().copied().fold(0.0, f64::max);

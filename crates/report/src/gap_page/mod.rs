@@ -25,6 +25,8 @@ pub struct GapPage {
     pub effects: Vec<Effect>,
     /// Candidates that were tried and did not earn their place, with their misfit.
     pub refused: Vec<(String, f64)>,
+    /// The force on the crossheads that was estimated where the catalogue explains too little.
+    pub forces: Vec<Force>,
     /// Where the gap was and is.
     pub maps: Vec<Map>,
     /// How the gap grows from run to run, before an effect was added.
@@ -57,6 +59,15 @@ pub struct Scaling {
     pub exponents: Vec<(String, f64, Option<f64>)>,
 }
 
+/// A force over a revolution of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Force {
+    /// The run, and the throw where there are several.
+    pub label: String,
+    /// At equally spaced crank angles from 0 on, N.
+    pub force: Vec<f64>,
+}
+
 /// An effect that was added.
 #[derive(Clone, Debug, Default)]
 pub struct Effect {
@@ -64,6 +75,8 @@ pub struct Effect {
     pub label: String,
     /// What it is, for a mechanic.
     pub sentence: String,
+    /// Its law as a formula, where it has none of its own in the catalogue; empty elsewhere.
+    pub expression: String,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
     /// What else might have been, with the misfit that it leaves.

@@ -12,6 +12,7 @@ struct View<'a> {
     page: &'a GapPage,
     verdict: String,
     waterfall: Vec<(usize, Plate)>,
+    forces: Vec<(usize, Plate)>,
     maps: Vec<(usize, Plate)>,
     runs: Vec<(usize, Plate)>,
 }
@@ -38,11 +39,12 @@ impl GapPage {
             page: self,
             verdict: verdict(self),
             waterfall: numbered(figures::waterfall(self).into_iter().collect()),
+            forces: numbered(figures::forces(self).into_iter().collect()),
             maps: numbered(figures::maps(self)),
             runs: numbered(waveforms::plates(&self.runs, names)),
         };
         let html = view.render()?;
-        let plates = [view.waterfall, view.maps, view.runs];
+        let plates = [view.waterfall, view.forces, view.maps, view.runs];
         let figures = plates
             .into_iter()
             .flatten()

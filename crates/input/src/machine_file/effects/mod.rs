@@ -77,6 +77,7 @@ catalogue! {
     sensor_resonance::SensorResonance,
     sensor_gain::SensorGain,
     mains_hum::MainsHum,
+    empirical_force::EmpiricalForce,
 }
 
 impl EffectSection {

@@ -1,0 +1,326 @@
+//! A force law found in the recordings, where no effect of the catalogue explains them.
+//!
+//! The terms of the effect `empirical_force` are a library, as in sparse regression of dynamics
+//! (Brunton, Proctor and Kutz 2016; Kaheman and others 2019, for the mismatch of a model). The
+//! response is far from linear in a force as large as one that is missing. The force is therefore
+//! estimated first, by a fit with all terms; there, what the terms do to the predicted lines is their
+//! exact derivative by the coefficient, contacts included, and the force is regressed sparsely on
+//! them, on resamples. The terms that are stable are fitted in full, and the library is regressed
+//! again at that fit, until the same terms come out.
+
+use crate::candidate::{Candidate, throws};
+use crate::decision::{NOISE, Verdict, earns, evidence, verdict};
+use crate::error::Error;
+use crate::explain::{Found, Search, effects};
+use crate::linearised::{Linearised, groups};
+use crate::missing_force::{MissingForce, missing_force};
+use crate::model::{Effort, Model, Watch};
+use crate::pressures::shows_pressure;
+use crate::refit::few;
+use calibrate::Problem;
+use input::effects::entry;
+
+/// The effect's name.
+pub const NAME: &str = "empirical_force";
+/// Most groups of terms: what needs more is no law.
+pub(crate) const MOST: usize = 3;
+/// Most evaluations of the fit with all terms.
+const DENSE: u64 = 400;
+/// Rounds in which terms may still be exchanged.
+const ROUNDS: usize = 4;
+
+/// A law.
+#[derive(Clone, Debug)]
+pub struct Law {
+    /// The effect at its throw, with the terms that it has free.
+    pub candidate: Candidate,
+    /// The model with it.
+    pub model: Model,
+}
+
+/// A force that is missing.
+#[derive(Clone, Debug)]
+pub struct Force {
+    /// As a fit with all terms has it, in every run.
+    pub missing: Vec<MissingForce>,
+    /// Its law.
+    pub law: Option<Law>,
+}
+
+/// What the terms are in a formula, by their keys.
+const SYMBOLS: [(&str, &str); 21] = [
+    ("constant", ""),
+    ("cos_1", "cos α"),
+    ("sin_1", "sin α"),
+    ("cos_2", "cos 2α"),
+    ("sin_2", "sin 2α"),
+    ("cos_3", "cos 3α"),
+    ("sin_3", "sin 3α"),
+    ("cos_4", "cos 4α"),
+    ("sin_4", "sin 4α"),
+    ("displacement", "x/r"),
+    ("displacement_cubed", "(x/r)³"),
+    ("velocity", "v/(1 m/s)"),
+    ("velocity_squared", "v|v|/(1 m/s)²"),
+    ("velocity_cubed", "(v/(1 m/s))³"),
+    ("velocity_sign", "sign v"),
+    ("pressure_sign", "p/(1 bar) sign v"),
+    ("side_force_sign", "|G tan φ| sign v"),
+    ("acceleration", "a/g"),
+    ("gas_force", "G"),
+    ("big_end_offset", "e_b/c_b"),
+    ("small_end_offset", "e_s/c_s"),
+];
+
+/// A law in words of the model: its terms by their keys, with their coefficients in N. α is the crank
+/// angle since top dead centre; x, v and a are displacement from mid-stroke, velocity and acceleration
+/// of the crosshead toward the head; p is the head-end pressure, G the gas force over that of 1 bar on
+/// the piston, φ the rod's angle; e/c are the offsets of big and small end over their clearances.
+pub fn expression<'a>(terms: impl IntoIterator<Item = (&'a str, f64)>) -> String {
+    let mut text = String::new();
+    for (key, coefficient) in terms {
+        let Some((_, symbol)) = SYMBOLS.iter().find(|(known, _)| *known == key) else {
+            continue;
+        };
+        let sign = match (text.is_empty(), coefficient < 0.0) {
+            (true, true) => "-",
+            (true, false) => "",
+            (false, true) => " - ",
+            (false, false) => " + ",
+        };
+        let size = coefficient.abs();
+        // Four digits; more is never known.
+        let digits = (3.0 - size.max(1e-9).log10().floor()).clamp(0.0, 12.0) as usize;
+        text.push_str(&format!("{sign}{size:.digits$} N"));
+        if !symbol.is_empty() {
+            text.push_str(&format!(" {symbol}"));
+        }
+    }
+    text
+}
+
+/// The effect with all its terms free, at each throw that does not have it.
+pub(crate) fn libraries(problem: &Problem) -> Vec<Candidate> {
+    let Some(entry) = entry(NAME) else {
+        return Vec::new();
+    };
+    let names = throws(&problem.tree).into_iter();
+    let mut places: Vec<_> = names.map(|name| vec![("throw", name)]).collect();
+    if places.is_empty() {
+        places.push(Vec::new());
+    }
+    let usual: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
+    let of = |place| {
+        let fixed = Vec::new();
+        Candidate {
+            entry,
+            place,
+            fixed,
+        }
+        .restricted(&groups(entry).concat())
+    };
+    let mut libraries: Vec<Candidate> = places.into_iter().map(of).collect();
+    libraries.retain(|library| library.added(problem, &usual).is_ok());
+    libraries
+}
+
+/// The force that `model` lacks at the throw where it explains most, with a law of no more than a few
+/// terms where the recordings show one that is stable; none where no throw can have one. Whether the
+/// law explains enough is another question.
+///
+/// # Errors
+/// [`Error::Stopped`]; a machine that cannot be simulated.
+pub fn empirical_force(
+    model: &Model,
+    effort: &Effort,
+    watch: Watch,
+    say: &(dyn Fn(&str, f64) + Sync),
+) -> Result<Option<Force>, Error> {
+    let search = Search { effort, watch, say };
+    let mut best: Option<(Candidate, Model)> = None;
+    for library in libraries(&model.problem) {
+        let dense = search.dense(&few(model, effort), &library)?;
+        let better = |(_, best): &(Candidate, Model)| dense.fitted < best.fitted;
+        if best.as_ref().is_none_or(better) {
+            best = Some((library, dense));
+        }
+    }
+    let Some((library, dense)) = best else {
+        return Ok(None);
+    };
+    let missing = missing_force(&dense, &model.problem.runs)?;
+    let law = search.law(model, &library, dense)?;
+    Ok(Some(Force { missing, law }))
+}
+
+impl Search<'_> {
+    /// The law of the force that was estimated with all terms of a library.
+    fn law(&self, model: &Model, library: &Candidate, dense: Model) -> Result<Option<Law>, Error> {
+        let groups = groups(library.entry);
+        let index = effects(&model.problem);
+        let mut x = dense.x[..model.x.len()].to_vec();
+        let mut values = library.values(&dense, index);
+        let fitted_to = model
+            .problem
+            .with_runs(|run| !self.effort.held_out.contains(&run.id));
+        let mut chosen: Option<(Candidate, Model)> = None;
+        for _ in 0..ROUNDS {
+            let linear = Linearised::at(&fitted_to, &x, library, &values)?;
+            let stable = linear.regression.stable(&groups);
+            eprintln!("stable {stable:?}");
+            let each = stable.iter().flat_map(|group| &groups[*group]);
+            let candidate = library.restricted(&each.copied().collect::<Vec<_>>());
+            if stable.is_empty() {
+                return Ok(None);
+            }
+            if let Some((before, model)) = &chosen
+                && *before == candidate
+            {
+                let (candidate, model) = (candidate, model.clone());
+                return Ok(Some(Law { candidate, model }));
+            }
+            let start = linear.fitted(&candidate);
+            let added = candidate.added(&model.problem, &start)?;
+            let mut from = x;
+            from.resize(added.parameters.len(), 0.0);
+            (self.say)("fitting a law of the force", dense.fitted);
+            let after = Model::fit(added, &from, self.effort, self.watch)?;
+            eprintln!("refit {:.3} {:?}", after.fitted, after.held_out);
+            x = after.x[..model.x.len()].to_vec();
+            values = candidate.values(&after, index);
+            chosen = Some((candidate, after));
+        }
+        Ok(None)
+    }
+
+    /// A few runs fitted with all terms of the library.
+    fn dense(&self, few: &Model, library: &Candidate) -> Result<Model, Error> {
+        let nothing = vec![0.0; library.entry.parameters.len()];
+        let nominal = vec![0.0; few.x.len()];
+        (self.say)("estimating the force", few.fitted);
+        let linear = Linearised::at(&few.problem, &nominal, library, &nothing)?;
+        let library = library.restricted(&linear.seen());
+        let added = library.added(&few.problem, &linear.values)?;
+        let effort = Effort {
+            evaluations: DENSE,
+            ..self.effort.clone()
+        };
+        let from = |x: &[f64]| {
+            let mut x = x.to_vec();
+            x.resize(added.parameters.len(), 0.0);
+            Model::fit(added.clone(), &x, &effort, self.watch)
+        };
+        let fitted = from(&nominal)?;
+        eprintln!("dense nominal {:.3}", fitted.fitted);
+        // Without the force the calibration may have gone far astray, and often has.
+        match fitted.fitted < NOISE {
+            true => Ok(fitted),
+            false => Ok(fitted.better(from(&few.x)?)),
+        }
+    }
+
+    /// The model with an empirical force in place of the effects that were found beside the gas, or
+    /// on top of them, where they leave too much and the force predicts what they do not.
+    pub(crate) fn with_force(
+        &self,
+        problem: &Problem,
+        baseline: &Model,
+        model: Model,
+        found: Vec<Found>,
+    ) -> Result<(Model, Vec<Found>, Vec<MissingForce>), Error> {
+        let explained = verdict(baseline, &model, found.len());
+        if matches!(explained, Verdict::NoGap | Verdict::Explained) {
+            return Ok((model, found, Vec::new()));
+        }
+        let (start, kept) = self.gas_alone(problem, baseline, &model, &found)?;
+        let mut starts = vec![(start, kept)];
+        if starts[0].1.len() < found.len() {
+            starts.push((model.clone(), found.clone()));
+        }
+        let (mut model, mut found) = (model, found);
+        let mut missing = Vec::new();
+        for (start, mut effects) in starts {
+            let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {
+                continue;
+            };
+            missing = force.missing;
+            let Some(law) = force.law else {
+                continue;
+            };
+            let closes = matches!(
+                verdict(baseline, &law.model, effects.len() + 1),
+                Verdict::Explained | Verdict::PartlyExplained
+            );
+            if !(closes && earns(&start, &law.model) && earns(&model, &law.model)) {
+                continue;
+            }
+            let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
+            effects.push(Found {
+                values: law
+                    .candidate
+                    .values(&law.model, self::effects(&start.problem)),
+                candidate: law.candidate,
+                evidence: evidence(&start, &law.model, score),
+                by_run: law.model.misfits(),
+                rivals: Vec::new(),
+            });
+            (model, found) = (law.model, effects);
+        }
+        Ok((model, found, missing))
+    }
+
+    /// The model with those of its effects alone that the pressures show whatever acts on the
+    /// crosshead.
+    fn gas_alone(
+        &self,
+        problem: &Problem,
+        baseline: &Model,
+        model: &Model,
+        found: &[Found],
+    ) -> Result<(Model, Vec<Found>), Error> {
+        let mut kept = found.to_vec();
+        kept.retain(|f| shows_pressure(problem) && f.candidate.is_of_gas());
+        if kept.len() == found.len() {
+            return Ok((model.clone(), kept));
+        }
+        if kept.is_empty() {
+            return Ok((baseline.clone(), kept));
+        }
+        let mut with_gas = problem.clone();
+        for gas in &kept {
+            with_gas = gas.candidate.added(&with_gas, &gas.values)?;
+        }
+        let mut x = baseline.x[..problem.parameters.len()].to_vec();
+        x.resize(with_gas.parameters.len(), 0.0);
+        Ok((Model::fit(with_gas, &x, self.effort, self.watch)?, kept))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_is_told_in_words_of_the_model() {
+        let terms = [
+            ("constant", 12.5),
+            ("velocity_sign", -120.04),
+            ("cos_2", 35.0),
+        ];
+        assert_eq!(
+            expression(terms),
+            "12.50 N - 120.0 N sign v + 35.00 N cos 2α"
+        );
+        assert_eq!(
+            expression([("velocity_cubed", -0.25)]),
+            "-0.2500 N (v/(1 m/s))³"
+        );
+        assert_eq!(expression([]), "");
+    }
+
+    #[test]
+    fn every_term_of_the_effect_has_a_symbol() {
+        let keys = entry(NAME).unwrap().amplitudes().map(|p| p.key);
+        assert!(keys.eq(SYMBOLS.iter().map(|(key, _)| *key)));
+    }
+}
