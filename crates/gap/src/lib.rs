@@ -24,7 +24,7 @@ pub mod screening;
 pub use candidate::Candidate;
 pub use decision::{Evidence, Verdict};
 pub use error::Error;
-pub use explain::{Explanation, Found, Stage, Tried, explain};
+pub use explain::{Explanation, Found, Stage, Tried, explain, first_item};
 pub use mains_hum::{Hum, remove_hum};
 pub use model::{Effort, Model};
 pub use next_recording::next_recording;

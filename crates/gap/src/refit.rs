@@ -4,6 +4,7 @@ use crate::decision::{NOISE, RIVAL, evidence};
 use crate::error::Error;
 use crate::explain::{Search, Tried};
 use crate::model::{Effort, Model};
+use crate::pressures::is_of_pressures;
 use crate::screening::Screened;
 use rayon::prelude::*;
 
@@ -36,7 +37,7 @@ impl Search<'_> {
             });
             rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
         }
-        rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
         let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
         let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
         let mut tried = Vec::new();
@@ -65,7 +66,7 @@ impl Search<'_> {
                 after,
             ));
         }
-        let order = |tried: &(Tried, Model)| tried.0.evidence.misfit[1];
+        let order = |tried: &(Tried, Model)| tried.1.criterion();
         let whole =
             |tried: &&(Tried, Model)| tried.1.problem.runs.len() == model.problem.runs.len();
         let last = tried.iter().take_while(whole).count();
@@ -91,6 +92,7 @@ impl Search<'_> {
         };
         let fitted = match near {
             Some(near) => from(&near.x)?,
+            None if is_of_pressures(&few.problem) => from(&few.x)?,
             // Without the effect the calibration may have gone far astray.
             None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
         };

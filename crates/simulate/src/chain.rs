@@ -33,7 +33,20 @@ pub(crate) struct Sampling {
 impl Sampling {
     /// `length` seconds at `rate`, Hz.
     pub(crate) fn new(rate: f64, length: f64) -> Result<Self, Error> {
-        let factor = (INNER_RATE / rate).clamp(LEAST_FACTOR, MOST_FACTOR).ceil();
+        let factor = (INNER_RATE / rate).clamp(LEAST_FACTOR, MOST_FACTOR);
+        Self::by(factor.ceil(), rate, length)
+    }
+
+    /// The same for these sensors: contacts hardly move the gas, so that pressures by themselves need
+    /// no look at the ringing. Their kinks fall off with the square of the order.
+    pub(crate) fn for_sensors(sensors: &[Sensor], rate: f64, length: f64) -> Result<Self, Error> {
+        match sensors.iter().all(Sensor::is_of_gas) {
+            true => Self::by(1.0, rate, length),
+            false => Self::new(rate, length),
+        }
+    }
+
+    fn by(factor: f64, rate: f64, length: f64) -> Result<Self, Error> {
         let decimator = Decimator::new(factor as usize).map_err(|source| Error::Sensor {
             column: "all".into(),
             source,

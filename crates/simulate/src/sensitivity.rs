@@ -78,7 +78,7 @@ fn tangents<const N: usize>(
     let enough = period.map_or(settings.revolutions, |period| period + 1);
     let revolutions = settings.revolutions.min(enough);
     let length = f64::from(revolutions) * run.revolution();
-    let sampling = Sampling::new(settings.sample_rate, length)?;
+    let sampling = Sampling::for_sensors(sensors, settings.sample_rate, length)?;
     let mut inner: Vec<Vec<Dual<f64, N>>> = vec![Vec::new(); sensors.len()];
     run.show(sampling.instants(start), |at| {
         for (sensor, inner) in sensors.iter().zip(&mut inner) {
