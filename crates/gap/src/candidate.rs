@@ -99,6 +99,12 @@ impl Candidate {
         place.map(|(_, throw)| throw.as_str())
     }
 
+    /// The end of the cylinder at which it acts, where it does at one alone.
+    pub fn end(&self) -> Option<&str> {
+        let place = self.place.iter().find(|(key, _)| *key == EITHER);
+        place.map(|(_, end)| end.as_str())
+    }
+
     /// What it is called in words: effect, place and order.
     pub fn label(&self) -> String {
         let mut label = self.entry.name.to_owned();
