@@ -189,19 +189,18 @@ impl Parameter {
     }
 
     fn write_everywhere(&self, tree: &mut Value, value: f64) -> Result<(), Error> {
-        let written = match self.dimension {
-            Some(dimension) => Measure {
-                si: value,
-                dimension,
-            }
-            .to_string()
-            .into(),
-            None => Value::from(value),
-        };
         for place in &self.places {
-            paths::set(tree, place, written.clone())?;
+            paths::set(tree, place, self.written(value))?;
         }
         Ok(())
+    }
+
+    /// A value as a machine file has it.
+    pub(crate) fn written(&self, si: f64) -> Value {
+        match self.dimension {
+            Some(dimension) => Measure { si, dimension }.to_string().into(),
+            None => Value::from(si),
+        }
     }
 }
 

@@ -111,12 +111,24 @@ pub fn pressure_gaps(
     recorded: &[Run],
     x: &[f64],
 ) -> Result<Vec<PressureGap>, Error> {
-    let zero = vec![0.0; x.len()];
+    let nominal = vec![0.0; x.len()];
+    pressure_gaps_of([(problem, &nominal), (problem, x)], recorded)
+}
+
+/// The same of two models, each a problem with coordinates: what is called nominal is the first one's.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn pressure_gaps_of(
+    models: [(&Problem, &[f64]); 2],
+    recorded: &[Run],
+) -> Result<Vec<PressureGap>, Error> {
+    let [(first, zero), (problem, x)] = models;
     let mut gaps = Vec::new();
     for run in &problem.runs {
         let recorded = recorded.iter().find(|recorded| recorded.id == run.id);
         let Some(recorded) = recorded else { continue };
-        let nominal = problem.machine(run, &zero)?.machine;
+        let nominal = first.machine(run, zero)?.machine;
         let of_chamber = |column: &str| Chamber::of_column(&nominal, column).is_some();
         let pressures = run.channels.iter().enumerate();
         let pressures: Vec<(usize, &str)> = pressures
@@ -129,7 +141,7 @@ pub fn pressure_gaps(
         else {
             continue;
         };
-        let before = predict(problem, run, &zero)?;
+        let before = predict(first, run, zero)?;
         let after = predict(problem, run, x)?;
         let fitted = problem.machine(run, x)?.machine;
         let offset = problem.crank_angle_offset(run, x).0;

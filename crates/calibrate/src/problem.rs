@@ -120,6 +120,18 @@ impl Problem {
         Ok(tree)
     }
 
+    /// What the parameters of one run alone come to at these coordinates: paths of the machine file
+    /// and their values in this run.
+    pub fn conditions(&self, run: &str, coordinates: &[f64]) -> Vec<(String, Value)> {
+        let parameters = self.parameters.iter().zip(coordinates);
+        let own = parameters.filter(|(parameter, _)| parameter.run.as_deref() == Some(run));
+        own.flat_map(|(parameter, x)| {
+            let places = parameter.places.iter();
+            places.map(|place| (place.clone(), parameter.written(parameter.value(*x))))
+        })
+        .collect()
+    }
+
     /// The same problem with these runs.
     pub fn with_runs(&self, keep: impl Fn(&Observation) -> bool) -> Self {
         Self {

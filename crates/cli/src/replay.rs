@@ -84,18 +84,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Simulates the runs of a bundle on the machine of the file's content `tree` and writes them into
-/// `folder`, one file each.
+/// `folder`, one file each. `conditions` are values that a run has beyond what the bundle says.
 ///
 /// # Errors
 /// As [`run`].
 pub(crate) fn into_folder(
     bundle: &Path,
     tree: Value,
+    conditions: impl Fn(&str) -> Vec<(String, Value)>,
     leave_out: &[String],
     folder: &Path,
 ) -> Result<(), Failure> {
     let bundle = Bundle::read(bundle)?;
     let mut listed = listed(leave_out, &bundle, &tree)?;
+    for listed in &mut listed {
+        let own = conditions(&listed.run.id);
+        listed.run.settings.extend(own);
+    }
     let problem = problem(tree, &mut listed)?;
     let files = files(folder, &listed)?;
     write(folder, &files, &listed, &simulated(&problem, &listed)?)

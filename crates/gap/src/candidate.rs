@@ -1,5 +1,6 @@
 //! What may be missing: an effect of the catalogue at a place of the machine.
 
+use crate::empirical_force;
 use crate::error::Error;
 use crate::model::Model;
 use crate::pressures::shows_pressure;
@@ -18,6 +19,9 @@ pub struct Candidate {
     pub place: Vec<(&'static str, String)>,
     /// The values that are not searched (an order), by their index among the effect's parameters.
     pub fixed: Vec<(usize, f64)>,
+    /// The ends of the cylinder that have the effect, each with values of its own; none where one
+    /// set of values holds at the place.
+    pub ends: &'static [&'static str],
 }
 
 /// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
@@ -27,6 +31,11 @@ const GAIN: &str = "sensor_gain";
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
+/// Where an effect is tried everywhere, each end has values of its own: an unloader is one valve's.
+const OWN_AT_EACH: [&str; 1] = ["suction_unloading"];
+/// The suction valve's throttling is told by the effect that holds it already, where there is one.
+const HELD: &str = "suction_unloading";
+const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
 /// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with; a
 /// law of no name comes last.
 const ELSEWHERE: [&str; 3] = ["mains_hum", "crank_angle_offset", "empirical_force"];
@@ -51,19 +60,26 @@ impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
     pub fn all(problem: &Problem) -> Vec<Self> {
         let throws = throws(&problem.tree);
-        let both_ends = has_crank_end(&problem.tree);
         let known = shows_pressure(problem);
+        let both_ends = has_crank_end(&problem.tree) && tells_ends_apart(problem);
         let mut all = Vec::new();
         for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
             for place in places(entry, &throws, both_ends) {
-                for fixed in orders(entry) {
+                let own = both_ends
+                    && OWN_AT_EACH.contains(&entry.name)
+                    && place.iter().all(|(key, _)| *key != EITHER);
+                let ends = entry.places.iter().filter(|c| own && c.key == EITHER);
+                let ends = ends.map(|choice| choice.words).next().unwrap_or_default();
+                for mut fixed in orders(entry) {
+                    fixed.extend(throttled(entry, &place, problem));
                     let place = place.clone();
                     let candidate = Self {
                         entry,
                         place,
                         fixed,
+                        ends,
                     };
-                    let usual: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
+                    let usual = candidate.usual();
                     let seen = known || !candidate.place.iter().any(|(_, word)| word == PRESSURE);
                     let new = seen && candidate.is_new(problem);
                     if new && candidate.added(problem, &usual).is_ok() {
@@ -112,6 +128,12 @@ impl Candidate {
         place.map(|(_, throw)| throw.as_str())
     }
 
+    /// The end of the cylinder at which it acts, where it does at one alone.
+    pub fn end(&self) -> Option<&str> {
+        let place = self.place.iter().find(|(key, _)| *key == EITHER);
+        place.map(|(_, end)| end.as_str())
+    }
+
     /// What it is called in words: effect, place and order.
     pub fn label(&self) -> String {
         let mut label = self.entry.name.to_owned();
@@ -119,18 +141,45 @@ impl Candidate {
             label.push(' ');
             label.push_str(word);
         }
-        for (index, value) in self
-            .fixed
-            .iter()
-            .filter(|(i, _)| self.entry.parameters[*i].whole)
-        {
-            label.push_str(&format!(" {} {value}", self.entry.parameters[*index].key));
+        if !self.ends.is_empty() {
+            label.push_str(&format!(" {}", self.ends.join(" and ")));
+        }
+        for (index, value) in &self.fixed {
+            let parameter = &self.entry.parameters[*index];
+            if parameter.whole {
+                label.push_str(&format!(" {} {value}", parameter.key));
+            }
         }
         label
     }
 
+    /// It as the items of a machine file's list of effects that it consists of, with the index of
+    /// each one's first value.
+    pub fn items(&self) -> Vec<(Self, usize)> {
+        if self.ends.is_empty() {
+            return vec![(self.clone(), 0)];
+        }
+        let item = |(i, end): (usize, &&str)| {
+            let mut item = self.clone();
+            item.ends = &[];
+            item.place.push((EITHER, (*end).to_owned()));
+            (item, i * self.entry.parameters.len())
+        };
+        self.ends.iter().enumerate().map(item).collect()
+    }
+
+    /// Usual values of the parameters, those of one item after those of another.
+    fn usual(&self) -> Vec<f64> {
+        let of_item = self.entry.parameters.iter().map(|p| p.start);
+        let items = self.ends.len().max(1);
+        of_item.collect::<Vec<f64>>().repeat(items)
+    }
+
     /// Whether the machine does not have it yet.
     fn is_new(&self, problem: &Problem) -> bool {
+        if !self.ends.is_empty() {
+            return self.items().iter().all(|(item, _)| item.is_new(problem));
+        }
         let there = problem.tree.get("effects").and_then(Value::as_array);
         !there.into_iter().flatten().any(|item| {
             item.get(self.entry.name).is_some_and(|section| {
@@ -150,7 +199,16 @@ impl Candidate {
     /// # Errors
     /// A machine that cannot have it.
     pub fn added(&self, problem: &Problem, values: &[f64]) -> Result<Problem, Error> {
-        let mut values = values.to_vec();
+        let mut added = problem.clone();
+        for (item, first) in self.items() {
+            added = item.item_added(&added, &values[first..])?;
+        }
+        Ok(added)
+    }
+
+    /// The same for one item.
+    fn item_added(&self, problem: &Problem, values: &[f64]) -> Result<Problem, Error> {
+        let mut values = values[..self.entry.parameters.len()].to_vec();
         for (index, value) in &self.fixed {
             values[*index] = *value;
         }
@@ -163,8 +221,10 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if let Some(section) = item[self.entry.name].as_object_mut() {
-            // What is left out has no effect or is as usual.
+        if self.entry.name == empirical_force::NAME
+            && let Some(section) = item[self.entry.name].as_object_mut()
+        {
+            // Terms that are left out have no effect, and constants are as usual.
             section.retain(|key, _| {
                 !self.fixed.iter().any(|(i, _)| {
                     let parameter = &self.entry.parameters[*i];
@@ -195,8 +255,14 @@ impl Candidate {
         Ok(added)
     }
 
-    /// Its parameters in a model in which it is the effect of this index, SI.
+    /// Its parameters in a model in which its first item is the effect of this index, SI.
     pub(crate) fn values(&self, model: &Model, index: usize) -> Vec<f64> {
+        let items = self.items().into_iter().enumerate();
+        let values = items.flat_map(|(i, (item, _))| item.item_values(model, index + i));
+        values.collect()
+    }
+
+    fn item_values(&self, model: &Model, index: usize) -> Vec<f64> {
         let of = |(i, parameter): (usize, &Parameter)| {
             let path = format!("effects.{index}.{}.{}", self.entry.name, parameter.key);
             let mut fitted = model.problem.parameters.iter().zip(&model.x);
@@ -213,6 +279,12 @@ impl Candidate {
 
     /// Values at which it is tried: amplitudes, phases, and what else may lie anywhere.
     pub fn probes(&self) -> Vec<Vec<f64>> {
+        let items = self.ends.len().max(1);
+        let probes = self.item_probes().into_iter();
+        probes.map(|probe| probe.repeat(items)).collect()
+    }
+
+    fn item_probes(&self) -> Vec<Vec<f64>> {
         let parameters = self.entry.parameters;
         let usual: Vec<f64> = parameters.iter().map(|p| p.start).collect();
         let clamp = |i: usize, x: f64| x.clamp(parameters[i].bounds[0], parameters[i].bounds[1]);
@@ -282,6 +354,43 @@ fn has_crank_end(tree: &Value) -> bool {
     let has = |tree: &Value| tree["cylinder"]["crank_end"].is_object();
     let throws = tree.get("throws").and_then(Value::as_array);
     has(tree) || throws.into_iter().flatten().any(has)
+}
+
+/// Whether the recordings tell one end of a cylinder from the other: pressures do at the ends where
+/// they were recorded.
+fn tells_ends_apart(problem: &Problem) -> bool {
+    let columns = problem.runs.iter().flat_map(|run| &run.channels);
+    let columns = columns.map(|channel| channel.column.as_str());
+    let mut pressures = columns.filter(|column| column.contains("cylinder_pressure"));
+    let Some(first) = pressures.next() else {
+        return true;
+    };
+    pressures.any(|other| other.contains("crank_end") != first.contains("crank_end"))
+}
+
+/// What an effect of the machine at the same place tells already, at the value where it vanishes.
+fn throttled(
+    entry: &Entry,
+    place: &[(&'static str, String)],
+    problem: &Problem,
+) -> Option<(usize, f64)> {
+    let [name, key] = THROTTLED;
+    let index = entry.parameters.iter().position(|p| p.key == key)?;
+    let absent = entry.parameters[index].absent?;
+    let effects = problem.tree.get("effects").and_then(Value::as_array);
+    let held = effects
+        .into_iter()
+        .flatten()
+        .filter_map(|item| item.get(HELD));
+    let mut ends: Vec<&str> = held
+        .map(|section| section[EITHER].as_str().unwrap_or(""))
+        .collect();
+    ends.sort_unstable();
+    let asked = place.iter().find(|(key, _)| *key == EITHER);
+    let asked = asked.map_or("", |(_, end)| end.as_str());
+    let everywhere = ends.contains(&"") || ends == ["crank", "head"];
+    (entry.name == name && (everywhere || (!asked.is_empty() && ends.contains(&asked))))
+        .then_some((index, absent))
 }
 
 /// The places where an effect can act. Without a throw of its own an effect acts at all of them;

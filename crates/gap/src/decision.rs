@@ -1,6 +1,7 @@
 //! Whether an effect has earned its place, and what an explanation comes to.
 
 use crate::model::Model;
+use crate::pressures::is_of_pressures;
 use serde::Serialize;
 
 /// A misfit below this is noise.
@@ -14,6 +15,9 @@ pub(crate) const RIVAL: f64 = 3.0;
 /// An effect earns its place where it takes this share of the misfit, squared above the noise, of
 /// fitted and of held-out runs.
 pub(crate) const EARNED: f64 = 0.3;
+/// The same where pressures are all that was recorded: the gas alone can explain them, and after one
+/// effect what others do is still in the way of the next.
+const EARNED_OF_GAS: f64 = 0.2;
 /// Share of the distance to the noise that must be gone for a part to count as an explanation.
 pub(crate) const PARTLY: f64 = 0.8;
 
@@ -59,7 +63,11 @@ pub(crate) fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
 /// Whether the effect that `after` has and `before` has not earns its place.
 pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
-    let takes = |before: f64, after: f64| excess(after) <= (1.0 - EARNED) * excess(before);
+    let share = match is_of_pressures(&after.problem) {
+        true => EARNED_OF_GAS,
+        false => EARNED,
+    };
+    let takes = |before: f64, after: f64| excess(after) <= (1.0 - share) * excess(before);
     let held_out = before.held_out.zip(after.held_out);
     takes(before.fitted, after.fitted)
         && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))

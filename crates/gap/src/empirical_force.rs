@@ -116,6 +116,7 @@ pub(crate) fn libraries(problem: &Problem) -> Vec<Candidate> {
             entry,
             place,
             fixed,
+            ends: &[],
         }
         .restricted(&groups(entry).concat())
     };
@@ -262,6 +263,7 @@ impl Search<'_> {
                 candidate: law.candidate,
                 evidence: evidence(&start, &law.model, score),
                 by_run: law.model.misfits(),
+                pressure_rms: law.model.pressure_rms()?,
                 rivals: Vec::new(),
             });
             (model, found) = (law.model, effects);

@@ -7,11 +7,12 @@ use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
 use crate::model::{Effort, Model, Watch};
-use crate::pressures::{pressures, shows_pressure};
+use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
 use crate::screening::screen;
 use calibrate::Problem;
-use calibrate::fit::{Estimate, FitSettings, Optimiser};
+use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
+use nalgebra::DMatrix;
 
 /// Most evaluations of the calibration to begin with.
 const CALIBRATION: u64 = 200;
@@ -39,6 +40,8 @@ pub struct Explanation {
     pub estimates: Vec<Estimate>,
     /// The force that is missing where the catalogue explains too little; empty elsewhere.
     pub missing_force: Vec<MissingForce>,
+    /// Correlation between each pair of them.
+    pub correlations: DMatrix<f64>,
 }
 
 /// An effect that was added.
@@ -52,6 +55,8 @@ pub struct Found {
     pub evidence: Evidence,
     /// The misfit that it leaves in each run.
     pub by_run: Vec<(String, f64)>,
+    /// Root mean square of simulated less recorded pressure that it leaves in each run, Pa.
+    pub pressure_rms: Vec<(String, f64)>,
     /// What else might have been.
     pub rivals: Vec<Tried>,
 }
@@ -98,37 +103,24 @@ pub fn explain(
         watch,
         say: &say,
     };
-    let mut found = search.of_gas(problem)?;
-    let mut with_gas = problem.clone();
-    for gas in &found {
-        with_gas = gas.candidate.added(&with_gas, &gas.values)?;
-    }
-    say("calibrating", f64::NAN);
-    let model = search.searched(&with_gas, None, CALIBRATION)?;
-    let baseline = match found.is_empty() {
-        true => model.clone(),
-        false => {
-            say("calibrating without an effect", model.fitted);
-            Model::fit(
-                problem.clone(),
-                &vec![0.0; problem.parameters.len()],
-                effort,
-                watch,
-            )?
-        }
+    let gas = search.of_gas(problem)?;
+    let (baseline, model, found, refused) = match gas {
+        Some(gas) if gas.is_all(problem) => (
+            OfGas::with_joints(gas.before, problem, effort)?,
+            OfGas::with_joints(gas.after, problem, effort)?,
+            gas.found,
+            gas.refused,
+        ),
+        gas => search.of_all(problem, gas.map_or_else(Vec::new, |gas| gas.found))?,
     };
-    let known = shows_pressure(problem);
-    let candidates = |problem: &Problem| {
-        let mut all = Candidate::all(problem);
-        all.retain(|candidate| !known || !candidate.is_of_gas());
-        all
-    };
-    let (model, others, refused) = search.while_they_earn(model, NOISE, MOST, candidates)?;
-    found.extend(others);
     let (model, found) = search.pruned(problem, model, found)?;
     let (model, found, missing_force) = search.with_force(problem, &baseline, model, found)?;
     say("finding bounds", model.fitted);
-    let estimates = search.bounds(&model)?;
+    let Fit {
+        estimates,
+        correlations,
+        ..
+    } = search.bounds(&model)?;
     let nothing = vec![0.0; problem.parameters.len()];
     let set_right = || {
         let mut problem = problem.clone();
@@ -147,6 +139,7 @@ pub fn explain(
         nominal: Model::at(problem.clone(), nothing, effort)?,
         chain,
         estimates,
+        correlations,
         baseline,
         explained: model,
         found,
@@ -165,19 +158,58 @@ pub(crate) struct Search<'a> {
 
 impl Search<'_> {
     /// The effects that the pressures show, which hardly depend on the joints.
-    fn of_gas(&self, problem: &Problem) -> Result<Vec<Found>, Error> {
+    fn of_gas(&self, problem: &Problem) -> Result<Option<OfGas>, Error> {
         let Some(pressures) = pressures(problem)? else {
-            return Ok(Vec::new());
+            return Ok(None);
         };
         (self.say)("looking at the pressures", f64::NAN);
         let nominal = vec![0.0; pressures.parameters.len()];
-        let model = Model::fit(pressures, &nominal, self.effort, self.watch)?;
+        let before = Model::fit(pressures, &nominal, self.effort, self.watch)?;
         let candidates = |problem: &Problem| {
             let mut all = Candidate::all(problem);
             all.retain(Candidate::is_of_gas);
             all
         };
-        Ok(self.while_they_earn(model, GAS_NOISE, MOST, candidates)?.1)
+        let (after, found, refused) =
+            self.while_they_earn(before.clone(), GAS_NOISE, MOST, candidates)?;
+        Ok(Some(OfGas {
+            before,
+            after,
+            found,
+            refused,
+        }))
+    }
+
+    /// The calibrated machine, the same with the effects of the gas and what else is missing, all
+    /// of these effects, and what was refused.
+    fn of_all(
+        &self,
+        problem: &Problem,
+        mut found: Vec<Found>,
+    ) -> Result<(Model, Model, Vec<Found>, Vec<Tried>), Error> {
+        let mut with_gas = problem.clone();
+        for gas in &found {
+            with_gas = gas.candidate.added(&with_gas, &gas.values)?;
+        }
+        (self.say)("calibrating", f64::NAN);
+        let model = self.searched(&with_gas, None, CALIBRATION)?;
+        let baseline = match found.is_empty() {
+            true => model.clone(),
+            false => {
+                (self.say)("calibrating without an effect", model.fitted);
+                let nominal = vec![0.0; problem.parameters.len()];
+                Model::fit(problem.clone(), &nominal, self.effort, self.watch)?
+            }
+        };
+        let known = shows_pressure(problem);
+        let candidates = |problem: &Problem| {
+            let mut all = Candidate::all(problem);
+            all.retain(|candidate| !known || !candidate.is_of_gas());
+            all
+        };
+        let (model, others, refused) = self.while_they_earn(model, NOISE, MOST, candidates)?;
+        found.extend(others);
+        Ok((baseline, model, found, refused))
     }
 
     /// The problem's machine, calibrated as well as it can be with so many evaluations.
@@ -220,7 +252,9 @@ impl Search<'_> {
             let others = found.iter().enumerate().filter(|(j, _)| *j != i);
             let mut without = problem.clone();
             for (j, other) in others {
-                let values = other.candidate.values(&model, effects(problem) + j);
+                let values = other
+                    .candidate
+                    .values(&model, first_item(problem, &found, j));
                 without = other.candidate.added(&without, &values)?;
             }
             // The others stand at what they were found to be, which is their coordinates' 0.
@@ -238,7 +272,7 @@ impl Search<'_> {
     }
 
     /// The parameters of a model with their bounds.
-    fn bounds(&self, model: &Model) -> Result<Vec<Estimate>, Error> {
+    fn bounds(&self, model: &Model) -> Result<Fit, Error> {
         let settings = FitSettings {
             optimiser: Optimiser::LevenbergMarquardt,
             seed: 0,
@@ -247,7 +281,7 @@ impl Search<'_> {
             start: Some(model.x.clone()),
         };
         let fit = calibrate::calibrate(&model.problem, &settings, |_| (self.watch)())?;
-        Ok(fit.estimates)
+        Ok(fit)
     }
 
     /// The model with one candidate after another until it is at `noise` or none earns its place;
@@ -280,6 +314,7 @@ impl Search<'_> {
                 rivals: others.filter(near).collect(),
                 values: best.candidate.values(&after, effects(&model.problem)),
                 by_run: best.by_run,
+                pressure_rms: after.pressure_rms()?,
                 candidate: best.candidate,
                 evidence: best.evidence,
             });
@@ -287,6 +322,12 @@ impl Search<'_> {
         }
         Ok((model, found, Vec::new()))
     }
+}
+
+/// Index of the first item of the effect `found[which]` in a machine of `problem` that has them all.
+pub fn first_item(problem: &Problem, found: &[Found], which: usize) -> usize {
+    let before = found[..which].iter();
+    effects(problem) + before.map(|f| f.candidate.items().len()).sum::<usize>()
 }
 
 /// How many effects a problem's machine has.

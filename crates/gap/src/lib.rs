@@ -31,7 +31,7 @@ pub use candidate::Candidate;
 pub use decision::{Evidence, Verdict};
 pub use empirical_force::{Force, Law, empirical_force};
 pub use error::Error;
-pub use explain::{Explanation, Found, Stage, Tried, explain};
+pub use explain::{Explanation, Found, Stage, Tried, explain, first_item};
 pub use journal::Journal;
 pub use mains_hum::{Hum, remove_hum};
 pub use missing_force::MissingForce;

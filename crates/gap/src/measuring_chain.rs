@@ -76,10 +76,12 @@ fn found(
             entry,
             place,
             fixed: Vec::new(),
+            ends: &[],
         },
         values,
         evidence,
         by_run: Vec::new(),
+        pressure_rms: Vec::new(),
         rivals: Vec::new(),
     }
 }

@@ -2,16 +2,30 @@
 
 use crate::error::Error;
 use crate::journal::Journal;
+use crate::pressures::{is_of_pressures, is_pressure};
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
+use calibrate::observation::Observation;
 use calibrate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
+use calibrate::prediction::Prediction;
 use std::ops::ControlFlow;
 
 /// Relative change of the sum of squares at which a rough and a full descent end.
 const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
+/// Share of the range by which a descent starts within a bound.
+const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
 pub(crate) const LOOSE: f64 = 0.01;
+
+/// By how much features may stand elsewhere in a rough look at a problem, rad. Pressures do not ring:
+/// nothing in them is in the way of a descent, and where their valves work counts from the start.
+pub(crate) fn loose(problem: &Problem) -> f64 {
+    match is_of_pressures(problem) {
+        true => 0.0,
+        false => LOOSE,
+    }
+}
 
 /// Asked between evaluations whether to go on.
 pub type Watch<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
@@ -115,10 +129,13 @@ impl Model {
         }
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
         let descents = || {
-            let coarse = Likelihood::coarse(&fitted, LOOSE);
-            let rough = descend(&coarse, start, ROUGH, effort, watch)?;
-            let likelihood = Likelihood::new(&fitted);
-            Ok(descend(&likelihood, &rough.x, FULL, effort, watch)?.x)
+            let mut x = start.to_vec();
+            let loose = loose(&fitted);
+            if loose > 0.0 {
+                let rough = Likelihood::coarse(&fitted, loose);
+                x = descend(&rough, &x, ROUGH, effort, watch)?.x;
+            }
+            Ok(descend(&Likelihood::new(&fitted), &x, FULL, effort, watch)?.x)
         };
         let input = ("fit", &fitted, start, effort.evaluations);
         let x = effort.journal.once(&input, descents)?;
@@ -147,13 +164,52 @@ impl Model {
         runs.zip(self.by_run.iter().copied()).collect()
     }
 
-    /// Schwarz's criterion of `after`, which has the same runs, less that of this model; each line of
-    /// an order counts as two observations.
+    /// Root mean square over the revolution of simulated less recorded pressure in each run that has
+    /// pressures, Pa, as far as their orders are compared.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn pressure_rms(&self) -> Result<Vec<(String, f64)>, Error> {
+        let predictions = Likelihood::new(&self.problem).predictions(&self.x)?;
+        let runs = self.problem.runs.iter().zip(&predictions);
+        let of_run = |(run, shown): (&Observation, &Prediction)| {
+            let channels = run.channels.iter().zip(&shown.lines);
+            let pressures = channels.filter(|(channel, _)| is_pressure(channel));
+            let squares: Vec<f64> = pressures
+                .map(|(channel, shown)| {
+                    let of = |k: &usize| {
+                        let shown = shown.amplitude.get(*k).copied().unwrap_or_default();
+                        let parts = if *k == 0 { 1.0 } else { 2.0 };
+                        (shown - channel.lines.amplitude[*k]).norm_sqr() / parts
+                    };
+                    channel.orders.iter().map(of).sum()
+                })
+                .collect();
+            let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+            (!squares.is_empty()).then(|| (run.id.clone(), mean.sqrt()))
+        };
+        Ok(runs.filter_map(of_run).collect())
+    }
+
+    /// Schwarz's criterion of `after`, which has the same runs, less that of this model.
     pub(crate) fn bic_to(&self, after: &Self) -> f64 {
-        let channels = after.problem.runs.iter().flat_map(|run| &run.channels);
-        let count = channels.map(|c| 2 * c.orders.len()).sum::<usize>() as f64;
+        let count = after.observations();
         let extra = after.x.len() as f64 - self.x.len() as f64;
         count * (after.fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
+    }
+
+    /// Schwarz's criterion with the variance of what is left taken from the residuals themselves,
+    /// n ln σ² + k ln n, per observation: of models that leave more than noise the one with less of
+    /// it is better, unless its misfit is smaller by its number of parameters alone.
+    pub(crate) fn criterion(&self) -> f64 {
+        let count = self.observations();
+        2.0 * self.fitted.ln() + self.x.len() as f64 * count.ln() / count
+    }
+
+    /// Each line of an order counts as two observations.
+    fn observations(&self) -> f64 {
+        let channels = self.problem.runs.iter().flat_map(|run| &run.channels);
+        channels.map(|c| 2 * c.orders.len()).sum::<usize>() as f64
     }
 
     /// The better of two; the first where they are as good.
@@ -176,7 +232,11 @@ fn descend(
 ) -> Result<Progress, Error> {
     let mut stopped = false;
     let bounds = likelihood.bounds();
-    let within = start.iter().zip(&bounds).map(|(x, b)| x.clamp(b[0], b[1]));
+    // A descent within bounds does not leave one that it starts at.
+    let within = start.iter().zip(&bounds).map(|(x, [low, high])| {
+        let margin = INSIDE * (high - low);
+        x.clamp(low + margin, high - margin)
+    });
     let start: Vec<f64> = within.collect();
     let found = levenberg_marquardt(likelihood, &start, change, effort.evaluations, &mut |_| {
         let answer = watch();

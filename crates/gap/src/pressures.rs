@@ -1,8 +1,11 @@
 //! The gas by itself: pressures hardly depend on the joints.
 
 use crate::error::Error;
+use crate::explain::{Found, Tried};
+use crate::model::{Effort, Model};
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
+use calibrate::observation::Observed;
 use serde_json::Value;
 
 /// The same problem with the pressures alone, in a machine of ideal joints, which is simulated much
@@ -17,8 +20,7 @@ pub(crate) fn pressures(problem: &Problem) -> Result<Option<Problem>, Error> {
         .parameters
         .retain(|p| p.is_crank_angle_offset() || p.path.contains("cylinder."));
     for run in &mut clear.runs {
-        run.channels
-            .retain(|channel| channel.column.contains("cylinder_pressure"));
+        run.channels.retain(is_pressure);
     }
     clear.runs.retain(|run| !run.channels.is_empty());
     if clear.runs.is_empty() {
@@ -44,10 +46,58 @@ pub(crate) fn pressures(problem: &Problem) -> Result<Option<Problem>, Error> {
     Ok(Some(ideal))
 }
 
+/// What the pressures by themselves tell.
+pub(crate) struct OfGas {
+    /// The gas without an effect.
+    pub before: Model,
+    /// With those that were found.
+    pub after: Model,
+    /// The effects.
+    pub found: Vec<Found>,
+    /// What was refused at last.
+    pub refused: Vec<Tried>,
+}
+
+impl OfGas {
+    /// The two models with the machine of `problem`, whose joints may be clear, where pressures are
+    /// all that was recorded of it and the gas all that is fitted: nothing else is to be found.
+    pub(crate) fn is_all(&self, problem: &Problem) -> bool {
+        is_of_pressures(problem) && self.before.problem.parameters == problem.parameters
+    }
+
+    /// A model of the gas with the joints and the recordings of `problem`.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub(crate) fn with_joints(
+        model: Model,
+        problem: &Problem,
+        effort: &Effort,
+    ) -> Result<Model, Error> {
+        let mut whole = problem.clone();
+        if let Some(effects) = model.problem.tree.get("effects") {
+            whole.tree["effects"] = effects.clone();
+        }
+        whole.parameters = model.problem.parameters;
+        Model::at(whole, model.x, effort)
+    }
+}
+
+/// Whether a channel is a cylinder's pressure.
+pub(crate) fn is_pressure(channel: &Observed) -> bool {
+    channel.column.contains("cylinder_pressure")
+}
+
 /// Whether a cylinder's pressure was recorded.
 pub(crate) fn shows_pressure(problem: &Problem) -> bool {
     let mut channels = problem.runs.iter().flat_map(|run| &run.channels);
-    channels.any(|channel| channel.column.contains("cylinder_pressure"))
+    channels.any(is_pressure)
+}
+
+/// Whether nothing else was.
+pub(crate) fn is_of_pressures(problem: &Problem) -> bool {
+    let mut channels = problem.runs.iter().flat_map(|run| &run.channels);
+    channels.all(is_pressure)
 }
 
 /// Makes every joint of a machine file ideal.

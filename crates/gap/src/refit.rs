@@ -4,6 +4,7 @@ use crate::decision::{NOISE, RIVAL, evidence};
 use crate::error::Error;
 use crate::explain::{Search, Tried};
 use crate::model::{Effort, Model};
+use crate::pressures::is_of_pressures;
 use crate::screening::Screened;
 use rayon::prelude::*;
 
@@ -47,7 +48,7 @@ impl Search<'_> {
             });
             rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
         }
-        rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+        rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
         if rough.first().is_some_and(|(_, best)| best.fitted > NOISE) {
             let later = rough.split_off(rough.len().min(DEEPER));
             let deeper = rough
@@ -55,7 +56,7 @@ impl Search<'_> {
                 .map(|(screened, fitted)| Ok((screened, self.deeper(fitted)?)));
             rough = deeper.collect::<Result<Vec<_>, Error>>()?;
             rough.extend(later);
-            rough.sort_by(|a, b| a.1.fitted.total_cmp(&b.1.fitted));
+            rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
         }
         let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
         let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
@@ -85,7 +86,7 @@ impl Search<'_> {
                 after,
             ));
         }
-        let order = |tried: &(Tried, Model)| tried.0.evidence.misfit[1];
+        let order = |tried: &(Tried, Model)| tried.1.criterion();
         let whole =
             |tried: &&(Tried, Model)| tried.1.problem.runs.len() == model.problem.runs.len();
         let last = tried.iter().take_while(whole).count();
@@ -125,6 +126,7 @@ impl Search<'_> {
                 };
                 from(&near.x, &effort)?
             }
+            None if is_of_pressures(&few.problem) => from(&few.x, self.effort)?,
             // Without the effect the calibration may have gone far astray.
             None => {
                 let nominal = vec![0.0; few.x.len()];

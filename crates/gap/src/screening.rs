@@ -13,7 +13,7 @@
 use crate::candidate::Candidate;
 use crate::error::Error;
 use crate::journal::Journal;
-use crate::model::{LOOSE, Model, Watch};
+use crate::model::{Model, Watch, loose};
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
@@ -43,7 +43,8 @@ pub fn screen(
     journal: &Journal,
     watch: Watch,
 ) -> Result<Vec<Screened>, Error> {
-    let likelihood = Likelihood::coarse(&model.problem, LOOSE);
+    let loose = loose(&model.problem);
+    let likelihood = Likelihood::coarse(&model.problem, loose);
     let residual = DVector::from_vec(likelihood.residuals(&model.x));
     let projector = Projector::new(&likelihood.jacobian(&model.x));
     let base = projector.apply(&residual);
@@ -59,7 +60,7 @@ pub fn screen(
             };
             let mut x = model.x.clone();
             x.resize(added.parameters.len(), 0.0);
-            let there = Likelihood::coarse(&added, LOOSE).residuals(&x);
+            let there = Likelihood::coarse(&added, loose).residuals(&x);
             let change = projector.apply(&(DVector::from_vec(there) - &residual));
             let size = change.norm_squared();
             if size <= 0.0 {

@@ -135,17 +135,26 @@ fn valve_loss_lifts_the_plateaus_by_the_square_of_the_speed_and_costs_its_work()
 #[test]
 fn an_unloaded_cylinder_compresses_what_is_left_and_expands_what_it_reached() {
     let held = 70_f64.to_radians();
-    let law = |held| Law::SuctionUnloading(SuctionUnloading { held });
-    let found = at_angles(ideal(law(held)), &[240.0, 260.0, 275.0], pressure);
+    let law = |held, loss| Law::SuctionUnloading(SuctionUnloading { held, loss });
+    let found = at_angles(ideal(law(held, 0.0)), &[240.0, 260.0, 275.0], pressure);
     let from = distance(PI + held);
     near(found[0], PS, 1e-12);
     for (found, degrees) in found[1..].iter().zip([260.0_f64, 275.0]) {
         let closed = PS * (from / distance(degrees.to_radians())).powf(M);
         near(*found, closed, 1e-12);
     }
+    // A held valve throttles the gas on its way in and on its way back, and then closes later.
+    let loss = 0.1;
+    let found = at_angles(ideal(law(held, loss)), &[90.0, 240.0, 275.0], pressure);
+    for (found, degrees) in found[..2].iter().zip([90.0_f64, 240.0]) {
+        let u = speed(degrees.to_radians());
+        near(*found, PS * (1.0 - loss * u * u.abs()), 1e-12);
+    }
+    let closed = PS * (from / distance(275_f64.to_radians())).powf(M);
+    near(found[2], closed, 1e-12);
     // Held so long that the compression ends below the discharge pressure.
     let held = 140_f64.to_radians();
-    let found = at_angles(ideal(law(held)), &[350.0, 365.0], pressure);
+    let found = at_angles(ideal(law(held, 0.0)), &[350.0, 365.0], pressure);
     let reached = PS * (distance(PI + held) / DEAD).powf(M);
     assert!(reached < PD);
     let compressed = PS * (distance(PI + held) / distance(350_f64.to_radians())).powf(M);
@@ -163,7 +172,7 @@ fn one_end_of_a_cylinder_can_be_unloaded_alone() {
     });
     let held = 60_f64.to_radians();
     machine.effects = vec![Effect {
-        law: Law::SuctionUnloading(SuctionUnloading { held }),
+        law: Law::SuctionUnloading(SuctionUnloading { held, loss: 0.0 }),
         place: Place {
             end: Some(End::Crank),
             ..Place::default()

@@ -32,9 +32,24 @@ impl Sampling {
     /// `length` seconds as `settings` say.
     pub(crate) fn new(settings: &Settings, length: f64) -> Result<Self, Error> {
         let rate = settings.sample_rate;
-        let factor = (settings.inner_rate / rate)
-            .clamp(LEAST_FACTOR, MOST_FACTOR)
-            .ceil();
+        let factor = (settings.inner_rate / rate).clamp(LEAST_FACTOR, MOST_FACTOR);
+        Self::by(factor.ceil(), rate, length)
+    }
+
+    /// The same for these sensors: contacts hardly move the gas, so that pressures by themselves need
+    /// no look at the ringing. Their kinks fall off with the square of the order.
+    pub(crate) fn for_sensors(
+        sensors: &[Sensor],
+        settings: &Settings,
+        length: f64,
+    ) -> Result<Self, Error> {
+        match sensors.iter().all(Sensor::is_of_gas) {
+            true => Self::by(1.0, settings.sample_rate, length),
+            false => Self::new(settings, length),
+        }
+    }
+
+    fn by(factor: f64, rate: f64, length: f64) -> Result<Self, Error> {
         let decimator = Decimator::new(factor as usize).map_err(|source| Error::Sensor {
             column: "all".into(),
             source,

@@ -80,7 +80,7 @@ fn tangents<const N: usize>(
     let enough = period.map_or(settings.revolutions, |period| period + spare);
     let revolutions = settings.revolutions.min(enough);
     let length = f64::from(revolutions) * run.revolution();
-    let sampling = Sampling::new(settings, length)?;
+    let sampling = Sampling::for_sensors(sensors, settings, length)?;
     let mut inner: Vec<Vec<Dual<f64, N>>> = vec![Vec::new(); sensors.len()];
     run.show(sampling.instants(start), |at| {
         for (sensor, inner) in sensors.iter().zip(&mut inner) {

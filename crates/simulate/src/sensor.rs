@@ -17,6 +17,15 @@ impl Sensor {
         sensor.chain.angle_offset = 0.0;
         sensor
     }
+
+    /// Whether it sees the gas or the crank's angle, and filters nothing.
+    pub(crate) fn is_of_gas(&self) -> bool {
+        let gas = matches!(
+            self.measured,
+            Measured::CylinderPressure { .. } | Measured::CrankAngle
+        );
+        gas && self.chain.mounting.is_none() && self.chain.low_pass.is_none()
+    }
 }
 
 /// A quantity that a sensor can see. `throw` is an index into the machine's throws.

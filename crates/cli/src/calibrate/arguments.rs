@@ -92,26 +92,39 @@ enum Law {
     Fitted,
 }
 
+/// The settings that bundles or one settings file state, with this machine file in the place of
+/// theirs; the folder from which their paths start, and their file where there is one.
+///
+/// # Errors
+/// A settings file that is none, or one beside other inputs.
+pub(crate) fn read(
+    input: &[PathBuf],
+    machine: Option<&Path>,
+) -> Result<(Calibration, PathBuf, Option<Document>), Failure> {
+    let is_bundle = |path: &PathBuf| path.is_dir() || Bundle::is_at(path);
+    let (mut settings, base, document) = match input {
+        [file] if !is_bundle(file) => {
+            let (settings, document) = Calibration::read(file)?;
+            let base = file.parent().unwrap_or(Path::new("")).to_owned();
+            (settings, base, Some(document))
+        }
+        bundles => (Calibration::of(bundles.to_vec()), PathBuf::new(), None),
+    };
+    if let Some(machine) = machine {
+        // From here on, and not from the folder of the file.
+        let machine = std::path::absolute(machine);
+        settings.machine = Some(machine.map_err(Failure::input)?);
+    }
+    Ok((settings, base, document))
+}
+
 impl Arguments {
     /// The settings, the folder from which their paths start, and their file where there is one.
     ///
     /// # Errors
     /// A settings file that is none, or one beside other inputs.
     pub(super) fn settings(&self) -> Result<(Calibration, PathBuf, Option<Document>), Failure> {
-        let is_bundle = |path: &PathBuf| path.is_dir() || Bundle::is_at(path);
-        let (mut settings, base, document) = match &self.input[..] {
-            [file] if !is_bundle(file) => {
-                let (settings, document) = Calibration::read(file)?;
-                let base = file.parent().unwrap_or(Path::new("")).to_owned();
-                (settings, base, Some(document))
-            }
-            bundles => (Calibration::of(bundles.to_vec()), PathBuf::new(), None),
-        };
-        if let Some(machine) = &self.machine {
-            // From here on, and not from the folder of the file.
-            let machine = std::path::absolute(machine);
-            settings.machine = Some(machine.map_err(Failure::input)?);
-        }
+        let (mut settings, base, document) = read(&self.input, self.machine.as_deref())?;
         if !self.parameter.is_empty() {
             let paths = self.parameter.iter().cloned();
             settings.parameters = Parameters(paths.map(|path| (path, None)).collect());

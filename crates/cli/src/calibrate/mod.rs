@@ -1,6 +1,6 @@
 //! `crosshead calibrate`: a machine's parameters from recordings of it.
 
-mod arguments;
+pub(crate) mod arguments;
 mod contradiction;
 mod earlier;
 pub mod gas;

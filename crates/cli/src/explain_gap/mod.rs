@@ -2,12 +2,16 @@
 
 pub mod output;
 mod progress;
+mod words;
 
+use crate::calibrate::arguments::read;
 use crate::calibrate::{Settings, pictures, task};
 use crate::{Failure, replay, report};
+use ::calibrate::pressure_gap::pressure_gaps_of;
 use clap::Args;
 use gap::{Effort, Journal};
 use input::calibration::Calibration;
+use input::yaml::Document;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -28,15 +32,19 @@ the catalogue are tried one after another, and those that the recordings show, a
 runs that were held out, are added to the machine file. Stopped with Ctrl-C, the same command goes on
 from what was finished.
 
+A settings file, as crosshead calibrate reads it, says what is calibrated, with its bounds; how that is
+searched is not asked of it. Pressures that were recorded alone explain the gas.
+
 Examples:
   crosshead explain-gap my-bundle --out explained
+  crosshead explain-gap calibration.yaml --out explained
   crosshead explain-gap my-bundle --machine machine.yaml --out explained
 
 Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
-    /// Folder of recordings
-    #[arg(value_name = "BUNDLE")]
-    bundle: PathBuf,
+    /// Folder of recordings; or a settings file with one (crosshead schema calibration)
+    #[arg(value_name = "BUNDLE|SETTINGS.yaml")]
+    input: PathBuf,
     /// The machine file [default: the machine section of the bundle]
     #[arg(long, value_name = "MACHINE.yaml")]
     machine: Option<PathBuf>,
@@ -66,22 +74,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             out.join(output::RESULTS).display()
         )));
     }
-    let mut calibration = Calibration::of(vec![arguments.bundle.clone()]);
-    if let Some(machine) = &arguments.machine {
-        calibration.machine = Some(std::path::absolute(machine).map_err(Failure::input)?);
-    }
+    let input = std::slice::from_ref(&arguments.input);
+    let (mut calibration, base, document) = read(input, arguments.machine.as_deref())?;
     if !arguments.hold_out.is_empty() {
         calibration.hold_out = Some(arguments.hold_out.clone());
     }
-    calibration.leave_out = arguments.leave_out.clone();
+    if !arguments.leave_out.is_empty() {
+        calibration.leave_out = arguments.leave_out.clone();
+    }
     let cancel = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&cancel);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
-    let results = into_folder(&calibration, out, &cancel)?;
+    let asked = Asked {
+        calibration: &calibration,
+        base: &base,
+        document: document.as_ref(),
+    };
+    let results = into_folder(&asked, out, &cancel)?;
     output::summary(&results);
     println!("{}", out.join(output::MACHINE).display());
     println!("{}", out.join(report::PAGE).display());
     Ok(())
+}
+
+/// What is to be explained.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// The recordings and what is calibrated.
+    pub calibration: &'a Calibration,
+    /// The folder from which its paths start.
+    pub base: &'a Path,
+    /// The file that it was read from, if it was.
+    pub document: Option<&'a Document>,
 }
 
 /// Explains the gap between a machine and the recordings of one bundle into the folder `out`, and gives
@@ -89,16 +113,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 ///
 /// # Errors
 /// As [`run`]; [`Failure::Work`] where it was stopped.
-pub fn into_folder(
-    calibration: &Calibration,
-    out: &Path,
-    cancel: &AtomicBool,
-) -> Result<Value, Failure> {
+pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Value, Failure> {
+    let Asked {
+        calibration,
+        base,
+        document,
+    } = *asked;
+    let [bundle] = calibration.bundles() else {
+        return Err(Failure::input(format!(
+            "explain-gap takes one bundle, not {}",
+            calibration.bundles().len()
+        )));
+    };
+    let bundle = base.join(bundle);
     let mut task = task(&Settings {
         calibration,
-        base: Path::new(""),
+        base,
         machine: None,
-        locate: &|error| error,
+        locate: &|error| match document {
+            Some(document) => document.locate(error),
+            None => error,
+        },
     })?;
     let watch = || match cancel.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
@@ -122,22 +157,23 @@ pub fn into_folder(
     );
     bar.finish();
     let explanation = explanation.map_err(Failure::work)?;
-    let baseline = &explanation.baseline;
-    let baseline = baseline
-        .problem
-        .fitted(&baseline.x)
-        .map_err(Failure::work)?;
-    let explained = output::tree(&explanation, |name| name != "mains_hum")?;
-    let bundle = &calibration.bundles()[0];
-    for (folder, tree) in [("simulated", explained), ("baseline", baseline)] {
-        let folder = out.join(folder);
-        replay::into_folder(bundle, tree, &calibration.leave_out, &folder)?;
-    }
     let [before, after] = [&explanation.baseline, &explanation.explained];
+    let baseline = before.problem.fitted(&before.x).map_err(Failure::work)?;
+    let explained = output::tree(&explanation, |name| name != "mains_hum")?;
+    for (folder, tree, model) in [
+        ("simulated", explained, after),
+        ("baseline", baseline, before),
+    ] {
+        let conditions = |run: &str| model.problem.conditions(run, &model.x);
+        let folder = out.join(folder);
+        replay::into_folder(&bundle, tree, conditions, &calibration.leave_out, &folder)?;
+    }
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
     let compared = ::calibrate::compare_models(models, &task.runs).map_err(Failure::work)?;
     pictures::write(out, &compared)?;
-    let results = output::write(out, &explanation, &effort, start.elapsed().as_secs_f64())?;
+    let gas = pressure_gaps_of(models, &task.runs).map_err(Failure::work)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let results = output::write(out, &explanation, &effort, &gas, seconds)?;
     report::write_gap(out, &out.join(report::PAGE))?;
     std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;
     Ok(results)

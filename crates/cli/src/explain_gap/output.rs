@@ -1,8 +1,10 @@
 //! What an explanation leaves: `gap.json`, `machine.yaml`, and a summary.
 
+use super::words;
 use crate::Failure;
 use crate::calibrate::output::write_file;
 use calibrate::fit::Estimate;
+use calibrate::pressure_gap::PressureGap;
 use gap::{Candidate, Effort, Explanation, Found, Tried};
 use input::MachineFile;
 use serde_json::{Map, Value, json};
@@ -24,6 +26,7 @@ pub fn write(
     folder: &Path,
     explanation: &Explanation,
     effort: &Effort,
+    gas: &[PressureGap],
     seconds: f64,
 ) -> Result<Value, Failure> {
     let model = &explanation.explained;
@@ -39,30 +42,30 @@ pub fn write(
         before_map.map_err(Failure::work)?,
         after_map.map_err(Failure::work)?,
     ];
-    let numbered = explanation.found.iter().enumerate();
-    let first = before.problem.tree["effects"]
-        .as_array()
-        .map_or(0, Vec::len);
-    let effects: Vec<Value> = numbered
-        .map(|(i, found)| effect((first + i, found), &explanation.estimates))
-        .chain(
-            explanation
-                .chain
-                .iter()
-                .map(|found| effect((usize::MAX, found), &[])),
-        )
-        .collect();
+    let found = &explanation.found;
+    let numbered = found.iter().enumerate().flat_map(|(i, f)| {
+        let first = gap::first_item(&before.problem, found, i);
+        effect(f, Some(first), &explanation.estimates)
+    });
+    let chain = explanation.chain.iter().flat_map(|f| effect(f, None, &[]));
+    let effects: Vec<Value> = numbered.chain(chain).collect();
     let runs: Map<String, Value> = (0..model.problem.runs.len())
         .map(|i| {
             let id = model.problem.runs[i].id.clone();
+            let rms = |which: usize| {
+                let own: Vec<&PressureGap> = gas.iter().filter(|gap| gap.run == id).collect();
+                pressure_rms(&own, which)
+            };
             let content = json!({
                 "held_out": effort.held_out.contains(&id),
                 "before": before.by_run[i],
                 "after": model.by_run[i],
+                "pressure_rms_pa": {"before": rms(0), "after": rms(1)},
             });
             (id, content)
         })
         .collect();
+    let all: Vec<&PressureGap> = gas.iter().collect();
     let results = json!({
         "verdict": explanation.verdict,
         "effects": effects,
@@ -75,7 +78,13 @@ pub fn write(
             "after": model.fitted,
             "heldout_before": before.held_out,
             "heldout_after": model.held_out,
+            "pressure_rms_pa": {
+                "before": pressure_rms(&all, 0),
+                "after": pressure_rms(&all, 1),
+            },
         },
+        "notes": words::notes(explanation, effort, gas),
+        "parameters": parameters(explanation),
         "where": gap::places(&maps[0], PLACES),
         "scaling": gap::scaling(before, &maps[0]).map_err(Failure::work)?,
         "heldout_runs": effort.held_out,
@@ -112,38 +121,94 @@ pub fn tree(explanation: &Explanation, keep: impl Fn(&str) -> bool) -> Result<Va
     Ok(tree)
 }
 
-fn effect((index, found): (usize, &Found), estimates: &[Estimate]) -> Value {
-    let entry = found.candidate.entry;
+/// Root mean square of simulated less recorded pressure over channels, Pa: before (0) or after (1);
+/// none without a channel.
+fn pressure_rms(gaps: &[&PressureGap], which: usize) -> Option<f64> {
+    let squares = gaps.iter().map(|gap| gap.rms()[which].powi(2));
+    (!gaps.is_empty()).then(|| (squares.sum::<f64>() / gaps.len() as f64).sqrt())
+}
+
+fn by_name(values: &[(String, f64)]) -> Value {
+    let values = values
+        .iter()
+        .map(|(name, value)| (name.clone(), json!(value)));
+    values.collect::<Map<_, _>>().into()
+}
+
+/// What was fitted with what is known of it, the parameters of effects included.
+fn parameters(explanation: &Explanation) -> Value {
+    let of = |estimate: &Estimate| {
+        let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
+        let content = json!({
+            "value": estimate.value,
+            "low": low,
+            "high": high,
+            "nominal": estimate.parameter.nominal,
+            "identifiable": estimate.interval.is_some(),
+            "at_bound": estimate.at_bound(),
+        });
+        (estimate.parameter.path.clone(), content)
+    };
+    let all = explanation.estimates.iter().map(of);
+    all.collect::<Map<_, _>>().into()
+}
+
+/// An effect, once for each item of the machine file's list; `first` is the index of its first one
+/// there.
+fn effect(found: &Found, first: Option<usize>, estimates: &[Estimate]) -> Vec<Value> {
+    let items = found.candidate.items().into_iter().enumerate();
+    let items = items.map(|(i, (item, value))| {
+        let index = first.map(|first| first + i);
+        of_item(&item, index, &found.values[value..], found, estimates)
+    });
+    items.collect()
+}
+
+fn of_item(
+    item: &Candidate,
+    index: Option<usize>,
+    values: &[f64],
+    found: &Found,
+    estimates: &[Estimate],
+) -> Value {
+    let entry = item.entry;
     let mut parameters = Map::new();
     let mut terms = Vec::new();
-    for (i, parameter) in entry.parameters.iter().enumerate() {
-        if parameter.absent.is_some() && found.candidate.fixed.iter().any(|(f, _)| *f == i) {
+    let mut sentence = entry.sentence.to_owned();
+    for (i, (parameter, value)) in entry.parameters.iter().zip(values).enumerate() {
+        if parameter.absent.is_some() && item.fixed.iter().any(|(f, _)| *f == i) {
             // A term that the law does not have.
             continue;
         }
-        let path = format!("effects.{index}.{}.{}", entry.name, parameter.key);
-        let content = match estimates.iter().find(|e| e.parameter.path == path) {
+        let path = index.map(|index| format!("effects.{index}.{}.{}", entry.name, parameter.key));
+        let estimate = estimates
+            .iter()
+            .find(|e| Some(&e.parameter.path) == path.as_ref());
+        let content = match estimate {
             Some(estimate) => {
                 let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
                 json!({"value": estimate.value, "low": low, "high": high})
             }
             // An order is not searched but tried.
-            None => {
-                json!({"value": found.values[i], "low": found.values[i], "high": found.values[i]})
-            }
+            None => json!({"value": value, "low": value, "high": value}),
         };
         terms.push((parameter.key, content["value"].as_f64().unwrap_or(f64::NAN)));
+        if let Some(closes) = words::closing(item, parameter.key, content["value"].as_f64()) {
+            sentence.push_str(&closes);
+        }
         parameters.insert(parameter.key.to_owned(), content);
     }
     json!({
         "effect": entry.name,
-        "label": found.candidate.label(),
-        "throw": found.candidate.throw(),
-        "joint": found.candidate.joint(),
-        "sentence": entry.sentence,
+        "label": item.label(),
+        "throw": item.throw(),
+        "joint": item.joint(),
+        "end": item.end(),
+        "sentence": sentence,
         "parameters": parameters,
         "expression": (entry.name == gap::empirical_force::NAME).then(|| gap::empirical_force::expression(terms)),
         "evidence": found.evidence,
+        "pressure_rms_pa": by_name(&found.pressure_rms),
         "rivals": found.rivals.iter().map(rival).collect::<Vec<_>>(),
     })
 }
@@ -154,6 +219,7 @@ fn rival(tried: &Tried) -> Value {
         "effect": entry.name,
         "throw": tried.candidate.throw(),
         "joint": tried.candidate.joint(),
+        "end": tried.candidate.end(),
         "label": tried.candidate.label(),
         "evidence": tried.evidence,
     })
@@ -165,7 +231,7 @@ pub fn summary(results: &Value) {
     let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     println!("{}", word(&results["verdict"]));
     for effect in results["effects"].as_array().into_iter().flatten() {
-        println!("{}: {}", word(&effect["effect"]), word(&effect["sentence"]));
+        println!("{}: {}", word(&effect["label"]), word(&effect["sentence"]));
         if let Some(expression) = effect["expression"].as_str() {
             println!("  F = {expression}");
         }
@@ -181,13 +247,30 @@ pub fn summary(results: &Value) {
         }
     }
     let gap = &results["gap"];
+    let held_out = match gap["heldout_after"].is_number() {
+        true => format!(
+            "; of runs held out {:.2} before, {:.2} after",
+            number(&gap["heldout_before"]),
+            number(&gap["heldout_after"])
+        ),
+        false => String::new(),
+    };
     println!(
-        "gap: {:.2} before, {:.2} after; of runs held out {:.2} before, {:.2} after; noise is 1",
+        "gap: {:.2} before, {:.2} after{held_out}; noise is 1",
         number(&gap["before"]),
-        number(&gap["after"]),
-        number(&gap["heldout_before"]),
-        number(&gap["heldout_after"])
+        number(&gap["after"])
     );
+    for (run, content) in results["runs"].as_object().into_iter().flatten() {
+        let rms = ["before", "after"].map(|key| content["pressure_rms_pa"][key].as_f64());
+        if let [Some(before), Some(after)] = rms.map(|rms| rms.map(|pa| pa / 1e3)) {
+            println!(
+                "{run}: {before:.1} kPa RMS from the recorded pressure before, {after:.1} after"
+            );
+        }
+    }
+    for note in results["notes"].as_array().into_iter().flatten() {
+        println!("{}", word(note));
+    }
     for rival in results["refused"].as_array().into_iter().flatten() {
         println!(
             "refused: {} {}",

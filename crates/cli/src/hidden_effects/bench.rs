@@ -5,7 +5,8 @@ use super::outcome::{Explained, Hidden, Outcome};
 use super::plan::Case;
 use super::recordings::{Clean, Recorder};
 use super::truth;
-use crate::{Failure, explain_gap};
+use crate::Failure;
+use crate::explain_gap::{self, Asked};
 use input::calibration::Calibration;
 use input::hidden_effects::HiddenEffects;
 use rand::RngExt;
@@ -98,7 +99,12 @@ impl Bench<'_> {
             .write(machine, &made.clean, case.noise, case.number, &bundle)?;
         let start = cpu_seconds();
         let calibration = Calibration::of(vec![bundle.clone()]);
-        let found = explain_gap::into_folder(&calibration, &folder, cancel);
+        let asked = Asked {
+            calibration: &calibration,
+            base: Path::new(""),
+            document: None,
+        };
+        let found = explain_gap::into_folder(&asked, &folder, cancel);
         outcome.cpu_seconds = start.zip(cpu_seconds()).map(|(start, end)| end - start);
         match found.and_then(|results| Explained::of(&results)) {
             Ok(found) => outcome.found = Some(found),

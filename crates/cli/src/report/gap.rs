@@ -65,6 +65,11 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         name: machine_name(machine.to_tree()),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         verdict: text(&content["verdict"]),
+        pressure_rms_pa: {
+            let rms = ["before", "after"].map(|key| gap["pressure_rms_pa"][key].as_f64());
+            rms[0].zip(rms[1]).map(|(before, after)| [before, after])
+        },
+        notes: list(&content["notes"]).iter().map(text).collect(),
         steps,
         effects: effects.iter().map(effect).collect(),
         refused: tried(&content["refused"]),

@@ -201,7 +201,10 @@ pub fn catalogue() -> Vec<Effect> {
             None,
         ),
         at(
-            Law::SuctionUnloading(SuctionUnloading { held: 0.9 }),
+            Law::SuctionUnloading(SuctionUnloading {
+                held: 0.9,
+                loss: 0.1,
+            }),
             None,
             Some(End::Head),
         ),

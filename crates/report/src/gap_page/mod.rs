@@ -19,6 +19,11 @@ pub struct GapPage {
     pub version: String,
     /// `no-gap`, `explained`, `partly-explained` or `unexplained`.
     pub verdict: String,
+    /// Root mean square of simulated less recorded pressure, without the effects and with them, Pa;
+    /// none where no pressure was recorded.
+    pub pressure_rms_pa: Option<[f64; 2]>,
+    /// What must be known to judge the results, in sentences.
+    pub notes: Vec<String>,
     /// The gap as it shrank, the nominal machine first.
     pub steps: Vec<Step>,
     /// The effects, in the order in which they were added.

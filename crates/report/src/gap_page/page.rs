@@ -37,7 +37,7 @@ impl GapPage {
         };
         let view = View {
             page: self,
-            verdict: verdict(self),
+            verdict: format!("{}{}", verdict(self), pressure(self)),
             waterfall: numbered(figures::waterfall(self).into_iter().collect()),
             forces: numbered(figures::forces(self).into_iter().collect()),
             maps: numbered(figures::maps(self)),
@@ -90,6 +90,18 @@ fn verdict(page: &GapPage) -> String {
              explains it."
         ),
     }
+}
+
+/// By how much the pressures are off, in a sentence.
+fn pressure(page: &GapPage) -> String {
+    let Some([before, after]) = page.pressure_rms_pa.filter(|_| !page.effects.is_empty()) else {
+        return String::new();
+    };
+    let [before, after] = [before, after].map(|pa| text::quantity(pa / 1e3, "kPa"));
+    format!(
+        " The simulated pressure was {before} from the recorded one, root mean square over the revolution, and is {after} from it \
+         now."
+    )
 }
 
 /// What the template asks for, formatted.

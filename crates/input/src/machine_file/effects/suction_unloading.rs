@@ -1,7 +1,7 @@
 //! A suction valve that closes late.
 
 use super::section::{Act, effect};
-use crate::quantity::{Angle, Bound, Quantity};
+use crate::quantity::{Angle, Bound, FromZero, Number, Quantity};
 use mechanism::effects::{self, Law};
 use schemars::Schema;
 
@@ -24,12 +24,16 @@ effect! {
     "The suction valve closes late, or is held open: part of the gas is pushed back before the compression starts." {
         /// Crank angle after the dead centre at which the valve closes.
         held: Quantity<Angle, OnTheStroke>, 0.02 to 2.5, start 0.5, absent 0.0;
+        /// Loss coefficient of the valve while it is held; 0 where it is left out.
+        loss: Number<FromZero>, 0.002 to 0.5, start 0.05, absent 0.0;
     }
 }
 
 impl Act for SuctionUnloading {
     fn law(&self) -> Option<Law> {
-        let held = self.held();
-        Some(Law::SuctionUnloading(effects::SuctionUnloading { held }))
+        Some(Law::SuctionUnloading(effects::SuctionUnloading {
+            held: self.held(),
+            loss: self.loss(),
+        }))
     }
 }
