@@ -127,7 +127,9 @@ fn pressure_rms(gaps: &[&PressureGap], which: usize) -> Option<f64> {
 }
 
 fn by_name(values: &[(String, f64)]) -> Value {
-    let values = values.iter().map(|(name, value)| (name.clone(), json!(value)));
+    let values = values
+        .iter()
+        .map(|(name, value)| (name.clone(), json!(value)));
     values.collect::<Map<_, _>>().into()
 }
 
@@ -250,7 +252,9 @@ pub fn summary(results: &Value) {
     for (run, content) in results["runs"].as_object().into_iter().flatten() {
         let rms = ["before", "after"].map(|key| content["pressure_rms_pa"][key].as_f64());
         if let [Some(before), Some(after)] = rms.map(|rms| rms.map(|pa| pa / 1e3)) {
-            println!("{run}: {before:.1} kPa RMS from the recorded pressure before, {after:.1} after");
+            println!(
+                "{run}: {before:.1} kPa RMS from the recorded pressure before, {after:.1} after"
+            );
         }
     }
     for note in results["notes"].as_array().into_iter().flatten() {

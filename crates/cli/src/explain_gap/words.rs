@@ -23,13 +23,14 @@ pub fn notes(explanation: &Explanation, effort: &Effort, gas: &[PressureGap]) ->
     }
     notes.extend(gas.iter().filter_map(together));
     notes.extend(correlated(explanation));
-    let untold = explanation.estimates.iter().filter(|e| e.interval.is_none());
-    notes.extend(untold.map(|estimate| {
-        format!(
-            "{} is not told by the recordings.",
-            estimate.parameter.path
-        )
-    }));
+    let untold = explanation
+        .estimates
+        .iter()
+        .filter(|e| e.interval.is_none());
+    notes.extend(
+        untold
+            .map(|estimate| format!("{} is not told by the recordings.", estimate.parameter.path)),
+    );
     notes
 }
 
