@@ -65,6 +65,9 @@ impl Candidate {
         let mut all = Vec::new();
         for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
             for place in places(entry, &throws, both_ends) {
+                if is_series(entry) && recorded(problem, &place) == Some(1) {
+                    continue;
+                }
                 let own = both_ends
                     && OWN_AT_EACH.contains(&entry.name)
                     && place.iter().all(|(key, _)| *key != EITHER);
@@ -366,6 +369,28 @@ fn tells_ends_apart(problem: &Problem) -> bool {
         return true;
     };
     pressures.any(|other| other.contains("crank_end") != first.contains("crank_end"))
+}
+
+/// Whether it is a term of a Fourier series of the gas: to one recording of one chamber that fits
+/// whatever there is while a valve is open, and says nothing.
+fn is_series(entry: &Entry) -> bool {
+    GAS.contains(&entry.name) && entry.parameters.iter().any(|p| p.whole)
+}
+
+/// How many recordings of chambers at a place there are; none where no pressure was recorded.
+fn recorded(problem: &Problem, place: &[(&'static str, String)]) -> Option<usize> {
+    let columns = problem.runs.iter().flat_map(|run| &run.channels);
+    let columns = columns.map(|channel| channel.column.as_str());
+    let pressures = columns.filter(|column| column.contains("cylinder_pressure"));
+    let here = |column: &str| {
+        place.iter().all(|(key, word)| match *key {
+            EITHER => column.contains("crank_end") == (word == "crank"),
+            "throw" => column.starts_with(&format!("{word}.")),
+            _ => true,
+        })
+    };
+    let all: Vec<bool> = pressures.map(here).collect();
+    (!all.is_empty()).then(|| all.iter().filter(|here| **here).count())
 }
 
 /// What an effect of the machine at the same place tells already, at the value where it vanishes.

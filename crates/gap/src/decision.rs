@@ -12,6 +12,9 @@ pub(crate) const GAS_NOISE: f64 = 2.0;
 pub const EXPLAINED: f64 = 1.5;
 /// Candidates whose misfit is within this factor of the best one's are its rivals.
 pub(crate) const RIVAL: f64 = 3.0;
+/// The same where the best one leaves more than noise: what is left is then other physics, which
+/// every candidate leaves.
+const RIVAL_ABOVE_NOISE: f64 = 1.5;
 /// An effect earns its place where it takes this share of the misfit, squared above the noise, of
 /// fitted and of held-out runs.
 pub(crate) const EARNED: f64 = 0.3;
@@ -57,6 +60,14 @@ pub(crate) fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
         misfit: [before.fitted, after.fitted],
         heldout_misfit: held_out.map(|(before, after)| [before, after]),
         delta_bic: before.bic_to(after),
+    }
+}
+
+/// The misfit up to which a candidate is a rival of the best one, which has `least`.
+pub(crate) fn rival(least: f64) -> f64 {
+    match least > EXPLAINED {
+        true => RIVAL_ABOVE_NOISE * least,
+        false => RIVAL * least,
     }
 }
 

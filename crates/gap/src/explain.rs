@@ -1,7 +1,7 @@
 //! The workflow: effects are added one after another while they earn their place.
 
 use crate::candidate::Candidate;
-use crate::decision::{Evidence, GAS_NOISE, NOISE, RIVAL, Verdict, earns, verdict};
+use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, rival, verdict};
 use crate::error::Error;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
@@ -309,7 +309,7 @@ impl Search<'_> {
                 let refused = std::iter::once(best).chain(others).collect();
                 return Ok((model, found, refused));
             }
-            let near = |tried: &Tried| tried.evidence.misfit[1] < RIVAL * after.fitted;
+            let near = |tried: &Tried| tried.evidence.misfit[1] < rival(after.fitted);
             found.push(Found {
                 rivals: others.filter(near).collect(),
                 values: best.candidate.values(&after, effects(&model.problem)),

@@ -200,9 +200,10 @@ impl Model {
 
     /// Schwarz's criterion with the variance of what is left taken from the residuals themselves,
     /// n ln σ² + k ln n, per observation: of models that leave more than noise the one with less of
-    /// it is better, unless its misfit is smaller by its number of parameters alone.
+    /// it is better, unless its misfit is smaller by its number of parameters alone. A line counts once
+    /// here: what a wrong model leaves is no independent noise.
     pub(crate) fn criterion(&self) -> f64 {
-        let count = self.observations();
+        let count = 0.5 * self.observations();
         2.0 * self.fitted.ln() + self.x.len() as f64 * count.ln() / count
     }
 

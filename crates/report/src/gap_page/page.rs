@@ -69,8 +69,12 @@ fn verdict(page: &GapPage) -> String {
     ) else {
         return String::new();
     };
-    let named: Vec<&str> = page.effects.iter().map(|e| e.label.as_str()).collect();
-    let named = named.join(" and ");
+    let named: Vec<String> = page.effects.iter().map(|e| text::words(&e.label)).collect();
+    let named = match named.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+        _ => named.join(""),
+    };
+    let most = page.effects.first().map_or("", |e| e.sentence.as_str());
     let [before, after] = [first, last].map(|step| size(step.fitted));
     match page.verdict.as_str() {
         "no-gap" => format!(
@@ -78,12 +82,11 @@ fn verdict(page: &GapPage) -> String {
         ),
         "explained" => format!(
             "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with it {after} \
-             times the noise are left."
+             times the noise are left. {most}"
         ),
         "partly-explained" => format!(
-            "The calibrated model missed the recordings by {before} times their noise. {} takes this down to {after}; something is \
-             still missing.",
-            text::capitalised(&named)
+            "The calibrated model missed the recordings by {before} times their noise. {most} Together, {named} take this down to \
+             {after}; something smaller is still missing."
         ),
         _ => format!(
             "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
@@ -104,6 +107,15 @@ fn pressure(page: &GapPage) -> String {
     )
 }
 
+/// The unit in which people read a value of this SI unit, and the factor to it.
+fn usual(unit: &str) -> (f64, &str) {
+    match unit {
+        "rad" => (1_f64.to_degrees(), "deg"),
+        "%" => (100.0, "%"),
+        other => (1.0, other),
+    }
+}
+
 /// What the template asks for, formatted.
 impl View<'_> {
     fn misfit(value: &f64) -> String {
@@ -111,16 +123,22 @@ impl View<'_> {
     }
 
     fn value(parameter: &Parameter) -> String {
-        let value = text::number(parameter.value, 5);
-        match parameter.unit.is_empty() {
+        let (factor, unit) = usual(&parameter.unit);
+        let value = text::number(factor * parameter.value, 4);
+        match unit.is_empty() {
             true => value,
-            false => format!("{value}\u{a0}{}", text::unit(&parameter.unit)),
+            false => format!("{value}\u{a0}{}", text::unit(unit)),
         }
     }
 
     fn interval(parameter: &Parameter) -> String {
         match parameter.interval {
-            Some([low, high]) => format!("{} to {}", text::number(low, 5), text::number(high, 5)),
+            Some([low, high]) if low == high => "not searched".to_owned(),
+            Some(ends) => {
+                let (factor, _) = usual(&parameter.unit);
+                let [low, high] = ends.map(|end| text::number(factor * end, 4));
+                format!("{low} to {high}")
+            }
             None => "not told".to_owned(),
         }
     }
