@@ -38,6 +38,17 @@ pub struct Law {
     pub model: Model,
 }
 
+impl Law {
+    /// Its terms by their keys, with their coefficients, N.
+    pub fn terms(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let index = effects(&self.model.problem) - 1;
+        let values = self.candidate.values(&self.model, index);
+        let parameters = self.candidate.entry.parameters;
+        let free = self.candidate.free().collect::<Vec<_>>().into_iter();
+        free.map(move |i| (parameters[i].key, values[i]))
+    }
+}
+
 /// A force that is missing.
 #[derive(Clone, Debug)]
 pub struct Force {
@@ -139,7 +150,9 @@ pub fn empirical_force(
     let search = Search { effort, watch, say };
     let mut best: Option<(Candidate, Model)> = None;
     for library in libraries(&model.problem) {
-        let dense = search.dense(&few(model, effort), &library)?;
+        let Some(dense) = search.dense(&few(model, effort), &library)? else {
+            continue;
+        };
         let better = |(_, best): &(Candidate, Model)| dense.fitted < best.fitted;
         if best.as_ref().is_none_or(better) {
             best = Some((library, dense));
@@ -167,7 +180,6 @@ impl Search<'_> {
         for _ in 0..ROUNDS {
             let linear = Linearised::at(&fitted_to, &x, library, &values)?;
             let stable = linear.regression.stable(&groups);
-            eprintln!("stable {stable:?}");
             let each = stable.iter().flat_map(|group| &groups[*group]);
             let candidate = library.restricted(&each.copied().collect::<Vec<_>>());
             if stable.is_empty() {
@@ -185,7 +197,6 @@ impl Search<'_> {
             from.resize(added.parameters.len(), 0.0);
             (self.say)("fitting a law of the force", dense.fitted);
             let after = Model::fit(added, &from, self.effort, self.watch)?;
-            eprintln!("refit {:.3} {:?}", after.fitted, after.held_out);
             x = after.x[..model.x.len()].to_vec();
             values = candidate.values(&after, index);
             chosen = Some((candidate, after));
@@ -193,13 +204,17 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// A few runs fitted with all terms of the library.
-    fn dense(&self, few: &Model, library: &Candidate) -> Result<Model, Error> {
+    /// A few runs fitted with all terms of the library that they show; none where they show none.
+    fn dense(&self, few: &Model, library: &Candidate) -> Result<Option<Model>, Error> {
         let nothing = vec![0.0; library.entry.parameters.len()];
         let nominal = vec![0.0; few.x.len()];
         (self.say)("estimating the force", few.fitted);
         let linear = Linearised::at(&few.problem, &nominal, library, &nothing)?;
-        let library = library.restricted(&linear.seen());
+        let seen = linear.seen();
+        if seen.is_empty() {
+            return Ok(None);
+        }
+        let library = library.restricted(&seen);
         let added = library.added(&few.problem, &linear.values)?;
         let effort = Effort {
             evaluations: DENSE,
@@ -211,11 +226,10 @@ impl Search<'_> {
             Model::fit(added.clone(), &x, &effort, self.watch)
         };
         let fitted = from(&nominal)?;
-        eprintln!("dense nominal {:.3}", fitted.fitted);
         // Without the force the calibration may have gone far astray, and often has.
         match fitted.fitted < NOISE {
-            true => Ok(fitted),
-            false => Ok(fitted.better(from(&few.x)?)),
+            true => Ok(Some(fitted)),
+            false => Ok(Some(fitted.better(from(&few.x)?))),
         }
     }
 
@@ -247,11 +261,10 @@ impl Search<'_> {
             let Some(law) = force.law else {
                 continue;
             };
-            let closes = matches!(
-                verdict(baseline, &law.model, effects.len() + 1),
-                Verdict::Explained | Verdict::PartlyExplained
-            );
-            if !(closes && earns(&start, &law.model) && earns(&model, &law.model)) {
+            let verdict = verdict(baseline, &law.model, effects.len() + 1);
+            let closes = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
+            let predicts = law.model.held_out.is_some() && earns(&start, &law.model);
+            if !(closes && predicts && earns(&model, &law.model)) {
                 continue;
             }
             let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
@@ -265,6 +278,9 @@ impl Search<'_> {
                 rivals: Vec::new(),
             });
             (model, found) = (law.model, effects);
+            if verdict == Verdict::Explained {
+                break;
+            }
         }
         Ok((model, found, missing))
     }

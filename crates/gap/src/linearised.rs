@@ -94,10 +94,10 @@ impl Linearised {
         })
     }
 
-    /// The terms that change anything.
+    /// The terms that change more than the noise within their priors.
     pub fn seen(&self) -> Vec<usize> {
         let columns = self.regression.terms.column_iter().enumerate();
-        let seen = columns.filter(|(_, column)| column.norm_squared() > 0.0);
+        let seen = columns.filter(|(_, column)| column.norm_squared() > 1.0);
         seen.map(|(i, _)| i).collect()
     }
 
