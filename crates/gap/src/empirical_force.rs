@@ -14,10 +14,11 @@ use crate::error::Error;
 use crate::explain::{Found, Search, effects};
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
-use crate::model::{Effort, Model, Watch};
+use crate::model::{Effort, LOOSE, Model, Watch, descend};
 use crate::pressures::shows_pressure;
 use crate::refit::few;
 use calibrate::Problem;
+use calibrate::likelihood::Likelihood;
 use input::effects::entry;
 
 /// The effect's name.
@@ -26,6 +27,8 @@ pub const NAME: &str = "empirical_force";
 pub(crate) const MOST: usize = 3;
 /// Most evaluations of the fit with all terms.
 const DENSE: u64 = 400;
+/// Relative change of its sum of squares at which it ends.
+const CHANGE: f64 = 1e-3;
 /// Rounds in which terms may still be exchanged.
 const ROUNDS: usize = 4;
 
@@ -148,12 +151,12 @@ pub fn empirical_force(
     say: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Option<Force>, Error> {
     let search = Search { effort, watch, say };
-    let mut best: Option<(Candidate, Model)> = None;
+    let mut best: Option<(Candidate, Dense)> = None;
     for library in libraries(&model.problem) {
         let Some(dense) = search.dense(&few(model, effort), &library)? else {
             continue;
         };
-        let better = |(_, best): &(Candidate, Model)| dense.fitted < best.fitted;
+        let better = |(_, best): &(Candidate, Dense)| dense.model.fitted < best.model.fitted;
         if best.as_ref().is_none_or(better) {
             best = Some((library, dense));
         }
@@ -161,18 +164,25 @@ pub fn empirical_force(
     let Some((library, dense)) = best else {
         return Ok(None);
     };
-    let missing = missing_force(&dense, &model.problem.runs)?;
+    let missing = missing_force(&dense.model, &model.problem.runs)?;
     let law = search.law(model, &library, dense)?;
     Ok(Some(Force { missing, law }))
 }
 
+/// A few runs, fitted with all terms that they show.
+struct Dense {
+    model: Model,
+    /// The values of the effect's parameters, SI.
+    values: Vec<f64>,
+}
+
 impl Search<'_> {
     /// The law of the force that was estimated with all terms of a library.
-    fn law(&self, model: &Model, library: &Candidate, dense: Model) -> Result<Option<Law>, Error> {
+    fn law(&self, model: &Model, library: &Candidate, dense: Dense) -> Result<Option<Law>, Error> {
         let groups = groups(library.entry);
         let index = effects(&model.problem);
-        let mut x = dense.x[..model.x.len()].to_vec();
-        let mut values = library.values(&dense, index);
+        let mut x = dense.model.x[..model.x.len()].to_vec();
+        let mut values = dense.values;
         let fitted_to = model
             .problem
             .with_runs(|run| !self.effort.held_out.contains(&run.id));
@@ -195,7 +205,7 @@ impl Search<'_> {
             let added = candidate.added(&model.problem, &start)?;
             let mut from = x;
             from.resize(added.parameters.len(), 0.0);
-            (self.say)("fitting a law of the force", dense.fitted);
+            (self.say)("fitting a law of the force", dense.model.fitted);
             let after = Model::fit(added, &from, self.effort, self.watch)?;
             x = after.x[..model.x.len()].to_vec();
             values = candidate.values(&after, index);
@@ -205,7 +215,7 @@ impl Search<'_> {
     }
 
     /// A few runs fitted with all terms of the library that they show; none where they show none.
-    fn dense(&self, few: &Model, library: &Candidate) -> Result<Option<Model>, Error> {
+    fn dense(&self, few: &Model, library: &Candidate) -> Result<Option<Dense>, Error> {
         let nothing = vec![0.0; library.entry.parameters.len()];
         let nominal = vec![0.0; few.x.len()];
         (self.say)("estimating the force", few.fitted);
@@ -220,17 +230,24 @@ impl Search<'_> {
             evaluations: DENSE,
             ..self.effort.clone()
         };
+        // The regression that follows looks at the coarse features too.
+        let likelihood = Likelihood::coarse(&added, LOOSE);
         let from = |x: &[f64]| {
             let mut x = x.to_vec();
             x.resize(added.parameters.len(), 0.0);
-            Model::fit(added.clone(), &x, &effort, self.watch)
+            descend(&likelihood, &x, CHANGE, &effort, self.watch)
         };
-        let fitted = from(&nominal)?;
+        let mut fitted = from(&nominal)?;
         // Without the force the calibration may have gone far astray, and often has.
-        match fitted.fitted < NOISE {
-            true => Ok(Some(fitted)),
-            false => Ok(Some(fitted.better(from(&few.x)?))),
+        if fitted.misfit() > NOISE {
+            let other = from(&few.x)?;
+            if other.cost < fitted.cost {
+                fitted = other;
+            }
         }
+        let model = Model::at(added, fitted.x, self.effort)?;
+        let values = library.values(&model, effects(&few.problem));
+        Ok(Some(Dense { model, values }))
     }
 
     /// The model with an empirical force in place of the effects that were found beside the gas, or

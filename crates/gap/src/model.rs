@@ -163,7 +163,8 @@ impl Model {
     }
 }
 
-fn descend(
+/// A descent from `start`, until a step changes the sum of squares by less than `change`.
+pub(crate) fn descend(
     likelihood: &Likelihood,
     start: &[f64],
     change: f64,
