@@ -14,11 +14,10 @@ use crate::error::Error;
 use crate::explain::{Found, Search, effects};
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
-use crate::model::{Effort, LOOSE, Model, Watch, descend};
+use crate::model::{Effort, Model, Watch};
 use crate::pressures::shows_pressure;
 use crate::refit::few;
 use calibrate::Problem;
-use calibrate::likelihood::Likelihood;
 use input::effects::entry;
 
 /// The effect's name.
@@ -27,8 +26,6 @@ pub const NAME: &str = "empirical_force";
 pub(crate) const MOST: usize = 3;
 /// Most evaluations of the fit with all terms.
 const DENSE: u64 = 400;
-/// Relative change of its sum of squares at which it ends.
-const CHANGE: f64 = 1e-3;
 /// Rounds in which terms may still be exchanged.
 const ROUNDS: usize = 4;
 
@@ -230,22 +227,16 @@ impl Search<'_> {
             evaluations: DENSE,
             ..self.effort.clone()
         };
-        // The regression that follows looks at the coarse features too.
-        let likelihood = Likelihood::coarse(&added, LOOSE);
         let from = |x: &[f64]| {
             let mut x = x.to_vec();
             x.resize(added.parameters.len(), 0.0);
-            descend(&likelihood, &x, CHANGE, &effort, self.watch)
+            Model::fit(added.clone(), &x, &effort, self.watch)
         };
-        let mut fitted = from(&nominal)?;
+        let mut model = from(&nominal)?;
         // Without the force the calibration may have gone far astray, and often has.
-        if fitted.misfit() > NOISE {
-            let other = from(&few.x)?;
-            if other.cost < fitted.cost {
-                fitted = other;
-            }
+        if model.fitted > NOISE {
+            model = model.better(from(&few.x)?);
         }
-        let model = Model::at(added, fitted.x, self.effort)?;
         let values = library.values(&model, effects(&few.problem));
         Ok(Some(Dense { model, values }))
     }

@@ -163,8 +163,7 @@ impl Model {
     }
 }
 
-/// A descent from `start`, until a step changes the sum of squares by less than `change`.
-pub(crate) fn descend(
+fn descend(
     likelihood: &Likelihood,
     start: &[f64],
     change: f64,

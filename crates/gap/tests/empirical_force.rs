@@ -15,14 +15,16 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 const COLUMN: &str = "crosshead_acceleration_m_s2";
-const ORDERS: usize = 50;
+const ORDERS: usize = 60;
 /// Standard deviation of a line's noise, m/s²: a few ten thousandths of the greatest line.
 const NOISE: f64 = 0.15;
 /// Runs: names, speeds and discharge pressures.
-const RUNS: [(&str, f64, &str); 3] = [
+const RUNS: [(&str, f64, &str); 5] = [
     ("a", 350.0, "0.4 MPa"),
-    ("b", 560.0, "0.35 MPa"),
+    ("b", 600.0, "0.4 MPa"),
     ("c", 480.0, "0.3 MPa"),
+    ("d", 420.0, "0.5 MPa"),
+    ("e", 540.0, "0.35 MPa"),
 ];
 
 /// The single-stage machine with 0.1 mm at the small end.
@@ -107,29 +109,31 @@ fn recorded(effects: &Value, seed: u64) -> Vec<Observation> {
 }
 
 #[test]
+#[ignore = "takes some minutes without optimisation"]
 fn a_force_of_no_effect_is_found_with_its_law() {
-    let hidden = json!([{"empirical_force": {"velocity_sign": "-150 N"}}]);
+    let hidden = json!([{"empirical_force": {"velocity_sign": "-200 N"}}]);
     let problem = problem(machine(&json!([])), recorded(&hidden, 1));
     let effort = Effort {
-        held_out: vec!["c".into()],
+        held_out: vec!["d".into()],
         evaluations: 120,
     };
     let watch = || ControlFlow::Continue(());
     let nominal = vec![0.0; problem.parameters.len()];
-    let model = Model::at(problem, nominal, &effort).unwrap();
+    let model = Model::fit(problem, &nominal, &effort, &watch).unwrap();
+    assert!(model.fitted > 10.0, "{}", model.fitted);
     let found = empirical_force(&model, &effort, &watch, &|_, _| ()).unwrap();
     let found = found.unwrap();
     let law = found.law.unwrap();
     let keys: Vec<&str> = law.terms().map(|(key, _)| key).collect();
     assert_eq!(keys, ["velocity_sign"]);
     let (_, coefficient) = law.terms().next().unwrap();
-    assert!((coefficient + 150.0).abs() < 1.0, "{coefficient}");
+    assert!((coefficient + 200.0).abs() < 1.0, "{coefficient}");
     for misfit in [law.model.fitted, law.model.held_out.unwrap()] {
         assert!((0.8..1.15).contains(&misfit), "{misfit}");
     }
     // Against the motion, which is away from the head in the first half of the revolution.
     for missing in &found.missing {
-        assert!((missing.force[18] - 150.0).abs() < 30.0, "{missing:?}");
-        assert!((missing.force[54] + 150.0).abs() < 30.0, "{missing:?}");
+        assert!((missing.force[18] - 200.0).abs() < 30.0, "{missing:?}");
+        assert!((missing.force[54] + 200.0).abs() < 30.0, "{missing:?}");
     }
 }
