@@ -15,7 +15,7 @@ use crate::explain::{Found, Search, effects};
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
 use crate::model::{Effort, Model, Watch};
-use crate::pressures::shows_pressure;
+use crate::pressures::{is_of_pressures, shows_pressure};
 use crate::refit::few;
 use calibrate::Problem;
 use input::effects::entry;
@@ -36,6 +36,17 @@ pub struct Law {
     pub candidate: Candidate,
     /// The model with it.
     pub model: Model,
+}
+
+impl Law {
+    /// Its terms by their keys, with their coefficients, N.
+    pub fn terms(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let index = effects(&self.model.problem) - 1;
+        let values = self.candidate.values(&self.model, index);
+        let parameters = self.candidate.entry.parameters;
+        let free = self.candidate.free().collect::<Vec<_>>().into_iter();
+        free.map(move |i| (parameters[i].key, values[i]))
+    }
 }
 
 /// A force that is missing.
@@ -138,10 +149,12 @@ pub fn empirical_force(
     say: &(dyn Fn(&str, f64) + Sync),
 ) -> Result<Option<Force>, Error> {
     let search = Search { effort, watch, say };
-    let mut best: Option<(Candidate, Model)> = None;
+    let mut best: Option<(Candidate, Dense)> = None;
     for library in libraries(&model.problem) {
-        let dense = search.dense(&few(model, effort), &library)?;
-        let better = |(_, best): &(Candidate, Model)| dense.fitted < best.fitted;
+        let Some(dense) = search.dense(&few(model, effort), &library)? else {
+            continue;
+        };
+        let better = |(_, best): &(Candidate, Dense)| dense.model.fitted < best.model.fitted;
         if best.as_ref().is_none_or(better) {
             best = Some((library, dense));
         }
@@ -149,18 +162,25 @@ pub fn empirical_force(
     let Some((library, dense)) = best else {
         return Ok(None);
     };
-    let missing = missing_force(&dense, &model.problem.runs)?;
+    let missing = missing_force(&dense.model, &model.problem.runs)?;
     let law = search.law(model, &library, dense)?;
     Ok(Some(Force { missing, law }))
 }
 
+/// A few runs, fitted with all terms that they show.
+struct Dense {
+    model: Model,
+    /// The values of the effect's parameters, SI.
+    values: Vec<f64>,
+}
+
 impl Search<'_> {
     /// The law of the force that was estimated with all terms of a library.
-    fn law(&self, model: &Model, library: &Candidate, dense: Model) -> Result<Option<Law>, Error> {
+    fn law(&self, model: &Model, library: &Candidate, dense: Dense) -> Result<Option<Law>, Error> {
         let groups = groups(library.entry);
         let index = effects(&model.problem);
-        let mut x = dense.x[..model.x.len()].to_vec();
-        let mut values = library.values(&dense, index);
+        let mut x = dense.model.x[..model.x.len()].to_vec();
+        let mut values = dense.values;
         let fitted_to = model
             .problem
             .with_runs(|run| !self.effort.held_out.contains(&run.id));
@@ -168,7 +188,6 @@ impl Search<'_> {
         for _ in 0..ROUNDS {
             let linear = Linearised::at(&fitted_to, &x, library, &values)?;
             let stable = linear.regression.stable(&groups);
-            eprintln!("stable {stable:?}");
             let each = stable.iter().flat_map(|group| &groups[*group]);
             let candidate = library.restricted(&each.copied().collect::<Vec<_>>());
             if stable.is_empty() {
@@ -184,9 +203,8 @@ impl Search<'_> {
             let added = candidate.added(&model.problem, &start)?;
             let mut from = x;
             from.resize(added.parameters.len(), 0.0);
-            (self.say)("fitting a law of the force", dense.fitted);
+            (self.say)("fitting a law of the force", dense.model.fitted);
             let after = Model::fit(added, &from, self.effort, self.watch)?;
-            eprintln!("refit {:.3} {:?}", after.fitted, after.held_out);
             x = after.x[..model.x.len()].to_vec();
             values = candidate.values(&after, index);
             chosen = Some((candidate, after));
@@ -194,13 +212,17 @@ impl Search<'_> {
         Ok(None)
     }
 
-    /// A few runs fitted with all terms of the library.
-    fn dense(&self, few: &Model, library: &Candidate) -> Result<Model, Error> {
+    /// A few runs fitted with all terms of the library that they show; none where they show none.
+    fn dense(&self, few: &Model, library: &Candidate) -> Result<Option<Dense>, Error> {
         let nothing = vec![0.0; library.entry.parameters.len()];
         let nominal = vec![0.0; few.x.len()];
         (self.say)("estimating the force", few.fitted);
         let linear = Linearised::at(&few.problem, &nominal, library, &nothing)?;
-        let library = library.restricted(&linear.seen());
+        let seen = linear.seen();
+        if seen.is_empty() {
+            return Ok(None);
+        }
+        let library = library.restricted(&seen);
         let added = library.added(&few.problem, &linear.values)?;
         let effort = Effort {
             evaluations: DENSE,
@@ -211,13 +233,13 @@ impl Search<'_> {
             x.resize(added.parameters.len(), 0.0);
             Model::fit(added.clone(), &x, &effort, self.watch)
         };
-        let fitted = from(&nominal)?;
-        eprintln!("dense nominal {:.3}", fitted.fitted);
+        let mut model = from(&nominal)?;
         // Without the force the calibration may have gone far astray, and often has.
-        match fitted.fitted < NOISE {
-            true => Ok(fitted),
-            false => Ok(fitted.better(from(&few.x)?)),
+        if model.fitted > NOISE {
+            model = model.better(from(&few.x)?);
         }
+        let values = library.values(&model, effects(&few.problem));
+        Ok(Some(Dense { model, values }))
     }
 
     /// The model with an empirical force in place of the effects that were found beside the gas, or
@@ -230,7 +252,9 @@ impl Search<'_> {
         found: Vec<Found>,
     ) -> Result<(Model, Vec<Found>, Vec<MissingForce>), Error> {
         let explained = verdict(baseline, &model, found.len());
-        if matches!(explained, Verdict::NoGap | Verdict::Explained) {
+        let settled = matches!(explained, Verdict::NoGap | Verdict::Explained);
+        // Pressures do not feel it.
+        if settled || is_of_pressures(problem) {
             return Ok((model, found, Vec::new()));
         }
         let (start, kept) = self.gas_alone(problem, baseline, &model, &found)?;
@@ -248,11 +272,10 @@ impl Search<'_> {
             let Some(law) = force.law else {
                 continue;
             };
-            let closes = matches!(
-                verdict(baseline, &law.model, effects.len() + 1),
-                Verdict::Explained | Verdict::PartlyExplained
-            );
-            if !(closes && earns(&start, &law.model) && earns(&model, &law.model)) {
+            let verdict = verdict(baseline, &law.model, effects.len() + 1);
+            let closes = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
+            let predicts = law.model.held_out.is_some() && earns(&start, &law.model);
+            if !(closes && predicts && earns(&model, &law.model)) {
                 continue;
             }
             let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
@@ -267,6 +290,9 @@ impl Search<'_> {
                 rivals: Vec::new(),
             });
             (model, found) = (law.model, effects);
+            if verdict == Verdict::Explained {
+                break;
+            }
         }
         Ok((model, found, missing))
     }

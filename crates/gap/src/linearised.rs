@@ -94,10 +94,10 @@ impl Linearised {
         })
     }
 
-    /// The terms that change anything.
+    /// The terms that change more than the noise within their priors.
     pub fn seen(&self) -> Vec<usize> {
         let columns = self.regression.terms.column_iter().enumerate();
-        let seen = columns.filter(|(_, column)| column.norm_squared() > 0.0);
+        let seen = columns.filter(|(_, column)| column.norm_squared() > 1.0);
         seen.map(|(i, _)| i).collect()
     }
 
@@ -132,4 +132,93 @@ fn load(problem: &Problem, x: &[f64], library: &Candidate) -> Result<f64, Error>
         }
     }
     Ok(greatest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibrate::observation::Observed;
+    use calibrate::prediction::predict;
+    use calibrate::{CrankMotion, Observation, Parameter};
+    use input::effects::entry;
+    use serde_json::json;
+    use signal::order_lines::OrderLines;
+    use std::path::Path;
+
+    /// The single-stage machine with a loose crosshead pin, and what it shows with a friction of 150 N.
+    fn problem() -> Problem {
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
+        let machine = input::machine_file::read(&path).unwrap();
+        let mut tree = machine.to_tree().clone();
+        tree["joints"]["big_end"]["clearance"] = json!("ideal");
+        tree["joints"]["small_end"]["clearance"] = json!("0.1 mm");
+        let stiffness = Parameter::of(&tree, "joints.small_end.contact.stiffness").unwrap();
+        let mut problem = Problem {
+            parameters: vec![stiffness],
+            tree,
+            runs: Vec::new(),
+            crank: CrankMotion::Driven,
+        };
+        let mut truth = problem.clone();
+        truth.tree["effects"] = json!([{"empirical_force": {"velocity_sign": "-150 N"}}]);
+        for rpm in [400.0, 560.0] {
+            let observed = |lines| Observed {
+                column: "crosshead_acceleration_m_s2".into(),
+                lines,
+                orders: (1..=50).collect(),
+            };
+            let mut run = Observation {
+                id: format!("{rpm} rpm"),
+                settings: vec![("speed".to_owned(), json!(format!("{rpm} rpm")))],
+                crank: mechanism::drive::GivenSpeed {
+                    speed: rpm * PI / 30.0,
+                    fluctuation: Vec::new(),
+                },
+                channels: vec![observed(OrderLines {
+                    amplitude: Vec::new(),
+                    variance: Vec::new(),
+                    revolutions: 30,
+                })],
+            };
+            let shown = predict(&truth, &run, &[0.0]).unwrap();
+            let lines = shown.lines.into_iter().next().unwrap();
+            run.channels = vec![observed(OrderLines {
+                variance: vec![0.02; lines.amplitude.len()],
+                revolutions: 30,
+                ..lines
+            })];
+            problem.runs.push(run);
+        }
+        problem
+    }
+
+    #[test]
+    fn near_a_law_its_term_is_chosen_and_no_other() {
+        let entry = entry("empirical_force").unwrap();
+        let groups = groups(entry);
+        let library = Candidate {
+            entry,
+            place: Vec::new(),
+            fixed: Vec::new(),
+        }
+        .restricted(&groups.concat());
+        let key = |i: usize| entry.parameters[i].key;
+        let term = (0..entry.parameters.len()).find(|i| key(*i) == "velocity_sign");
+        let term = term.unwrap();
+        let mut values = vec![0.0; entry.parameters.len()];
+        // Not quite the truth, and something beside it.
+        values[term] = -146.0;
+        values[1] = 3.0;
+        let linear = Linearised::at(&problem(), &[0.02], &library, &values).unwrap();
+        let stable = linear.regression.stable(&groups);
+        let keys: Vec<&str> = stable.iter().map(|g| key(groups[*g][0])).collect();
+        assert_eq!(keys, ["velocity_sign"]);
+        let law = library.restricted(&[term]);
+        let found = linear.fitted(&law)[term];
+        assert!((found + 150.0).abs() < 5.0, "{found}");
+        // With ideal joints at the big end its offset is none.
+        let seen: Vec<&str> = linear.seen().into_iter().map(key).collect();
+        assert!(seen.contains(&"cos_1") && !seen.contains(&"big_end_offset"));
+    }
 }

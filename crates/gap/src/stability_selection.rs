@@ -47,7 +47,6 @@ impl Regression {
                 }
             }
         }
-        eprintln!("{counts:?}");
         let enough = |group: &usize| f64::from(counts[*group]) >= STABLE * (2 * PAIRS) as f64;
         (0..groups.len()).filter(enough).collect()
     }
