@@ -3,10 +3,11 @@
 use crate::candidate::Candidate;
 use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, rival, verdict};
 use crate::error::Error;
+use crate::journal::Finished;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
-use crate::model::{Effort, Model, Watch};
+use crate::model::{Effort, Model, Watch, cost};
 use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
 use crate::screening::screen;
@@ -232,7 +233,10 @@ impl Search<'_> {
                 return Err(Error::Stopped);
             }
             let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
-            Ok(fit.estimates.iter().map(coordinate).collect())
+            Ok(Finished {
+                numbers: fit.estimates.iter().map(coordinate).collect(),
+                cost: fit.evaluations * cost(problem)?,
+            })
         };
         let x = self.effort.journal.once(&(problem, &settings), search)?;
         Model::at(problem.clone(), x, self.effort)
@@ -294,7 +298,7 @@ impl Search<'_> {
         candidates: impl Fn(&Problem) -> Vec<Candidate>,
     ) -> Result<(Model, Vec<Found>, Vec<Tried>), Error> {
         let mut found = Vec::new();
-        while model.fitted > noise && found.len() < most {
+        while model.fitted > noise && found.len() < most && self.effort.goes_on() {
             (self.say)("screening", model.fitted);
             let few = few(&model, self.effort);
             let candidates = candidates(&model.problem);

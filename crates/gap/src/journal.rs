@@ -1,7 +1,9 @@
-//! What was found already, kept in a file: an explanation that was stopped goes on from there.
+//! What was found already, and what it cost: an explanation that was stopped goes on from there.
 //!
-//! Each line holds the key of a piece of work and its result. The key is a digest of everything that
-//! the result depends on, recordings and version included, so that a line is never taken for another.
+//! Each line of the file holds the key of a piece of work, its result and its cost. The key is a digest
+//! of everything that the result depends on, recordings and version included, so that a line is never
+//! taken for another. The cost counts again when a result is found there, so that what is left of a
+//! budget does not depend on whether the work was interrupted.
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
@@ -11,22 +13,36 @@ use std::fmt::{Debug, Write as _};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
 use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Results of finished work. Copies share them.
 #[derive(Clone, Debug, Default)]
-pub struct Journal(Option<Arc<Mutex<Kept>>>);
+pub struct Journal {
+    kept: Option<Arc<Mutex<Kept>>>,
+    spent: Arc<AtomicU64>,
+}
+
+/// The result of a piece of work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Finished {
+    /// What was found.
+    pub numbers: Vec<f64>,
+    /// Evaluations that it took, each run counting as one.
+    pub cost: u64,
+}
 
 #[derive(Debug)]
 struct Kept {
-    known: BTreeMap<String, Vec<f64>>,
+    known: BTreeMap<String, Finished>,
     file: File,
 }
 
 #[derive(Serialize, Deserialize)]
 struct Line {
     key: String,
-    numbers: Vec<f64>,
+    #[serde(flatten)]
+    finished: Finished,
 }
 
 impl Journal {
@@ -45,7 +61,7 @@ impl Journal {
             false => String::new(),
         };
         let lines = text.lines().filter_map(|l| serde_json::from_str(l).ok());
-        let known = lines.map(|line: Line| (line.key, line.numbers)).collect();
+        let known = lines.map(|line: Line| (line.key, line.finished)).collect();
         let mut options = OpenOptions::new();
         let mut file = options
             .create(true)
@@ -55,7 +71,15 @@ impl Journal {
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n").map_err(failed)?;
         }
-        Ok(Self(Some(Arc::new(Mutex::new(Kept { known, file })))))
+        Ok(Self {
+            kept: Some(Arc::new(Mutex::new(Kept { known, file }))),
+            spent: Arc::default(),
+        })
+    }
+
+    /// What all work has cost so far, that of earlier sessions included.
+    pub fn spent(&self) -> u64 {
+        self.spent.load(Ordering::Relaxed)
     }
 
     /// The numbers that `work` gives, or gave before for the same `input`.
@@ -65,23 +89,32 @@ impl Journal {
     pub(crate) fn once(
         &self,
         input: &dyn Debug,
-        work: impl FnOnce() -> Result<Vec<f64>, Error>,
+        work: impl FnOnce() -> Result<Finished, Error>,
     ) -> Result<Vec<f64>, Error> {
-        let Some(kept) = &self.0 else {
-            return work();
+        let finished = match &self.kept {
+            Some(kept) => Self::kept(kept, key(input), work)?,
+            None => work()?,
         };
-        let key = key(input);
+        self.spent.fetch_add(finished.cost, Ordering::Relaxed);
+        Ok(finished.numbers)
+    }
+
+    fn kept(
+        kept: &Mutex<Kept>,
+        key: String,
+        work: impl FnOnce() -> Result<Finished, Error>,
+    ) -> Result<Finished, Error> {
         let open = || kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(numbers) = open().known.get(&key) {
-            return Ok(numbers.clone());
+        if let Some(finished) = open().known.get(&key) {
+            return Ok(finished.clone());
         }
-        let numbers = work()?;
-        let line = Line { key, numbers };
+        let finished = work()?;
+        let line = Line { key, finished };
         if let Ok(mut text) = serde_json::to_string(&line) {
             text.push('\n');
             let _lost = open().file.write_all(text.as_bytes());
         }
-        Ok(line.numbers)
+        Ok(line.finished)
     }
 }
 
@@ -102,26 +135,28 @@ fn key(input: &dyn Debug) -> String {
 mod tests {
     use super::*;
 
+    fn found(number: f64) -> Result<Finished, Error> {
+        let numbers = vec![number];
+        Ok(Finished { numbers, cost: 7 })
+    }
+
     #[test]
     fn what_was_found_is_found_again_and_nothing_else() {
         let path = std::env::temp_dir().join(format!("journal-{}", std::process::id()));
         let third = 1.0 / 3.0;
-        let found = Journal::open(&path)
-            .unwrap()
-            .once(&("a", third), || Ok(vec![third]));
-        assert_eq!(found.unwrap(), [third]);
+        let first = Journal::open(&path).unwrap();
+        let numbers = first.once(&("a", third), || found(third)).unwrap();
+        assert_eq!((numbers, first.spent()), (vec![third], 7));
         // Cut off in the middle of a line.
         let mut file = OpenOptions::new().append(true).open(&path).unwrap();
         file.write_all(b"{\"key\": \"0").unwrap();
         let again = Journal::open(&path).unwrap();
-        let known = again.once(&("a", third), || Ok(Vec::new())).unwrap();
-        assert_eq!(known, [third]);
-        let other = again.once(&("a", 0.333), || Ok(vec![2.0])).unwrap();
+        let numbers = again.once(&("a", third), || found(0.0)).unwrap();
+        assert_eq!((numbers, again.spent()), (vec![third], 7));
+        let other = again.once(&("a", 0.333), || found(2.0)).unwrap();
         assert_eq!(other, [2.0]);
-        let known = Journal::open(&path)
-            .unwrap()
-            .once(&("a", 0.333), || Ok(Vec::new()));
-        assert_eq!(known.unwrap(), [2.0]);
+        let last = Journal::open(&path).unwrap();
+        assert_eq!(last.once(&("a", 0.333), || found(0.0)).unwrap(), [2.0]);
         std::fs::remove_file(path).unwrap();
     }
 }

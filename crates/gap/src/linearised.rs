@@ -201,6 +201,7 @@ mod tests {
             entry,
             place: Vec::new(),
             fixed: Vec::new(),
+            ends: &[],
         }
         .restricted(&groups.concat());
         let key = |i: usize| entry.parameters[i].key;

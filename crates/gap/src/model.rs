@@ -1,7 +1,7 @@
 //! A machine with what was fitted of it, and how far it is from the recordings.
 
 use crate::error::Error;
-use crate::journal::Journal;
+use crate::journal::{Finished, Journal};
 use crate::pressures::{is_of_pressures, is_pressure};
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
@@ -13,6 +13,9 @@ use std::ops::ControlFlow;
 /// Relative change of the sum of squares at which a rough and a full descent end.
 const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
+/// What an explanation may cost before nothing new is begun, in evaluations of one run without clear
+/// joints, which take some 2 ms.
+const BUDGET: u64 = 250_000;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
@@ -25,6 +28,28 @@ pub(crate) fn loose(problem: &Problem) -> f64 {
         true => 0.0,
         false => LOOSE,
     }
+}
+
+/// What an evaluation of a problem costs, in those of one run without clear joints: in every run the
+/// steps follow each joint's contacts, and each step is so much dearer.
+///
+/// # Errors
+/// A machine that is none.
+pub(crate) fn cost(problem: &Problem) -> Result<u64, Error> {
+    let nominal = vec![0.0; problem.parameters.len()];
+    let mut cost = 0;
+    for run in &problem.runs {
+        let machine = problem.machine(run, &nominal)?.machine;
+        let of_throw = |throw: &mechanism::Throw| {
+            let guide = matches!(throw.guide, mechanism::joints::guide::Guide::Clear(_));
+            let ends = [&throw.big_end, &throw.small_end];
+            ends.iter().filter(|end| end.clear().is_some()).count() + usize::from(guide)
+        };
+        let main = usize::from(machine.main.clear().is_some());
+        let joints = main + machine.throws.iter().map(of_throw).sum::<usize>();
+        cost += (4 * joints * joints).max(1) as u64;
+    }
+    Ok(cost)
 }
 
 /// Asked between evaluations whether to go on.
@@ -87,6 +112,11 @@ impl Effort {
         })
     }
 
+    /// Whether there is still something left of the budget.
+    pub(crate) fn goes_on(&self) -> bool {
+        self.journal.spent() < BUDGET
+    }
+
     fn fits(&self, run: &str) -> bool {
         !self.held_out.iter().any(|held| held == run)
     }
@@ -130,12 +160,19 @@ impl Model {
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
         let descents = || {
             let mut x = start.to_vec();
+            let mut evaluations = 0;
             let loose = loose(&fitted);
             if loose > 0.0 {
                 let rough = Likelihood::coarse(&fitted, loose);
-                x = descend(&rough, &x, ROUGH, effort, watch)?.x;
+                let rough = descend(&rough, &x, ROUGH, effort, watch)?;
+                (x, evaluations) = (rough.x, rough.evaluations);
             }
-            Ok(descend(&Likelihood::new(&fitted), &x, FULL, effort, watch)?.x)
+            let full = descend(&Likelihood::new(&fitted), &x, FULL, effort, watch)?;
+            evaluations += full.evaluations;
+            Ok(Finished {
+                numbers: full.x,
+                cost: evaluations * cost(&fitted)?,
+            })
         };
         let input = ("fit", &fitted, start, effort.evaluations);
         let x = effort.journal.once(&input, descents)?;

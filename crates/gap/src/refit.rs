@@ -38,7 +38,8 @@ impl Search<'_> {
         while chosen.peek().is_some() {
             let together: Vec<Screened> = chosen.by_ref().take(TOGETHER).collect();
             let near = rough.iter().position(|(_, fitted)| fitted.fitted < NOISE);
-            if near.is_some_and(|i| rough.len() - i >= AFTERWARDS) {
+            let done = near.is_some_and(|i| rough.len() - i >= AFTERWARDS);
+            if done || (!rough.is_empty() && !self.effort.goes_on()) {
                 break;
             }
             let near = near.map(|i| rough[i].1.clone());
@@ -49,7 +50,8 @@ impl Search<'_> {
             rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
         }
         rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
-        if rough.first().is_some_and(|(_, best)| best.fitted > NOISE) {
+        let missed = rough.first().is_some_and(|(_, best)| best.fitted > NOISE);
+        if missed && self.effort.goes_on() {
             let later = rough.split_off(rough.len().min(DEEPER));
             let deeper = rough
                 .into_par_iter()

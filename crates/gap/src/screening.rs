@@ -12,8 +12,8 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
-use crate::journal::Journal;
-use crate::model::{Model, Watch, loose};
+use crate::journal::{Finished, Journal};
+use crate::model::{Model, Watch, cost, loose};
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
@@ -48,10 +48,13 @@ pub fn screen(
     let residual = DVector::from_vec(likelihood.residuals(&model.x));
     let projector = Projector::new(&likelihood.jacobian(&model.x));
     let base = projector.apply(&residual);
+    let cost = cost(&model.problem)?;
     // The score and the values there; nothing for what cannot be simulated.
-    let of = |candidate: &Candidate| -> Result<Vec<f64>, Error> {
+    let of = |candidate: &Candidate| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
-        for values in candidate.probes() {
+        let probes = candidate.probes();
+        let cost = cost * probes.len() as u64;
+        for values in probes {
             if watch().is_break() {
                 return Err(Error::Stopped);
             }
@@ -73,9 +76,11 @@ pub fn screen(
             }
         }
         let found = best.into_iter();
-        Ok(found
-            .flat_map(|(score, values)| [vec![score], values].concat())
-            .collect())
+        let numbers = found.flat_map(|(score, values)| [vec![score], values].concat());
+        Ok(Finished {
+            numbers: numbers.collect(),
+            cost,
+        })
     };
     let screened = candidates.into_par_iter().map(|candidate| {
         let input = ("screen", &model.problem, &model.x, candidate.label());

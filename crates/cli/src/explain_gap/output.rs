@@ -91,6 +91,7 @@ pub fn write(
         "next_recording": gap::next_recording(&explanation.found),
         "missing_force": explanation.missing_force,
         "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
+        "cost": effort.journal.spent(),
         "seconds": seconds,
         "runs": runs,
         "maps": {"bands": gap::band_names(), "before": maps[0], "after": maps[1]},
