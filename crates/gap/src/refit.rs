@@ -32,10 +32,15 @@ impl Search<'_> {
             let mut fits = rough.iter().map(|(_, fitted)| fitted);
             let near = fits.find(|fitted| fitted.fitted < NOISE).cloned();
             let fitted = together.into_par_iter().map(|screened| {
-                let fitted = self.candidate(&few, &screened, near.as_ref())?;
-                Ok((screened, fitted))
+                match self.candidate(&few, &screened, near.as_ref()) {
+                    Ok(fitted) => Ok(Some((screened, fitted))),
+                    // A descent may end where the machine cannot be simulated.
+                    Err(Error::Fit(_)) => Ok(None),
+                    Err(error) => Err(error),
+                }
             });
-            rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
+            let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+            rough.extend(fitted.into_iter().flatten());
         }
         rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
         let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
