@@ -12,6 +12,8 @@ use std::ops::ControlFlow;
 /// Relative change of the sum of squares at which a rough and a full descent end.
 const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
+/// The same for pressures alone, whose descents have no minima on the way.
+const FULL_OF_GAS: f64 = 1e-3;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
@@ -124,12 +126,14 @@ impl Model {
         }
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
         let mut x = start.to_vec();
+        let mut change = FULL_OF_GAS;
         let loose = loose(&fitted);
         if loose > 0.0 {
             let rough = Likelihood::coarse(&fitted, loose);
             x = descend(&rough, &x, ROUGH, effort, watch)?.x;
+            change = FULL;
         }
-        let full = descend(&Likelihood::new(&fitted), &x, FULL, effort, watch)?;
+        let full = descend(&Likelihood::new(&fitted), &x, change, effort, watch)?;
         Self::at(problem, full.x, effort)
     }
 
