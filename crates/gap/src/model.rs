@@ -13,6 +13,8 @@ use std::ops::ControlFlow;
 /// Relative change of the sum of squares at which a rough and a full descent end.
 const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
+/// The same for pressures alone, whose descents have no minima on the way.
+const FULL_OF_GAS: f64 = 1e-3;
 /// What an explanation may cost before nothing new is begun, in evaluations of one run without clear
 /// joints, which take some 2 ms.
 const BUDGET: u64 = 250_000;
@@ -160,14 +162,14 @@ impl Model {
         let fitted = problem.with_runs(|run| effort.fits(&run.id));
         let descents = || {
             let mut x = start.to_vec();
-            let mut evaluations = 0;
+            let (mut evaluations, mut change) = (0, FULL_OF_GAS);
             let loose = loose(&fitted);
             if loose > 0.0 {
                 let rough = Likelihood::coarse(&fitted, loose);
                 let rough = descend(&rough, &x, ROUGH, effort, watch)?;
-                (x, evaluations) = (rough.x, rough.evaluations);
+                (x, evaluations, change) = (rough.x, rough.evaluations, FULL);
             }
-            let full = descend(&Likelihood::new(&fitted), &x, FULL, effort, watch)?;
+            let full = descend(&Likelihood::new(&fitted), &x, change, effort, watch)?;
             evaluations += full.evaluations;
             Ok(Finished {
                 numbers: full.x,

@@ -44,10 +44,15 @@ impl Search<'_> {
             }
             let near = near.map(|i| rough[i].1.clone());
             let fitted = together.into_par_iter().map(|screened| {
-                let fitted = self.candidate(&few, &screened, near.as_ref())?;
-                Ok((screened, fitted))
+                match self.candidate(&few, &screened, near.as_ref()) {
+                    Ok(fitted) => Ok(Some((screened, fitted))),
+                    // A descent may end where the machine cannot be simulated.
+                    Err(Error::Fit(_)) => Ok(None),
+                    Err(error) => Err(error),
+                }
             });
-            rough.extend(fitted.collect::<Result<Vec<_>, Error>>()?);
+            let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+            rough.extend(fitted.into_iter().flatten());
         }
         rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
         let missed = rough.first().is_some_and(|(_, best)| best.fitted > NOISE);
