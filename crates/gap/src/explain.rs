@@ -118,10 +118,16 @@ pub fn explain(
     let (model, found, missing_force) = search.with_force(problem, &baseline, model, found)?;
     say("finding bounds", model.fitted);
     let Fit {
-        estimates,
+        mut estimates,
         correlations,
         ..
     } = search.bounds(&model)?;
+    // What is not told has the value with which the model was found.
+    for (estimate, x) in estimates.iter_mut().zip(&model.x) {
+        if estimate.interval.is_none() {
+            estimate.value = estimate.parameter.value(*x);
+        }
+    }
     let nothing = vec![0.0; problem.parameters.len()];
     let set_right = || {
         let mut problem = problem.clone();
