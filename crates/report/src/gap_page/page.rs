@@ -1,7 +1,7 @@
 //! The page itself.
 
 use super::{Effect, GapPage, Parameter, Scaling, figures};
-use crate::calibration_page::{verdict::size, waveforms};
+use crate::calibration_page::{verdict::size, waveforms, words};
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, text};
 use askama::Template;
@@ -159,7 +159,8 @@ impl View<'_> {
             }
         };
         let powers: Vec<String> = scaling.exponents.iter().map(power).collect();
-        format!("{}: {}", text::words(&scaling.channel), powers.join(", "))
+        let (channel, _) = words::column(&scaling.channel);
+        format!("{channel}: {}", powers.join(", "))
     }
 
     fn has_rivals(effect: &Effect) -> bool {
