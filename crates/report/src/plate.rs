@@ -27,6 +27,33 @@ pub struct FigureFile {
     pub svg: String,
 }
 
+/// Numbers of a page's figures: each has the one after that of the figure before it.
+#[derive(Default)]
+pub(crate) struct Numbers(usize);
+
+impl Numbers {
+    /// The next figures with their numbers.
+    pub(crate) fn give(&mut self, plates: Vec<Plate>) -> Vec<(usize, Plate)> {
+        let numbered = plates.into_iter().map(|plate| {
+            self.0 += 1;
+            (self.0, plate)
+        });
+        numbered.collect()
+    }
+}
+
+/// The figures of a page as files.
+pub(crate) fn numbered_files(
+    page: &str,
+    plates: impl Iterator<Item = (usize, Plate)>,
+) -> Vec<FigureFile> {
+    let files = plates.map(|(number, plate)| FigureFile {
+        name: file_name(page, number, &plate.heading),
+        svg: plate.svg,
+    });
+    files.collect()
+}
+
 /// The name of the file of a page's figure of this number and heading.
 pub(crate) fn file_name(page: &str, number: usize, heading: &str) -> String {
     let letters = heading.chars().map(|c| match c {

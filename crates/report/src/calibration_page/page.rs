@@ -4,7 +4,7 @@ use super::{
     CalibrationPage, Estimate, Hypothesis, Phase, Transfer, gas, misfits, parameters, transfers,
     verdict, waveforms, words,
 };
-use crate::plate::{FigureFile, Plate, Rendered, file_name};
+use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
 
@@ -31,14 +31,8 @@ impl CalibrationPage {
     /// # Errors
     /// [`Error::Template`] if the template cannot be filled in.
     pub fn render(&self) -> Result<Rendered, Error> {
-        let mut number = 0;
-        let mut numbered = |plates: Vec<Plate>| -> Vec<(usize, Plate)> {
-            let plates = plates.into_iter().map(|plate| {
-                number += 1;
-                (number, plate)
-            });
-            plates.collect()
-        };
+        let mut numbers = Numbers::default();
+        let mut numbered = |plates| numbers.give(plates);
         let view = View {
             page: self,
             verdict: verdict::verdict(self),
@@ -65,16 +59,9 @@ impl CalibrationPage {
             view.gas,
             view.runs,
         ];
-        let figures = plates
-            .into_iter()
-            .flatten()
-            .map(|(number, plate)| FigureFile {
-                name: file_name("calibration", number, &plate.heading),
-                svg: plate.svg,
-            });
         Ok(Rendered {
             html,
-            figures: figures.collect(),
+            figures: numbered_files("calibration", plates.into_iter().flatten()),
         })
     }
 }

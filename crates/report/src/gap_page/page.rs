@@ -2,7 +2,7 @@
 
 use super::{Effect, GapPage, Parameter, Scaling, figures};
 use crate::calibration_page::{verdict::size, waveforms, words};
-use crate::plate::{FigureFile, Plate, Rendered, file_name};
+use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
 
@@ -23,14 +23,8 @@ impl GapPage {
     /// # Errors
     /// [`Error::Template`] if the template cannot be filled in.
     pub fn render(&self) -> Result<Rendered, Error> {
-        let mut number = 0;
-        let mut numbered = |plates: Vec<Plate>| -> Vec<(usize, Plate)> {
-            let plates = plates.into_iter().map(|plate| {
-                number += 1;
-                (number, plate)
-            });
-            plates.collect()
-        };
+        let mut numbers = Numbers::default();
+        let mut numbered = |plates| numbers.give(plates);
         let names = match self.effects.is_empty() {
             true => ["calibrated", ""],
             false => ["without the effects", "with them"],
@@ -45,16 +39,9 @@ impl GapPage {
         };
         let html = view.render()?;
         let plates = [view.waterfall, view.forces, view.maps, view.runs];
-        let figures = plates
-            .into_iter()
-            .flatten()
-            .map(|(number, plate)| FigureFile {
-                name: file_name("gap", number, &plate.heading),
-                svg: plate.svg,
-            });
         Ok(Rendered {
             html,
-            figures: figures.collect(),
+            figures: numbered_files("gap", plates.into_iter().flatten()),
         })
     }
 }
