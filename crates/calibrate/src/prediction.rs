@@ -183,11 +183,10 @@ fn in_parallel(
     settings: &Settings,
 ) -> Result<Sensitivities, simulate::Error> {
     let of = |moved: &[Moved]| sensitivities(&machine.machine, &machine.sensors, moved, settings);
-    let chunks = moved.len().div_ceil(TANGENTS);
-    if chunks < 2 {
+    if moved.len() <= TANGENTS {
         return of(moved);
     }
-    let parts = moved.par_chunks(moved.len().div_ceil(chunks)).map(of);
+    let parts = moved.par_chunks(TANGENTS).map(of);
     let mut parts = parts.collect::<Result<Vec<_>, _>>()?.into_iter();
     let mut all = parts.next().map_or_else(|| of(&[]), Ok)?;
     for part in parts {

@@ -17,10 +17,11 @@ const AFTERWARDS: usize = 6;
 /// Of these, how many are fitted to all runs.
 pub(crate) const FINAL: usize = 3;
 /// How many are searched further where none has reached the noise, and the evaluations of it.
-const DEEPER: usize = 2;
+const DEEPER: usize = 3;
 const SEARCH: u64 = 300;
-/// Most evaluations of a descent for a candidate that can be no more than a rival of one that has
-/// reached the noise.
+/// Most evaluations of a first descent for a candidate; and for one that can be no more than a rival of
+/// another that has reached the noise.
+const FIRST: u64 = 80;
 const RIVALS: u64 = 40;
 /// Runs that the first fits of candidates use.
 pub(crate) const FEW: usize = 3;
@@ -120,25 +121,21 @@ impl Search<'_> {
         let label = screened.candidate.label();
         (self.say)(&label, few.fitted);
         let added = screened.candidate.added(&few.problem, &screened.values)?;
-        let from = |x: &[f64], effort: &Effort| {
+        let most = if near.is_some() { RIVALS } else { FIRST };
+        let effort = Effort {
+            evaluations: most.min(self.effort.evaluations),
+            ..self.effort.clone()
+        };
+        let from = |x: &[f64]| {
             let mut x = x[..few.x.len()].to_vec();
             x.resize(added.parameters.len(), 0.0);
-            Model::fit(added.clone(), &x, effort, self.watch)
+            Model::fit(added.clone(), &x, &effort, self.watch)
         };
         let fitted = match near {
-            Some(near) => {
-                let effort = Effort {
-                    evaluations: RIVALS.min(self.effort.evaluations),
-                    ..self.effort.clone()
-                };
-                from(&near.x, &effort)?
-            }
-            None if is_of_pressures(&few.problem) => from(&few.x, self.effort)?,
+            Some(near) => from(&near.x)?,
+            None if is_of_pressures(&few.problem) => from(&few.x)?,
             // Without the effect the calibration may have gone far astray.
-            None => {
-                let nominal = vec![0.0; few.x.len()];
-                from(&few.x, self.effort)?.better(from(&nominal, self.effort)?)
-            }
+            None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
         };
         (self.say)(&format!("{label} fitted"), fitted.fitted);
         Ok(fitted)
