@@ -225,7 +225,7 @@ impl Search<'_> {
         let library = library.restricted(&seen);
         let added = library.added(&few.problem, &linear.values)?;
         let effort = Effort {
-            evaluations: DENSE,
+            evaluations: DENSE.min(self.effort.affordable(&added)?),
             ..self.effort.clone()
         };
         let from = |x: &[f64]| {
@@ -253,8 +253,8 @@ impl Search<'_> {
     ) -> Result<(Model, Vec<Found>, Vec<MissingForce>), Error> {
         let explained = verdict(baseline, &model, found.len());
         let settled = matches!(explained, Verdict::NoGap | Verdict::Explained);
-        // Pressures do not feel it.
-        if settled || is_of_pressures(problem) {
+        // Pressures do not feel it, and without derivatives there is no regression.
+        if settled || is_of_pressures(problem) || self.effort.chaotic {
             return Ok((model, found, Vec::new()));
         }
         let (start, kept) = self.gas_alone(problem, baseline, &model, &found)?;

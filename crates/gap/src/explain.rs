@@ -7,7 +7,7 @@ use crate::journal::Finished;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
-use crate::model::{Effort, Model, Watch, cost};
+use crate::model::{Effort, Model, Watch};
 use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
 use crate::screening::screen;
@@ -229,7 +229,7 @@ impl Search<'_> {
         let settings = FitSettings {
             optimiser: Optimiser::Default,
             seed: 0,
-            evaluations,
+            evaluations: evaluations.min(self.effort.affordable(problem)?),
             held_out: self.effort.held_out.clone(),
             start,
         };
@@ -241,7 +241,7 @@ impl Search<'_> {
             let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
             Ok(Finished {
                 numbers: fit.estimates.iter().map(coordinate).collect(),
-                cost: fit.evaluations * cost(problem)?,
+                cost: fit.evaluations * self.effort.cost(problem)?,
             })
         };
         let x = self.effort.journal.once(&(problem, &settings), search)?;
@@ -308,7 +308,7 @@ impl Search<'_> {
             (self.say)("screening", model.fitted);
             let few = few(&model, self.effort);
             let candidates = candidates(&model.problem);
-            let screened = screen(&few, candidates, &self.effort.journal, self.watch)?;
+            let screened = screen(&few, candidates, self.effort, self.watch)?;
             let mut tried = self.refit(&model, screened)?;
             if tried.is_empty() {
                 break;

@@ -18,6 +18,10 @@ const FULL_OF_GAS: f64 = 1e-3;
 /// What an explanation may cost before nothing new is begun, in evaluations of one run without clear
 /// joints, which take some 2 ms.
 const BUDGET: u64 = 250_000;
+/// Share of it, as a divisor, that a single search may take.
+const SEARCHES: u64 = 4;
+/// By how much a run that does not repeat itself is dearer: 64 revolutions in place of six.
+const LONGER: u64 = 10;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
@@ -32,12 +36,9 @@ pub(crate) fn loose(problem: &Problem) -> f64 {
     }
 }
 
-/// What an evaluation of a problem costs, in those of one run without clear joints: in every run the
-/// steps follow each joint's contacts, and each step is so much dearer.
-///
-/// # Errors
-/// A machine that is none.
-pub(crate) fn cost(problem: &Problem) -> Result<u64, Error> {
+/// The cost of an evaluation where every run repeats itself: the steps follow each joint's contacts,
+/// and each step is so much dearer.
+fn cost(problem: &Problem) -> Result<u64, Error> {
     let nominal = vec![0.0; problem.parameters.len()];
     let mut cost = 0;
     for run in &problem.runs {
@@ -80,6 +81,8 @@ pub struct Effort {
     pub held_out: Vec<String>,
     /// Most evaluations of a descent.
     pub evaluations: u64,
+    /// Whether no run that is fitted to repeats itself: then many revolutions of each are compared.
+    pub chaotic: bool,
     /// What was found before.
     pub journal: Journal,
 }
@@ -100,7 +103,8 @@ impl Effort {
         let predictions = Likelihood::new(problem).predictions(&nominal)?;
         let runs = problem.runs.iter().zip(&predictions);
         let (periodic, others): (Vec<_>, Vec<_>) = runs.partition(|(_, shown)| shown.periodic);
-        if periodic.iter().any(|(run, _)| !held_out.contains(&run.id)) {
+        let chaotic = !periodic.iter().any(|(run, _)| !held_out.contains(&run.id));
+        if !chaotic {
             for (run, _) in others {
                 if !held_out.contains(&run.id) {
                     held_out.push(run.id.clone());
@@ -110,6 +114,7 @@ impl Effort {
         Ok(Self {
             held_out,
             evaluations,
+            chaotic,
             journal,
         })
     }
@@ -117,6 +122,24 @@ impl Effort {
     /// Whether there is still something left of the budget.
     pub(crate) fn goes_on(&self) -> bool {
         self.journal.spent() < BUDGET
+    }
+
+    /// What an evaluation of a problem costs, in those of one run that repeats itself and has no clear
+    /// joints.
+    ///
+    /// # Errors
+    /// A machine that is none.
+    pub(crate) fn cost(&self, problem: &Problem) -> Result<u64, Error> {
+        let longer = if self.chaotic { LONGER } else { 1 };
+        Ok(longer * cost(problem)?)
+    }
+
+    /// How many evaluations of a problem a search may take: no more than a share of the budget.
+    ///
+    /// # Errors
+    /// A machine that is none.
+    pub(crate) fn affordable(&self, problem: &Problem) -> Result<u64, Error> {
+        Ok(BUDGET / SEARCHES / self.cost(problem)?)
     }
 
     fn fits(&self, run: &str) -> bool {
@@ -173,7 +196,7 @@ impl Model {
             evaluations += full.evaluations;
             Ok(Finished {
                 numbers: full.x,
-                cost: evaluations * cost(&fitted)?,
+                cost: evaluations * effort.cost(&fitted)?,
             })
         };
         let input = ("fit", &fitted, start, effort.evaluations);

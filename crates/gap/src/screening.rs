@@ -12,8 +12,8 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
-use crate::journal::{Finished, Journal};
-use crate::model::{Model, Watch, cost, loose};
+use crate::journal::Finished;
+use crate::model::{Effort, Model, Watch, loose};
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
@@ -40,7 +40,7 @@ pub struct Screened {
 pub fn screen(
     model: &Model,
     candidates: Vec<Candidate>,
-    journal: &Journal,
+    effort: &Effort,
     watch: Watch,
 ) -> Result<Vec<Screened>, Error> {
     let loose = loose(&model.problem);
@@ -48,7 +48,7 @@ pub fn screen(
     let residual = DVector::from_vec(likelihood.residuals(&model.x));
     let projector = Projector::new(&likelihood.jacobian(&model.x));
     let base = projector.apply(&residual);
-    let cost = cost(&model.problem)?;
+    let cost = effort.cost(&model.problem)?;
     // The score and the values there; nothing for what cannot be simulated.
     let of = |candidate: &Candidate| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
@@ -84,7 +84,7 @@ pub fn screen(
     };
     let screened = candidates.into_par_iter().map(|candidate| {
         let input = ("screen", &model.problem, &model.x, candidate.label());
-        let numbers = journal.once(&input, || of(&candidate))?;
+        let numbers = effort.journal.once(&input, || of(&candidate))?;
         let found = numbers
             .split_first()
             .map(|(score, values)| (*score, values.to_vec()));

@@ -116,6 +116,7 @@ fn a_force_of_no_effect_is_found_with_its_law() {
     let effort = Effort {
         held_out: vec!["d".into()],
         evaluations: 120,
+        chaotic: false,
         journal: gap::Journal::default(),
     };
     let watch = || ControlFlow::Continue(());

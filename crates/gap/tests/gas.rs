@@ -86,6 +86,7 @@ fn explained(effects: &Value) -> gap::Explanation {
     let effort = Effort {
         held_out: vec!["d".into()],
         evaluations: 120,
+        chaotic: false,
         journal: gap::Journal::default(),
     };
     let problem = problem(machine(), runs.to_vec());
