@@ -52,6 +52,18 @@ pub struct Evidence {
     pub delta_bic: f64,
 }
 
+/// Whether most of the distance to the noise is gone.
+fn closes([before, after]: [f64; 2]) -> bool {
+    after - 1.0 <= (1.0 - PARTLY) * (before - 1.0)
+}
+
+impl Evidence {
+    /// Whether the effect by itself closes most of the gap that it was added for.
+    pub(crate) fn is_sure(&self) -> bool {
+        closes(self.misfit) && self.heldout_misfit.is_none_or(closes)
+    }
+}
+
 /// What speaks for `after`, which has an effect that `before` has not.
 pub(crate) fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
     let held_out = before.held_out.zip(after.held_out);
@@ -92,11 +104,13 @@ pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdic
     let worst = model
         .held_out
         .map_or(model.fitted, |held| held.max(model.fitted));
+    let held_out = baseline.held_out.zip(model.held_out);
+    let held_out = held_out.is_none_or(|(before, after)| closes([before, after]));
     if effects == 0 {
         Verdict::Unexplained
     } else if worst <= EXPLAINED {
         Verdict::Explained
-    } else if worst - 1.0 <= (1.0 - PARTLY) * (baseline.fitted - 1.0) {
+    } else if held_out && closes([baseline.fitted, model.fitted]) {
         Verdict::PartlyExplained
     } else {
         Verdict::Unexplained

@@ -308,19 +308,10 @@ impl Search<'_> {
     ) -> Result<(Model, Vec<Found>), Error> {
         let mut kept = found.to_vec();
         kept.retain(|f| shows_pressure(problem) && f.candidate.is_of_gas());
-        if kept.len() == found.len() {
-            return Ok((model.clone(), kept));
+        match kept.len() == found.len() {
+            true => Ok((model.clone(), kept)),
+            false => Ok((self.with_only(problem, baseline, &kept)?, kept)),
         }
-        if kept.is_empty() {
-            return Ok((baseline.clone(), kept));
-        }
-        let mut with_gas = problem.clone();
-        for gas in &kept {
-            with_gas = gas.candidate.added(&with_gas, &gas.values)?;
-        }
-        let mut x = baseline.x[..problem.parameters.len()].to_vec();
-        x.resize(with_gas.parameters.len(), 0.0);
-        Ok((Model::fit(with_gas, &x, self.effort, self.watch)?, kept))
     }
 }
 

@@ -116,6 +116,7 @@ pub fn explain(
     };
     let (model, found) = search.pruned(problem, model, found)?;
     let (model, found, missing_force) = search.with_force(problem, &baseline, model, found)?;
+    let (model, found, refused) = search.sure(problem, &baseline, model, found, refused)?;
     say("finding bounds", model.fitted);
     let Fit {
         mut estimates,
@@ -137,11 +138,18 @@ pub fn explain(
     };
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
     let mut baseline = baseline;
-    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)? {
+    let explains = |baseline: &Model, effects| verdict(baseline, &model, effects);
+    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)?
+        && (offset.evidence.is_sure() || explains(&without, 1) != Verdict::Unexplained)
+    {
         chain.push(offset);
         baseline = without;
     }
-    let verdict = verdict(&baseline, &model, found.len() + chain.len());
+    // What is left of the effects where the whole stays unexplained is sure by itself.
+    let verdict = match explains(&baseline, found.len() + chain.len()) {
+        Verdict::Unexplained if !found.is_empty() => Verdict::PartlyExplained,
+        verdict => verdict,
+    };
     Ok(Explanation {
         nominal: Model::at(problem.clone(), nothing, effort)?,
         chain,
@@ -279,6 +287,52 @@ impl Search<'_> {
             }
         }
         Ok((model, found))
+    }
+
+    /// Where the effects leave the whole unexplained, those alone that are sure by themselves; the
+    /// others are refused.
+    fn sure(
+        &self,
+        problem: &Problem,
+        baseline: &Model,
+        model: Model,
+        found: Vec<Found>,
+        refused: Vec<Tried>,
+    ) -> Result<(Model, Vec<Found>, Vec<Tried>), Error> {
+        if verdict(baseline, &model, found.len()) != Verdict::Unexplained {
+            return Ok((model, found, refused));
+        }
+        let is_sure = |found: &Found| found.evidence.is_sure();
+        let (kept, others): (Vec<_>, Vec<_>) = found.into_iter().partition(is_sure);
+        if others.is_empty() {
+            return Ok((model, kept, refused));
+        }
+        let others = others.into_iter().map(|found| Tried {
+            candidate: found.candidate,
+            evidence: found.evidence,
+            by_run: found.by_run,
+        });
+        let refused = others.chain(refused).collect();
+        Ok((self.with_only(problem, baseline, &kept)?, kept, refused))
+    }
+
+    /// The model with these effects and no others.
+    pub(crate) fn with_only(
+        &self,
+        problem: &Problem,
+        baseline: &Model,
+        effects: &[Found],
+    ) -> Result<Model, Error> {
+        if effects.is_empty() {
+            return Ok(baseline.clone());
+        }
+        let mut with = problem.clone();
+        for found in effects {
+            with = found.candidate.added(&with, &found.values)?;
+        }
+        let mut x = baseline.x[..problem.parameters.len()].to_vec();
+        x.resize(with.parameters.len(), 0.0);
+        Model::fit(with, &x, self.effort, self.watch)
     }
 
     /// The parameters of a model with their bounds.
