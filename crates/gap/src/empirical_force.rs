@@ -26,6 +26,8 @@ pub const NAME: &str = "empirical_force";
 pub(crate) const MOST: usize = 3;
 /// Most evaluations of the fit with all terms.
 const DENSE: u64 = 400;
+/// The same of a search out of the local minimum in which that has ended.
+const FURTHER: u64 = 1000;
 /// Rounds in which terms may still be exchanged.
 const ROUNDS: usize = 4;
 
@@ -237,6 +239,12 @@ impl Search<'_> {
         // Without the force the calibration may have gone far astray, and often has.
         if model.fitted > NOISE {
             model = model.better(from(&few.x)?);
+        }
+        if model.fitted > NOISE {
+            (self.say)("estimating the force further", model.fitted);
+            let start = Some(model.x.clone());
+            let further = self.searched(&model.problem, start, FURTHER)?;
+            model = model.better(further);
         }
         let values = library.values(&model, effects(&few.problem));
         Ok(Some(Dense { model, values }))

@@ -57,6 +57,7 @@ pub struct Integrator<S> {
     length: f64,
     tolerance: f64,
     longest: f64,
+    budget: f64,
     work: Work,
     /// The guard that switched last, when, and how often in a row at that time.
     last_switch: (usize, f64, u32),
@@ -84,6 +85,7 @@ impl<S: Real> Integrator<S> {
             step,
             tolerance,
             longest,
+            budget: BUDGET,
             work: Work::default(),
             last_switch: (usize::MAX, t, 0),
         };
@@ -111,6 +113,12 @@ impl<S: Real> Integrator<S> {
         self.length = length;
     }
 
+    /// Sets how many steps a longest step's time may take on average; more is an error. Without this
+    /// they are so many that no run which makes sense has them.
+    pub fn set_budget(&mut self, steps: f64) {
+        self.budget = steps;
+    }
+
     /// Replaces the state (a tangent renormalised, a restart); time and mode stay.
     pub fn set_state(&mut self, system: &mut impl System<S>, y: &[S]) {
         self.step.from.copy_from_slice(y);
@@ -132,7 +140,7 @@ impl<S: Real> Integrator<S> {
         while self.time() < end {
             let span = self.time() - from;
             let steps = self.work.accepted + self.work.rejected - before.accepted - before.rejected;
-            if steps as f64 > BUDGET * (1.0 + span / self.longest) {
+            if steps as f64 > self.budget * (1.0 + span / self.longest) {
                 let time = self.time();
                 return Err(Error::TooManySteps { time, steps, span });
             }

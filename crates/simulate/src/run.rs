@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
 const LONGEST_STEP: f64 = 0.05;
+/// Steps in a longest step's time, of which a usual motion takes some 20.
+const HURRIED: f64 = 1000.0;
 /// Periods, in revolutions, that count as settled.
 const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD as u32];
 const LONGEST_PERIOD: usize = 4;
@@ -110,6 +112,12 @@ impl<S: Real> Run<S> {
         };
         let ahead = TAU * f64::from(revolution) - angle;
         self.advance(self.integrator.time() + ahead / speed)
+    }
+
+    /// Gives up where a revolution takes more than [`HURRIED`] steps in each longest step's time: a
+    /// search tries machines that rattle without end, and need not wait for them.
+    pub(crate) fn hurry(&mut self) {
+        self.integrator.set_budget(HURRIED);
     }
 
     /// Whether the crank turns as the forces on it make it.
