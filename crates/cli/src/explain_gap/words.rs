@@ -1,5 +1,6 @@
 //! What an explanation is told in, beyond its numbers.
 
+use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
 use gap::{Candidate, Effort, Explanation};
@@ -21,7 +22,10 @@ pub fn notes(explanation: &Explanation, effort: &Effort, gas: &[PressureGap]) ->
                 .to_owned(),
         );
     }
-    notes.extend(gas.iter().filter_map(together));
+    let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
+    if explanation.estimates.iter().any(of_gas) {
+        notes.extend(gas.iter().filter_map(together));
+    }
     notes.extend(correlated(explanation));
     let untold = explanation
         .estimates
