@@ -2,7 +2,7 @@
 
 use super::{Task, gas, relation};
 use crate::Failure;
-use ::calibrate::fit::{Fit, FitSettings};
+use ::calibrate::fit::{Estimate, Fit, FitSettings};
 use ::calibrate::parameter::Scale;
 use ::calibrate::{Problem, Transfer};
 use input::MachineFile;
@@ -65,24 +65,28 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
+/// What is known of a parameter.
+pub(crate) fn told(estimate: &Estimate) -> Value {
+    let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
+    json!({
+        "value": estimate.value,
+        "low": low,
+        "high": high,
+        "nominal": estimate.parameter.nominal,
+        "identifiable": estimate.interval.is_some(),
+        "at_bound": estimate.at_bound(),
+        "bounds": estimate.parameter.bounds,
+        "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
+    })
+}
+
 fn calibration(found: &Found, settings: &FitSettings) -> Value {
     let fit = found.fit;
     let mut parameters = Map::new();
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
-        let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
         let path = &estimate.parameter.path;
-        let content = json!({
-            "value": estimate.value,
-            "low": low,
-            "high": high,
-            "nominal": estimate.parameter.nominal,
-            "identifiable": estimate.interval.is_some(),
-            "at_bound": estimate.at_bound(),
-            "bounds": estimate.parameter.bounds,
-            "logarithmic": estimate.parameter.scale == Scale::Logarithmic,
-        });
-        parameters.insert(path.clone(), content);
+        parameters.insert(path.clone(), told(estimate));
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);
         let row: Map<String, Value> = others
             .map(|(j, other)| {

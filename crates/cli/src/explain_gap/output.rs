@@ -2,7 +2,7 @@
 
 use super::words;
 use crate::Failure;
-use crate::calibrate::output::write_file;
+use crate::calibrate::output::{told, write_file};
 use calibrate::fit::Estimate;
 use calibrate::pressure_gap::PressureGap;
 use gap::{Candidate, Effort, Explanation, Found, Tried};
@@ -138,18 +138,7 @@ fn by_name(values: &[(String, f64)]) -> Value {
 
 /// What was fitted with what is known of it, the parameters of effects included.
 fn parameters(explanation: &Explanation) -> Value {
-    let of = |estimate: &Estimate| {
-        let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
-        let content = json!({
-            "value": estimate.value,
-            "low": low,
-            "high": high,
-            "nominal": estimate.parameter.nominal,
-            "identifiable": estimate.interval.is_some(),
-            "at_bound": estimate.at_bound(),
-        });
-        (estimate.parameter.path.clone(), content)
-    };
+    let of = |estimate: &Estimate| (estimate.parameter.path.clone(), told(estimate));
     let all = explanation.estimates.iter().map(of);
     all.collect::<Map<_, _>>().into()
 }
