@@ -40,17 +40,6 @@ pub struct Law {
     pub model: Model,
 }
 
-impl Law {
-    /// Its terms by their keys, with their coefficients, N.
-    pub fn terms(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let index = effects(&self.model.problem) - 1;
-        let values = self.candidate.values(&self.model, index);
-        let parameters = self.candidate.entry.parameters;
-        let free = self.candidate.free().collect::<Vec<_>>().into_iter();
-        free.map(move |i| (parameters[i].key, values[i]))
-    }
-}
-
 /// A force that is missing.
 #[derive(Clone, Debug)]
 pub struct Force {

@@ -204,22 +204,6 @@ impl Model {
         Self::at(problem, x, effort)
     }
 
-    /// The same with other free parameters held where they are, by their paths.
-    pub fn frozen(&self, free: impl Fn(&str) -> bool) -> Result<(Problem, Vec<f64>), Error> {
-        let mut problem = self.problem.clone();
-        let mut x = Vec::new();
-        problem.parameters.clear();
-        for (parameter, coordinate) in self.problem.parameters.iter().zip(&self.x) {
-            if free(&parameter.path) || parameter.run.is_some() {
-                problem.parameters.push(parameter.clone());
-                x.push(*coordinate);
-            } else {
-                parameter.write(&mut problem.tree, parameter.value(*coordinate))?;
-            }
-        }
-        Ok((problem, x))
-    }
-
     /// The misfit of each run, by its name.
     pub(crate) fn misfits(&self) -> Vec<(String, f64)> {
         let runs = self.problem.runs.iter().map(|run| run.id.clone());
