@@ -23,6 +23,7 @@ pub mod forecast;
 pub mod identifiability;
 pub mod indicator;
 pub mod likelihood;
+pub mod meter;
 pub mod observation;
 pub mod optimiser;
 pub mod parameter;

@@ -4,12 +4,11 @@ use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
 use crate::problem::{Problem, throw};
 use input::Resolved;
-use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::OrderLines;
-use simulate::{Moved, Sensitivities, Settings, Transient, sensitivities};
+use simulate::{Settings, Transient, sensitivities};
 
 /// Relative local error of the integration; far below the noise of any sensor.
 const TOLERANCE: f64 = 1e-6;
@@ -19,12 +18,10 @@ const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
 /// By how much both are greater in a coarse prediction.
 const LOOSER: f64 = 10.0;
-/// Derivatives that are integrated together.
-const TANGENTS: usize = 8;
-/// Revolutions recorded: those of a motion of period 1, 2 or 4, with one to spare for a free crank
-/// that turns more slowly than its reference speed; and of a motion that never repeats.
-const PERIODIC: u32 = 4;
+/// Revolutions that are predicted of a motion that does not repeat itself; and in place of a recording
+/// that does, where nobody asks how they scatter.
 const CHAOTIC: u32 = 24;
+const WRONG: u32 = 4;
 
 /// The lines of a run as the model has them.
 #[derive(Clone, Debug)]
@@ -69,7 +66,6 @@ pub(crate) fn prediction(
 ) -> Result<Prediction, Error> {
     let machine = problem.machine(run, x)?;
     let speed = machine.speed.abs();
-    let free = matches!(machine.machine.drive, mechanism::drive::Drive::Free(_));
     // With the speed given, samples then stand at the grid's angles themselves.
     let sample_rate = POINTS as f64 * speed / std::f64::consts::TAU;
     let failed = |source| Error::Simulation {
@@ -77,12 +73,12 @@ pub(crate) fn prediction(
         source,
     };
     let looser = if coarse { LOOSER } else { 1.0 };
-    let mut settings = Settings {
+    let settings = Settings {
         transient: Transient::Settled {
             change: SETTLED * looser,
             at_most: AT_MOST,
         },
-        revolutions: PERIODIC + u32::from(free),
+        revolutions: if run.repeats() { WRONG } else { CHAOTIC },
         sample_rate,
         inner_rate: inner_rate(&machine),
         tolerance: TOLERANCE * looser,
@@ -96,14 +92,10 @@ pub(crate) fn prediction(
     groups.iter_mut().for_each(|group| group.retain(moving));
     groups.retain(|group| !group.is_empty());
     let moved = problem.moved(run, x, &groups)?;
-    let mut record = in_parallel(&machine, &moved, &settings).map_err(failed)?;
+    let record = sensitivities(&machine.machine, &machine.sensors, &moved, &settings);
+    let record = record.map_err(failed)?;
+    problem.meter.add(record.steps);
     let periodic = record.settled;
-    if !periodic {
-        settings.transient = Transient::Revolutions(AT_MOST / 3);
-        settings.revolutions = CHAOTIC;
-        record =
-            sensitivities(&machine.machine, &machine.sensors, &[], &settings).map_err(failed)?;
-    }
     let analysis = |source| Error::Signal {
         run: run.id.clone(),
         channel: "simulated".into(),
@@ -174,26 +166,6 @@ fn later(mut lines: OrderLines, offset: f64) -> OrderLines {
         *c *= Complex64::from_polar(1.0, -(k as f64) * offset);
     }
     lines
-}
-
-/// The record with its derivatives, eight of them at a time.
-fn in_parallel(
-    machine: &Resolved,
-    moved: &[Moved],
-    settings: &Settings,
-) -> Result<Sensitivities, simulate::Error> {
-    let of = |moved: &[Moved]| sensitivities(&machine.machine, &machine.sensors, moved, settings);
-    if moved.len() <= TANGENTS {
-        return of(moved);
-    }
-    let parts = moved.par_chunks(TANGENTS).map(of);
-    let mut parts = parts.collect::<Result<Vec<_>, _>>()?.into_iter();
-    let mut all = parts.next().map_or_else(|| of(&[]), Ok)?;
-    for part in parts {
-        all.settled &= part.settled;
-        all.derivatives.extend(part.derivatives);
-    }
-    Ok(all)
 }
 
 /// The derivatives of each parameter from those of groups: a channel that belongs to a throw feels

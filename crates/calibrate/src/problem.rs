@@ -6,6 +6,7 @@ use crate::observation::Observation;
 use crate::parameter::Parameter;
 use input::MachineFile;
 use input::Resolved;
+use crate::meter::Meter;
 use input::paths;
 use mechanism::drive::Drive;
 use serde_json::Value;
@@ -22,6 +23,8 @@ pub struct Problem {
     pub runs: Vec<Observation>,
     /// What turns their cranks.
     pub crank: CrankMotion,
+    /// What its predictions have cost.
+    pub meter: Meter,
 }
 
 /// Step of a coordinate over which a machine's derivative is taken: what follows from a parameter
@@ -136,6 +139,15 @@ impl Problem {
     pub fn with_runs(&self, keep: impl Fn(&Observation) -> bool) -> Self {
         Self {
             runs: self.runs.iter().filter(|run| keep(run)).cloned().collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The same problem with a meter of its own.
+    #[must_use]
+    pub fn metered(&self) -> Self {
+        Self {
+            meter: Meter::default(),
             ..self.clone()
         }
     }

@@ -75,6 +75,7 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
             parameters: own.collect(),
             runs: runs.filter(|run| !run.channels.is_empty()).collect(),
             crank: CrankMotion::Recorded,
+            meter: problem.meter.clone(),
         },
         parameters,
     }

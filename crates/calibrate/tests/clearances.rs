@@ -80,6 +80,7 @@ fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observatio
         parameters: Vec::new(),
         runs: Vec::new(),
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     };
     let shown = predict(&machine, &run, &[]).unwrap().lines.remove(0);
     run.channels = vec![channel(OrderLines {
@@ -108,6 +109,7 @@ fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit
         parameters,
         runs,
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     };
     let settings = FitSettings {
         optimiser: Optimiser::LevenbergMarquardt,

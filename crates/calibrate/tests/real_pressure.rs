@@ -67,6 +67,7 @@ fn problem(fitted: &[(&str, Option<[f64; 2]>)]) -> (Problem, Vec<Run>) {
         tree,
         parameters,
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     };
     (problem, runs)
 }

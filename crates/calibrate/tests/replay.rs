@@ -80,6 +80,7 @@ fn recorded(machine: &str, changes: &[(&str, &str)], delay: f64) -> (Problem, Ru
         parameters: Vec::new(),
         runs: vec![observation],
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     };
     (problem, run)
 }

@@ -194,6 +194,7 @@ fn problem(mut tree: Value, runs: &mut [Listed]) -> Result<Problem, Failure> {
         parameters: Vec::new(),
         runs: Vec::new(),
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     };
     for listed in runs {
         let zeroed = listed.is_zeroed();

@@ -216,7 +216,7 @@ impl Search<'_> {
         let library = library.restricted(&seen);
         let added = library.added(&few.problem, &linear.values)?;
         let effort = Effort {
-            evaluations: DENSE.min(self.effort.affordable(&added)?),
+            evaluations: DENSE,
             ..self.effort.clone()
         };
         let from = |x: &[f64]| {

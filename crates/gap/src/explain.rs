@@ -7,13 +7,14 @@ use crate::journal::Finished;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
-use crate::model::{Effort, Model, Watch};
+use crate::model::{Effort, Model, SEARCH, Watch};
 use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
 use crate::screening::screen;
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use nalgebra::DMatrix;
+use std::ops::ControlFlow;
 
 /// Most evaluations of the calibration to begin with.
 const CALIBRATION: u64 = 200;
@@ -237,19 +238,24 @@ impl Search<'_> {
         let settings = FitSettings {
             optimiser: Optimiser::Default,
             seed: 0,
-            evaluations: evaluations.min(self.effort.affordable(problem)?),
+            evaluations,
             held_out: self.effort.held_out.clone(),
             start,
         };
+        let metered = problem.metered();
+        let watch = |_: &_| match metered.meter.steps() < SEARCH {
+            true => (self.watch)(),
+            false => ControlFlow::Break(()),
+        };
         let search = || {
-            let fit = calibrate::calibrate(problem, &settings, |_| (self.watch)())?;
+            let fit = calibrate::calibrate(&metered, &settings, watch)?;
             if !fit.complete && (self.watch)().is_break() {
                 return Err(Error::Stopped);
             }
             let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
             Ok(Finished {
                 numbers: fit.estimates.iter().map(coordinate).collect(),
-                cost: fit.evaluations * self.effort.cost(problem)?,
+                cost: metered.meter.steps(),
             })
         };
         let x = self.effort.journal.once(&(problem, &settings), search)?;

@@ -159,6 +159,7 @@ mod tests {
             tree,
             runs: Vec::new(),
             crank: CrankMotion::Driven,
+            meter: calibrate::meter::Meter::default(),
         };
         let mut truth = problem.clone();
         truth.tree["effects"] = json!([{"empirical_force": {"velocity_sign": "-150 N"}}]);

@@ -15,13 +15,10 @@ const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
 /// The same for pressures alone, whose descents have no minima on the way.
 const FULL_OF_GAS: f64 = 1e-3;
-/// What an explanation may cost before nothing new is begun, in evaluations of one run without clear
-/// joints, which take some 2 ms.
-const BUDGET: u64 = 250_000;
-/// Share of it, as a divisor, that a single search may take.
-const SEARCHES: u64 = 4;
-/// By how much a run that does not repeat itself is dearer: 64 revolutions in place of six.
-const LONGER: u64 = 10;
+/// What an explanation may cost before nothing new is begun, and a single search, in steps of the
+/// integrator. A step of two joints takes some 20 µs.
+const BUDGET: u64 = 24_000_000;
+pub(crate) const SEARCH: u64 = BUDGET / 4;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
@@ -34,25 +31,6 @@ pub(crate) fn loose(problem: &Problem) -> f64 {
         true => 0.0,
         false => LOOSE,
     }
-}
-
-/// The cost of an evaluation where every run repeats itself: the steps follow each joint's contacts,
-/// and each step is so much dearer.
-fn cost(problem: &Problem) -> Result<u64, Error> {
-    let nominal = vec![0.0; problem.parameters.len()];
-    let mut cost = 0;
-    for run in &problem.runs {
-        let machine = problem.machine(run, &nominal)?.machine;
-        let of_throw = |throw: &mechanism::Throw| {
-            let guide = matches!(throw.guide, mechanism::joints::guide::Guide::Clear(_));
-            let ends = [&throw.big_end, &throw.small_end];
-            ends.iter().filter(|end| end.clear().is_some()).count() + usize::from(guide)
-        };
-        let main = usize::from(machine.main.clear().is_some());
-        let joints = main + machine.throws.iter().map(of_throw).sum::<usize>();
-        cost += (4 * joints * joints).max(1) as u64;
-    }
-    Ok(cost)
 }
 
 /// Asked between evaluations whether to go on.
@@ -124,24 +102,6 @@ impl Effort {
         self.journal.spent() < BUDGET
     }
 
-    /// What an evaluation of a problem costs, in those of one run that repeats itself and has no clear
-    /// joints.
-    ///
-    /// # Errors
-    /// A machine that is none.
-    pub(crate) fn cost(&self, problem: &Problem) -> Result<u64, Error> {
-        let longer = if self.chaotic { LONGER } else { 1 };
-        Ok(longer * cost(problem)?)
-    }
-
-    /// How many evaluations of a problem a search may take: no more than a share of the budget.
-    ///
-    /// # Errors
-    /// A machine that is none.
-    pub(crate) fn affordable(&self, problem: &Problem) -> Result<u64, Error> {
-        Ok(BUDGET / SEARCHES / self.cost(problem)?)
-    }
-
     fn fits(&self, run: &str) -> bool {
         !self.held_out.iter().any(|held| held == run)
     }
@@ -182,21 +142,21 @@ impl Model {
         if problem.parameters.is_empty() {
             return Self::at(problem, Vec::new(), effort);
         }
-        let fitted = problem.with_runs(|run| effort.fits(&run.id));
+        let fitted = problem.with_runs(|run| effort.fits(&run.id)).metered();
         let descents = || {
             let mut x = start.to_vec();
-            let (mut evaluations, mut change) = (0, FULL_OF_GAS);
+            let mut change = FULL_OF_GAS;
+            let within = || (watch(), fitted.meter.steps() < SEARCH);
             let loose = loose(&fitted);
             if loose > 0.0 {
                 let rough = Likelihood::coarse(&fitted, loose);
-                let rough = descend(&rough, &x, ROUGH, effort, watch)?;
-                (x, evaluations, change) = (rough.x, rough.evaluations, FULL);
+                let rough = descend(&rough, &x, ROUGH, effort, &within)?;
+                (x, change) = (rough.x, FULL);
             }
-            let full = descend(&Likelihood::new(&fitted), &x, change, effort, watch)?;
-            evaluations += full.evaluations;
+            let full = descend(&Likelihood::new(&fitted), &x, change, effort, &within)?;
             Ok(Finished {
                 numbers: full.x,
-                cost: evaluations * effort.cost(&fitted)?,
+                cost: fitted.meter.steps(),
             })
         };
         let input = ("fit", &fitted, start, effort.evaluations);
@@ -270,12 +230,13 @@ impl Model {
     }
 }
 
+/// A descent; `watch` tells whether to go on, and whether there are steps left for that.
 fn descend(
     likelihood: &Likelihood,
     start: &[f64],
     change: f64,
     effort: &Effort,
-    watch: Watch,
+    watch: &dyn Fn() -> (ControlFlow<()>, bool),
 ) -> Result<Progress, Error> {
     let mut stopped = false;
     let bounds = likelihood.bounds();
@@ -286,9 +247,12 @@ fn descend(
     });
     let start: Vec<f64> = within.collect();
     let found = levenberg_marquardt(likelihood, &start, change, effort.evaluations, &mut |_| {
-        let answer = watch();
+        let (answer, affordable) = watch();
         stopped |= answer.is_break();
-        answer
+        match affordable {
+            true => answer,
+            false => ControlFlow::Break(()),
+        }
     })?;
     if stopped {
         Err(Error::Stopped)

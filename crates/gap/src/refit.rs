@@ -1,10 +1,10 @@
 //! The most promising candidates, fitted together with everything else.
 
+use crate::candidate::Candidate;
 use crate::decision::{NOISE, RIVAL, evidence};
 use crate::error::Error;
 use crate::explain::{Search, Tried};
 use crate::model::{Effort, Model};
-use crate::pressures::is_of_pressures;
 use crate::screening::Screened;
 use rayon::prelude::*;
 
@@ -34,47 +34,46 @@ impl Search<'_> {
         screened: Vec<Screened>,
     ) -> Result<Vec<(Tried, Model)>, Error> {
         let few = few(model, self.effort);
-        let mut rough: Vec<(Screened, Model)> = Vec::new();
+        let mut rough: Vec<Rough> = Vec::new();
         let mut chosen = screened.into_iter().take(FITTED).peekable();
         while chosen.peek().is_some() {
             let together: Vec<Screened> = chosen.by_ref().take(TOGETHER).collect();
-            let near = rough.iter().position(|(_, fitted)| fitted.fitted < NOISE);
+            let near = rough.iter().position(|rough| rough.model.fitted < NOISE);
             let done = near.is_some_and(|i| rough.len() - i >= AFTERWARDS);
             if done || (!rough.is_empty() && !self.effort.goes_on()) {
                 break;
             }
-            let near = near.map(|i| rough[i].1.clone());
-            let fitted = together.into_par_iter().map(|screened| {
-                match self.candidate(&few, &screened, near.as_ref()) {
-                    Ok(fitted) => Ok(Some((screened, fitted))),
-                    // A descent may end where the machine cannot be simulated.
-                    Err(Error::Fit(_)) => Ok(None),
-                    Err(error) => Err(error),
-                }
-            });
+            let near = near.map(|i| rough[i].model.clone());
+            let fitted = together
+                .into_par_iter()
+                .map(|screened| self.candidate(&few, &screened, near.as_ref()));
             let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
             rough.extend(fitted.into_iter().flatten());
         }
-        rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
-        let missed = rough.first().is_some_and(|(_, best)| best.fitted > NOISE);
+        sort(&mut rough);
+        let missed = rough.first().is_some_and(|best| best.model.fitted > NOISE);
         if missed && self.effort.goes_on() {
             let later = rough.split_off(rough.len().min(DEEPER));
             let deeper = rough
                 .into_par_iter()
-                .map(|(screened, fitted)| Ok((screened, self.deeper(fitted)?)));
+                .map(|rough| {
+                    let model = self.deeper(rough.model)?;
+                    Ok(Rough { model, ..rough })
+                });
             rough = deeper.collect::<Result<Vec<_>, Error>>()?;
             rough.extend(later);
-            rough.sort_by(|a, b| a.1.criterion().total_cmp(&b.1.criterion()));
+            sort(&mut rough);
         }
-        let least = rough.first().map_or(f64::NAN, |(_, fitted)| fitted.fitted);
+        let least = rough.first().map_or(f64::NAN, |best| best.model.fitted);
         let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
         let mut tried = Vec::new();
-        for (i, (screened, fitted)) in rough.into_iter().enumerate() {
-            let Screened {
+        for (i, rough) in rough.into_iter().enumerate() {
+            let Rough {
                 candidate,
                 score,
                 values,
-            } = screened;
+                model: fitted,
+            } = rough;
             let close = fitted.fitted < RIVAL * least.max(1.0);
             let (before, after) = if i == 0 || (i < FINAL && close) {
                 (self.say)(&candidate.label(), fitted.fitted);
@@ -111,35 +110,66 @@ impl Search<'_> {
     }
 
     /// A candidate fitted to `few` runs together with everything else. Where another one has reached
-    /// the noise, what the calibrated parameters are is known from it.
+    /// the noise, what the calibrated parameters are is known from it. None where it cannot be simulated.
     fn candidate(
         &self,
         few: &Model,
         screened: &Screened,
         near: Option<&Model>,
-    ) -> Result<Model, Error> {
-        let label = screened.candidate.label();
+    ) -> Result<Option<Rough>, Error> {
+        let Screened {
+            candidate,
+            score,
+            starts,
+        } = screened;
+        let label = candidate.label();
         (self.say)(&label, few.fitted);
-        let added = screened.candidate.added(&few.problem, &screened.values)?;
         let most = if near.is_some() { RIVALS } else { FIRST };
         let effort = Effort {
             evaluations: most.min(self.effort.evaluations),
             ..self.effort.clone()
         };
-        let from = |x: &[f64]| {
-            let mut x = x[..few.x.len()].to_vec();
+        let mut best: Option<(Vec<f64>, Model)> = None;
+        // Where the calibration is known, the start at the nominal machine is the nearer one.
+        let known = if near.is_some() { starts.len() - 1 } else { 0 };
+        for start in &starts[known..] {
+            let added = candidate.added(&few.problem, &start.values)?;
+            let mut x = near.map_or(&start.x, |near| &near.x)[..few.x.len()].to_vec();
             x.resize(added.parameters.len(), 0.0);
-            Model::fit(added.clone(), &x, &effort, self.watch)
+            let model = match Model::fit(added, &x, &effort, self.watch) {
+                // A descent may end where the machine cannot be simulated.
+                Err(Error::Fit(_)) => continue,
+                model => model?,
+            };
+            if best.as_ref().is_none_or(|(_, best)| model.fitted < best.fitted) {
+                best = Some((start.values.clone(), model));
+            }
+        }
+        let Some((values, model)) = best else {
+            return Ok(None);
         };
-        let fitted = match near {
-            Some(near) => from(&near.x)?,
-            None if is_of_pressures(&few.problem) => from(&few.x)?,
-            // Without the effect the calibration may have gone far astray.
-            None => from(&few.x)?.better(from(&vec![0.0; few.x.len()])?),
-        };
-        (self.say)(&format!("{label} fitted"), fitted.fitted);
-        Ok(fitted)
+        (self.say)(&format!("{label} fitted"), model.fitted);
+        Ok(Some(Rough {
+            candidate: candidate.clone(),
+            score: *score,
+            values,
+            model,
+        }))
     }
+}
+
+/// A candidate fitted to a few runs.
+struct Rough {
+    candidate: Candidate,
+    score: f64,
+    /// Its parameters where their coordinates are 0, SI.
+    values: Vec<f64>,
+    model: Model,
+}
+
+/// The best first.
+fn sort(rough: &mut [Rough]) {
+    rough.sort_by(|a, b| a.model.criterion().total_cmp(&b.model.criterion()));
 }
 
 /// The model with a few of the runs that it is fitted to, of speeds as different as there are.

@@ -14,6 +14,7 @@ use crate::candidate::Candidate;
 use crate::error::Error;
 use crate::journal::Finished;
 use crate::model::{Effort, Model, Watch, loose};
+use crate::pressures::is_of_pressures;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
@@ -21,6 +22,8 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
+/// A calibrated coordinate further than this from the nominal one may have gone astray.
+const ASTRAY: f64 = 0.1;
 
 /// A candidate and how much of the residual it may explain.
 #[derive(Clone, Debug)]
@@ -29,11 +32,54 @@ pub struct Screened {
     pub candidate: Candidate,
     /// Share of the residual's sum of squares, 0 to 1, that it explains where it does most.
     pub score: f64,
-    /// Its parameters there, SI.
+    /// Where a fit may start.
+    pub starts: Vec<Start>,
+}
+
+/// A point to start from: the calibrated machine with an effect, or the nominal one.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// Coordinates of the calibrated parameters.
+    pub x: Vec<f64>,
+    /// Parameters of the effect, SI.
     pub values: Vec<f64>,
 }
 
-/// The candidates, the most promising first. Those that cannot be simulated are left out.
+/// A point at which candidates are looked at, and what is left there.
+struct Base {
+    x: Vec<f64>,
+    residual: DVector<f64>,
+    projector: Projector,
+    left: DVector<f64>,
+}
+
+impl Base {
+    fn at(likelihood: &Likelihood, x: &[f64]) -> Self {
+        let residual = DVector::from_vec(likelihood.residuals(x));
+        let projector = Projector::new(&likelihood.jacobian(x));
+        Self {
+            x: x.to_vec(),
+            left: projector.apply(&residual),
+            residual,
+            projector,
+        }
+    }
+
+    /// The score of a probe that has these residuals.
+    fn score(&self, there: Vec<f64>) -> Option<f64> {
+        let change = (self.projector).apply(&(DVector::from_vec(there) - &self.residual));
+        let size = change.norm_squared();
+        (size > 0.0).then(|| {
+            let share = (-self.left.dot(&change) / size).clamp(0.0, SCALED);
+            let left = (&self.left + share * &change).norm_squared();
+            1.0 - left / self.left.norm_squared()
+        })
+    }
+}
+
+/// The candidates, the most promising first. Those that cannot be simulated are left out. They are
+/// looked at where the machine is calibrated, and where it is nominal: without what is missing a
+/// calibration may have gone far astray.
 ///
 /// # Errors
 /// [`Error::Stopped`].
@@ -45,53 +91,54 @@ pub fn screen(
 ) -> Result<Vec<Screened>, Error> {
     let loose = loose(&model.problem);
     let likelihood = Likelihood::coarse(&model.problem, loose);
-    let residual = DVector::from_vec(likelihood.residuals(&model.x));
-    let projector = Projector::new(&likelihood.jacobian(&model.x));
-    let base = projector.apply(&residual);
-    let cost = effort.cost(&model.problem)?;
+    let mut bases = vec![Base::at(&likelihood, &model.x)];
+    if !is_of_pressures(&model.problem) && model.x.iter().any(|x| x.abs() > ASTRAY) {
+        bases.push(Base::at(&likelihood, &vec![0.0; model.x.len()]));
+    }
     // The score and the values there; nothing for what cannot be simulated.
-    let of = |candidate: &Candidate| -> Result<Finished, Error> {
+    let of = |candidate: &Candidate, base: &Base| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
-        let probes = candidate.probes();
-        let cost = cost * probes.len() as u64;
-        for values in probes {
+        let metered = model.problem.metered();
+        for values in candidate.probes() {
             if watch().is_break() {
                 return Err(Error::Stopped);
             }
-            let Ok(added) = candidate.added(&model.problem, &values) else {
+            let Ok(added) = candidate.added(&metered, &values) else {
                 continue;
             };
-            let mut x = model.x.clone();
+            let mut x = base.x.clone();
             x.resize(added.parameters.len(), 0.0);
             let there = Likelihood::coarse(&added, loose).residuals(&x);
-            let change = projector.apply(&(DVector::from_vec(there) - &residual));
-            let size = change.norm_squared();
-            if size <= 0.0 {
-                continue;
-            }
-            let share = (-base.dot(&change) / size).clamp(0.0, SCALED);
-            let left = (&base + share * &change).norm_squared() / base.norm_squared();
-            if best.as_ref().is_none_or(|(score, _)| 1.0 - left > *score) {
-                best = Some((1.0 - left, values));
+            let score = base.score(there);
+            let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
+            if let Some(score) = score.filter(better) {
+                best = Some((score, values));
             }
         }
         let found = best.into_iter();
         let numbers = found.flat_map(|(score, values)| [vec![score], values].concat());
         Ok(Finished {
             numbers: numbers.collect(),
-            cost,
+            cost: metered.meter.steps(),
         })
     };
     let screened = candidates.into_par_iter().map(|candidate| {
-        let input = ("screen", &model.problem, &model.x, candidate.label());
-        let numbers = effort.journal.once(&input, || of(&candidate))?;
-        let found = numbers
-            .split_first()
-            .map(|(score, values)| (*score, values.to_vec()));
-        Ok(found.map(|(score, values)| Screened {
+        let (mut best, mut starts) = (f64::NEG_INFINITY, Vec::new());
+        for base in &bases {
+            let input = ("screen", &model.problem, &base.x, candidate.label());
+            let numbers = effort.journal.once(&input, || of(&candidate, base))?;
+            if let Some((score, values)) = numbers.split_first() {
+                best = score.max(best);
+                starts.push(Start {
+                    x: base.x.clone(),
+                    values: values.to_vec(),
+                });
+            }
+        }
+        Ok((!starts.is_empty()).then_some(Screened {
             candidate,
-            score,
-            values,
+            score: best,
+            starts,
         }))
     });
     let screened = screened.collect::<Result<Vec<_>, Error>>()?;

@@ -37,6 +37,7 @@ fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
         parameters: vec![offset],
         runs,
         crank: CrankMotion::Driven,
+        meter: calibrate::meter::Meter::default(),
     }
 }
 

@@ -2,56 +2,63 @@
 //!
 //! Flags are scalars, 1 or 0, so that lanes may be in different modes.
 
+use crate::lift::parameters;
 use scalar::Scalar;
 
-/// The mode of the whole machine.
-#[derive(Clone, Debug)]
-pub struct Mode<S> {
-    /// The main bearing.
-    pub main: ContactMode<S>,
-    /// Each throw.
-    pub throws: Vec<ThrowMode<S>>,
+parameters! {
+    /// The mode of the whole machine.
+    pub struct Mode<S> {
+        /// The main bearing.
+        pub main: ContactMode<S>,
+        /// Each throw.
+        pub throws: Vec<ThrowMode<S>>,
+    }
 }
 
-/// The mode of one throw.
-#[derive(Clone, Debug)]
-pub struct ThrowMode<S> {
-    /// Contact at the big end.
-    pub big_end: ContactMode<S>,
-    /// Contact at the small end.
-    pub small_end: ContactMode<S>,
-    /// Contact at the guide's corners: upper rear, upper front, lower rear, lower front.
-    pub guide: [ContactMode<S>; 4],
-    /// 1 while the piston moves away from the head (0 ≤ α mod 2π < π, turning counter-clockwise).
-    pub outward: S,
-    /// Gas at the head end.
-    pub head_end: ChamberMode<S>,
-    /// Gas at the crank end.
-    pub crank_end: ChamberMode<S>,
+parameters! {
+    /// The mode of one throw.
+    pub struct ThrowMode<S> {
+        /// Contact at the big end.
+        pub big_end: ContactMode<S>,
+        /// Contact at the small end.
+        pub small_end: ContactMode<S>,
+        /// Contact at the guide's corners: upper rear, upper front, lower rear, lower front.
+        pub guide: [ContactMode<S>; 4],
+        /// 1 while the piston moves away from the head (0 ≤ α mod 2π < π, turning counter-clockwise).
+        pub outward: S,
+        /// Gas at the head end.
+        pub head_end: ChamberMode<S>,
+        /// Gas at the crank end.
+        pub crank_end: ChamberMode<S>,
+    }
 }
 
-/// The mode of one contact.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactMode<S> {
-    /// 1 while the surfaces overlap (for a rigid joint model: while the journal follows).
-    pub touching: S,
-    /// 1 while they press on each other: they touch, and the law does not pull.
-    pub pressed: S,
-    /// 1 beyond the kink of the contact law.
-    pub deep: S,
-    /// 1 beyond each kink of the friction law.
-    pub slipping: [S; 2],
-    /// Approach speed v₀ at the last touch, m/s.
-    pub approach: S,
+parameters! {
+    /// The mode of one contact.
+    #[derive(Copy)]
+    pub struct ContactMode<S> {
+        /// 1 while the surfaces overlap (for a rigid joint model: while the journal follows).
+        pub touching: S,
+        /// 1 while they press on each other: they touch, and the law does not pull.
+        pub pressed: S,
+        /// 1 beyond the kink of the contact law.
+        pub deep: S,
+        /// 1 beyond each kink of the friction law.
+        pub slipping: [S; 2],
+        /// Approach speed v₀ at the last touch, m/s.
+        pub approach: S,
+    }
 }
 
-/// The mode of the gas in one chamber; both flags 0 while both valves are closed.
-#[derive(Clone, Copy, Debug)]
-pub struct ChamberMode<S> {
-    /// 1 while the suction valve is open.
-    pub suction: S,
-    /// 1 while the discharge valve is open.
-    pub discharge: S,
+parameters! {
+    /// The mode of the gas in one chamber; both flags 0 while both valves are closed.
+    #[derive(Copy)]
+    pub struct ChamberMode<S> {
+        /// 1 while the suction valve is open.
+        pub suction: S,
+        /// 1 while the discharge valve is open.
+        pub discharge: S,
+    }
 }
 
 impl<S: Scalar> ContactMode<S> {

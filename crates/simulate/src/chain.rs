@@ -77,6 +77,24 @@ impl Sampling {
         }
     }
 
+    /// How many inner samples a motion that repeats itself after the `length` of the record has in it,
+    /// where they are a whole number.
+    pub(crate) fn cycle(&self, length: f64) -> Option<usize> {
+        let count = length * self.inner_rate;
+        let whole = (count - count.round()).abs() < 1e-6;
+        let count = count.round() as usize;
+        (whole && count == self.samples * self.factor).then_some(count)
+    }
+
+    /// The inner samples of a record from those of one cycle of it, whose first is number `first` of
+    /// the record itself.
+    pub(crate) fn repeated(&self, cycle: &[f64], first: usize) -> Vec<f64> {
+        let count = cycle.len();
+        let before = (first + self.lead()).div_ceil(count) * count - first - self.lead();
+        let samples = 0..self.decimator.input_length(self.samples);
+        samples.map(|i| cycle[(i + before) % count]).collect()
+    }
+
     /// What `sensor` makes of the inner samples of its quantity in a record that begins at `start`,
     /// s: filtered, amplified, decimated, with the hum of the mains.
     pub(crate) fn record(

@@ -13,6 +13,7 @@ mod chain;
 pub mod flow;
 pub mod lyapunov;
 pub mod measure;
+mod orbit;
 pub mod periodic_orbit;
 pub mod poincare;
 pub mod record;

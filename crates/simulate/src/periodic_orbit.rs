@@ -126,7 +126,7 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
 }
 
 /// True where component `i` depends on its own start alone, and is the same.
-fn keeps(monodromy: &DMatrix<f64>, i: usize) -> bool {
+pub(crate) fn keeps(monodromy: &DMatrix<f64>, i: usize) -> bool {
     let row = monodromy.row(i);
     row.iter()
         .enumerate()

@@ -3,13 +3,17 @@
 use crate::record::Error;
 use crate::settings::Transient;
 use integrate::{Integrator, Real, Step, System, Work};
-use mechanism::{Dynamics, Evaluation, Machine};
+use mechanism::mode::Mode;
+use mechanism::{Dynamics, Evaluation, Machine, lift};
 use std::f64::consts::TAU;
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
 const LONGEST_STEP: f64 = 0.05;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
+/// Revolutions in which a motion that settles comes nearer to itself at least by this factor.
+const PATIENCE: usize = 4;
+const NEARER: f64 = 0.5;
 /// Periods, in revolutions, that count as settled.
 const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD as u32];
 const LONGEST_PERIOD: usize = 4;
@@ -20,6 +24,7 @@ pub(crate) struct Run<S> {
     integrator: Integrator<S>,
     revolution: f64,
     state: Vec<S>,
+    hurried: bool,
 }
 
 /// Equally spaced instants at which a run is looked at.
@@ -37,6 +42,31 @@ impl Instants {
     fn at(&self, index: usize) -> f64 {
         self.first + index as f64 / self.rate
     }
+
+    /// Those up to `time`, and those after it.
+    pub(crate) fn split_at(self, time: f64) -> [Self; 2] {
+        let mut count = self.count;
+        while count > 0 && self.at(count - 1) > time {
+            count -= 1;
+        }
+        let after = Self {
+            first: self.at(count),
+            count: self.count - count,
+            ..self
+        };
+        [Self { count, ..self }, after]
+    }
+}
+
+/// Where a run stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Standing {
+    /// s.
+    pub time: f64,
+    /// The components.
+    pub state: Vec<f64>,
+    /// The contacts and valves.
+    pub mode: Mode<f64>,
 }
 
 /// Energy and works at an instant, J.
@@ -58,12 +88,30 @@ impl<S: Real> Run<S> {
             integrator,
             revolution,
             state,
+            hurried: false,
         }
+    }
+
+    /// Goes on where another run, of which these are the numbers, stands.
+    pub(crate) fn resume(machine: Machine<S>, at: &Standing, state: &[S], tolerance: f64) -> Self {
+        let mut run = Self::start(machine, tolerance, false);
+        *run.dynamics.mode_mut() = lift::constants(&at.mode);
+        let longest = LONGEST_STEP * run.revolution;
+        run.integrator = Integrator::new(&mut run.dynamics, at.time, state, tolerance, longest);
+        run
     }
 
     /// Length of a revolution at the reference speed, s.
     pub(crate) fn revolution(&self) -> f64 {
         self.revolution
+    }
+
+    /// Steps tried so far; one of dual numbers counts for what it takes, by `weight`.
+    pub(crate) fn steps(&self) -> u64 {
+        let work = self.integrator.work();
+        // A value, and for each tangent about seven tenths of what it takes.
+        let tangents = (size_of::<S>() / size_of::<f64>() - 1) as u64;
+        (work.accepted + work.rejected) * (10 + 7 * tangents) / 10
     }
 
     /// What the integration took so far.
@@ -83,18 +131,23 @@ impl<S: Real> Run<S> {
             Transient::Settled { change, at_most } => (change, at_most),
         };
         let mut strobes = vec![self.strobe()];
+        let mut distances = Vec::new();
         for revolution in 1..at_most {
             self.revolve(revolution)?;
             let now = self.strobe();
-            let repeats = |period: &u32| {
+            let distance = |period: &u32| {
                 let earlier = strobes.len().checked_sub(*period as usize);
-                earlier.is_some_and(|i| self.distance(&now, &strobes[i]) < change)
+                earlier.map_or(f64::INFINITY, |i| self.distance(&now, &strobes[i]))
             };
             // Not before the start has had a revolution to pass.
             if revolution > 1
-                && let Some(period) = PERIODS.into_iter().find(repeats)
+                && let Some(period) = PERIODS.into_iter().find(|p| distance(p) < change)
             {
                 return Ok((revolution + 1, Some(period)));
+            }
+            distances.push(PERIODS.iter().map(distance).fold(f64::INFINITY, f64::min));
+            if self.hurried && change > 0.0 && is_restless(&distances) {
+                return Ok((revolution + 1, None));
             }
             strobes.push(now);
             let keep = strobes.len().saturating_sub(LONGEST_PERIOD);
@@ -115,8 +168,10 @@ impl<S: Real> Run<S> {
     }
 
     /// Gives up where a revolution takes more than [`HURRIED`] steps in each longest step's time: a
-    /// search tries machines that rattle without end, and need not wait for them.
+    /// search tries machines that rattle without end, and need not wait for them. Nor does it wait for
+    /// one to settle that comes no nearer to that.
     pub(crate) fn hurry(&mut self) {
+        self.hurried = true;
         self.integrator.set_budget(HURRIED);
     }
 
@@ -142,10 +197,8 @@ impl<S: Real> Run<S> {
         let Some((angle, _)) = self.free_crank() else {
             return state;
         };
-        let y = self.integrator.state().to_vec();
-        let mut rates = vec![S::zero(); y.len()];
-        let time = S::constant(self.integrator.time());
-        self.dynamics.derivative(time, &y, &mut rates);
+        let rates = self.rates();
+        let y = self.integrator.state();
         let short = TAU * (angle / TAU).round() - angle;
         if let Some(at) = self.dynamics.layout().crank {
             let delay = short / (TAU / self.revolution + y[at + 1].value());
@@ -157,6 +210,36 @@ impl<S: Real> Run<S> {
         state
     }
 
+    /// The derivative of the state by time.
+    pub(crate) fn rates(&mut self) -> Vec<S> {
+        let y = self.integrator.state();
+        let mut rates = vec![S::zero(); y.len()];
+        let time = S::constant(self.integrator.time());
+        self.dynamics.derivative(time, y, &mut rates);
+        rates
+    }
+
+    /// The components of the state.
+    pub(crate) fn state(&self) -> &[S] {
+        self.integrator.state()
+    }
+
+    /// What the forces depend on beside time, state and switches.
+    pub(crate) fn memory(&mut self) -> Vec<&mut S> {
+        self.dynamics.memory_mut()
+    }
+
+    /// What each component is measured by.
+    pub(crate) fn scales(&self) -> Vec<f64> {
+        self.dynamics.scales().iter().map(|s| s.value()).collect()
+    }
+
+    /// Which component is the angle of a crank that is free, beside that of the reference speed; its
+    /// speed follows.
+    pub(crate) fn crank(&self) -> Option<usize> {
+        self.dynamics.layout().crank
+    }
+
     /// Largest difference of two states, each component over its scale.
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let scales = self.dynamics.scales();
@@ -166,7 +249,8 @@ impl<S: Real> Run<S> {
             .fold(0.0, f64::max)
     }
 
-    fn advance(&mut self, end: f64) -> Result<(), Error> {
+    /// Goes on to the end of a time, s.
+    pub(crate) fn advance(&mut self, end: f64) -> Result<(), Error> {
         self.integrator
             .advance(&mut self.dynamics, end, |_, _| ())?;
         self.check(end)
@@ -224,7 +308,50 @@ impl<S: Real> Run<S> {
     }
 }
 
+/// Whether a motion of these distances from itself comes no nearer.
+fn is_restless(distances: &[f64]) -> bool {
+    let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
+    let Some(first) = distances.len().checked_sub(PATIENCE) else {
+        return false;
+    };
+    let (before, now) = distances.split_at(first);
+    first >= PATIENCE && least(now) > NEARER * least(&before[first - PATIENCE..])
+}
+
 impl Run<f64> {
+    /// Where it stands.
+    pub(crate) fn standing(&self) -> Standing {
+        Standing {
+            time: self.integrator.time(),
+            state: self.integrator.state().to_vec(),
+            mode: self.dynamics.mode().clone(),
+        }
+    }
+
+    /// Goes on until the crank has turned by so many revolutions.
+    pub(crate) fn turn(&mut self, revolutions: u32) -> Result<(), Error> {
+        let turns = TAU * f64::from(revolutions);
+        let time = self.integrator.time();
+        let Some((start, _)) = self.free_crank() else {
+            return self.advance(time + f64::from(revolutions) * self.revolution);
+        };
+        let reference = TAU / self.revolution;
+        let mut rate = reference;
+        // A little less than what is left at a time, and then all of it: Newton's method.
+        for share in [0.99, 0.99, 1.0, 1.0, 1.0] {
+            let (angle, _) = self.free_crank().unwrap_or_default();
+            let ahead = share * (start + turns - angle) / rate;
+            if ahead <= 4.0 * f64::EPSILON * time.abs() {
+                break;
+            }
+            self.advance(self.integrator.time() + ahead)?;
+            rate = self
+                .crank()
+                .map_or(reference, |i| reference + self.state()[i + 1]);
+        }
+        Ok(())
+    }
+
     /// Where energy and works stand.
     pub(crate) fn ledger(&mut self) -> Ledger {
         let y = self.integrator.state().to_vec();

@@ -121,6 +121,7 @@ impl Bench {
             parameters: self.parameters.clone(),
             runs: runs.collect::<Result<_, Box<dyn Error>>>()?,
             crank: CrankMotion::Driven,
+            meter: calibrate::meter::Meter::default(),
         })
     }
 }

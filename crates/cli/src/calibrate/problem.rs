@@ -97,6 +97,7 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
             parameters,
             runs: Vec::new(),
             crank: CrankMotion::Driven,
+            meter: calibrate::meter::Meter::default(),
         },
         runs,
         zeroed,
