@@ -66,11 +66,18 @@ impl<S: Scalar> Step<S> {
         self.stages.copy_within(12 * n..13 * n, 0);
     }
 
-    /// Steps over `length` from the beginning, whose derivative must be there, to `self.to`.
-    pub fn take(&mut self, system: &mut impl System<S>, length: S) {
+    /// Steps over `length` from the beginning, whose derivative must be there, to `self.to`. After
+    /// each stage `look` is shown its number and the system.
+    pub fn take<T: System<S>>(
+        &mut self,
+        system: &mut T,
+        length: S,
+        mut look: impl FnMut(usize, &mut T),
+    ) {
         self.length = length;
         for stage in 1..STAGES {
             self.stage(system, stage);
+            look(stage, system);
         }
         self.to.copy_from_slice(&self.scratch);
     }

@@ -2,6 +2,7 @@
 
 use crate::dop853::Step;
 use crate::events::Finder;
+use crate::glance::Glances;
 use crate::system::{Real, System};
 
 /// Why an integration stopped.
@@ -53,6 +54,7 @@ pub struct Work {
 pub struct Integrator<S> {
     step: Step<S>,
     finder: Finder<S>,
+    glances: Glances<S>,
     /// Length to try next, s.
     length: f64,
     tolerance: f64,
@@ -78,9 +80,11 @@ impl<S: Real> Integrator<S> {
         let mut step = Step::new(y.len());
         step.start = S::constant(t);
         step.from.copy_from_slice(y);
-        step.begin(system);
+        let mut glances = Glances::new(system.guard_count());
+        glances.begin(system, &mut step);
         let mut integrator = Self {
             finder: Finder::new(y.len(), system.guard_count()),
+            glances,
             length: longest,
             step,
             tolerance,
@@ -122,7 +126,15 @@ impl<S: Real> Integrator<S> {
     /// Replaces the state (a tangent renormalised, a restart); time and mode stay.
     pub fn set_state(&mut self, system: &mut impl System<S>, y: &[S]) {
         self.step.from.copy_from_slice(y);
-        self.step.begin(system);
+        self.glances.begin(system, &mut self.step);
+    }
+
+    /// Goes on to `end`.
+    ///
+    /// # Errors
+    /// Where the tolerance cannot be met, or a switch has no end.
+    pub fn reach(&mut self, system: &mut impl System<S>, end: f64) -> Result<(), Error> {
+        self.go(system, end, None::<fn(&mut _, &Step<S>)>)
     }
 
     /// Goes on to `end`. After each step, still in the mode of that step, `observe` is shown the
@@ -134,7 +146,16 @@ impl<S: Real> Integrator<S> {
         &mut self,
         system: &mut T,
         end: f64,
-        mut observe: impl FnMut(&mut T, &Step<S>),
+        observe: impl FnMut(&mut T, &Step<S>),
+    ) -> Result<(), Error> {
+        self.go(system, end, Some(observe))
+    }
+
+    fn go<T: System<S>>(
+        &mut self,
+        system: &mut T,
+        end: f64,
+        mut observe: Option<impl FnMut(&mut T, &Step<S>)>,
     ) -> Result<(), Error> {
         let (from, before) = (self.time(), self.work);
         while self.time() < end {
@@ -156,14 +177,24 @@ impl<S: Real> Integrator<S> {
             if !self.attempt(system, length, limited)? {
                 continue;
             }
-            self.step.extend(system);
-            let Some(switching) = self.locate(system)? else {
-                continue;
+            let quiet = self.glances.quiet();
+            if observe.is_some() || !quiet {
+                self.step.extend(system);
+            }
+            let switching = match quiet {
+                true => None,
+                false => match self.locate(system)? {
+                    Some(switching) => switching,
+                    None => continue,
+                },
             };
             if self.step.length.value() > 0.0 {
-                observe(system, &self.step);
+                if let Some(observe) = &mut observe {
+                    observe(system, &self.step);
+                }
                 self.work.accepted += 1;
                 self.step.shift();
+                self.glances.shift();
                 if (end - self.time()).abs() <= 4.0 * f64::EPSILON * end.abs() {
                     self.step.start = S::constant(end);
                 }
@@ -173,7 +204,7 @@ impl<S: Real> Integrator<S> {
                 let mut y = std::mem::take(&mut self.step.from);
                 system.switch(guard, t, &mut y);
                 self.step.from = y;
-                self.step.begin(system);
+                self.glances.begin(system, &mut self.step);
                 self.work.switches += 1;
             }
         }
@@ -193,7 +224,8 @@ impl<S: Real> Integrator<S> {
         }
         // After a switch whose time varies, the step brings the time back to a plain number.
         let back = S::constant(time) - self.step.start;
-        self.step.take(system, back + length);
+        let look = |stage, system: &mut _| self.glances.stage(stage, system);
+        self.step.take(system, back + length, look);
         let error = self.error(system.scales());
         // error^(1/8) by square roots, which round the same on every machine.
         let root = error.sqrt().sqrt().sqrt();
@@ -272,7 +304,7 @@ impl<S: Real> Integrator<S> {
             self.step.extend(system);
             let later = self.finder.delay(system, &self.step, crossing.guard);
             if later.varies() {
-                self.step.take(system, self.step.length + later);
+                self.step.take(system, self.step.length + later, |_, _| ());
                 self.step.extend(system);
             }
             let reached = (self.step.start + self.step.length).value();

@@ -12,6 +12,7 @@
 
 pub mod dop853;
 mod events;
+mod glance;
 mod integrator;
 mod system;
 mod tableau;

@@ -49,6 +49,11 @@ pub trait System<S> {
     /// present mode does not have is 1.
     fn guards(&mut self, _t: S, _y: &[S], _guards: &mut [S]) {}
 
+    /// Writes the guards where the derivative was evaluated last, if the system knows them there.
+    fn guards_here(&mut self, _guards: &mut [S]) -> bool {
+        self.guard_count() == 0
+    }
+
     /// Changes the mode (and, for rigid impacts, the state) as guard number `guard` demands.
     fn switch(&mut self, _guard: usize, _t: S, _y: &mut [S]) {}
 }

@@ -33,6 +33,15 @@ fn right_hand_side(c: &mut Criterion) {
                 .speed
         });
     });
+    let mut tangents = Dynamics::<Dual<f64, 8>>::new(lift::constants(&machine), false);
+    let tangents_y: Vec<Dual<f64, 8>> = y.iter().map(|y| Dual::constant(*y)).collect();
+    group.bench_function("eight tangents", |b| {
+        b.iter(|| {
+            tangents
+                .evaluate(black_box(Dual::constant(t)), black_box(&tangents_y))
+                .speed
+        });
+    });
     let mut lanes = Dynamics::new(lift::lanes([&machine; 8]), false);
     let lanes_y: Vec<Lanes<8>> = y.iter().map(|y| Lanes([*y; 8])).collect();
     group.bench_function("eight lanes", |b| {
@@ -64,7 +73,7 @@ fn revolution(c: &mut Criterion) {
             b.iter(|| {
                 let (mut integrator, mut dynamics) = (start.clone(), mode.clone());
                 integrator
-                    .advance(&mut dynamics, 6.0 * REVOLUTION, |_, _| ())
+                    .reach(&mut dynamics, 6.0 * REVOLUTION)
                     .map(|()| integrator.state()[0])
             });
         });

@@ -202,6 +202,11 @@ impl<S: Real> System<S> for Dynamics<S> {
         self.write_guards(guards);
     }
 
+    fn guards_here(&mut self, guards: &mut [S]) -> bool {
+        self.write_guards(guards);
+        true
+    }
+
     fn switch(&mut self, guard: usize, t: S, y: &mut [S]) {
         self.evaluate(t, y);
         let Some(index) = guard.checked_sub(CONTACT_GUARDS) else {

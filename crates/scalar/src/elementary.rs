@@ -19,6 +19,48 @@ const INVERSE_FACTORIAL: [f64; 20] = {
     table
 };
 
+/// Coefficients of (sin r − r)/r³ and (cos r − 1)/r² in r², of (e^r − 1 − r)/r² in r, and of
+/// (artanh s − s)/s³ in s².
+const SINE: [f64; 9] = series(3, 2, true);
+const COSINE: [f64; 9] = series(2, 2, true);
+const EXPONENTIAL: [f64; 13] = series(2, 1, false);
+const LOGARITHM: [f64; 11] = {
+    let mut table = [0.0; 11];
+    let mut i = 0;
+    while i < table.len() {
+        table[i] = 1.0 / (2 * i + 3) as f64;
+        i += 1;
+    }
+    table
+};
+
+/// Factorial reciprocals from 1/first! on in steps, with alternating signs from − on or not.
+const fn series<const N: usize>(first: usize, step: usize, alternating: bool) -> [f64; N] {
+    let mut table = [0.0; N];
+    let mut i = 0;
+    while i < N {
+        let sign = if alternating && i % 2 == 0 { -1.0 } else { 1.0 };
+        table[i] = sign * INVERSE_FACTORIAL[first + i * step];
+        i += 1;
+    }
+    table
+}
+
+/// The polynomial with these coefficients at `x`: even and odd powers each by Horner's rule, so that
+/// two sums grow side by side (Knuth 1997, section 4.6.4).
+#[inline(always)]
+fn sum<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
+    let square = x * x;
+    let [mut last, mut other] = [coefficients[N - 1], coefficients[N - 2]];
+    let mut i = N - 2;
+    while i > 0 {
+        i -= 1;
+        (last, other) = (other, last * square + coefficients[i]);
+    }
+    // The last one that was added to holds the constant.
+    other + last * x
+}
+
 /// Adding and subtracting 1.5 * 2^52 rounds to the nearest integer, and leaves that integer in
 /// the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -43,15 +85,8 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     let r = ((x - quarter * HALF_PI[0]) - quarter * HALF_PI[1]) - quarter * HALF_PI[2];
     let r2 = r * r;
 
-    let mut sine = -INVERSE_FACTORIAL[19];
-    let mut cosine = -INVERSE_FACTORIAL[18];
-    let mut n = 17;
-    while n >= 3 {
-        let sign = if n % 4 == 1 { 1.0 } else { -1.0 };
-        sine = sine * r2 + sign * INVERSE_FACTORIAL[n];
-        cosine = cosine * r2 + sign * INVERSE_FACTORIAL[n - 1];
-        n -= 2;
-    }
+    let sine = sum(&SINE, r2);
+    let cosine = sum(&COSINE, r2);
     let sine = r + r * r2 * sine;
     let cosine = 1.0 + r2 * cosine;
 
@@ -76,13 +111,7 @@ pub fn exp(x: f64) -> f64 {
     let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
     let k = shifted - ROUNDER;
     let r = (x - k * LN_2[0]) - k * LN_2[1];
-    let mut sum = INVERSE_FACTORIAL[14];
-    let mut n = 13;
-    while n >= 2 {
-        sum = sum * r + INVERSE_FACTORIAL[n];
-        n -= 1;
-    }
-    let value = 1.0 + (r + r * r * sum);
+    let value = 1.0 + (r + r * r * sum(&EXPONENTIAL, r));
     let power = shifted.to_bits().wrapping_sub(ROUNDER.to_bits());
     value * f64::from_bits(power.wrapping_add(1023) << 52)
 }
@@ -101,14 +130,8 @@ pub fn ln(x: f64) -> f64 {
     let g = f - 1.0;
     let s = g / (2.0 + g);
     let s2 = s * s;
-    let mut sum = 1.0 / 23.0;
-    let mut n = 21;
-    while n >= 3 {
-        sum = sum * s2 + 1.0 / n as f64;
-        n -= 2;
-    }
     let half_square = 0.5 * g * g;
-    let correction = s * (half_square + 2.0 * s2 * sum);
+    let correction = s * (half_square + 2.0 * s2 * sum(&LOGARITHM, s2));
     let k = k as f64;
     k * LN_2[0] + (g - (half_square - (correction + k * LN_2[1])))
 }

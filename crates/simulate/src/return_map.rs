@@ -184,6 +184,12 @@ impl Watched {
         TAU / self.dynamics.machine().drive.reference_speed().abs()
     }
 
+    /// Angle that the crank has yet to turn to the next passage where it was evaluated last, rad.
+    fn ahead(&self) -> f64 {
+        let angle = self.dynamics.evaluation().angle;
+        self.next * TAU - self.sense * (angle - self.section)
+    }
+
     /// Ends a revolution.
     fn pass(&mut self, t: f64, y: &[f64]) {
         let at = self.dynamics.evaluate(t, y);
@@ -313,8 +319,13 @@ impl System<f64> for Watched {
     fn guards(&mut self, t: f64, y: &[f64], guards: &mut [f64]) {
         let (own, theirs) = guards.split_at_mut(1);
         self.dynamics.guards(t, y, theirs);
-        let angle = self.dynamics.evaluation().angle;
-        own[0] = self.next * TAU - self.sense * (angle - self.section);
+        own[0] = self.ahead();
+    }
+
+    fn guards_here(&mut self, guards: &mut [f64]) -> bool {
+        let (own, theirs) = guards.split_at_mut(1);
+        own[0] = self.ahead();
+        self.dynamics.guards_here(theirs)
     }
 
     fn switch(&mut self, guard: usize, t: f64, y: &mut [f64]) {

@@ -251,8 +251,7 @@ impl<S: Real> Run<S> {
 
     /// Goes on to the end of a time, s.
     pub(crate) fn advance(&mut self, end: f64) -> Result<(), Error> {
-        self.integrator
-            .advance(&mut self.dynamics, end, |_, _| ())?;
+        self.integrator.reach(&mut self.dynamics, end)?;
         self.check(end)
     }
 

@@ -98,3 +98,49 @@ fn derivatives_equal_differences_of_records() {
         assert!(apart < bound * size, "{path}: {:.1e}", apart / size);
     }
 }
+
+/// What the tangents have settled to after many revolutions follows from a single one.
+#[test]
+fn derivatives_of_a_settled_motion_are_those_of_its_orbit() {
+    let settings = |transient| Settings {
+        transient,
+        revolutions: 1,
+        tolerance: 1e-11,
+        // A whole number of samples in a revolution.
+        sample_rate: 1024.0 * 500.0 / 60.0,
+        ..Settings::default()
+    };
+    let centre = MachineFile::from_tree(&tree()).unwrap().resolve().unwrap();
+    let moved: Vec<Moved> = STEPS
+        .iter()
+        .map(|(path, _, above)| with(path, above))
+        .map(|m| Moved {
+            machine: m.machine,
+            sensors: m.sensors,
+        })
+        .collect();
+    let found = |transient| {
+        let settings = settings(transient);
+        sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap()
+    };
+    let from_start = found(Transient::Revolutions(25));
+    let of_orbit = found(Transient::Settled {
+        change: 1e-10,
+        at_most: 60,
+    });
+    assert!(of_orbit.settled);
+    assert!(of_orbit.steps < from_start.steps / 4);
+    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let apart = |a: &[f64], b: &[f64]| {
+        let differences: Vec<f64> = a.iter().zip(b).map(|(a, b)| a - b).collect();
+        norm(&differences) / norm(b)
+    };
+    for (channel, series) in of_orbit.series.iter().enumerate() {
+        let apart = apart(series, &from_start.series[channel]);
+        assert!(apart < 1e-6, "channel {channel}: {apart:.1e}");
+    }
+    for (i, (path, _, _)) in STEPS.iter().enumerate() {
+        let apart = apart(&of_orbit.derivatives[i][0], &from_start.derivatives[i][0]);
+        assert!(apart < 1e-5, "{path}: {apart:.1e}");
+    }
+}

@@ -195,7 +195,7 @@ impl Run {
 
     pub fn advance(&mut self, end: f64) {
         self.integrator
-            .advance(&mut self.dynamics, end, |_, _| ())
+            .reach(&mut self.dynamics, end)
             .unwrap();
     }
 
