@@ -7,6 +7,7 @@ use crate::pressures::shows_pressure;
 use calibrate::Problem;
 use input::MachineFile;
 use input::effects::{CATALOGUE, Entry, Parameter};
+use nalgebra::Complex;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -36,6 +37,8 @@ const OWN_AT_EACH: [&str; 1] = ["suction_unloading"];
 /// The suction valve's throttling is told by the effect that holds it already, where there is one.
 const HELD: &str = "suction_unloading";
 const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
+/// The effect that an encoder shows.
+const UNEVEN: &str = "speed_fluctuation";
 /// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with; a
 /// law of no name comes last.
 const ELSEWHERE: [&str; 3] = ["mains_hum", "crank_angle_offset", "empirical_force"];
@@ -280,10 +283,15 @@ impl Candidate {
         self.entry.parameters.iter().enumerate().map(of).collect()
     }
 
-    /// Values at which it is tried: amplitudes, phases, and what else may lie anywhere.
-    pub fn probes(&self) -> Vec<Vec<f64>> {
+    /// Values at which it is tried: amplitudes, phases, what else may lie anywhere, and what the
+    /// recordings show by themselves.
+    pub fn probes(&self, problem: &Problem) -> Vec<Vec<f64>> {
         let items = self.ends.len().max(1);
-        let probes = self.item_probes().into_iter();
+        let mut probes = self.item_probes();
+        if self.entry.name == UNEVEN {
+            probes.extend(recorded_fluctuation(problem));
+        }
+        let probes = probes.into_iter();
         probes.map(|probe| probe.repeat(items)).collect()
     }
 
@@ -321,22 +329,26 @@ impl Candidate {
                 }));
             }
         }
-        // All phases turn together; what they are to each other is left to the fit.
+        // The phases of the gas turn together; what they are to each other is left to the fit.
         let cyclic: Vec<usize> = (0..parameters.len())
             .filter(|i| parameters[*i].cyclic)
             .collect();
         if !cyclic.is_empty() {
+            let together = self.is_of_gas();
             let turned = |probe: &Vec<f64>, k: usize| {
                 let mut probe = probe.clone();
+                let mut k = k;
                 for i in &cyclic {
                     let [low, high] = parameters[*i].bounds;
-                    probe[*i] = low + (high - low) * k as f64 / PHASES as f64;
+                    probe[*i] = low + (high - low) * (k % PHASES) as f64 / PHASES as f64;
+                    k /= if together { 1 } else { PHASES };
                 }
                 probe
             };
+            let free = if together { 1 } else { cyclic.len() as u32 };
             let each = probes
                 .iter()
-                .flat_map(|p| (0..PHASES).map(move |k| turned(p, k)));
+                .flat_map(|p| (0..PHASES.pow(free)).map(move |k| turned(p, k)));
             probes = each.collect();
         }
         probes
@@ -350,6 +362,21 @@ pub(crate) fn throws(tree: &Value) -> Vec<String> {
         .flatten()
         .filter_map(|t| t["name"].as_str());
     names.map(str::to_owned).collect()
+}
+
+/// The fluctuation of the speed that the encoders show, as values of the effect: amplitude and phase
+/// of the first and the second harmonic, as means over the runs.
+fn recorded_fluctuation(problem: &Problem) -> Option<Vec<f64>> {
+    let harmonic = |k: usize| {
+        let recorded = problem.runs.iter().filter_map(|run| {
+            let harmonic = run.crank.fluctuation.get(k)?;
+            Some(Complex::from_polar(harmonic.amplitude, harmonic.phase))
+        });
+        let recorded: Vec<Complex<f64>> = recorded.collect();
+        let mean = recorded.iter().sum::<Complex<f64>>() / recorded.len() as f64;
+        (!recorded.is_empty()).then(|| [mean.norm(), mean.arg()])
+    };
+    Some([harmonic(0)?, harmonic(1)?].concat())
 }
 
 /// Whether a cylinder of the machine has a second chamber.

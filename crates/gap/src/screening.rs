@@ -99,7 +99,7 @@ pub fn screen(
     let of = |candidate: &Candidate, base: &Base| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let metered = model.problem.metered();
-        for values in candidate.probes() {
+        for values in candidate.probes(&model.problem) {
             if watch().is_break() {
                 return Err(Error::Stopped);
             }
