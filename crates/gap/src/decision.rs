@@ -21,8 +21,10 @@ pub(crate) const EARNED: f64 = 0.3;
 /// The same where pressures are all that was recorded: the gas alone can explain them, and after one
 /// effect what others do is still in the way of the next.
 const EARNED_OF_GAS: f64 = 0.2;
-/// Share of the distance to the noise that must be gone for a part to count as an explanation.
-pub(crate) const PARTLY: f64 = 0.8;
+/// Share of the distance to the noise that must be gone, of fitted and of held-out runs, for effects
+/// to explain a part; and for a single one to be sure by itself.
+pub(crate) const PARTLY: f64 = 0.5;
+const SURE: f64 = 0.8;
 
 /// What an explanation comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -52,14 +54,15 @@ pub struct Evidence {
     pub delta_bic: f64,
 }
 
-/// Whether most of the distance to the noise is gone.
-fn closes([before, after]: [f64; 2]) -> bool {
-    after - 1.0 <= (1.0 - PARTLY) * (before - 1.0)
+/// Whether this share of the distance to the noise is gone.
+fn closes(share: f64, [before, after]: [f64; 2]) -> bool {
+    after - 1.0 <= (1.0 - share) * (before - 1.0)
 }
 
 impl Evidence {
     /// Whether the effect by itself closes most of the gap that it was added for.
     pub(crate) fn is_sure(&self) -> bool {
+        let closes = |misfit| closes(SURE, misfit);
         closes(self.misfit) && self.heldout_misfit.is_none_or(closes)
     }
 }
@@ -105,12 +108,13 @@ pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdic
         .held_out
         .map_or(model.fitted, |held| held.max(model.fitted));
     let held_out = baseline.held_out.zip(model.held_out);
-    let held_out = held_out.is_none_or(|(before, after)| closes([before, after]));
+    let closes = |before, after| closes(PARTLY, [before, after]);
+    let held_out = held_out.is_none_or(|(before, after)| closes(before, after));
     if effects == 0 {
         Verdict::Unexplained
     } else if worst <= EXPLAINED {
         Verdict::Explained
-    } else if held_out && closes([baseline.fitted, model.fitted]) {
+    } else if held_out && closes(baseline.fitted, model.fitted) {
         Verdict::PartlyExplained
     } else {
         Verdict::Unexplained

@@ -54,12 +54,10 @@ impl Search<'_> {
         let missed = rough.first().is_some_and(|best| best.model.fitted > NOISE);
         if missed && self.effort.goes_on() {
             let later = rough.split_off(rough.len().min(DEEPER));
-            let deeper = rough
-                .into_par_iter()
-                .map(|rough| {
-                    let model = self.deeper(rough.model)?;
-                    Ok(Rough { model, ..rough })
-                });
+            let deeper = rough.into_par_iter().map(|rough| {
+                let model = self.deeper(rough.model)?;
+                Ok(Rough { model, ..rough })
+            });
             rough = deeper.collect::<Result<Vec<_>, Error>>()?;
             rough.extend(later);
             sort(&mut rough);
@@ -141,7 +139,10 @@ impl Search<'_> {
                 Err(Error::Fit(_)) => continue,
                 model => model?,
             };
-            if best.as_ref().is_none_or(|(_, best)| model.fitted < best.fitted) {
+            if best
+                .as_ref()
+                .is_none_or(|(_, best)| model.fitted < best.fitted)
+            {
                 best = Some((start.values.clone(), model));
             }
         }

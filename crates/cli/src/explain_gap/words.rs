@@ -27,14 +27,12 @@ pub fn notes(explanation: &Explanation, effort: &Effort, gas: &[PressureGap]) ->
         notes.extend(gas.iter().filter_map(together));
     }
     notes.extend(correlated(explanation));
-    let untold = explanation
-        .estimates
-        .iter()
-        .filter(|e| e.interval.is_none());
-    notes.extend(
-        untold
-            .map(|estimate| format!("{} is not told by the recordings.", estimate.parameter.path)),
-    );
+    let untold = explanation.estimates.iter();
+    let untold = untold.filter(|e| e.interval.is_none());
+    let untold: Vec<&str> = untold.map(|e| e.parameter.path.as_str()).collect();
+    if !untold.is_empty() {
+        notes.push(format!("The recordings do not tell {}.", untold.join(", ")));
+    }
     notes
 }
 
