@@ -2,11 +2,11 @@
 
 use crate::crank_motion::CrankMotion;
 use crate::error::Error;
+use crate::meter::Meter;
 use crate::observation::Observation;
 use crate::parameter::Parameter;
 use input::MachineFile;
 use input::Resolved;
-use crate::meter::Meter;
 use input::paths;
 use mechanism::drive::Drive;
 use serde_json::Value;

@@ -194,9 +194,7 @@ impl Run {
     }
 
     pub fn advance(&mut self, end: f64) {
-        self.integrator
-            .reach(&mut self.dynamics, end)
-            .unwrap();
+        self.integrator.reach(&mut self.dynamics, end).unwrap();
     }
 
     /// Evaluates at the present time and state.
