@@ -58,6 +58,19 @@ const STEPS: [(&str, &str, &str); 9] = [
     ),
 ];
 
+/// The machine, and one for each of the steps above it.
+fn centre_and_moved() -> (Resolved, Vec<Moved>) {
+    let centre = MachineFile::from_tree(&tree()).unwrap().resolve().unwrap();
+    let moved = STEPS.iter().map(|(path, _, above)| {
+        let machine = with(path, above);
+        Moved {
+            machine: machine.machine,
+            sensors: machine.sensors,
+        }
+    });
+    (centre, moved.collect())
+}
+
 #[test]
 fn derivatives_equal_differences_of_records() {
     let settings = Settings {
@@ -66,15 +79,7 @@ fn derivatives_equal_differences_of_records() {
         tolerance: 1e-11,
         ..Settings::default()
     };
-    let centre = MachineFile::from_tree(&tree()).unwrap().resolve().unwrap();
-    let moved: Vec<Moved> = STEPS
-        .iter()
-        .map(|(path, _, above)| with(path, above))
-        .map(|m| Moved {
-            machine: m.machine,
-            sensors: m.sensors,
-        })
-        .collect();
+    let (centre, moved) = centre_and_moved();
     let found = sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap();
     let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
     assert_eq!(found.series, plain.series);
@@ -110,15 +115,7 @@ fn derivatives_of_a_settled_motion_are_those_of_its_orbit() {
         sample_rate: 1024.0 * 500.0 / 60.0,
         ..Settings::default()
     };
-    let centre = MachineFile::from_tree(&tree()).unwrap().resolve().unwrap();
-    let moved: Vec<Moved> = STEPS
-        .iter()
-        .map(|(path, _, above)| with(path, above))
-        .map(|m| Moved {
-            machine: m.machine,
-            sensors: m.sensors,
-        })
-        .collect();
+    let (centre, moved) = centre_and_moved();
     let found = |transient| {
         let settings = settings(transient);
         sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap()
