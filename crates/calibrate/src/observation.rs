@@ -92,17 +92,43 @@ pub struct Observed {
 /// Most of a channel's power that may differ from revolution to revolution in a motion that repeats
 /// itself: noise of 14 % of the signal.
 const SCATTER: f64 = 0.02;
+/// How many times the least scatter of its runs a channel may have where it repeats itself.
+const ALIKE: f64 = 4.0;
+
+impl Observed {
+    /// What its revolutions have in common, and how much they differ from that: mean squares.
+    fn power_and_scatter(&self) -> [f64; 2] {
+        let lines = &self.lines;
+        let power = lines.amplitude.iter().skip(1).map(|c| c.norm_sqr()).sum();
+        let variance: f64 = lines.variance.iter().skip(1).sum();
+        [power, lines.revolutions as f64 * variance]
+    }
+}
 
 impl Observation {
     /// Whether its revolutions are the same but for noise.
     pub(crate) fn repeats(&self) -> bool {
+        self.channels.iter().all(|channel| {
+            let [power, scatter] = channel.power_and_scatter();
+            scatter <= SCATTER * power
+        })
+    }
+
+    /// Whether it repeats itself as well as others of the same noise do. That may be the sensor's own
+    /// or a share of what it measures, so both have to be exceeded.
+    pub fn repeats_like(&self, others: &[Self]) -> bool {
         let of_channel = |channel: &Observed| {
-            let lines = &channel.lines;
-            let power: f64 = lines.amplitude.iter().skip(1).map(|c| c.norm_sqr()).sum();
-            let scatter: f64 = lines.variance.iter().skip(1).sum();
-            lines.revolutions as f64 * scatter <= SCATTER * power
+            let [power, scatter] = channel.power_and_scatter();
+            let same = others.iter().flat_map(|run| &run.channels);
+            let same = same.filter(|other| other.column == channel.column);
+            let [mut share, mut least] = [scatter / power, scatter];
+            for [power, scatter] in same.map(Observed::power_and_scatter) {
+                share = share.min(scatter / power);
+                least = least.min(scatter);
+            }
+            scatter <= ALIKE * least || scatter <= ALIKE * share * power
         };
-        self.channels.iter().all(of_channel)
+        self.repeats() && self.channels.iter().all(of_channel)
     }
 
     /// Looks at a run's channels of the given columns.
@@ -244,4 +270,43 @@ fn orders(lines: &OrderLines) -> Vec<usize> {
         .rposition(|band| band.iter().sum::<f64>() > BAND_STANDS_OUT * BAND as f64)
         .map_or(0, |first| first + BAND - 1);
     (0..=last.max(LOW_ORDERS).min(lines.amplitude.len() - 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustfft::num_complex::Complex64;
+
+    fn run(amplitude: f64, scatter: f64) -> Observation {
+        let lines = OrderLines {
+            amplitude: vec![Complex64::ZERO, Complex64::from(amplitude)],
+            variance: vec![0.0, scatter / 10.0],
+            revolutions: 10,
+        };
+        Observation {
+            id: String::new(),
+            settings: Vec::new(),
+            crank: GivenSpeed {
+                speed: 50.0,
+                fluctuation: Vec::new(),
+            },
+            channels: vec![Observed {
+                column: "crosshead_acceleration_m_s2".into(),
+                lines,
+                orders: vec![1],
+            }],
+        }
+    }
+
+    #[test]
+    fn a_run_repeats_unless_it_scatters_more_than_others_by_any_reading_of_their_noise() {
+        let quiet = run(10.0, 0.02);
+        // The noise of a stronger signal may be greater, that of a weaker one a greater share of it.
+        let strong = run(40.0, 0.32);
+        let weak = run(1.0, 0.02);
+        let restless = run(10.0, 0.3);
+        let all = [quiet, strong, weak, restless];
+        let repeats = all.each_ref().map(|run| run.repeats_like(&all));
+        assert_eq!(repeats, [true, true, true, false]);
+    }
 }

@@ -17,7 +17,7 @@ use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 
 /// Most evaluations of the calibration to begin with.
-const CALIBRATION: u64 = 200;
+const CALIBRATION: u64 = 400;
 /// Most effects.
 const MOST: usize = 3;
 

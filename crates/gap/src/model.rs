@@ -66,8 +66,8 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// The effort for a problem of which these runs are held out. So are those in which the nominal
-    /// machine does not repeat itself, if others are left: they have no derivatives.
+    /// The effort for a problem of which these runs are held out. So are those in which the recording or
+    /// the nominal machine does not repeat itself, if others are left: there are no derivatives.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -80,7 +80,8 @@ impl Effort {
         let nominal = vec![0.0; problem.parameters.len()];
         let predictions = Likelihood::new(problem).predictions(&nominal)?;
         let runs = problem.runs.iter().zip(&predictions);
-        let (periodic, others): (Vec<_>, Vec<_>) = runs.partition(|(_, shown)| shown.periodic);
+        let (periodic, others): (Vec<_>, Vec<_>) =
+            runs.partition(|(run, shown)| shown.periodic && run.repeats_like(&problem.runs));
         let chaotic = !periodic.iter().any(|(run, _)| !held_out.contains(&run.id));
         if !chaotic {
             for (run, _) in others {

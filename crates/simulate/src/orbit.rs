@@ -13,7 +13,7 @@ use crate::chain::Sampling;
 use crate::periodic_orbit::keeps;
 use crate::record::Error;
 use crate::run::{Instants, Run, Standing};
-use crate::sensitivity::{Moved, Recorder};
+use crate::sensitivity::{Moved, Recorder, apart};
 use crate::sensor::Sensor;
 use crate::settings::Settings;
 use mechanism::{Machine, lift};
@@ -225,13 +225,10 @@ impl Orbit<'_> {
         if beyond.count > 0 {
             run.show(beyond, &mut look)?;
         }
-        let part = |of: &dyn Fn(&Dual<f64, N>) -> f64| -> Vec<Vec<f64>> {
-            let of_sensor = |x: &Vec<Dual<f64, N>>| x.iter().map(of).collect();
-            inner.iter().map(of_sensor).collect()
-        };
+        let (values, tangents) = apart(&inner);
         Ok(Part {
-            values: part(&|x| x.value),
-            tangents: (0..N).map(|i| part(&|x| x.tangent[i])).collect(),
+            values,
+            tangents,
             ends,
             steps: run.steps(),
         })

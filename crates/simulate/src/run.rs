@@ -106,7 +106,7 @@ impl<S: Real> Run<S> {
         self.revolution
     }
 
-    /// Steps tried so far; one of dual numbers counts for what it takes, by `weight`.
+    /// Steps tried so far; one of dual numbers counts for what it takes.
     pub(crate) fn steps(&self) -> u64 {
         let work = self.integrator.work();
         // A value, and for each tangent about seven tenths of what it takes.

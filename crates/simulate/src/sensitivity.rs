@@ -124,17 +124,24 @@ fn tangents<const N: usize>(
     run.hurry();
     let (transient, period) = run.leave_transient(settings.transient)?;
     let (recorder, inner) = recorded(&mut run, transient, sensors, settings)?;
-    let part = |of: &dyn Fn(&Dual<f64, N>) -> f64| -> Vec<Vec<f64>> {
-        let of_sensor = |x: &Vec<Dual<f64, N>>| x.iter().map(of).collect();
-        inner.iter().map(of_sensor).collect()
-    };
-    let values = part(&|x| x.value);
-    let tangents: Vec<_> = (0..moved.len()).map(|i| part(&|x| x.tangent[i])).collect();
+    let (values, tangents) = apart(&inner);
     Ok(Sensitivities {
         settled: period.is_some(),
         steps: run.steps(),
         ..recorder.sensitivities(machine, sensors, moved, &values, &tangents)?
     })
+}
+
+/// The values of each sensor, and for each direction the tangents of each.
+pub(crate) fn apart<const N: usize>(
+    inner: &[Vec<Dual<f64, N>>],
+) -> (Vec<Vec<f64>>, Vec<Vec<Vec<f64>>>) {
+    let part = |of: &dyn Fn(&Dual<f64, N>) -> f64| -> Vec<Vec<f64>> {
+        let of_sensor = |x: &Vec<Dual<f64, N>>| x.iter().map(of).collect();
+        inner.iter().map(of_sensor).collect()
+    };
+    let tangents = (0..N).map(|i| part(&|x| x.tangent[i]));
+    (part(&|x| x.value), tangents.collect())
 }
 
 /// What the sensors measure in the revolutions after a transient.
