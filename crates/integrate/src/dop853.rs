@@ -5,7 +5,7 @@
 
 use crate::system::System;
 use crate::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED, NODES, Row, STAGE, STAGES};
-use scalar::Scalar;
+use scalar::{Lanes, Scalar};
 
 /// Coefficients of the continuous extension, per component.
 const PIECES: usize = 7;
@@ -128,6 +128,52 @@ impl<S: Scalar> Step<S> {
         }
     }
 
+    /// Copies a lane of `self` into the step of a plain number; with its stages, if asked for.
+    pub(crate) fn lane(&self, lane: usize, stages: bool, other: &mut Step<f64>)
+    where
+        S: Lane,
+    {
+        let copy = |to: &mut [f64], from: &[S]| {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = from.lane(lane);
+            }
+        };
+        let n = self.dimension();
+        copy(&mut other.from, &self.from);
+        copy(&mut other.stages[..n], &self.stages);
+        if stages {
+            other.length = self.length.lane(lane);
+            copy(&mut other.to, &self.to);
+            copy(&mut other.stages[12 * n..13 * n], &self.stages[12 * n..]);
+            copy(&mut other.pieces, &self.pieces);
+        }
+    }
+
+    /// Takes beginning and derivative there of a lane from the step of a plain number.
+    pub(crate) fn take_beginning(&mut self, lane: usize, other: &Step<f64>)
+    where
+        S: Lane,
+    {
+        let n = self.dimension();
+        for j in 0..n {
+            self.from[j].set_lane(lane, other.from[j]);
+            self.stages[j].set_lane(lane, other.stages[j]);
+        }
+    }
+
+    /// In the lanes of the mask the end becomes the beginning.
+    pub(crate) fn shift_where(&mut self, mask: S::Mask) {
+        let n = self.dimension();
+        let (first, rest) = self.stages.split_at_mut(n);
+        let last = &rest[11 * n..12 * n];
+        for (first, last) in first.iter_mut().zip(last) {
+            *first = S::select(mask, *last, *first);
+        }
+        for (from, to) in self.from.iter_mut().zip(&self.to) {
+            *from = S::select(mask, *to, *from);
+        }
+    }
+
     /// The state at `share` of the step, 0 at its beginning and 1 at its end, after
     /// [`extend`](Self::extend).
     pub fn interpolate(&self, share: S, out: &mut [S]) {
@@ -155,9 +201,42 @@ fn combine<S: Scalar>(out: &mut [S], row: Row, stages: &[S]) {
     }
 }
 
+/// A scalar of which single lanes can be read and written.
+pub(crate) trait Lane: Scalar {
+    /// The number in a lane.
+    fn lane(self, lane: usize) -> f64;
+    /// Puts a number into a lane.
+    fn set_lane(&mut self, lane: usize, x: f64);
+}
+
+impl<const W: usize> Lane for Lanes<W> {
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    fn set_lane(&mut self, lane: usize, x: f64) {
+        self.0[lane] = x;
+    }
+}
+
 /// The weighted sum of one component over the stages.
 fn weighted<S: Scalar>(row: Row, stages: &[S], n: usize, component: usize) -> S {
     row.iter().fold(S::zero(), |sum, &(stage, weight)| {
         sum + stages[stage * n + component] * weight
     })
+}
+
+impl Step<f64> {
+    /// The states at several shares of the step, side by side, as [`interpolate`](Self::interpolate).
+    pub fn interpolate_lanes<const W: usize>(&self, share: Lanes<W>, out: &mut [Lanes<W>]) {
+        let n = self.dimension();
+        let rest = Lanes::constant(1.0) - share;
+        for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
+            let mut sum = Lanes::constant(0.0);
+            for i in (0..PIECES).rev() {
+                let factor = if i % 2 == 0 { share } else { rest };
+                sum = (sum + self.pieces[i * n + j]) * factor;
+            }
+            *out = Lanes::constant(*from) + sum;
+        }
+    }
 }

@@ -7,6 +7,7 @@
 
 use crate::dop853::Step;
 use crate::system::{Real, System};
+use scalar::{Lanes, Mask, Scalar};
 
 /// Stages that are looked at, beside the beginning.
 const STAGES: [usize; 4] = [6, 9, 10, 12];
@@ -17,20 +18,38 @@ const NEAR: f64 = 0.05;
 /// And where the parabola through three of its values falls below this share of the middle one.
 const DIP: f64 = 0.25;
 
+/// What of a guard is looked at: its plain value, one in each lane.
+pub(crate) trait Seen<P>: Scalar {
+    /// It, or them.
+    fn seen(self) -> P;
+}
+
+impl<S: Real> Seen<f64> for S {
+    fn seen(self) -> f64 {
+        self.value()
+    }
+}
+
+impl<const W: usize> Seen<Self> for Lanes<W> {
+    fn seen(self) -> Self {
+        self
+    }
+}
+
 /// What the guards were at the stages of a step.
 #[derive(Clone, Debug)]
-pub(crate) struct Glances<S> {
+pub(crate) struct Glances<S, P = f64> {
     room: Vec<S>,
-    seen: [Vec<f64>; SHARES.len()],
+    seen: [Vec<P>; SHARES.len()],
     /// Whether the system shows its guards.
     shown: bool,
 }
 
-impl<S: Real> Glances<S> {
+impl<S: Seen<P>, P: Scalar> Glances<S, P> {
     pub fn new(guards: usize) -> Self {
         Self {
-            room: vec![S::zero(); guards],
-            seen: std::array::from_fn(|_| vec![0.0; guards]),
+            room: vec![S::constant(0.0); guards],
+            seen: std::array::from_fn(|_| vec![P::constant(0.0); guards]),
             shown: false,
         }
     }
@@ -38,7 +57,7 @@ impl<S: Real> Glances<S> {
     fn see(&mut self, index: usize, system: &mut impl System<S>) {
         self.shown = system.guards_here(&mut self.room);
         for (seen, guard) in self.seen[index].iter_mut().zip(&self.room) {
-            *seen = guard.value();
+            *seen = guard.seen();
         }
     }
 
@@ -60,29 +79,66 @@ impl<S: Real> Glances<S> {
         self.seen.swap(0, SHARES.len() - 1);
     }
 
-    /// Whether no guard can have crossed zero within the step.
-    pub fn quiet(&self) -> bool {
+    /// Where no guard can have crossed zero within the step; none where the system does not show
+    /// them.
+    pub fn quiet(&self) -> Option<P::Mask> {
+        let all = P::constant(0.0).lt(P::constant(1.0));
         let of = |guard: usize| std::array::from_fn(|i| self.seen[i][guard]);
-        self.shown && (0..self.room.len()).all(|guard| clear_of_zero(&of(guard)))
+        let clear = (0..self.room.len()).map(|guard| clear_of_zero(&of(guard)));
+        self.shown.then(|| clear.fold(all, Mask::and))
     }
 }
 
-fn clear_of_zero(seen: &[f64; SHARES.len()]) -> bool {
-    let least = seen.iter().copied().fold(f64::INFINITY, f64::min);
-    let most = seen.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if !(least > 0.0 && least >= NEAR * (most - least)) {
-        return false;
+impl<const W: usize> Glances<Lanes<W>, Lanes<W>> {
+    /// In the lanes of the mask the end becomes the beginning.
+    pub fn shift_where(&mut self, mask: [bool; W]) {
+        let [first, .., last] = &mut self.seen;
+        for (first, last) in first.iter_mut().zip(last) {
+            *first = Scalar::select(mask, *last, *first);
+        }
     }
-    (1..SHARES.len() - 1).all(|i| {
+
+    /// Makes the guards at the beginning or at the end of a lane's step those of `other`.
+    pub fn give(&self, lane: usize, other: &mut Glances<f64>) {
+        other.shown = self.shown;
+        for at in [0, SHARES.len() - 1] {
+            for (to, from) in other.seen[at].iter_mut().zip(&self.seen[at]) {
+                *to = from.0[lane];
+            }
+        }
+    }
+
+    /// Takes the guards at the beginning of a lane's step from `other`.
+    pub fn take_beginning(&mut self, lane: usize, other: &Glances<f64>) {
+        for (to, from) in self.seen[0].iter_mut().zip(&other.seen[0]) {
+            to.0[lane] = *from;
+        }
+    }
+}
+
+/// Whether a guard of these values stays above zero between them. No division: they take long.
+fn clear_of_zero<T: Scalar>(seen: &[T; SHARES.len()]) -> T::Mask {
+    let zero = T::constant(0.0);
+    let [mut least, mut most] = [seen[0]; 2];
+    for value in &seen[1..] {
+        least = least.min(*value);
+        most = most.max(*value);
+    }
+    let near = (most - least) * NEAR;
+    let mut clear = zero.lt(least).and(least.lt(near).not());
+    for i in 1..SHARES.len() - 1 {
         let [left, right] = [SHARES[i] - SHARES[i - 1], SHARES[i + 1] - SHARES[i]];
         let [before, after] = [seen[i - 1] - seen[i], seen[i + 1] - seen[i]];
-        // v + s x + c x² through the three.
-        let curvature = (before / left + after / right) / (left + right);
-        let slope = after / right - curvature * right;
-        let lowest = -0.5 * slope / curvature;
-        let inside = curvature > 0.0 && lowest > -left && lowest < right;
-        !inside || seen[i] + 0.5 * slope * lowest > DIP * seen[i]
-    })
+        // v + s x + c x² through the three, lowest at −s/2c, where it is v − s²/4c.
+        let curvature = (before * (1.0 / left) + after * (1.0 / right)) * (1.0 / (left + right));
+        let slope = after * (1.0 / right) - curvature * right;
+        let lowest = slope * -0.5;
+        let within = (curvature * -left).lt(lowest).and(lowest.lt(curvature * right));
+        let deep = slope * slope * 0.25;
+        let high = deep.lt(seen[i] * (1.0 - DIP) * curvature);
+        clear = clear.and(zero.lt(curvature).and(within).not().or(high));
+    }
+    clear
 }
 
 #[cfg(test)]

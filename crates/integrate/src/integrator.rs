@@ -49,15 +49,47 @@ pub struct Work {
     pub switches: u64,
 }
 
+impl Work {
+    fn tried(&self) -> u64 {
+        self.accepted + self.rejected
+    }
+}
+
+/// Where an integrator is heading.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    /// Where it began, s.
+    from: f64,
+    /// What had been done there.
+    before: Work,
+    end: f64,
+}
+
+impl Course {
+    /// Where it ends, s.
+    pub fn end(&self) -> f64 {
+        self.end
+    }
+}
+
+/// A step to be tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial {
+    /// Its length, s.
+    pub length: f64,
+    /// Whether it is shorter than the error asks for.
+    limited: bool,
+}
+
 /// A system's state as it is carried forward in time.
 #[derive(Clone, Debug)]
 pub struct Integrator<S> {
-    step: Step<S>,
+    pub(crate) step: Step<S>,
     finder: Finder<S>,
-    glances: Glances<S>,
+    pub(crate) glances: Glances<S>,
     /// Length to try next, s.
     length: f64,
-    tolerance: f64,
+    pub(crate) tolerance: f64,
     longest: f64,
     budget: f64,
     work: Work,
@@ -157,103 +189,122 @@ impl<S: Real> Integrator<S> {
         end: f64,
         mut observe: Option<impl FnMut(&mut T, &Step<S>)>,
     ) -> Result<(), Error> {
-        let (from, before) = (self.time(), self.work);
-        while self.time() < end {
-            let span = self.time() - from;
-            let steps = self.work.accepted + self.work.rejected - before.accepted - before.rejected;
-            if steps as f64 > self.budget * (1.0 + span / self.longest) {
-                let time = self.time();
-                return Err(Error::TooManySteps { time, steps, span });
-            }
-            let remaining = end - self.time();
-            let mut length = self.length.min(self.longest);
-            // Never leave a last step too short to be told from none.
-            if remaining <= length * (1.0 + 1e-9) {
-                length = remaining;
-            } else if remaining < 2.0 * length {
-                length = 0.5 * remaining;
-            }
-            let limited = length < self.length;
-            if !self.attempt(system, length, limited)? {
+        let course = self.course(end);
+        while let Some(trial) = self.propose(&course)? {
+            if !self.attempt(system, trial)? {
                 continue;
             }
-            let quiet = self.glances.quiet();
+            let quiet = self.glances.quiet().unwrap_or(false);
             if observe.is_some() || !quiet {
                 self.step.extend(system);
             }
-            let switching = match quiet {
-                true => None,
-                false => match self.locate(system)? {
-                    Some(switching) => switching,
-                    None => continue,
-                },
-            };
-            if self.step.length.value() > 0.0 {
-                if let Some(observe) = &mut observe {
-                    observe(system, &self.step);
-                }
-                self.work.accepted += 1;
-                self.step.shift();
-                self.glances.shift();
-                if (end - self.time()).abs() <= 4.0 * f64::EPSILON * end.abs() {
-                    self.step.start = S::constant(end);
-                }
-            }
-            if let Some(guard) = switching {
-                let t = self.step.start;
-                let mut y = std::mem::take(&mut self.step.from);
-                system.switch(guard, t, &mut y);
-                self.step.from = y;
-                self.glances.begin(system, &mut self.step);
-                self.work.switches += 1;
-            }
+            self.conclude(system, &course, quiet, &mut observe)?;
         }
         Ok(())
     }
 
-    /// Tries a step; false where its error is too large. Sets the length to try next.
-    fn attempt(
-        &mut self,
-        system: &mut impl System<S>,
-        length: f64,
-        limited: bool,
-    ) -> Result<bool, Error> {
-        let time = self.time();
-        if length <= 16.0 * f64::EPSILON * time.abs().max(1e-3) && !limited {
-            return Err(Error::StepTooSmall { time, step: length });
-        }
-        // After a switch whose time varies, the step brings the time back to a plain number.
-        let back = S::constant(time) - self.step.start;
-        let look = |stage, system: &mut _| self.glances.stage(stage, system);
-        self.step.take(system, back + length, look);
-        let error = self.error(system.scales());
-        // error^(1/8) by square roots, which round the same on every machine.
-        let root = error.sqrt().sqrt().sqrt();
-        let factor = (0.9 / root).clamp(1.0 / 3.0, 6.0);
-        if error <= 1.0 {
-            // A step that was cut short tells little about how long the next may be.
-            let next = length * factor;
-            self.length = if limited { next.max(self.length) } else { next };
-            Ok(true)
-        } else {
-            self.length = length
-                * if error.is_finite() {
-                    factor.min(1.0)
-                } else {
-                    0.1
-                };
-            self.work.rejected += 1;
-            Ok(false)
+    /// The way from here to `end`.
+    pub fn course(&self, end: f64) -> Course {
+        Course {
+            from: self.time(),
+            before: self.work,
+            end,
         }
     }
 
-    /// The weighted error of the step, 1 at the tolerance (Hairer's combination of both estimates).
-    fn error(&self, scales: &[S]) -> f64 {
-        let counted = scales.iter().filter(|s| s.value().is_finite()).count();
-        if counted == 0 {
-            return 0.0;
+    /// The step to try next; none at the end of the course.
+    ///
+    /// # Errors
+    /// Where the tolerance cannot be met.
+    pub fn propose(&self, course: &Course) -> Result<Option<Trial>, Error> {
+        let (time, end) = (self.time(), course.end);
+        if time >= end {
+            return Ok(None);
         }
-        let [fifth, third] = self.step.squared_errors(|j| {
+        let span = time - course.from;
+        let steps = self.work.tried() - course.before.tried();
+        if steps as f64 > self.budget * (1.0 + span / self.longest) {
+            return Err(Error::TooManySteps { time, steps, span });
+        }
+        let remaining = end - time;
+        let mut length = self.length.min(self.longest);
+        // Never leave a last step too short to be told from none.
+        if remaining <= length * (1.0 + 1e-9) {
+            length = remaining;
+        } else if remaining < 2.0 * length {
+            length = 0.5 * remaining;
+        }
+        let limited = length < self.length;
+        self.possible(Trial { length, limited }).map(Some)
+    }
+
+    /// The trial, unless it is too short to be told from none.
+    fn possible(&self, trial: Trial) -> Result<Trial, Error> {
+        let (time, step) = (self.time(), trial.length);
+        if step <= 16.0 * f64::EPSILON * time.abs().max(1e-3) && !trial.limited {
+            return Err(Error::StepTooSmall { time, step });
+        }
+        Ok(trial)
+    }
+
+    /// Ends an accepted step at the first switch in it, shows it, and goes on to its end. Where it is
+    /// not `quiet` or is observed, its continuous extension must be there.
+    pub(crate) fn conclude<T: System<S>>(
+        &mut self,
+        system: &mut T,
+        course: &Course,
+        quiet: bool,
+        observe: &mut Option<impl FnMut(&mut T, &Step<S>)>,
+    ) -> Result<(), Error> {
+        let switching = match quiet {
+            true => None,
+            false => match self.locate(system)? {
+                Some(switching) => switching,
+                None => return Ok(()),
+            },
+        };
+        if self.step.length.value() > 0.0 {
+            if let Some(observe) = observe {
+                observe(system, &self.step);
+            }
+            self.step.shift();
+            self.glances.shift();
+            self.arrive(course);
+        }
+        if let Some(guard) = switching {
+            let t = self.step.start;
+            let mut y = std::mem::take(&mut self.step.from);
+            system.switch(guard, t, &mut y);
+            self.step.from = y;
+            self.glances.begin(system, &mut self.step);
+            self.work.switches += 1;
+        }
+        Ok(())
+    }
+
+    /// Lets a step's time pass that was taken elsewhere.
+    pub(crate) fn pass(&mut self, length: S, course: &Course) {
+        self.step.start += length;
+        self.arrive(course);
+    }
+
+    /// Counts a step that has brought the time to where it is.
+    fn arrive(&mut self, course: &Course) {
+        self.work.accepted += 1;
+        let end = course.end;
+        if (end - self.time()).abs() <= 4.0 * f64::EPSILON * end.abs() {
+            self.step.start = S::constant(end);
+        }
+    }
+
+    /// Tries a step; false where its error is too large. Sets the length to try next.
+    fn attempt(&mut self, system: &mut impl System<S>, trial: Trial) -> Result<bool, Error> {
+        // After a switch whose time varies, the step brings the time back to a plain number.
+        let back = S::constant(self.time()) - self.step.start;
+        let look = |stage, system: &mut _| self.glances.stage(stage, system);
+        self.step.take(system, back + trial.length, look);
+        let scales = system.scales();
+        let squares = self.step.squared_errors(|j| {
             let size = self.step.from[j]
                 .value()
                 .abs()
@@ -261,12 +312,30 @@ impl<S: Real> Integrator<S> {
                 .max(scales[j].value());
             S::constant(self.tolerance * size)
         });
-        let (fifth, third) = (fifth.value(), third.value());
-        let denominator = fifth + 0.01 * third;
-        if denominator == 0.0 {
-            return 0.0;
+        Ok(self.judge(trial, squares.map(S::value), counted(scales)))
+    }
+
+    /// Whether a step of these squared errors of order 5 and 3, summed over so many components, keeps
+    /// the tolerance. Sets the length to try next.
+    pub(crate) fn judge(&mut self, trial: Trial, squares: [f64; 2], counted: usize) -> bool {
+        let error = weighted_error(trial.length, squares, counted);
+        // error^(1/8) by square roots, which round the same on every machine.
+        let root = error.sqrt().sqrt().sqrt();
+        let factor = (0.9 / root).clamp(1.0 / 3.0, 6.0);
+        let Trial { length, limited } = trial;
+        if error <= 1.0 {
+            // A step that was cut short tells little about how long the next may be.
+            let next = length * factor;
+            self.length = if limited { next.max(self.length) } else { next };
+            return true;
         }
-        self.step.length.value() * fifth / (denominator * counted as f64).sqrt()
+        let shorter = match error.is_finite() {
+            true => factor.min(1.0),
+            false => 0.1,
+        };
+        self.length = length * shorter;
+        self.work.rejected += 1;
+        false
     }
 
     /// Ends the step at the first switch in it, and tells which guard that is. `None` where the
@@ -297,7 +366,11 @@ impl<S: Real> Integrator<S> {
             self.last_switch = (crossing.guard, now, repeats);
         } else {
             let next = self.length;
-            if !self.attempt(system, length, true)? {
+            let trial = Trial {
+                length,
+                limited: true,
+            };
+            if !self.attempt(system, trial)? {
                 return Ok(None);
             }
             self.length = next;
@@ -331,4 +404,18 @@ impl<S: Real> Integrator<S> {
         };
         guess.min(self.longest)
     }
+}
+
+/// How many components steer the step.
+pub(crate) fn counted<S: Real>(scales: &[S]) -> usize {
+    scales.iter().filter(|s| s.value().is_finite()).count()
+}
+
+/// The weighted error of a step, 1 at the tolerance (Hairer's combination of both estimates).
+fn weighted_error(length: f64, [fifth, third]: [f64; 2], counted: usize) -> f64 {
+    let denominator = fifth + 0.01 * third;
+    if counted == 0 || denominator == 0.0 {
+        return 0.0;
+    }
+    length * fifth / (denominator * counted as f64).sqrt()
 }

@@ -8,9 +8,11 @@
 //! crosses a kink, and the order of the method holds throughout (measured in the tests).
 //!
 //! - [`dop853`]: one step, its error, its continuous extension;
-//! - [`Integrator`]: step control, event location, observers.
+//! - [`Integrator`]: step control, event location, observers;
+//! - [`ensemble`]: many integrations side by side.
 
 pub mod dop853;
+pub mod ensemble;
 mod events;
 mod glance;
 mod integrator;
@@ -18,5 +20,6 @@ mod system;
 mod tableau;
 
 pub use dop853::Step;
-pub use integrator::{Error, Integrator, Work};
+pub use ensemble::{Ensemble, Traveller};
+pub use integrator::{Course, Error, Integrator, Trial, Work};
 pub use system::{Real, System};

@@ -60,7 +60,7 @@ impl<S: Scalar> Dynamics<S> {
                 push: zero,
             },
             main: JointState::ideal(),
-            throws: Vec::with_capacity(throws),
+            throws: vec![ThrowEvaluation::none(); throws],
             frame: origin(),
             shaken: None,
             frame_force: origin(),
@@ -241,13 +241,14 @@ impl<S: Scalar> Dynamics<S> {
                 ],
             },
         );
-        evaluation.throws.clear();
-        let parts = self.layout.throws.iter().zip(&self.mode.throws);
-        for (i, (throw, (layout, mode))) in self.machine.throws.iter().zip(parts).enumerate() {
-            let shaft = pair(y, self.layout.main).map(|v| throw.local(v));
+        for (i, found) in evaluation.throws.iter_mut().enumerate() {
+            let throw = &self.machine.throws[i];
+            let (layout, mode) = (&self.layout.throws[i], &self.mode.throws[i]);
+            let [place, rate] = pair(y, self.layout.main);
+            let shaft = [throw.local(place), throw.local(rate)];
             let gravity = throw.local(gravity);
             let angle = throw.local_angle(angle);
-            evaluation.throws.push(ThrowEvaluation::new(
+            found.find(
                 throw,
                 Acting::on_throw(&self.machine.effects, i),
                 Standing {
@@ -259,7 +260,7 @@ impl<S: Scalar> Dynamics<S> {
                     gravity,
                 },
                 y,
-            ));
+            );
         }
     }
 

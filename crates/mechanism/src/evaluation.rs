@@ -71,20 +71,49 @@ pub(crate) struct Standing<'a, S> {
 }
 
 impl<S: Scalar> ThrowEvaluation<S> {
-    pub(crate) fn new(
+    /// Nothing yet.
+    pub(crate) fn none() -> Self {
+        let zero = S::zero();
+        Self {
+            motion: Motion::none(),
+            joints: Joints {
+                big_end: JointState::ideal(),
+                small_end: JointState::ideal(),
+                guide: GuideState::ideal(),
+            },
+            gas: Gas::none(),
+            loads: Loads::none(false),
+            accelerations: Accelerations {
+                crosshead: zero,
+                big_end: origin(),
+                small_end: origin(),
+                guide: origin(),
+                big_force: origin(),
+                small_force: origin(),
+                rod: zero,
+                stretch: zero,
+            },
+            carried: origin(),
+        }
+    }
+
+    /// Finds poses, rates and loads, in place: there is too much of it to be moved about.
+    pub(crate) fn find(
+        &mut self,
         throw: &Throw<S>,
         effects: Acting<'_, S>,
         at: Standing<'_, S>,
         y: &[S],
-    ) -> Self {
+    ) {
         let big = pair(y, at.layout.big_end);
         let small = pair(y, at.layout.small_end);
         let guide = pair(y, at.layout.guide);
         let two = |i: usize| [y[i], y[i + 1]];
         let stretch = at.layout.rod.map_or([S::zero(); 2], two);
-        let motion = Motion::new(
+        self.motion = Motion::new(
             throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
         );
+        let motion = &self.motion;
         let spin = motion.rod_rate;
         // Both ends' bearings are in the rod.
         let at_joint = |joint, journal| AtJoint {
@@ -94,7 +123,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
         };
         let pin = motion.angle_sin_cos;
         let crosshead = at.layout.guide.map_or(along_x(), |_| direction(guide[0].y));
-        let joints = Joints {
+        self.joints = Joints {
             big_end: revolute_state(
                 &throw.big_end,
                 big,
@@ -119,40 +148,24 @@ impl<S: Scalar> ThrowEvaluation<S> {
         let cylinder = CylinderAt {
             throw,
             effects,
-            motion: &motion,
+            motion,
             speed: at.speed,
             offsets: [big[0], small[0]],
             mode: at.mode,
             drift: at.layout.gas.map(two),
         };
-        let gas = cylinder.gas();
+        self.gas = cylinder.gas();
         let spring = effects.rod();
-        let loads = Loads::new(
+        self.loads = Loads::new(
             throw,
             spring.as_ref(),
             at.gravity,
             at.speed,
-            &motion,
-            &joints,
-            &gas,
-        );
-        Self {
             motion,
-            joints,
-            gas,
-            loads,
-            accelerations: Accelerations {
-                crosshead: S::zero(),
-                big_end: origin(),
-                small_end: origin(),
-                guide: origin(),
-                big_force: origin(),
-                small_force: origin(),
-                rod: S::zero(),
-                stretch: S::zero(),
-            },
-            carried: origin(),
-        }
+            &self.joints,
+            &self.gas,
+        );
+        self.carried = origin();
     }
 }
 

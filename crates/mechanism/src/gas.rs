@@ -183,6 +183,19 @@ pub struct Gas<S> {
     pub(crate) drift: [S; 2],
 }
 
+impl<S: Scalar> Gas<S> {
+    /// Nothing yet.
+    pub(crate) fn none() -> Self {
+        Self {
+            head_end: GasState::none(),
+            crank_end: GasState::none(),
+            force: S::zero(),
+            effects: S::zero(),
+            drift: [S::zero(); 2],
+        }
+    }
+}
+
 /// One throw's cylinder at an instant: what both of its chambers share.
 pub(crate) struct CylinderAt<'a, S> {
     /// The throw.
@@ -289,36 +302,43 @@ impl<S: Scalar> CylinderAt<'_, S> {
             exponent: flagged(expanding, cylinder.expansion_exponent, cylinder.exponent),
             closed: S::one() - mode.suction - mode.discharge,
         };
-        let lines = |seen: &ChamberAt<S>| {
-            let plain = [cylinder.suction, cylinder.discharge];
-            let effects = self.effects.at_end(end);
-            effects.fold(plain, |lines, effect| effect.line_pressures(lines, seen))
-        };
         // The strokes start where the valves leave off, at the dead centres.
-        let at_rest = |angle: f64| {
-            lines(&ChamberAt {
-                angle: S::constant(angle),
-                growth: S::zero(),
-                ..seen
-            })
-        };
         let [filled, emptied] = match end {
             End::Head => [PI, 0.0],
             End::Crank => [0.0, PI],
         };
+        let [mut at_filled, mut at_emptied] = [seen, seen];
+        for (at, angle) in [(&mut at_filled, filled), (&mut at_emptied, emptied)] {
+            at.angle = S::constant(angle);
+            at.growth = S::zero();
+        }
+        let lines = [
+            self.lines(end, &at_filled)[0],
+            self.lines(end, &at_emptied)[1],
+        ];
         let chamber = Chamber {
             dead,
             filled: throw.crank_radius * 2.0 + dead - self.retreat(end),
-            lines: [at_rest(filled)[0], at_rest(emptied)[1]],
+            lines,
             exponents: [cylinder.exponent, cylinder.expansion_exponent],
         };
         let drift = self.drift.map(|drift| drift[end as usize]);
-        let state = chamber.state(distance, expanding, lines(&seen), drift, mode);
+        let open = self.lines(end, &seen);
+        let state = chamber.state(distance, expanding, open, drift, mode);
         seen.pressure = state.pressure;
         if drift.is_some() {
             seen.warmth = chamber.warmth(state.pressure, distance, expanding);
         }
         (state, seen)
+    }
+
+    /// Pressures at which the open valves hold the chamber: suction, discharge.
+    fn lines(&self, end: End, seen: &ChamberAt<S>) -> [S; 2] {
+        let mut lines = [self.throw.cylinder.suction, self.throw.cylinder.discharge];
+        for effect in self.effects.at_end(end) {
+            lines = effect.line_pressures(lines, seen);
+        }
+        lines
     }
 
     /// How far the ideal piston has come back from the dead centre when the suction valve closes, m.

@@ -6,7 +6,8 @@
 //! - [`gas`], [`drive`], [`frame`], [`effects`]: what else acts;
 //! - [`throw`] and [`shaft`]: forces and accelerations of one throw, and what couples them;
 //! - [`state`] and [`mode`]: what is integrated, and what switches;
-//! - [`dynamics`]: all of it together; [`energy`]: the ledger that must balance.
+//! - [`dynamics`]: all of it together, [`SideBySide`] for several machines at once; [`energy`]: the
+//!   ledger that must balance.
 
 pub mod drive;
 pub mod dynamics;
@@ -22,6 +23,7 @@ pub mod machine;
 pub mod mode;
 pub mod plane;
 pub mod shaft;
+mod side_by_side;
 pub mod state;
 mod system;
 pub mod throw;
@@ -29,3 +31,4 @@ pub mod throw;
 pub use dynamics::Dynamics;
 pub use evaluation::{Evaluation, ThrowEvaluation};
 pub use machine::{Crankshaft, Crosshead, Direction, Machine, Rod, Throw};
+pub use side_by_side::SideBySide;

@@ -67,6 +67,11 @@ pub fn constants<S: Scalar, T: Lift<S>>(plain: &T) -> T::Lifted {
     T::lift(&[plain], &mut |x| S::constant(x[0]))
 }
 
+/// What of `plain` must be the same in lanes: everything but its numbers.
+pub fn build<T: Lift<()>>(plain: &T) -> T::Lifted {
+    T::lift(&[plain], &mut |_| ())
+}
+
 /// `W` machines of the same build, side by side.
 pub fn lanes<const W: usize, T: Lift<Lanes<W>>>(machines: [&T; W]) -> T::Lifted {
     T::lift(&machines, &mut |x| {

@@ -37,6 +37,14 @@ pub fn inverse<S: Scalar>(m: &Matrix2<S>) -> Matrix2<S> {
     )
 }
 
+/// `m v`, inlined wherever it stands.
+pub fn apply<S: Scalar>(m: &Matrix2<S>, v: Vec2<S>) -> Vec2<S> {
+    Vec2::new(
+        m[(0, 0)] * v.x + m[(0, 1)] * v.y,
+        m[(1, 0)] * v.x + m[(1, 1)] * v.y,
+    )
+}
+
 /// `a bᵀ`.
 #[inline]
 pub fn outer<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> Matrix2<S> {

@@ -67,7 +67,7 @@ pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S>
 
 impl<S: Scalar> Dynamics<S> {
     /// Writes the derivative of the state that belongs to the last evaluation.
-    fn write_derivative(&self, y: &[S], dy: &mut [S]) {
+    pub(crate) fn write_derivative(&self, y: &[S], dy: &mut [S]) {
         let (layout, at) = (self.layout(), self.evaluation());
         let mut write = |index: Option<usize>, second: Vec2<S>| {
             if let Some(i) = index {
@@ -106,6 +106,10 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
+    pub(crate) fn count_guards(&self) -> usize {
+        CONTACT_GUARDS + THROW_GUARDS * self.machine().throws.len()
+    }
+
     /// True where a joint's guard needs the forces of rigid joints.
     fn has_two_mode_joint(&self) -> bool {
         let two_mode = |joint: &Revolute<S>| {
@@ -121,7 +125,7 @@ impl<S: Scalar> Dynamics<S> {
                 .any(|t| two_mode(&t.big_end) || two_mode(&t.small_end))
     }
 
-    fn write_guards(&self, guards: &mut [S]) {
+    pub(crate) fn write_guards(&self, guards: &mut [S]) {
         guards.fill(S::one());
         let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
         if let Revolute::Clear(clear) = &machine.main {
@@ -190,7 +194,7 @@ impl<S: Real> System<S> for Dynamics<S> {
     }
 
     fn guard_count(&self) -> usize {
-        CONTACT_GUARDS + THROW_GUARDS * self.machine().throws.len()
+        self.count_guards()
     }
 
     fn guards(&mut self, t: S, y: &[S], guards: &mut [S]) {

@@ -13,7 +13,7 @@ use crate::gas::Gas;
 use crate::joints::guide::GuideState;
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Throw;
-use crate::plane::{Vec2, diagonal, inverse, moment, origin, outer, turned};
+use crate::plane::{Vec2, apply, diagonal, inverse, moment, origin, outer, turned};
 use nalgebra::Matrix2;
 use scalar::Scalar;
 
@@ -125,16 +125,16 @@ impl<S: Scalar> Constraint<S> {
 
     /// The matrix that turns the missing relative acceleration into the joint's force, given how
     /// the relative acceleration answers to that force.
-    fn stiffen(&self, answer: &Matrix2<S>) -> Option<Matrix2<S>> {
+    fn stiffen(&self, answer: impl FnOnce() -> Matrix2<S>) -> Option<Matrix2<S>> {
         match *self {
             Constraint::Open => None,
-            Constraint::Pinned => Some(inverse(answer)),
+            Constraint::Pinned => Some(inverse(&answer())),
             Constraint::Following {
                 normal,
                 force,
                 active,
             } => {
-                let give = normal.dot(&(answer * force));
+                let give = normal.dot(&apply(&answer(), force));
                 Some(outer(force, normal) * (active / give))
             }
         }
@@ -205,6 +205,23 @@ pub struct Accelerations<S> {
 }
 
 impl<S: Scalar> Motion<S> {
+    /// Nothing yet.
+    pub(crate) fn none() -> Self {
+        let zero = S::zero();
+        Self {
+            angle: zero,
+            angle_sin_cos: (zero, zero),
+            pin: origin(),
+            rod_sin_cos: (zero, zero),
+            rod_rate: zero,
+            big_eye: [origin(); 2],
+            crosshead: zero,
+            crosshead_rate: zero,
+            stretch: zero,
+            stretch_rate: zero,
+        }
+    }
+
     /// The pose with the shaft's centre at `shaft` (position and velocity), the crank at `angle`
     /// turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its rate.
     #[allow(clippy::too_many_arguments)]
@@ -392,7 +409,7 @@ impl<S: Scalar> Response<S> {
             None => S::zero(),
         };
         let crosshead_give = diagonal(light, across);
-        let crosshead_free = crosshead_give * loads.crosshead_force;
+        let crosshead_free = apply(&crosshead_give, loads.crosshead_force);
 
         let mut response = Self {
             slope: diagonal(S::zero(), S::zero()),
@@ -406,8 +423,9 @@ impl<S: Scalar> Response<S> {
             crosshead_give,
         };
         let small = Constraint::new(&throw.small_end, &joints.small_end, touching[1]);
-        let small_answer = answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give;
-        if let Some(stiff) = small.stiffen(&small_answer) {
+        let small_answer =
+            || answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give;
+        if let Some(stiff) = small.stiffen(small_answer) {
             let missing = crosshead_free
                 - free_at(arms.small, of_small, loads.small_bias)
                 - joints.small_end.normal * loads.small_target;
@@ -415,12 +433,12 @@ impl<S: Scalar> Response<S> {
             response.small_slope = stiff * answer([arms.small, arms.big_force], [of_small, of_big]);
         }
         let big = Constraint::new(&throw.big_end, &joints.big_end, touching[0]);
-        let through = answer([arms.big, arms.small_force], [of_big, of_small]);
+        let through = || answer([arms.big, arms.small_force], [of_big, of_small]);
         let big_answer =
-            answer([arms.big, arms.big_force], [of_big; 2]) - through * response.small_slope;
-        if let Some(stiff) = big.stiffen(&big_answer) {
+            || answer([arms.big, arms.big_force], [of_big; 2]) - through() * response.small_slope;
+        if let Some(stiff) = big.stiffen(big_answer) {
             let free_eye =
-                free_at(arms.big, of_big, loads.big_bias) + through * response.small_offset;
+                free_at(arms.big, of_big, loads.big_bias) + through() * response.small_offset;
             response.slope = stiff;
             response.offset = -(stiff * (free_eye + joints.big_end.normal * loads.big_target));
         }
@@ -436,8 +454,8 @@ impl<S: Scalar> Response<S> {
         pin: Vec2<S>,
     ) -> Accelerations<S> {
         let arms = &self.arms;
-        let big_force = self.slope * pin + self.offset;
-        let small_force = self.small_offset - self.small_slope * big_force;
+        let big_force = apply(&self.slope, pin) + self.offset;
+        let small_force = self.small_offset - apply(&self.small_slope, big_force);
         let centre = self.rod_free.0 + (big_force + small_force) / throw.rod.mass;
         let rod = self.rod_free.1
             + (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
@@ -452,7 +470,7 @@ impl<S: Scalar> Response<S> {
             small_eye += arms.along * (of_small * stretch);
             stretch
         });
-        let crosshead = self.crosshead_free - self.crosshead_give * small_force;
+        let crosshead = self.crosshead_free - apply(&self.crosshead_give, small_force);
         let tilt = (loads.crosshead_moment - moment(joints.small_end.arm, small_force))
             / throw.crosshead.inertia;
         Accelerations {

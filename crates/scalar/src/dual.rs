@@ -26,21 +26,28 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
         Self { value, tangent }
     }
 
+    /// `value` with each tangent as `f` makes it.
+    fn each(mut self, value: S, f: impl Fn(S) -> S) -> Self {
+        for d in &mut self.tangent {
+            *d = f(*d);
+        }
+        self.value = value;
+        self
+    }
+
     /// `f(value)`, whose derivative there is `slope`.
     #[inline]
     fn chain(self, value: S, slope: S) -> Self {
-        Self {
-            value,
-            tangent: self.tangent.map(|d| d * slope),
-        }
+        self.each(value, |d| d * slope)
     }
 
     #[inline]
-    fn zip(self, other: Self, value: S, f: impl Fn(S, S) -> S) -> Self {
-        Self {
-            value,
-            tangent: std::array::from_fn(|i| f(self.tangent[i], other.tangent[i])),
+    fn zip(mut self, other: Self, value: S, f: impl Fn(S, S) -> S) -> Self {
+        for (d, e) in self.tangent.iter_mut().zip(other.tangent) {
+            *d = f(*d, e);
         }
+        self.value = value;
+        self
     }
 }
 
@@ -48,10 +55,7 @@ impl<S: Scalar, const N: usize> Neg for Dual<S, N> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            tangent: self.tangent.map(|d| -d),
-        }
+        self.each(-self.value, |d| -d)
     }
 }
 
@@ -117,10 +121,7 @@ impl<S: Scalar, const N: usize> Mul<f64> for Dual<S, N> {
     type Output = Self;
     #[inline]
     fn mul(self, other: f64) -> Self {
-        Self {
-            value: self.value * other,
-            tangent: self.tangent.map(|d| d * other),
-        }
+        self.each(self.value * other, |d| d * other)
     }
 }
 
@@ -128,10 +129,7 @@ impl<S: Scalar, const N: usize> Div<f64> for Dual<S, N> {
     type Output = Self;
     #[inline]
     fn div(self, other: f64) -> Self {
-        Self {
-            value: self.value / other,
-            tangent: self.tangent.map(|d| d / other),
-        }
+        self.each(self.value / other, |d| d / other)
     }
 }
 

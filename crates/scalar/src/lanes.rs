@@ -15,28 +15,37 @@ pub struct Lanes<const W: usize>(pub [f64; W]);
 
 impl<const W: usize> Lanes<W> {
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(f))
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for x in &mut self.0 {
+            *x = f(*x);
+        }
+        self
     }
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (x, y) in self.0.iter_mut().zip(other.0) {
+            *x = f(*x, y);
+        }
+        self
     }
 }
 
 /// One truth value per lane.
 impl<const W: usize> Mask for [bool; W] {
     #[inline]
-    fn and(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] & other[i])
+    fn and(mut self, other: Self) -> Self {
+        self.iter_mut().zip(other).for_each(|(a, b)| *a &= b);
+        self
     }
     #[inline]
-    fn or(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] | other[i])
+    fn or(mut self, other: Self) -> Self {
+        self.iter_mut().zip(other).for_each(|(a, b)| *a |= b);
+        self
     }
     #[inline]
-    fn not(self) -> Self {
-        self.map(|m| !m)
+    fn not(mut self) -> Self {
+        self.iter_mut().for_each(|a| *a = !*a);
+        self
     }
     #[inline]
     fn any(self) -> bool {
@@ -110,13 +119,18 @@ impl<const W: usize> Scalar for Lanes<W> {
     }
     #[inline]
     fn lt(self, other: Self) -> [bool; W] {
-        std::array::from_fn(|i| self.0[i] < other.0[i])
+        let mut mask = [false; W];
+        for i in 0..W {
+            mask[i] = self.0[i] < other.0[i];
+        }
+        mask
     }
     #[inline]
-    fn select(mask: [bool; W], yes: Self, no: Self) -> Self {
-        Self(std::array::from_fn(|i| {
-            if mask[i] { yes.0[i] } else { no.0[i] }
-        }))
+    fn select(mask: [bool; W], yes: Self, mut no: Self) -> Self {
+        for i in 0..W {
+            no.0[i] = if mask[i] { yes.0[i] } else { no.0[i] };
+        }
+        no
     }
     #[inline]
     fn sqrt(self) -> Self {
@@ -124,8 +138,11 @@ impl<const W: usize> Scalar for Lanes<W> {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let both = self.0.map(crate::elementary::sin_cos);
-        (Self(both.map(|b| b.0)), Self(both.map(|b| b.1)))
+        let (mut sine, mut cosine) = (self, self);
+        for i in 0..W {
+            (sine.0[i], cosine.0[i]) = crate::elementary::sin_cos(self.0[i]);
+        }
+        (sine, cosine)
     }
     #[inline]
     fn exp(self) -> Self {

@@ -172,6 +172,19 @@ fn filters(sensor: &Sensor, rate: f64) -> Result<Vec<Filter>, signal::Error> {
 impl Measured {
     /// The quantity at an instant, SI.
     pub fn value<S: Real>(&self, at: &Evaluation<S>) -> S {
+        self.wrapped(self.unwrapped(at))
+    }
+
+    /// What is shown of an angle that grows without end: where it stands in its turn.
+    pub(crate) fn wrapped<S: Real>(&self, x: S) -> S {
+        match *self {
+            Measured::CrankAngle => x - TAU * (x.value() / TAU).floor(),
+            _ => x,
+        }
+    }
+
+    /// The quantity, an angle since the start.
+    pub(crate) fn unwrapped<S: Scalar>(&self, at: &Evaluation<S>) -> S {
         match *self {
             Measured::CrossheadAcceleration { throw } => {
                 let throw = &at.throws[throw];
@@ -190,10 +203,7 @@ impl Measured {
                     ChamberEnd::Crank => gas.crank_end.pressure,
                 }
             }
-            Measured::CrankAngle => {
-                let turns = (at.angle.value() / TAU).floor();
-                at.angle - TAU * turns
-            }
+            Measured::CrankAngle => at.angle,
         }
     }
 }

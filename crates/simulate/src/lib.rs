@@ -10,7 +10,9 @@
 
 pub mod bifurcation;
 mod chain;
+mod ensemble;
 pub mod flow;
+mod leaving;
 pub mod lyapunov;
 pub mod measure;
 mod orbit;
@@ -20,13 +22,16 @@ pub mod record;
 pub mod regime;
 mod return_map;
 mod run;
+mod sampler;
 pub mod sensitivity;
 pub mod sensor;
 pub mod settings;
 mod strobes;
+mod task;
 mod tangents;
 pub mod trace;
 
+pub use ensemble::simulate_together;
 pub use flow::{Cycle, Flow};
 pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
@@ -39,4 +44,5 @@ pub use sensor::{
     Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
 pub use settings::{Settings, Transient};
+pub use task::Asked;
 pub use trace::{JointTrace, ThrowTrace, Trace};

@@ -1,9 +1,8 @@
 //! From machine to record: transient, sampling, energy ledger.
 
-use crate::chain::Sampling;
-use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::settings::Settings;
+use crate::task::{Asked, Task};
 use crate::trace::Trace;
 use mechanism::Machine;
 
@@ -84,42 +83,10 @@ pub fn simulate_later(
     delay: f64,
     traced: bool,
 ) -> Result<Record, Error> {
-    let mut run = Run::start(machine.clone(), settings.tolerance, true);
-    let (transient, period) = run.leave_transient(settings.transient)?;
-    let start = f64::from(transient) * run.revolution() + delay;
-    let length = f64::from(settings.revolutions) * run.revolution();
-    let sampling = Sampling::new(settings, length)?;
-    let mut trace = traced.then(|| Trace::new(machine, sampling.factor));
-    let lead = sampling.lead();
-    let recorded = lead..lead + sampling.samples * sampling.factor;
-    let mut inner = vec![Vec::new(); sensors.len()];
-    let mut seen = 0;
-    let before = run.ledger();
-    run.show(sampling.instants(start), |at| {
-        for (sensor, inner) in sensors.iter().zip(&mut inner) {
-            inner.push(sensor.measured.value(at));
-        }
-        if let Some(trace) = &mut trace
-            && recorded.contains(&seen)
-        {
-            trace.push(at);
-        }
-        seen += 1;
-    })?;
-    let energy_residual = run.residual(&before);
-    let series = sensors
-        .iter()
-        .zip(&inner)
-        .map(|(sensor, inner)| sampling.record(sensor, machine, start, inner))
-        .collect::<Result<_, _>>()?;
-    Ok(Record {
-        sample_rate: settings.sample_rate,
-        start,
-        trace,
-        series,
-        transient,
-        settled: period.is_some(),
-        energy_residual,
-        work: run.work(),
-    })
+    let asked = Asked {
+        machine,
+        sensors,
+        settings,
+    };
+    Task::start(asked, delay, traced)?.finish()
 }

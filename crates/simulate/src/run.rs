@@ -1,8 +1,9 @@
 //! A machine on its way through time, over plain or dual numbers.
 
+use crate::leaving::{Leaving, Left};
 use crate::record::Error;
 use crate::settings::Transient;
-use integrate::{Integrator, Real, Step, System, Work};
+use integrate::{Course, Integrator, Real, Step, System, Work};
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
 use std::f64::consts::TAU;
@@ -11,13 +12,6 @@ use std::f64::consts::TAU;
 const LONGEST_STEP: f64 = 0.05;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
-/// Revolutions in which a motion that settles comes nearer to itself at least by this factor.
-const PATIENCE: usize = 4;
-const NEARER: f64 = 0.5;
-/// Periods, in revolutions, that count as settled.
-const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD as u32];
-const LONGEST_PERIOD: usize = 4;
-
 /// A machine on its way.
 pub(crate) struct Run<S> {
     dynamics: Dynamics<S>,
@@ -39,7 +33,7 @@ pub(crate) struct Instants {
 }
 
 impl Instants {
-    fn at(&self, index: usize) -> f64 {
+    pub(crate) fn at(&self, index: usize) -> f64 {
         self.first + index as f64 / self.rate
     }
 
@@ -126,45 +120,39 @@ impl<S: Real> Run<S> {
         &mut self,
         transient: Transient,
     ) -> Result<(u32, Option<u32>), Error> {
-        let (change, at_most) = match transient {
-            Transient::Revolutions(count) => (0.0, count),
-            Transient::Settled { change, at_most } => (change, at_most),
-        };
-        let mut strobes = vec![self.strobe()];
-        let mut distances = Vec::new();
-        for revolution in 1..at_most {
-            self.revolve(revolution)?;
-            let now = self.strobe();
-            let distance = |period: &u32| {
-                let earlier = strobes.len().checked_sub(*period as usize);
-                earlier.map_or(f64::INFINITY, |i| self.distance(&now, &strobes[i]))
+        let mut leaving = Leaving::new(self, transient);
+        loop {
+            let left = match leaving.next(self) {
+                Err(left) => Some(left),
+                Ok(end) => {
+                    self.advance(end)?;
+                    leaving.arrive(self)
+                }
             };
-            // Not before the start has had a revolution to pass.
-            if revolution > 1
-                && let Some(period) = PERIODS.into_iter().find(|p| distance(p) < change)
-            {
-                return Ok((revolution + 1, Some(period)));
+            if let Some(Left { transient, period }) = left {
+                return Ok((transient, period));
             }
-            distances.push(PERIODS.iter().map(distance).fold(f64::INFINITY, f64::min));
-            if self.hurried && change > 0.0 && is_restless(&distances) {
-                return Ok((revolution + 1, None));
-            }
-            strobes.push(now);
-            let keep = strobes.len().saturating_sub(LONGEST_PERIOD);
-            strobes.drain(..keep);
         }
-        Ok((at_most, None))
     }
 
-    /// Goes on to the end of a revolution. A free crank does not keep to the reference speed: the
-    /// time of its next revolution follows from the speed and the angle that it has now.
-    fn revolve(&mut self, revolution: u32) -> Result<(), Error> {
-        let end = f64::from(revolution) * self.revolution;
+    /// Where a revolution ends, s. A free crank does not keep to the reference speed: the time of its
+    /// next revolution follows from the speed and the angle that it has now.
+    pub(crate) fn end_of(&self, revolution: u32) -> f64 {
         let Some((angle, speed)) = self.free_crank() else {
-            return self.advance(end);
+            return f64::from(revolution) * self.revolution;
         };
         let ahead = TAU * f64::from(revolution) - angle;
-        self.advance(self.integrator.time() + ahead / speed)
+        self.time() + ahead / speed
+    }
+
+    /// The time reached, s.
+    pub(crate) fn time(&self) -> f64 {
+        self.integrator.time()
+    }
+
+    /// Whether it gives up early.
+    pub(crate) fn hurries(&self) -> bool {
+        self.hurried
     }
 
     /// Gives up where a revolution takes more than [`HURRIED`] steps in each longest step's time: a
@@ -192,7 +180,7 @@ impl<S: Real> Run<S> {
 
     /// The state where the crank stands at a whole number of revolutions, without its angle: what
     /// is left of a revolution is made up to first order.
-    fn strobe(&mut self) -> Vec<f64> {
+    pub(crate) fn strobe(&mut self) -> Vec<f64> {
         let mut state: Vec<f64> = self.integrator.state().iter().map(|y| y.value()).collect();
         let Some((angle, _)) = self.free_crank() else {
             return state;
@@ -241,7 +229,7 @@ impl<S: Real> Run<S> {
     }
 
     /// Largest difference of two states, each component over its scale.
-    fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let scales = self.dynamics.scales();
         let parts = a.iter().zip(b).zip(scales);
         parts
@@ -255,7 +243,7 @@ impl<S: Real> Run<S> {
         self.check(end)
     }
 
-    fn check(&self, time: f64) -> Result<(), Error> {
+    pub(crate) fn check(&self, time: f64) -> Result<(), Error> {
         if self
             .integrator
             .state()
@@ -307,17 +295,48 @@ impl<S: Real> Run<S> {
     }
 }
 
-/// Whether a motion of these distances from itself comes no nearer.
-fn is_restless(distances: &[f64]) -> bool {
-    let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
-    let Some(first) = distances.len().checked_sub(PATIENCE) else {
-        return false;
-    };
-    let (before, now) = distances.split_at(first);
-    first >= PATIENCE && least(now) > NEARER * least(&before[first - PATIENCE..])
-}
-
 impl Run<f64> {
+    /// The way from here to `end`.
+    pub(crate) fn course(&self, end: f64) -> Course {
+        self.integrator.course(end)
+    }
+
+    /// What carries it on, and what is carried.
+    pub(crate) fn both(&mut self) -> (&mut Integrator<f64>, &mut Dynamics<f64>) {
+        (&mut self.integrator, &mut self.dynamics)
+    }
+
+    /// What carries it on.
+    pub(crate) fn integrator(&self) -> &Integrator<f64> {
+        &self.integrator
+    }
+
+    /// What carries it on.
+    pub(crate) fn integrator_mut(&mut self) -> &mut Integrator<f64> {
+        &mut self.integrator
+    }
+
+    /// What is carried.
+    pub(crate) fn dynamics(&self) -> &Dynamics<f64> {
+        &self.dynamics
+    }
+
+    /// The motion where it stands.
+    pub(crate) fn evaluate(&mut self) -> &Evaluation<f64> {
+        let now = self.integrator.time();
+        self.dynamics.evaluate(now, self.integrator.state())
+    }
+
+    /// Goes on to the end of a time, s, and shows each step.
+    pub(crate) fn watch(
+        &mut self,
+        end: f64,
+        observe: impl FnMut(&mut Dynamics<f64>, &Step<f64>),
+    ) -> Result<(), Error> {
+        self.integrator.advance(&mut self.dynamics, end, observe)?;
+        self.check(end)
+    }
+
     /// Where it stands.
     pub(crate) fn standing(&self) -> Standing {
         Standing {

@@ -1,0 +1,213 @@
+//! Many records at once: machines of one build run in lanes, and whoever is done makes room for the
+//! next.
+
+use crate::record::{Error, Record};
+use crate::task::{Asked, Task};
+use integrate::{Ensemble, Step, Traveller, Trial};
+use mechanism::{Dynamics, SideBySide, lift};
+
+/// Lanes: as many numbers as the widest registers hold.
+const WIDTH: usize = 8;
+
+/// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
+/// same bits.
+pub fn simulate_together(asked: &[Asked]) -> Vec<Result<Record, Error>> {
+    let mut records: Vec<_> = asked.iter().map(|_| None).collect();
+    for alike in of_one_build(asked) {
+        in_lanes::<WIDTH>(asked, &alike, &mut records);
+    }
+    records.into_iter().flatten().collect()
+}
+
+fn start(asked: Asked) -> Result<Task, Error> {
+    Task::start(asked, 0.0, false)
+}
+
+/// Which machines can share lanes: those that differ in numbers alone.
+fn of_one_build(asked: &[Asked]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<(_, Vec<usize>)> = Vec::new();
+    for (i, asked) in asked.iter().enumerate() {
+        let build = lift::build(asked.machine);
+        match groups.iter_mut().find(|(of, _)| *of == build) {
+            Some((_, group)) => group.push(i),
+            None => groups.push((build, vec![i])),
+        }
+    }
+    groups.into_iter().map(|(_, group)| group).collect()
+}
+
+type Records = [Option<Result<Record, Error>>];
+
+/// A record in a lane.
+struct Passenger<'a> {
+    index: usize,
+    task: Task<'a>,
+    trial: Trial,
+    /// Switches that the lanes know of.
+    switches: u64,
+}
+
+impl<'a> Passenger<'a> {
+    /// A task up to its next step; its record where there is none.
+    fn board(index: usize, mut task: Task<'a>) -> Result<Result<Self, Record>, Error> {
+        loop {
+            if let Some(trial) = task.run.integrator().propose(&task.course)? {
+                return Ok(Ok(Self {
+                    index,
+                    trial,
+                    switches: task.run.work().switches,
+                    task,
+                }));
+            }
+            match task.arrive()? {
+                Ok(record) => return Ok(Err(record)),
+                Err(next) => task = next,
+            }
+        }
+    }
+}
+
+/// The lanes of a group.
+struct Lanes<'a, const W: usize> {
+    passengers: [Option<Passenger<'a>>; W],
+    ensemble: Ensemble<W>,
+    wide: SideBySide<W>,
+}
+
+fn in_lanes<const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Records) {
+    let mut queue = alike.iter().copied();
+    let mut passengers = [const { None }; W];
+    let mut next = |records: &mut Records| {
+        queue.find_map(|index| {
+            let boarded = start(asked[index]).and_then(|task| Passenger::board(index, task));
+            settle(index, boarded, records)
+        })
+    };
+    for place in &mut passengers {
+        *place = next(records);
+    }
+    let Some(mut lanes) = Lanes::new(passengers) else {
+        return;
+    };
+    while lanes.count() > 1 {
+        lanes.step(records);
+        let mut boarded = false;
+        for lane in 0..W {
+            if lanes.passengers[lane].is_none()
+                && let Some(passenger) = next(records)
+            {
+                lanes.ensemble.place(lane, passenger.task.run.integrator());
+                lanes.passengers[lane] = Some(passenger);
+                boarded = true;
+            }
+        }
+        if boarded {
+            lanes.widen();
+        }
+    }
+    // Whoever is left alone is faster by itself.
+    let last = lanes.passengers.iter_mut().enumerate();
+    for (lane, passenger) in last {
+        if let Some(Passenger { index, mut task, .. }) = passenger.take() {
+            lanes.ensemble.give(lane, false, task.run.integrator_mut());
+            records[index] = Some(task.finish());
+        }
+    }
+}
+
+/// Files a record or a failure; who still travels is given back.
+fn settle<'a>(
+    index: usize,
+    boarded: Result<Result<Passenger<'a>, Record>, Error>,
+    records: &mut Records,
+) -> Option<Passenger<'a>> {
+    match boarded {
+        Ok(Ok(passenger)) => return Some(passenger),
+        Ok(Err(record)) => records[index] = Some(Ok(record)),
+        Err(error) => records[index] = Some(Err(error)),
+    }
+    None
+}
+
+impl<'a, const W: usize> Lanes<'a, W> {
+    /// None without passengers.
+    fn new(passengers: [Option<Passenger<'a>>; W]) -> Option<Self> {
+        let wide = SideBySide::new(dynamics(&passengers)?);
+        let mut ensemble = Ensemble::new(&wide);
+        for (lane, passenger) in passengers.iter().enumerate() {
+            if let Some(passenger) = passenger {
+                ensemble.place(lane, passenger.task.run.integrator());
+            }
+        }
+        Some(Self {
+            passengers,
+            ensemble,
+            wide,
+        })
+    }
+
+    fn count(&self) -> usize {
+        self.passengers.iter().flatten().count()
+    }
+
+    /// Takes over the machines that are in the lanes now.
+    fn widen(&mut self) {
+        if let Some(dynamics) = dynamics(&self.passengers) {
+            self.wide = SideBySide::new(dynamics);
+        }
+    }
+
+    /// One step of everybody. Who has arrived leaves.
+    fn step(&mut self, records: &mut Records) {
+        let travellers = self.passengers.each_mut().map(|passenger| {
+            passenger.as_mut().map(|Passenger { task, trial, .. }| {
+                let (run, course, sampler) = task.parts();
+                let (integrator, system) = run.both();
+                Traveller {
+                    integrator,
+                    system,
+                    course,
+                    trial: *trial,
+                    observe: sampler.map(|sampler| {
+                        |dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
+                            sampler.observe(dynamics, step);
+                        }
+                    }),
+                }
+            })
+        });
+        let results = self.ensemble.advance(&mut self.wide, travellers);
+        let mut switched = false;
+        for (passenger, result) in self.passengers.iter_mut().zip(results) {
+            let Some(Passenger {
+                index,
+                task,
+                switches,
+                ..
+            }) = passenger.take()
+            else {
+                continue;
+            };
+            switched |= task.run.work().switches != switches;
+            let boarded = match result {
+                Ok(()) => Passenger::board(index, task),
+                Err(error) => Err(error.into()),
+            };
+            *passenger = settle(index, boarded, records);
+        }
+        if switched && let Some(dynamics) = dynamics(&self.passengers) {
+            self.wide.set_modes(dynamics);
+        }
+    }
+}
+
+/// The machines in the lanes; in an empty one that of another lane. None where all are empty.
+fn dynamics<'p, const W: usize>(
+    passengers: &'p [Option<Passenger>; W],
+) -> Option<[&'p Dynamics<f64>; W]> {
+    let any = passengers.iter().flatten().next()?;
+    Some(passengers.each_ref().map(|passenger| {
+        let passenger = passenger.as_ref().unwrap_or(any);
+        passenger.task.run.dynamics()
+    }))
+}

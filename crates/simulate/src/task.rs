@@ -1,0 +1,178 @@
+//! A record under way, as a sequence of courses: whoever drives it integrates to the end of each.
+
+use crate::chain::Sampling;
+use crate::leaving::{Leaving, Left};
+use crate::record::{Error, Record};
+use crate::run::{Ledger, Run};
+use crate::sampler::Sampler;
+use crate::sensor::Sensor;
+use crate::settings::Settings;
+use crate::trace::Trace;
+use integrate::Course;
+use mechanism::Machine;
+
+/// What is to be recorded.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// What looks at it.
+    pub sensors: &'a [Sensor],
+    /// For how long, how finely, how accurately.
+    pub settings: &'a Settings,
+}
+
+/// A record under way.
+pub(crate) struct Task<'a> {
+    asked: Asked<'a>,
+    /// s after the transient.
+    delay: f64,
+    traced: bool,
+    pub run: Run<f64>,
+    phase: Phase<'a>,
+    pub course: Course,
+}
+
+enum Phase<'a> {
+    Leaving(Leaving),
+    Recording(Box<Recording<'a>>),
+}
+
+struct Recording<'a> {
+    left: Left,
+    /// When it begins, s.
+    start: f64,
+    sampling: Sampling,
+    sampler: Sampler<'a>,
+    before: Ledger,
+}
+
+impl<'a> Task<'a> {
+    /// Begins at the start of the machine.
+    pub fn start(asked: Asked<'a>, delay: f64, traced: bool) -> Result<Self, Error> {
+        let Settings {
+            tolerance,
+            transient,
+            ..
+        } = *asked.settings;
+        let mut run = Run::start(asked.machine.clone(), tolerance, true);
+        let leaving = Leaving::new(&mut run, transient);
+        let next = leaving.next(&run);
+        let mut task = Self {
+            course: run.course(0.0),
+            phase: Phase::Leaving(leaving),
+            asked,
+            delay,
+            traced,
+            run,
+        };
+        task.head_for(next)?;
+        Ok(task)
+    }
+
+    /// Sets out for the end of a revolution, or for the end of the record.
+    fn head_for(&mut self, next: Result<f64, Left>) -> Result<(), Error> {
+        let end = match next {
+            Ok(end) => end,
+            Err(left) => {
+                let recording = self.recording(left)?;
+                let end = recording.sampler.end();
+                self.phase = Phase::Recording(Box::new(recording));
+                end
+            }
+        };
+        self.course = self.run.course(end);
+        Ok(())
+    }
+
+    fn recording(&mut self, left: Left) -> Result<Recording<'a>, Error> {
+        let Asked {
+            machine,
+            sensors,
+            settings,
+        } = self.asked;
+        let start = f64::from(left.transient) * self.run.revolution() + self.delay;
+        let length = f64::from(settings.revolutions) * self.run.revolution();
+        let sampling = Sampling::new(settings, length)?;
+        let lead = sampling.lead();
+        let recorded = lead..lead + sampling.samples * sampling.factor;
+        let trace = self
+            .traced
+            .then(|| (Trace::new(machine, sampling.factor), recorded));
+        Ok(Recording {
+            left,
+            start,
+            before: self.run.ledger(),
+            sampler: Sampler::begin(&mut self.run, sensors, sampling.instants(start), trace),
+            sampling,
+        })
+    }
+
+    /// What looks at the steps of the present course, if anything does.
+    pub fn parts(&mut self) -> (&mut Run<f64>, &Course, Option<&mut Sampler<'a>>) {
+        let sampler = match &mut self.phase {
+            Phase::Leaving(_) => None,
+            Phase::Recording(recording) => Some(&mut recording.sampler),
+        };
+        (&mut self.run, &self.course, sampler)
+    }
+
+    /// At the end of a course: sets out for the next one, or gives the record.
+    pub fn arrive(mut self) -> Result<Result<Record, Self>, Error> {
+        self.run.check(self.course.end())?;
+        match self.phase {
+            Phase::Leaving(mut leaving) => {
+                let left = leaving.arrive(&mut self.run);
+                let next = left.map_or_else(|| leaving.next(&self.run), Err);
+                self.phase = Phase::Leaving(leaving);
+                self.head_for(next)?;
+                Ok(Err(self))
+            }
+            Phase::Recording(recording) => {
+                let Recording {
+                    left,
+                    start,
+                    sampling,
+                    sampler,
+                    before,
+                } = *recording;
+                let run = &mut self.run;
+                let (inner, trace) = sampler.end_with(run);
+                let Asked {
+                    machine,
+                    sensors,
+                    settings,
+                } = self.asked;
+                let chains = sensors.iter().zip(&inner);
+                let series =
+                    chains.map(|(sensor, inner)| sampling.record(sensor, machine, start, inner));
+                Ok(Ok(Record {
+                    sample_rate: settings.sample_rate,
+                    start,
+                    trace,
+                    series: series.collect::<Result<_, _>>()?,
+                    transient: left.transient,
+                    settled: left.period.is_some(),
+                    energy_residual: run.residual(&before),
+                    work: run.work(),
+                }))
+            }
+        }
+    }
+
+    /// Goes to the end by itself.
+    pub fn finish(mut self) -> Result<Record, Error> {
+        loop {
+            let (run, course, sampler) = self.parts();
+            let end = course.end();
+            match sampler {
+                None => run.advance(end)?,
+                Some(sampler) => run.watch(end, |dynamics, step| sampler.observe(dynamics, step))?,
+            }
+            match self.arrive()? {
+                Ok(record) => return Ok(record),
+                Err(task) => self = task,
+            }
+        }
+    }
+}
