@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 use std::sync::atomic::AtomicBool;
 use sweep::dataset::{Existing, Options, generate};
 use sweep::sweep_file::Format;
-use sweep::{Plan, simulate_case};
+use sweep::{Plan, simulate_cases};
 use tempfile::TempDir;
 
 /// Two sets of joints at two clearances, and the ideal machine.
@@ -85,7 +85,7 @@ impl Dataset {
             cancel: &AtomicBool::new(false),
         };
         let plan = plan.with_format(format);
-        generate(&plan, &self.path(), &options, &simulate_case, &mut ()).unwrap();
+        generate(&plan, &self.path(), &options, &simulate_cases, &mut ()).unwrap();
     }
 
     fn path(&self) -> PathBuf {

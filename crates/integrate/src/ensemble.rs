@@ -78,7 +78,10 @@ impl<const W: usize> Ensemble<W> {
                 continue;
             };
             let squares = squares.map(|s| s.0[lane]);
-            if traveller.integrator.judge(traveller.trial, squares, counted) {
+            if traveller
+                .integrator
+                .judge(traveller.trial, squares, counted)
+            {
                 shown[lane] = !quiet[lane] || traveller.observe.is_some();
                 kept[lane] = !shown[lane];
             }

@@ -133,7 +133,9 @@ fn clear_of_zero<T: Scalar>(seen: &[T; SHARES.len()]) -> T::Mask {
         let curvature = (before * (1.0 / left) + after * (1.0 / right)) * (1.0 / (left + right));
         let slope = after * (1.0 / right) - curvature * right;
         let lowest = slope * -0.5;
-        let within = (curvature * -left).lt(lowest).and(lowest.lt(curvature * right));
+        let within = (curvature * -left)
+            .lt(lowest)
+            .and(lowest.lt(curvature * right));
         let deep = slope * slope * 0.25;
         let high = deep.lt(seen[i] * (1.0 - DIP) * curvature);
         clear = clear.and(zero.lt(curvature).and(within).not().or(high));

@@ -108,7 +108,10 @@ fn in_lanes<const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Reco
     // Whoever is left alone is faster by itself.
     let last = lanes.passengers.iter_mut().enumerate();
     for (lane, passenger) in last {
-        if let Some(Passenger { index, mut task, .. }) = passenger.take() {
+        if let Some(Passenger {
+            index, mut task, ..
+        }) = passenger.take()
+        {
             lanes.ensemble.give(lane, false, task.run.integrator_mut());
             records[index] = Some(task.finish());
         }

@@ -27,8 +27,8 @@ pub mod sensitivity;
 pub mod sensor;
 pub mod settings;
 mod strobes;
-mod task;
 mod tangents;
+mod task;
 pub mod trace;
 
 pub use ensemble::simulate_together;

@@ -167,7 +167,9 @@ impl<'a> Task<'a> {
             let end = course.end();
             match sampler {
                 None => run.advance(end)?,
-                Some(sampler) => run.watch(end, |dynamics, step| sampler.observe(dynamics, step))?,
+                Some(sampler) => {
+                    run.watch(end, |dynamics, step| sampler.observe(dynamics, step))?
+                }
             }
             match self.arrive()? {
                 Ok(record) => return Ok(record),

@@ -4,7 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use sweep::dataset::{Existing, Options, generate};
-use sweep::{Plan, simulate_case};
+use sweep::{Plan, simulate_cases};
 
 const SWEEP: &str = "
 name: bench
@@ -32,7 +32,7 @@ fn dataset(c: &mut Criterion) {
                 threads: 1,
                 cancel: &AtomicBool::new(false),
             };
-            generate(&plan, folder.path(), &options, &simulate_case, &mut ()).is_ok()
+            generate(&plan, folder.path(), &options, &simulate_cases, &mut ()).is_ok()
         });
     });
 }

@@ -17,4 +17,4 @@ pub use calibration::{Calibration, Sweep};
 pub use dataset::{Existing, Options, Progress, Recording, Runner, finalize, generate, run_shards};
 pub use error::Error;
 pub use plan::{Case, Diagram, DiagramEstimate, Estimate, Plan};
-pub use runner::simulate_case;
+pub use runner::simulate_cases;

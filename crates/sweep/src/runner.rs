@@ -1,16 +1,30 @@
-//! From a case to its recording: the one place where sweeps meet the simulator.
+//! From cases to their recordings: the one place where sweeps meet the simulator.
 
 use crate::Case;
 use crate::dataset::{Failure, Recording};
-use simulate::{machine_motion, measure, simulate};
+use simulate::{Asked, Record, machine_motion, measure, simulate_together};
 
-/// Simulates `case` and measures it with its sensors and its noise.
+/// Simulates cases side by side and measures each with its sensors and its noise.
 ///
-/// # Errors
-/// Where the integration fails; the message has the time.
-pub fn simulate_case(case: &Case) -> Result<Recording, Failure> {
+/// A failure is that of an integration; its message has the time.
+pub fn simulate_cases(cases: &[Case]) -> Vec<Result<Recording, Failure>> {
+    let asked: Vec<Asked> = cases
+        .iter()
+        .map(|case| Asked {
+            machine: &case.resolved.machine,
+            sensors: &case.resolved.sensors,
+            settings: &case.settings,
+        })
+        .collect();
+    let records = simulate_together(&asked);
+    let cases = cases.iter().zip(records);
+    cases
+        .map(|(case, record)| recording(case, &record?))
+        .collect()
+}
+
+fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
     let resolved = &case.resolved;
-    let record = simulate(&resolved.machine, &resolved.sensors, &case.settings, false)?;
     let throws = resolved.machine.throws.iter();
     let names: Vec<&str> = throws.map(|throw| throw.name.as_str()).collect();
     let motion = match &case.judgement {
@@ -20,6 +34,6 @@ pub fn simulate_case(case: &Case) -> Result<Recording, Failure> {
     Ok(Recording {
         motion,
         sample_rate_hz: record.sample_rate,
-        channels: measure(&record, &resolved.sensors, &names, &mut case.noise()),
+        channels: measure(record, &resolved.sensors, &names, &mut case.noise()),
     })
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering::SeqCst};
-use sweep::{Error, Existing, Options, Plan, Progress, generate, simulate_case};
+use sweep::{Error, Existing, Options, Plan, Progress, generate, simulate_cases};
 
 const SWEEP: &str = "
 name: diagrams
@@ -60,7 +60,7 @@ fn run(plan: &Plan, root: &Path, threads: usize, stop_after: u64) -> Result<(), 
         cancel: &cancel,
     };
     let mut progress = StopAfter(stop_after, &cancel);
-    generate(plan, root, &options, &simulate_case, &mut progress).map(|_| ())
+    generate(plan, root, &options, &simulate_cases, &mut progress).map(|_| ())
 }
 
 /// Every file below `root`, by path.

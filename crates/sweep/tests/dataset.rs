@@ -74,6 +74,14 @@ fn record(case: &Case) -> Result<Recording, Failure> {
     })
 }
 
+/// A runner that takes cases one by one.
+fn each<F>(of_case: F) -> impl Fn(&[Case]) -> Vec<Result<Recording, Failure>> + Sync
+where
+    F: Fn(&Case) -> Result<Recording, Failure> + Sync,
+{
+    move |cases| cases.iter().map(&of_case).collect()
+}
+
 fn options(existing: Existing, threads: usize, cancel: &AtomicBool) -> Options<'_> {
     Options {
         existing,
@@ -88,7 +96,7 @@ fn run(plan: &Plan, root: &Path, existing: Existing, threads: usize) -> Result<M
         plan,
         root,
         &options(existing, threads, &cancel),
-        &record,
+        &each(record),
         &mut (),
     )
 }
@@ -167,7 +175,7 @@ struct StopAfter<'a>(u64, &'a AtomicBool);
 
 impl Progress for StopAfter<'_> {
     fn case_done(&mut self, _: u64, _: bool) {
-        self.0 -= 1;
+        self.0 = self.0.saturating_sub(1);
         self.1.store(self.0 == 0, SeqCst);
     }
 }
@@ -185,7 +193,7 @@ fn an_interrupted_sweep_goes_on_and_gives_the_same_bytes() {
         &plan,
         &broken,
         &refuse,
-        &record,
+        &each(record),
         &mut StopAfter(16, &cancel),
     );
     let Err(error @ Error::Cancelled { done: 2, shards: 5 }) = stopped else {
@@ -226,8 +234,8 @@ fn a_complete_dataset_is_not_simulated_again() {
     };
     let cancel = AtomicBool::new(false);
     let resume = options(Existing::Resume, 2, &cancel);
-    generate(&plan, &root, &resume, &counted, &mut ()).unwrap();
-    assert_eq!(runs.into_inner(), 0);
+    generate(&plan, &root, &resume, &each(counted), &mut ()).unwrap();
+    assert_eq!(runs.load(SeqCst), 0);
     assert_eq!(files(&root), before);
 }
 
@@ -304,7 +312,7 @@ fn a_failed_case_is_recorded_and_the_others_go_on() {
     };
     let cancel = AtomicBool::new(false);
     let refuse = options(Existing::Refuse, 2, &cancel);
-    let manifest = generate(&plan(SWEEP), &root, &refuse, &flawed, &mut ()).unwrap();
+    let manifest = generate(&plan(SWEEP), &root, &refuse, &each(flawed), &mut ()).unwrap();
     let failed: Vec<&str> = manifest.failed.iter().map(|f| f.case_id.as_str()).collect();
     assert_eq!(
         failed,

@@ -4,7 +4,7 @@ use input::yaml::Document;
 use recordings::formats::parquet::read_table;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use sweep::{Existing, Options, Plan, generate, simulate_case};
+use sweep::{Existing, Options, Plan, generate, simulate_cases};
 
 const SWEEP: &str = "
 name: exponents
@@ -30,7 +30,7 @@ fn a_sweep_that_asks_for_exponents_has_them() {
         threads: 2,
         cancel: &AtomicBool::new(false),
     };
-    generate(&plan, folder.path(), &options, &simulate_case, &mut ()).unwrap();
+    generate(&plan, folder.path(), &options, &simulate_cases, &mut ()).unwrap();
     for name in ["signals", "features"] {
         let path = folder
             .path()

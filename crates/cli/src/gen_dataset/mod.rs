@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_diagram};
 use sweep::sweep_file::Format;
-use sweep::{Plan, Sweep, simulate_case};
+use sweep::{Plan, Sweep, simulate_cases};
 
 /// Cases that `--dry-run` simulates to measure the time.
 const SAMPLE_CASES: u64 = 3;
@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let plan = arguments.with_format(plan);
     let mut bar = Bar::default();
-    let manifest = generate_in(claim, &plan, &options, &simulate_case, &mut bar)
+    let manifest = generate_in(claim, &plan, &options, &simulate_cases, &mut bar)
         .map_err(|error| failure(arguments, error))?;
     bar.finish();
     summarise(&manifest, &out, started.elapsed().as_secs_f64());
@@ -283,10 +283,11 @@ fn dry_run(plan: &Plan) -> Result<(), Failure> {
         estimate.bytes / 1e6
     );
     let sample = estimate.cases.min(SAMPLE_CASES);
+    let cases = (0..sample).map(|i| plan.case(i * (estimate.cases / sample)));
+    let cases = cases.collect::<Result<Vec<_>, _>>()?;
     let started = Instant::now();
-    for i in 0..sample {
-        let case = plan.case(i * (estimate.cases / sample))?;
-        simulate_case(&case).map_err(|e| Failure::work(format!("{}: {e}", case.id)))?;
+    for (case, recording) in cases.iter().zip(simulate_cases(&cases)) {
+        recording.map_err(|e| Failure::work(format!("{}: {e}", case.id)))?;
     }
     let each = started.elapsed().as_secs_f64() / sample as f64;
     println!(

@@ -1,4 +1,4 @@
-//! A case becomes rows: it is run, cut into windows and summed up, all on one thread.
+//! Cases become rows: they are run, cut into windows and summed up, all on one thread.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -32,26 +32,46 @@ pub(super) enum Signals {
     Mcap(Vec<u8>),
 }
 
-/// Runs case `index` of `plan`. `sweep_yaml` goes into MCAP files.
-pub(super) fn run_case(
+/// Runs these cases of `plan`. `sweep_yaml` goes into MCAP files.
+pub(super) fn run_cases(
     plan: &Plan,
-    index: u64,
+    cases: Range<u64>,
     runner: &Runner,
     sweep_yaml: &str,
-) -> Result<CaseRows, FailedCase> {
-    rows(plan, index, runner, sweep_yaml).map_err(|failure| {
-        let case_id = plan.case_id(index);
-        FailedCase {
-            reason: failure.to_string(),
-            command: format!("crosshead simulate sweep.yaml --case {case_id}"),
-            case_id,
-        }
-    })
+) -> Vec<Result<CaseRows, FailedCase>> {
+    let planned: Vec<Result<Case, Failure>> = cases
+        .clone()
+        .map(|index| plan.case(index).map_err(Failure::from))
+        .collect();
+    let whole: Vec<Case> = planned.iter().flatten().cloned().collect();
+    let mut recordings = runner(&whole).into_iter();
+    let rows = planned.into_iter().map(|case| {
+        let case = case?;
+        let missing = || Err("the case was not simulated".into());
+        let recording = recordings.next().unwrap_or_else(missing)?;
+        rows(plan, case, recording, sweep_yaml)
+    });
+    cases
+        .zip(rows)
+        .map(|(index, rows)| rows.map_err(|failure| failed(plan, index, &failure)))
+        .collect()
 }
 
-fn rows(plan: &Plan, index: u64, runner: &Runner, sweep_yaml: &str) -> Result<CaseRows, Failure> {
-    let mut case = plan.case(index)?;
-    let mut recording = runner(&case)?;
+fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
+    let case_id = plan.case_id(index);
+    FailedCase {
+        reason: failure.to_string(),
+        command: format!("crosshead simulate sweep.yaml --case {case_id}"),
+        case_id,
+    }
+}
+
+fn rows(
+    plan: &Plan,
+    mut case: Case,
+    mut recording: Recording,
+    sweep_yaml: &str,
+) -> Result<CaseRows, Failure> {
     case.motion = recording.motion.take();
     check_channels(plan, &recording)?;
     let rate = recording.sample_rate_hz;

@@ -16,6 +16,7 @@ pub use finalize::finalize;
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use tables::{Tables, feature_column};
 
+use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -26,7 +27,7 @@ use simulate::Motion;
 use crate::in_order::in_order;
 use crate::plan::MOST_CASES;
 use crate::{Case, Error, Plan};
-use case_rows::run_case;
+use case_rows::run_cases;
 use shard::ShardWriter;
 
 /// What a simulated case gives: the channels of the machine's sensors, in their order.
@@ -43,8 +44,13 @@ pub struct Recording {
 /// Why a case failed; its text goes into the manifest.
 pub type Failure = Box<dyn std::error::Error + Send + Sync>;
 
-/// Simulates a case. Called on several threads at once; the result must depend on the case alone.
-pub type Runner<'a> = dyn Fn(&Case) -> Result<Recording, Failure> + Sync + 'a;
+/// Simulates cases, one result for each. Called on several threads at once; a result must depend on
+/// its case alone.
+pub type Runner<'a> = dyn Fn(&[Case]) -> Vec<Result<Recording, Failure>> + Sync + 'a;
+
+/// Most cases that are simulated together: enough to keep lanes busy, and few enough not to be waited
+/// for where a sweep is stopped.
+const TOGETHER: u64 = 32;
 
 /// Is told how a sweep gets on. Called on the thread that writes.
 pub trait Progress {
@@ -141,25 +147,29 @@ pub fn run_shards(
     };
     let mut done = plan.shards() - pending.len() as u64;
     let mut writer: Option<ShardWriter> = None;
+    let together = plan.together(options.threads);
     let cases = pending
         .iter()
-        .flat_map(|&shard| plan.shard(shard).map(move |case| (shard, case)));
+        .flat_map(|&shard| pieces(plan.shard(shard), together).map(move |cases| (shard, cases)));
     in_order(
         &pool(options.threads)?,
         2 * options.threads.max(1),
         cases.take_while(|_| !cancelled()),
-        |&(_, case)| run_case(plan, case, runner, &sweep_yaml),
-        |(shard, case), rows| {
+        |(_, cases)| run_cases(plan, cases.clone(), runner, &sweep_yaml),
+        |(shard, cases), rows| {
             if cancelled() {
                 return Err(stopped(done));
             }
-            progress.case_done(case, rows.is_err());
             let mut open = match writer.take() {
                 Some(open) => open,
                 None => ShardWriter::new(output, plan, &tables, shard)?,
             };
-            open.write(rows)?;
-            if case + 1 == plan.shard(shard).end {
+            let end = cases.end;
+            for (case, rows) in cases.zip(rows) {
+                progress.case_done(case, rows.is_err());
+                open.write(rows)?;
+            }
+            if end == plan.shard(shard).end {
                 open.commit()?;
                 done += 1;
             } else {
@@ -175,6 +185,13 @@ pub fn run_shards(
     Ok(())
 }
 
+/// A range in pieces of at most `size`.
+fn pieces(range: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
+    let end = range.end;
+    let starts = range.step_by(size as usize);
+    starts.map(move |start| start..end.min(start + size))
+}
+
 fn pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
     let threads = threads.max(1);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -185,6 +202,16 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
 }
 
 impl Plan {
+    /// How many cases are simulated together, so that no thread of so many is without any for long.
+    /// Judging a motion takes as long as many simulations and gains nothing by it.
+    fn together(&self, threads: usize) -> u64 {
+        if self.judgement.is_some() {
+            return 1;
+        }
+        let share = self.cases().div_ceil(4 * threads.max(1) as u64);
+        share.clamp(1, TOGETHER)
+    }
+
     /// Checks that the sweep is not too large to be run.
     ///
     /// # Errors
