@@ -7,7 +7,7 @@ use crate::journal::Finished;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
-use crate::model::{Effort, Model, SEARCH, Watch};
+use crate::model::{Effort, FIRST_SEARCH, Model, SEARCH, Watch};
 use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
 use crate::screening::screen;
@@ -243,7 +243,11 @@ impl Search<'_> {
             start,
         };
         let metered = problem.metered();
-        let watch = |_: &_| match metered.meter.steps() < SEARCH {
+        let most = match settings.start {
+            None => FIRST_SEARCH,
+            Some(_) => SEARCH,
+        };
+        let watch = |_: &_| match metered.meter.steps() < most {
             true => (self.watch)(),
             false => ControlFlow::Break(()),
         };

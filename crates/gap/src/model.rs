@@ -15,9 +15,11 @@ const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
 /// The same for pressures alone, whose descents have no minima on the way.
 const FULL_OF_GAS: f64 = 1e-3;
-/// What an explanation may cost before nothing new is begun, and a single search, in steps of the
-/// integrator. A step of two joints takes some 20 µs.
+/// What an explanation may cost before nothing new is begun, in steps of the integrator for each
+/// throw: a step of two joints takes some 20 µs. Then what a search from the nominal machine may cost,
+/// and one that goes on from another.
 const BUDGET: u64 = 24_000_000;
+pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
 pub(crate) const SEARCH: u64 = BUDGET / 4;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;

@@ -1,8 +1,9 @@
-//! One case: ten revolutions thrown away, twenty recorded at 10 kHz by four sensors.
+//! One case: ten revolutions thrown away, twenty recorded at 10 kHz by four sensors; and sixteen of
+//! them, one by one and side by side.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use input::{MachineFile, Resolved};
-use simulate::{Settings, simulate};
+use simulate::{Asked, Settings, simulate, simulate_together};
 
 /// The shipped machine with the same clearance at both ends.
 fn machine(clearance: &str) -> Option<Resolved> {
@@ -40,9 +41,40 @@ fn case(c: &mut Criterion) {
     group.finish();
 }
 
+/// As many as fill the lanes twice, with clearances of their own.
+fn sixteen(c: &mut Criterion) {
+    let machines: Vec<Resolved> = (0..16)
+        .filter_map(|i| machine(&format!("{} mm", 0.1 + 0.02 * f64::from(i))))
+        .collect();
+    let settings = Settings {
+        tolerance: 1e-7,
+        ..Settings::default()
+    };
+    let asked: Vec<Asked> = machines
+        .iter()
+        .map(|resolved| Asked {
+            machine: &resolved.machine,
+            sensors: &resolved.sensors,
+            settings: &settings,
+        })
+        .collect();
+    let mut group = c.benchmark_group("sixteen cases");
+    group.bench_function("one by one", |b| {
+        b.iter(|| {
+            let one = |asked: &Asked| {
+                let record = simulate(asked.machine, asked.sensors, asked.settings, false);
+                record.map_or(0, |record| record.series.len())
+            };
+            asked.iter().map(one).sum::<usize>()
+        });
+    });
+    group.bench_function("together", |b| b.iter(|| simulate_together(&asked).len()));
+    group.finish();
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(10).without_plots();
-    targets = case
+    targets = case, sixteen
 }
 criterion_main!(benches);

@@ -100,12 +100,13 @@ impl<S: Real> Run<S> {
         self.revolution
     }
 
-    /// Steps tried so far; one of dual numbers counts for what it takes.
+    /// Steps tried so far, for each throw; one of dual numbers counts for what it takes.
     pub(crate) fn steps(&self) -> u64 {
         let work = self.integrator.work();
+        let throws = self.dynamics.machine().throws.len() as u64;
         // A value, and for each tangent about seven tenths of what it takes.
         let tangents = (size_of::<S>() / size_of::<f64>() - 1) as u64;
-        (work.accepted + work.rejected) * (10 + 7 * tangents) / 10
+        throws * (work.accepted + work.rejected) * (10 + 7 * tangents) / 10
     }
 
     /// What the integration took so far.
