@@ -5,6 +5,7 @@ absolute tolerance of every component.
 """
 
 import math
+import os
 import sys
 import time
 from pathlib import Path
@@ -22,15 +23,15 @@ HEAD, AREA = 0.024, math.pi * 0.050**2
 DEPTH, FRICTION, SLIP = 1e-5, 0.05, 0.01
 RADIUS_BIG, RADIUS_SMALL = 0.050, 0.035
 STIFFNESS_BIG, STIFFNESS_SMALL = 2.4e10, 2.0e10
-CLEARANCE, DAMPING = 3e-4, 2e4  # those of the timed machine; a sweep varies them
-TIMED = np.array([CLEARANCE, DAMPING])
+CLEARANCE = 3e-4  # of the timed machine; the sweep varies it
+DAMPING = 2e4
 RATE = 1e3
 FILLED = (DISCHARGE / SUCTION) ** (-1.0 / EXPONENT) * (2.0 * R + HEAD)
 EMPTIED = (DISCHARGE / SUCTION) ** (1.0 / EXPONENT) * HEAD
 
 
 @njit(inline="always")
-def contact(ex, ey, dx, dy, clearance, damping, radius, stiffness, omega_journal, omega_bearing):
+def contact(ex, ey, dx, dy, clearance, radius, stiffness, omega_journal, omega_bearing):
     """Force on the journal and the normal, each x and y."""
     r2 = ex * ex + ey * ey
     if r2 <= clearance * clearance:
@@ -40,7 +41,7 @@ def contact(ex, ey, dx, dy, clearance, damping, radius, stiffness, omega_journal
     approach = nx * dx + ny * dy
     slip = nx * dy - ny * dx + omega_journal * radius - omega_bearing * (radius + r)
     s = min(delta / DEPTH, 1.0)
-    push = stiffness * delta * math.sqrt(delta) + damping * s * s * (3.0 - 2.0 * s) * approach
+    push = stiffness * delta * math.sqrt(delta) + DAMPING * s * s * (3.0 - 2.0 * s) * approach
     if push <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     drag = FRICTION * push * slip / math.sqrt(slip * slip + SLIP * SLIP)
@@ -63,7 +64,7 @@ def pressure(distance, toward):
 
 
 @njit(inline="always", error_model="numpy")
-def derivative(t, y, dy, half, clearance, damping):
+def derivative(t, y, dy, half, clearance):
     """Writes the derivative in half revolution `half` (negative: that of the time) into `dy`, and
     gives the crosshead's acceleration back."""
     angle = SPEED * t
@@ -79,10 +80,10 @@ def derivative(t, y, dy, half, clearance, damping):
     turn = -(SPEED * pin_x - dby + dsy) / (L * along)
     crosshead = eye_x + L * along + sx
 
-    fbx, fby, nbx, nby = contact(bx, by, dbx, dby, clearance, damping, RADIUS_BIG, STIFFNESS_BIG,
-                                 SPEED, turn)
-    fsx, fsy, nsx, nsy = contact(sx, sy, dsx, dsy, clearance, damping, RADIUS_SMALL,
-                                 STIFFNESS_SMALL, 0.0, turn)
+    fbx, fby, nbx, nby = contact(bx, by, dbx, dby, clearance, RADIUS_BIG, STIFFNESS_BIG, SPEED,
+                                 turn)
+    fsx, fsy, nsx, nsy = contact(sx, sy, dsx, dsy, clearance, RADIUS_SMALL, STIFFNESS_SMALL, 0.0,
+                                 turn)
     # Points of contact, from the rod's centre of mass.
     qbx = -CENTRE * along + bx + RADIUS_BIG * nbx
     qby = -CENTRE * up + by + RADIUS_BIG * nby
@@ -105,12 +106,12 @@ def derivative(t, y, dy, half, clearance, damping):
 
 
 @njit
-def accelerations(first, states, half, parameters, out):
+def accelerations(first, states, half, clearance, out):
     """The crosshead's acceleration of consecutive samples, the first of which has number `first`."""
     rates = np.empty(8)
     for i in range(len(states)):
         t = (first + i) * REVOLUTION / SAMPLES
-        out[i] = derivative(t, states[i], rates, half, parameters[0], parameters[1])
+        out[i] = derivative(t, states[i], rates, half, clearance)
 
 
 def times(first, count):
@@ -118,15 +119,20 @@ def times(first, count):
     return np.arange(first, first + count) * (REVOLUTION / SAMPLES)
 
 
-def main(run):
-    """Runs a program: METHOD TOLERANCE REVOLUTIONS FILE. `run(method, tolerance, revolutions,
-    parameters)` gives the samples."""
-    method, tolerance, revolutions, path = sys.argv[1:]
-    run(method, 1e-3, 1, TIMED)  # compiles
-    start, runs, spent = time.process_time(), 0, 0.0
-    while spent < 0.2:
-        samples = run(method, float(tolerance), int(revolutions), TIMED)
-        spent = time.process_time() - start
-        runs += 1
-    Path(path).write_bytes(samples.astype("<f8").tobytes())
-    print(f"{1e3 * spent / runs / int(revolutions):.6f}")
+def serve(run):
+    """Answers lines of METHOD TOLERANCE REVOLUTIONS FILE: writes the samples, prints CPU
+    milliseconds a revolution. `run(method, tolerance, revolutions, clearance)` gives the samples.
+    One process for many lines, so that compiling counts nowhere."""
+    # Compiled integrators write messages to standard output: answers go another way.
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    for line in sys.stdin:
+        method, tolerance, revolutions, path = line.split()
+        run(method, 1e-3, 1, CLEARANCE)
+        start, runs, spent = time.process_time(), 0, 0.0
+        while spent < 0.2:
+            samples = run(method, float(tolerance), int(revolutions), CLEARANCE)
+            spent = time.process_time() - start
+            runs += 1
+        Path(path).write_bytes(samples.astype("<f8").tobytes())
+        print(f"{1e3 * spent / runs / int(revolutions):.6f}", file=answers, flush=True)
