@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-import os
 import select
 import subprocess
 from pathlib import Path
@@ -76,7 +75,7 @@ def programs(installed, quick):
     here = Path(__file__).resolve().parent / "integrators"
     step = 1 if quick else 2
     usual = tolerances(-3, -12, step)
-    steps = [f"{1e-4 / 2**i:.6g}" for i in range(0, 4 if quick else 6)]
+    steps = [f"{1e-4 / 2**i:.6g}" for i in range(3 if quick else 6)]
     python = [*installed.get("python", []), "-u"]
     known = [
         Program("cvode_bdf", installed.get("cvode"), ["bdf", "bdf-events"], tolerances(-3, -13, step),
@@ -101,12 +100,13 @@ def programs(installed, quick):
         Program("scipy_dop853", installed.get("scipy"), ["DOP853-restart"],
                 tolerances(-3, -8, 1), "SciPy solve_ivp DOP853; numba", served=True),
         Program("mujoco", installed.get("mujoco"), ["rk4"], steps,
-                "MuJoCo bodies and joints, RK4, contact and gas as a C callback"),
+                "MuJoCo bodies and joints, RK4 of fixed step; contact and gas in a C callback"),
+        Program("mujoco_python", installed.get("mujoco") and [here / "with_mujoco.py"], ["rk4"],
+                steps, "the same from Python; callback in numba", served=True),
         Program("exudyn", installed.get("exudyn"), ["RK44", "RK67"], steps,
-                "Exudyn, fixed step, whole machine as a numba callback", served=True),
+                "Exudyn, explicit solvers of fixed step; forces in a numba callback", served=True),
     ]
     for program in known:
         if program.command and program.served:
             program.command = [*python, *program.command]
-    os.environ.setdefault("PYTHONPATH", str(here))
     return [program for program in known if program.command]
