@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 WORK = TARGET / "peers"
-VENV = TARGET / "peers-venv"
+VENV = WORK / "venv"
 PYTHON = VENV / "bin" / "python"
 INTEGRATORS = HERE / "integrators"
 OPTIMISED = ["-O3", "-march=native"]
@@ -40,9 +40,10 @@ def pip(*packages):
     """Installs packages into the virtual environment, if they are not there."""
     if not PYTHON.exists():
         call(sys.executable, "-m", "venv", VENV, reason="no virtual environment")
-    names = [package.partition("==")[0] for package in packages]
-    if subprocess.run([PYTHON, "-m", "pip", "show", "--quiet", *names], capture_output=True).returncode:
-        call(PYTHON, "-m", "pip", "install", "--quiet", *packages, reason="pip")
+    shown = subprocess.run([PYTHON, "-m", "pip", "show", "--quiet", *packages], capture_output=True)
+    if shown.returncode:
+        call(PYTHON, "-m", "pip", "install", "--quiet", "--constraint",
+             INTEGRATORS / "requirements.txt", *packages, reason="pip")
 
 
 def site_packages():
@@ -50,18 +51,24 @@ def site_packages():
                      reason="no site-packages").strip())
 
 
+def debian(name, header, *packages):
+    """Folder like /usr with a library: the system's where it has the header, else one into which
+    Debian's packages are unpacked."""
+    root = WORK / name
+    if not (root / "usr/include" / header).exists():
+        if (Path("/usr/include") / header).exists():
+            return Path("/usr")
+        root.mkdir(parents=True, exist_ok=True)
+        call("apt-get", "download", *packages, cwd=root, reason=name)
+        for package in root.glob("*.deb"):
+            call("dpkg", "-x", package, root, reason=name)
+    return root / "usr"
+
+
 def sundials():
-    """Compiler flags and static libraries of SUNDIALS: the system's, or Debian's packages unpacked."""
-    root = WORK / "sundials"
-    include, library = root / "usr/include", root / "usr/lib"
-    if not any(library.rglob("libsundials_cvode.a")):
-        if Path("/usr/include/cvode/cvode.h").exists():
-            include, library = Path("/usr/include"), Path("/usr/lib")
-        else:
-            root.mkdir(parents=True, exist_ok=True)
-            call("apt-get", "download", "libsundials-dev", cwd=root, reason="SUNDIALS")
-            for package in root.glob("libsundials-dev*.deb"):
-                call("dpkg", "-x", package, root, reason="SUNDIALS")
+    """Compiler flags and static libraries of SUNDIALS."""
+    root = debian("sundials", "cvode/cvode.h", "libsundials-dev")
+    include, library = root / "include", root / "lib"
     parts = ["cvode", "nvecserial", "sunlinsoldense", "sunmatrixdense", "sunnonlinsolnewton", "generic"]
     found = [next(library.rglob(f"libsundials_{part}.a"), None) for part in parts]
     if None in found:
@@ -109,7 +116,7 @@ def numbalsoda():
         wheels = WORK / "wheels"
         call(PYTHON, "-m", "pip", "download", "--quiet", "--no-deps", "--only-binary=:all:",
              "--python-version", "3.10", "--platform", "manylinux2010_x86_64", "--dest", wheels,
-             "numbalsoda", reason="numbalsoda")
+             "numbalsoda==0.3.4", reason="numbalsoda")
         wheel = next(wheels.glob("numbalsoda*.whl"))
         call(PYTHON, "-m", "zipfile", "-e", wheel, site_packages(), reason="numbalsoda")
     return [INTEGRATORS / "with_numbalsoda.py"]
@@ -118,6 +125,20 @@ def numbalsoda():
 def scipy():
     pip("numpy", "numba", "scipy", "pyarrow")
     return [INTEGRATORS / "with_scipy.py"]
+
+
+def simbody():
+    root = debian("simbody", "simbody/Simbody.h", "libsimbody3.7", "libsimbody-dev", "liblapack3",
+                  "libblas3", "libgfortran5", "libquadmath0")
+    program, libraries = WORK / "with_simbody", root / "lib" / "x86_64-linux-gnu"
+    paths = [libraries, libraries / "lapack", libraries / "blas"]
+    # The old kind of path in the program also serves what its libraries need.
+    link = ["-Wl,--disable-new-dtags", *[f"-Wl,-rpath,{path}" for path in paths],
+            "-Wl,--allow-shlib-undefined"]
+    call("g++", *OPTIMISED, "-w", f"-I{root / 'include' / 'simbody'}",
+         INTEGRATORS / "with_simbody.cpp", f"-L{libraries}", "-lSimTKsimbody", "-lSimTKmath",
+         "-lSimTKcommon", *link, "-o", program, reason="simbody")
+    return [program]
 
 
 def mujoco():
@@ -143,6 +164,7 @@ SOURCES = {
     "diffsol": diffsol,
     "numbalsoda": numbalsoda,
     "scipy": scipy,
+    "simbody": simbody,
     "mujoco": mujoco,
     "exudyn": exudyn,
 }

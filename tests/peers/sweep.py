@@ -9,8 +9,10 @@ import install
 
 CASES = 200
 TOLERANCE = "1e-7"
-# Cases that the slow ones run; theirs take all the same time, so the rest is a matter of counting.
+# Cases that the slow ones run, spread over the same range: the seconds of one case stay the same.
 FEW = {"scipy": 10, "scipy_odeint": 40}
+# With --quick a quarter of all.
+QUICK = 4
 
 SWEEP = """\
 name: peers
@@ -27,7 +29,7 @@ cases:
 """
 
 
-def files():
+def files(cases):
     """Writes the sweep and the shipped machine with the crosshead's acceleration as its only
     sensor, without noise and without the frame, which the peers do not compute either."""
     folder = install.WORK / "sweep"
@@ -36,11 +38,11 @@ def files():
     bodies = machine[:machine.index("\nframe:")]
     (folder / "machine.yaml").write_text(
         bodies + "\nsensors:\n  - measure: crosshead_acceleration\n\neffects: []\n")
-    (folder / "sweep.yaml").write_text(SWEEP.format(tolerance=TOLERANCE, cases=CASES))
+    (folder / "sweep.yaml").write_text(SWEEP.format(tolerance=TOLERANCE, cases=cases))
     return folder
 
 
-def crosshead(command, folder):
+def crosshead(command, cases, folder):
     """CPU seconds a case of the whole process, one thread."""
     out = folder / "crosshead"
     shutil.rmtree(out, ignore_errors=True)
@@ -49,7 +51,7 @@ def crosshead(command, folder):
                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=1800)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return spent / CASES, CASES
+    return spent / cases, cases
 
 
 def peer(script, methods, cases, folder):
@@ -62,15 +64,15 @@ def peer(script, methods, cases, folder):
 
 def sweeps(installed, quick, say):
     """By name: CPU seconds a case and the cases that were run."""
-    folder = files()
-    share = 4 if quick else 1
+    share = QUICK if quick else 1
+    folder = files(CASES // share)
     found = {}
     ours = os.environ.get("GEN_DATASET") or installed.get("gen-dataset", [None])[0]
     if ours is None:
         say("left out: the sweep by crosshead (cargo build --release --bin gen-dataset first)")
     else:
         say("sweep by crosshead")
-        found["crosshead"] = crosshead([ours], folder)
+        found["crosshead"] = crosshead([ours], CASES // share, folder)
     peers = [("numbalsoda", "with_numbalsoda", ["dop853-restart", "lsoda-restart"]),
              ("scipy", "with_scipy", ["LSODA-restart"]),
              ("scipy_odeint", "with_scipy", ["odeint-restart"])]
