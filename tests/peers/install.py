@@ -69,7 +69,8 @@ def sundials():
     """Compiler flags and static libraries of SUNDIALS."""
     root = debian("sundials", "cvode/cvode.h", "libsundials-dev")
     include, library = root / "include", root / "lib"
-    parts = ["cvode", "nvecserial", "sunlinsoldense", "sunmatrixdense", "sunnonlinsolnewton", "generic"]
+    parts = ["cvode", "nvecserial", "sunlinsoldense", "sunmatrixdense", "sunnonlinsolnewton",
+             "generic"]
     found = [next(library.rglob(f"libsundials_{part}.a"), None) for part in parts]
     if None in found:
         raise Missing("SUNDIALS has no static libraries here")

@@ -78,8 +78,8 @@ def programs(installed, quick):
     steps = [f"{1e-4 / 2**i:.6g}" for i in range(3 if quick else 6)]
     python = [*installed.get("python", []), "-u"]
     known = [
-        Program("cvode_bdf", installed.get("cvode"), ["bdf", "bdf-events"], tolerances(-3, -13, step),
-                "SUNDIALS CVODE, BDF; C"),
+        Program("cvode_bdf", installed.get("cvode"), ["bdf", "bdf-events"],
+                tolerances(-3, -13, step), "SUNDIALS CVODE, BDF; C"),
         Program("cvode_adams", installed.get("cvode"), ["adams", "adams-events"], usual,
                 "SUNDIALS CVODE, Adams; C"),
         Program("crosshead", installed.get("crosshead"), ["0"], tolerances(-2, -11, step),

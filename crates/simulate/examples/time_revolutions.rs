@@ -81,7 +81,9 @@ fn machine() -> Result<Resolved, Box<dyn Error>> {
         env!("CARGO_MANIFEST_DIR"),
         "/../../data/machines/single-stage.yaml"
     );
-    let mut tree = input::machine_file::read(Path::new(path))?.to_tree().clone();
+    let mut tree = input::machine_file::read(Path::new(path))?
+        .to_tree()
+        .clone();
     for joint in ["big_end", "small_end"] {
         let path = format!("joints.{joint}.clearance");
         input::paths::set(&mut tree, &path, CLEARANCE.into())?;
