@@ -1,8 +1,8 @@
 //! diffsol on the machine: `with-diffsol METHOD TOLERANCE REVOLUTIONS FILE`.
 //!
 //! METHOD is tsit45, bdf, esdirk34 or tr_bdf2. Products with the Jacobian by dual numbers; output by
-//! the solver's interpolation; nalgebra's vectors and dense matrices. Events are not located: with
-//! diffsol's root finding and a fresh solver after each of them no error became smaller.
+//! the solver's interpolation; nalgebra's vectors and dense matrices. Events are not
+//! located (tests/peers/README.md).
 
 mod dual;
 mod machine;
