@@ -114,10 +114,10 @@ fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
 
 /// CPU time of one run of `work`, ms, and what it found. The first run warms the caches up.
 fn measure<T>(work: impl Fn() -> Result<T, Box<dyn Error>>) -> Result<(f64, T), Box<dyn Error>> {
-    let mut found = work()?;
+    work()?;
     let start = thread_time()?;
     for runs in 1.. {
-        found = work()?;
+        let found = work()?;
         let passed = thread_time()? - start;
         if passed > MEASURED {
             return Ok((1e3 * passed / f64::from(runs), found));
