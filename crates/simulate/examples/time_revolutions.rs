@@ -8,12 +8,13 @@
 //!
 //! The line printed is the CPU time of one revolution (ms) without reading the machine. The file
 //! holds the crosshead's acceleration at 10 kHz from the centred start, as plain samples without a
-//! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself;
-//! other widths are those of the ensemble.
+//! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself,
+//! `--width 8` eight of them side by side; the time is then that of one.
 
 use input::{MachineFile, Resolved};
-use integrate::Integrator;
-use mechanism::Machine;
+use integrate::{Ensemble, Integrator, Step, Traveller};
+use mechanism::joints::revolute::Revolute;
+use mechanism::{Dynamics, Machine, SideBySide};
 use simulate::Flow;
 use std::error::Error;
 use std::io::Write;
@@ -23,6 +24,8 @@ use std::path::{Path, PathBuf};
 const RATE: f64 = 10_000.0;
 /// Radial clearance of both joints.
 const CLEARANCE: &str = "0.3 mm";
+/// Machines side by side.
+const LANES: usize = 8;
 /// Longest step, as a share of a revolution: that of `simulate`.
 const LONGEST_STEP: f64 = 0.05;
 /// CPU time for which the run is repeated, s.
@@ -41,19 +44,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     let machine = machine()?.machine;
     let run = match task.width {
         0 => alone,
-        width => return Err(format!("width {width} is not built yet").into()),
+        LANES => together,
+        width => return Err(format!("there are {LANES} lanes, or 0; not {width}").into()),
     };
     let (milliseconds, samples) = measure(|| run(&machine, &task))?;
     if let Some(path) = &task.out {
         let bytes: Vec<u8> = samples.iter().flat_map(|x| x.to_le_bytes()).collect();
         std::fs::write(path, bytes)?;
     }
-    let each = milliseconds / f64::from(task.revolutions);
+    let each = milliseconds / f64::from(task.revolutions) / task.width.max(1) as f64;
     writeln!(std::io::stdout(), "{each:.6}")?;
     Ok(())
 }
 
 impl Task {
+    /// Where the run ends, s.
+    fn end(&self, machine: &Machine) -> f64 {
+        f64::from(self.revolutions) * machine.cycle().length()
+    }
+
     fn read(mut words: impl Iterator<Item = String>) -> Result<Self, Box<dyn Error>> {
         let mut task = Self {
             tolerance: 1e-6,
@@ -91,25 +100,113 @@ fn machine() -> Result<Resolved, Box<dyn Error>> {
     Ok(MachineFile::from_tree(&tree)?.resolve()?)
 }
 
+/// A machine on its way, and what was seen of it.
+struct Lane {
+    dynamics: Dynamics<f64>,
+    integrator: Integrator<f64>,
+    samples: Samples,
+}
+
+/// Samples under way, up to so many.
+struct Samples {
+    count: usize,
+    state: Vec<f64>,
+    seen: Vec<f64>,
+}
+
+impl Lane {
+    fn start(machine: &Machine, task: &Task) -> Self {
+        let (mut dynamics, state) = machine.start::<f64>();
+        let longest = LONGEST_STEP * machine.cycle().length();
+        let count = (task.end(machine) * RATE).round() as usize;
+        Self {
+            integrator: Integrator::new(&mut dynamics, 0.0, &state, task.tolerance, longest),
+            dynamics,
+            samples: Samples {
+                count,
+                state,
+                seen: Vec::with_capacity(count),
+            },
+        }
+    }
+}
+
+impl Samples {
+    fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
+        let stop = step.start + step.length;
+        while self.seen.len() < self.count && self.seen.len() as f64 / RATE <= stop {
+            let time = self.seen.len() as f64 / RATE;
+            step.interpolate((time - step.start) / step.length, &mut self.state);
+            let throw = &dynamics.evaluate(time, &self.state).throws[0];
+            self.seen.push(throw.accelerations.crosshead);
+        }
+    }
+}
+
 /// One machine by itself, step by step.
 fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
-    let (mut dynamics, mut state) = machine.start::<f64>();
-    let revolution = machine.cycle().length();
-    let longest = LONGEST_STEP * revolution;
-    let mut integrator = Integrator::new(&mut dynamics, 0.0, &state, task.tolerance, longest);
-    let length = f64::from(task.revolutions) * revolution;
-    let count = (length * RATE).round() as usize;
-    let mut samples = Vec::with_capacity(count);
-    integrator.advance(&mut dynamics, length, |dynamics, step| {
-        let stop = step.start + step.length;
-        while samples.len() < count && samples.len() as f64 / RATE <= stop {
-            let time = samples.len() as f64 / RATE;
-            step.interpolate((time - step.start) / step.length, &mut state);
-            let throw = &dynamics.evaluate(time, &state).throws[0];
-            samples.push(throw.accelerations.crosshead);
-        }
+    let Lane {
+        mut dynamics,
+        mut integrator,
+        mut samples,
+    } = Lane::start(machine, task);
+    integrator.advance(&mut dynamics, task.end(machine), |dynamics, step| {
+        samples.observe(dynamics, step);
     })?;
-    Ok(samples)
+    Ok(samples.seen)
+}
+
+/// The machine in the first of several lanes; in the others the same with wider and wider joints.
+fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
+    let mut lanes: [Lane; LANES] = std::array::from_fn(|lane| {
+        let mut machine = machine.clone();
+        let throw = &mut machine.throws[0];
+        for joint in [&mut throw.big_end, &mut throw.small_end] {
+            if let Revolute::Clear(clear) = joint {
+                clear.clearance *= 1.0 + 0.01 * lane as f64;
+            }
+        }
+        Lane::start(&machine, task)
+    });
+    let mut wide = SideBySide::new(lanes.each_ref().map(|lane| &lane.dynamics));
+    let mut ensemble = Ensemble::<LANES>::new(&wide);
+    for (i, lane) in lanes.iter().enumerate() {
+        ensemble.place(i, &lane.integrator);
+    }
+    let end = task.end(machine);
+    let courses = lanes.each_ref().map(|lane| lane.integrator.course(end));
+    loop {
+        let before = lanes.each_ref().map(|lane| lane.integrator.work().switches);
+        let mut trials = [None; LANES];
+        for ((trial, lane), course) in trials.iter_mut().zip(&lanes).zip(&courses) {
+            *trial = lane.integrator.propose(course)?;
+        }
+        if trials.iter().all(Option::is_none) {
+            break;
+        }
+        let mut travellers = trials.iter().zip(&mut lanes).zip(&courses);
+        let travellers = [(); LANES].map(|()| {
+            let ((trial, lane), course) = travellers.next()?;
+            let samples = &mut lane.samples;
+            trial.map(|trial| Traveller {
+                integrator: &mut lane.integrator,
+                system: &mut lane.dynamics,
+                course,
+                trial,
+                observe: Some(|dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
+                    samples.observe(dynamics, step);
+                }),
+            })
+        });
+        for result in ensemble.advance(&mut wide, travellers) {
+            result?;
+        }
+        if lanes.each_ref().map(|lane| lane.integrator.work().switches) != before {
+            wide.set_modes(lanes.each_ref().map(|lane| &lane.dynamics));
+        }
+    }
+    let [first, ..] = lanes;
+    Ok(first.samples.seen)
 }
 
 /// CPU time of one run of `work`, ms, and what it found. The first run warms the caches up.
