@@ -120,15 +120,15 @@ impl<const W: usize> Scalar for Lanes<W> {
     #[inline]
     fn lt(self, other: Self) -> [bool; W] {
         let mut mask = [false; W];
-        for i in 0..W {
-            mask[i] = self.0[i] < other.0[i];
+        for (mask, (a, b)) in mask.iter_mut().zip(self.0.iter().zip(&other.0)) {
+            *mask = a < b;
         }
         mask
     }
     #[inline]
     fn select(mask: [bool; W], yes: Self, mut no: Self) -> Self {
-        for i in 0..W {
-            no.0[i] = if mask[i] { yes.0[i] } else { no.0[i] };
+        for (mask, (no, yes)) in mask.iter().zip(no.0.iter_mut().zip(yes.0)) {
+            *no = if *mask { yes } else { *no };
         }
         no
     }
