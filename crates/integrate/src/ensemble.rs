@@ -7,7 +7,7 @@
 
 use crate::dop853::Step;
 use crate::glance::Glances;
-use crate::integrator::{Course, Error, Integrator, Trial, counted};
+use crate::integrator::{Course, Error, Integrator, Trial};
 use crate::system::System;
 use scalar::{Lanes, Mask, Scalar};
 
@@ -17,6 +17,8 @@ pub struct Ensemble<const W: usize> {
     step: Step<Lanes<W>>,
     glances: Glances<Lanes<W>, Lanes<W>>,
     tolerances: Lanes<W>,
+    /// How many components steer the steps, the same in every lane.
+    counted: usize,
 }
 
 /// What one lane is about.
@@ -41,6 +43,11 @@ impl<const W: usize> Ensemble<W> {
             step: Step::new(system.dimension()),
             glances: Glances::new(system.guard_count()),
             tolerances: Lanes([1.0; W]),
+            counted: system
+                .scales()
+                .iter()
+                .filter(|s| s.0[0].is_finite())
+                .count(),
         }
     }
 
@@ -68,7 +75,6 @@ impl<const W: usize> Ensemble<W> {
         let look = |stage, system: &mut _| self.glances.stage(stage, system);
         self.step.take(wide, lengths, look);
         let squares = self.squared_errors(wide.scales());
-        let counted = counted_of_lanes(wide.scales());
         let quiet = self.glances.quiet().unwrap_or([false; W]);
 
         let (mut kept, mut shown) = ([false; W], [false; W]);
@@ -80,7 +86,7 @@ impl<const W: usize> Ensemble<W> {
             let squares = squares.map(|s| s.0[lane]);
             if traveller
                 .integrator
-                .judge(traveller.trial, squares, counted)
+                .judge(traveller.trial, squares, self.counted)
             {
                 shown[lane] = !quiet[lane] || traveller.observe.is_some();
                 kept[lane] = !shown[lane];
@@ -146,10 +152,4 @@ impl<const W: usize> Ensemble<W> {
             self.tolerances * size
         })
     }
-}
-
-/// How many components steer the steps, the same in every lane.
-fn counted_of_lanes<const W: usize>(scales: &[Lanes<W>]) -> usize {
-    let first: Vec<f64> = scales.iter().map(|s| s.0[0]).collect();
-    counted(&first)
 }

@@ -407,7 +407,7 @@ impl<S: Real> Integrator<S> {
 }
 
 /// How many components steer the step.
-pub(crate) fn counted<S: Real>(scales: &[S]) -> usize {
+fn counted<S: Real>(scales: &[S]) -> usize {
     scales.iter().filter(|s| s.value().is_finite()).count()
 }
 

@@ -51,7 +51,7 @@ impl<'a> Passenger<'a> {
     /// A task up to its next step; its record where there is none.
     fn board(index: usize, mut task: Task<'a>) -> Result<Result<Self, Record>, Error> {
         loop {
-            if let Some(trial) = task.run.integrator().propose(&task.course)? {
+            if let Some(trial) = task.propose()? {
                 return Ok(Ok(Self {
                     index,
                     trial,
@@ -64,6 +64,11 @@ impl<'a> Passenger<'a> {
                 Err(next) => task = next,
             }
         }
+    }
+
+    /// At the end of a course; none where that was the last.
+    fn go_on(self, records: &mut Records) -> Option<Self> {
+        settle(self.index, Self::board(self.index, self.task), records)
     }
 }
 
@@ -181,22 +186,21 @@ impl<'a, const W: usize> Lanes<'a, W> {
         });
         let results = self.ensemble.advance(&mut self.wide, travellers);
         let mut switched = false;
-        for (passenger, result) in self.passengers.iter_mut().zip(results) {
-            let Some(Passenger {
-                index,
-                task,
-                switches,
-                ..
-            }) = passenger.take()
-            else {
+        for (place, result) in self.passengers.iter_mut().zip(results) {
+            let Some(passenger) = place else {
                 continue;
             };
-            switched |= task.run.work().switches != switches;
-            let boarded = match result {
-                Ok(()) => Passenger::board(index, task),
-                Err(error) => Err(error.into()),
-            };
-            *passenger = settle(index, boarded, records);
+            let switches = passenger.task.run.work().switches;
+            switched |= switches != passenger.switches;
+            passenger.switches = switches;
+            match result.and_then(|()| passenger.task.propose()) {
+                Ok(Some(trial)) => passenger.trial = trial,
+                Ok(None) => *place = place.take().and_then(|p| p.go_on(records)),
+                Err(error) => {
+                    records[passenger.index] = Some(Err(error.into()));
+                    *place = None;
+                }
+            }
         }
         if switched && let Some(dynamics) = dynamics(&self.passengers) {
             self.wide.set_modes(dynamics);

@@ -8,7 +8,7 @@ use crate::sampler::Sampler;
 use crate::sensor::Sensor;
 use crate::settings::Settings;
 use crate::trace::Trace;
-use integrate::Course;
+use integrate::{Course, Trial};
 use mechanism::Machine;
 
 /// What is to be recorded.
@@ -30,7 +30,7 @@ pub(crate) struct Task<'a> {
     traced: bool,
     pub run: Run<f64>,
     phase: Phase<'a>,
-    pub course: Course,
+    course: Course,
 }
 
 enum Phase<'a> {
@@ -106,6 +106,11 @@ impl<'a> Task<'a> {
             sampler: Sampler::begin(&mut self.run, sensors, sampling.instants(start), trace),
             sampling,
         })
+    }
+
+    /// The step to try next; none at the end of the course.
+    pub fn propose(&self) -> Result<Option<Trial>, integrate::Error> {
+        self.run.integrator().propose(&self.course)
     }
 
     /// What looks at the steps of the present course, if anything does.
