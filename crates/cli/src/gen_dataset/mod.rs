@@ -14,8 +14,10 @@ use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_dia
 use sweep::sweep_file::Format;
 use sweep::{Plan, Sweep, simulate_cases};
 
-/// Cases that `--dry-run` simulates to measure the time.
-const SAMPLE_CASES: u64 = 3;
+/// Cases that `--dry-run` simulates to measure the time: enough for the lanes to be full for most of
+/// it, and few where the motion of each is judged, which takes much longer.
+const SAMPLE_CASES: u64 = 32;
+const JUDGED_CASES: u64 = 3;
 
 /// Arguments of `gen-dataset`.
 #[derive(Args, Debug)]
@@ -282,7 +284,11 @@ fn dry_run(plan: &Plan) -> Result<(), Failure> {
         "recordings before compression: {:.1} MB",
         estimate.bytes / 1e6
     );
-    let sample = estimate.cases.min(SAMPLE_CASES);
+    let most = match plan.judgement {
+        Some(_) => JUDGED_CASES,
+        None => SAMPLE_CASES,
+    };
+    let sample = estimate.cases.min(most);
     let cases = (0..sample).map(|i| plan.case(i * (estimate.cases / sample)));
     let cases = cases.collect::<Result<Vec<_>, _>>()?;
     let started = Instant::now();
