@@ -4,7 +4,7 @@ use crate::drive::Drive;
 use crate::effects::{Acting, AtJoint, Joint};
 use crate::energy::{self, Energy};
 use crate::evaluation::{
-    Evaluation, Standing, ThrowEvaluation, along_x, direction, pair, revolute_state,
+    Evaluation, Standing, ThrowEvaluation, along_x, direction, find_joint, pair,
 };
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Machine;
@@ -24,7 +24,7 @@ pub struct Dynamics<S> {
     pub(crate) mode: Mode<S>,
     scales: Vec<S>,
     evaluation: Evaluation<S>,
-    /// Room for the throws' eliminated joints, so that an evaluation allocates nothing.
+    /// The throws' eliminated joints.
     responses: Vec<Response<S>>,
 }
 
@@ -71,7 +71,7 @@ impl<S: Scalar> Dynamics<S> {
             layout,
             mode,
             evaluation,
-            responses: Vec::with_capacity(throws),
+            responses: vec![Response::none(); throws],
         };
         dynamics.start();
         dynamics
@@ -213,9 +213,28 @@ impl<S: Scalar> Dynamics<S> {
     /// Evaluates the equations of motion at `(t, y)` in the present mode.
     pub fn evaluate(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
         self.evaluate_forces(t, y);
-        self.evaluate_accelerations(t);
+        self.respond();
+        self.turn_shaft(t);
+        self.follow();
         self.shake_frame(y);
         &self.evaluation
+    }
+
+    /// As [`evaluate`](Self::evaluate), but for what the state's derivative does not depend on.
+    pub(crate) fn evaluate_rates(&mut self, t: S, y: &[S]) {
+        if self.layout.ledger.is_some() {
+            self.evaluate(t, y);
+            return;
+        }
+        self.evaluate_forces(t, y);
+        self.respond();
+        if self.pins_give() {
+            self.turn_shaft(t);
+        }
+        self.follow();
+        if self.machine.frame.is_some() {
+            self.shake_frame(y);
+        }
     }
 
     /// Poses, rates, and the forces that follow from them.
@@ -227,18 +246,16 @@ impl<S: Scalar> Dynamics<S> {
         let evaluation = &mut self.evaluation;
         evaluation.angle = angle;
         evaluation.speed = speed;
-        evaluation.main = revolute_state(
+        find_joint(
+            &mut evaluation.main,
             &self.machine.main,
             pair(y, self.layout.main),
             [speed, S::zero()],
             &self.mode.main,
-            &AtJoint {
+            || AtJoint {
                 acting: on_shaft,
                 joint: Joint::Main,
-                axes: [
-                    along_x(),
-                    self.layout.main.map_or(along_x(), |_| direction(angle)),
-                ],
+                axes: [along_x(), direction(angle)],
             },
         );
         for (i, found) in evaluation.throws.iter_mut().enumerate() {
@@ -273,11 +290,11 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
-    /// The accelerations that follow from the forces.
-    fn evaluate_accelerations(&mut self, t: S) {
+    /// Finds how the shaft moves under the forces.
+    fn turn_shaft(&mut self, t: S) {
         let speed = self.evaluation.speed;
         let (sine, cosine) = self.evaluation.angle.sin_cos();
-        let mut shaft = Shaft::new(
+        let shaft = Shaft::new(
             &self.machine,
             Vec2::new(cosine, sine),
             speed,
@@ -290,24 +307,31 @@ impl<S: Scalar> Dynamics<S> {
             }
         };
         let target = following_target(&self.evaluation.main);
-        self.couple(&mut shaft, turning, target);
+        self.turn(shaft, turning, target);
     }
 
-    /// Joins throws and shaft and finds all accelerations from the loads stored in the evaluation.
-    pub(crate) fn couple(&mut self, shaft: &mut Shaft<S>, turning: Turning<S>, target: S) {
-        // At constant speed in an ideal main bearing the pins' accelerations are their bias alone.
-        let moving = !self.machine.drive.is_constant() || self.machine.main.clear().is_some();
-        let evaluation = &mut self.evaluation;
-        self.responses.clear();
-        for ((throw, at), mode) in self
-            .machine
-            .throws
-            .iter()
-            .zip(&evaluation.throws)
-            .zip(&self.mode.throws)
-        {
-            let touching = [mode.big_end.touching, mode.small_end.touching];
-            let response = Response::new(throw, &at.motion, &at.joints, &at.loads, touching);
+    /// Whether the crank pins' accelerations are more than their bias: not at constant speed in an
+    /// ideal main bearing.
+    fn pins_give(&self) -> bool {
+        !self.machine.drive.is_constant() || self.machine.main.clear().is_some()
+    }
+
+    /// Eliminates the throws' rigid joints from the loads stored in the evaluation.
+    pub(crate) fn respond(&mut self) {
+        let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
+        let modes = self.mode.throws.iter().zip(&mut self.responses);
+        for ((throw, at), (mode, response)) in throws.zip(modes) {
+            if throw.has_rigid_end() {
+                let touching = [mode.big_end.touching, mode.small_end.touching];
+                *response = Response::new(throw, &at.joints, &at.loads, touching);
+            }
+        }
+    }
+
+    /// Joins throws and shaft, and finds how the shaft moves.
+    pub(crate) fn turn(&mut self, mut shaft: Shaft<S>, turning: Turning<S>, target: S) {
+        let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
+        for ((throw, at), response) in throws.zip(&self.responses) {
             shaft.add_force(throw.local(at.loads.pin_force), at.loads.pin_moment);
             if throw.big_end.is_rigid() {
                 shaft.add_throw(
@@ -318,28 +342,29 @@ impl<S: Scalar> Dynamics<S> {
                     throw.local(at.loads.pin_bias),
                 );
             }
-            self.responses.push(response);
         }
-        evaluation.shaft = shaft.solve(
+        self.evaluation.shaft = shaft.solve(
             &self.machine.main,
-            &evaluation.main,
+            &self.evaluation.main,
             self.mode.main.touching,
             turning,
             target,
         );
-        for ((throw, at), response) in self
-            .machine
-            .throws
-            .iter()
-            .zip(&mut evaluation.throws)
-            .zip(&self.responses)
-        {
+    }
+
+    /// Finds the throws' accelerations under their loads and the shaft's motion.
+    pub(crate) fn follow(&mut self) {
+        let give = self.pins_give();
+        let Evaluation { shaft, throws, .. } = &mut self.evaluation;
+        let throws = self.machine.throws.iter().zip(throws);
+        for ((throw, at), response) in throws.zip(&self.responses) {
             let mut pin = at.loads.pin_bias;
-            if moving {
-                pin += throw.local(evaluation.shaft.centre)
-                    + turned(at.motion.pin) * evaluation.shaft.angular;
+            if give {
+                pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
             }
-            at.accelerations = response.accelerations(throw, &at.loads, &at.joints, pin);
+            let forces = throw.has_rigid_end().then(|| response.forces(pin));
+            at.accelerations
+                .find(throw, &at.loads, &at.joints, pin, forces);
             if throw.guide.clear().is_none() {
                 // What an ideal guide must bear, so that the crosshead stays on its line.
                 let small = at.accelerations.small_force;

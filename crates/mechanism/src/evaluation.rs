@@ -73,7 +73,6 @@ pub(crate) struct Standing<'a, S> {
 impl<S: Scalar> ThrowEvaluation<S> {
     /// Nothing yet.
     pub(crate) fn none() -> Self {
-        let zero = S::zero();
         Self {
             motion: Motion::none(),
             joints: Joints {
@@ -83,16 +82,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             },
             gas: Gas::none(),
             loads: Loads::none(false),
-            accelerations: Accelerations {
-                crosshead: zero,
-                big_end: origin(),
-                small_end: origin(),
-                guide: origin(),
-                big_force: origin(),
-                small_force: origin(),
-                rod: zero,
-                stretch: zero,
-            },
+            accelerations: Accelerations::none(),
             carried: origin(),
         }
     }
@@ -110,7 +100,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
         let guide = pair(y, at.layout.guide);
         let two = |i: usize| [y[i], y[i + 1]];
         let stretch = at.layout.rod.map_or([S::zero(); 2], two);
-        self.motion = Motion::new(
+        self.motion.find(
             throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
         );
         let motion = &self.motion;
@@ -123,28 +113,31 @@ impl<S: Scalar> ThrowEvaluation<S> {
         };
         let pin = motion.angle_sin_cos;
         let crosshead = at.layout.guide.map_or(along_x(), |_| direction(guide[0].y));
-        self.joints = Joints {
-            big_end: revolute_state(
-                &throw.big_end,
-                big,
-                [at.speed, spin],
-                &at.mode.big_end,
-                &at_joint(Joint::BigEnd, Vec2::new(pin.1, pin.0)),
-            ),
-            small_end: revolute_state(
-                &throw.small_end,
-                small,
-                [guide[1].y, spin],
-                &at.mode.small_end,
-                &at_joint(Joint::SmallEnd, crosshead),
-            ),
-            guide: match &throw.guide {
-                Guide::Ideal => GuideState::ideal(),
-                Guide::Clear(clear) => {
-                    clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide)
-                }
-            },
-        };
+        let joints = &mut self.joints;
+        find_joint(
+            &mut joints.big_end,
+            &throw.big_end,
+            big,
+            [at.speed, spin],
+            &at.mode.big_end,
+            || at_joint(Joint::BigEnd, Vec2::new(pin.1, pin.0)),
+        );
+        find_joint(
+            &mut joints.small_end,
+            &throw.small_end,
+            small,
+            [guide[1].y, spin],
+            &at.mode.small_end,
+            || at_joint(Joint::SmallEnd, crosshead),
+        );
+        match &throw.guide {
+            // What an ideal guide must bear is found last.
+            Guide::Ideal => joints.guide.release(),
+            Guide::Clear(clear) => {
+                joints.guide =
+                    clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide);
+            }
+        }
         let cylinder = CylinderAt {
             throw,
             effects,
@@ -156,7 +149,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
         };
         self.gas = cylinder.gas();
         let spring = effects.rod();
-        self.loads = Loads::new(
+        self.loads.find(
             throw,
             spring.as_ref(),
             at.gravity,
@@ -176,6 +169,11 @@ impl<S: Scalar> Throw<S> {
             Direction::Forward => angle + self.pin_angle,
             Direction::Opposed => angle + self.pin_angle - std::f64::consts::PI,
         }
+    }
+
+    /// Whether a force at an end of its rod follows from accelerations.
+    pub(crate) fn has_rigid_end(&self) -> bool {
+        self.big_end.is_rigid() || self.small_end.is_rigid()
     }
 
     /// A vector of the machine's frame in the throw's own, and back: an opposed throw's frame is
@@ -207,15 +205,16 @@ pub(crate) fn direction<S: Scalar>(angle: S) -> Vec2<S> {
     Vec2::new(cosine, sine)
 }
 
-pub(crate) fn revolute_state<S: Scalar>(
+/// Finds the state of a joint with clearance; that of an ideal one never changes.
+pub(crate) fn find_joint<'a, S: Scalar>(
+    state: &mut JointState<S>,
     joint: &Revolute<S>,
-    [offset, rate]: [Vec2<S>; 2],
+    offset: [Vec2<S>; 2],
     spins: [S; 2],
     mode: &ContactMode<S>,
-    effects: &AtJoint<'_, S>,
-) -> JointState<S> {
-    match joint {
-        Revolute::Ideal => JointState::ideal(),
-        Revolute::Clear(clear) => clear.state(offset, rate, spins, mode, effects),
+    effects: impl FnOnce() -> AtJoint<'a, S>,
+) {
+    if let Revolute::Clear(clear) = joint {
+        clear.find(state, offset, spins, mode, &effects());
     }
 }

@@ -222,15 +222,15 @@ impl<S: Scalar> CylinderAt<'_, S> {
         let face = area(cylinder.piston_radius);
         let reach = throw.crank_radius + throw.rod.length;
         let to_head = cylinder.head_clearance + reach - motion.crosshead;
-        let (head_end, seen) = self.chamber(End::Head, cylinder.head_clearance, to_head);
-        let mut across = None;
+        let (head_end, head) = self.chamber(End::Head, cylinder.head_clearance, to_head);
+        let mut crank = None;
         let (crank_end, force) = match &cylinder.crank_end {
             None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
             Some(end) => {
                 let to_cover =
                     end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
                 let (gas, seen) = self.chamber(End::Crank, end.clearance, to_cover);
-                across = Some(seen);
+                crank = seen;
                 let rod = area(end.rod_radius);
                 let force =
                     gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
@@ -254,12 +254,12 @@ impl<S: Scalar> CylinderAt<'_, S> {
                 eccentricity(&throw.small_end, self.offsets[1]),
             ],
         };
-        let mut acting = self.effects.all().peekable();
-        let effects = match acting.peek() {
-            None => S::zero(),
-            Some(_) => {
+        let effects = match self.effects.any() {
+            false => S::zero(),
+            true => {
                 let piston = piston();
-                acting.fold(S::zero(), |sum, effect| sum + effect.piston_force(&piston))
+                let forces = self.effects.all().map(|e| e.piston_force(&piston));
+                forces.fold(S::zero(), |sum, force| sum + force)
             }
         };
         Gas {
@@ -267,28 +267,52 @@ impl<S: Scalar> CylinderAt<'_, S> {
             crank_end,
             force,
             effects,
-            drift: self.drifts([Some(seen), across]),
+            drift: self.drifts(&[head, crank]),
         }
     }
 
-    /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre.
-    fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, ChamberAt<S>) {
-        let (throw, motion) = (self.throw, self.motion);
-        let cylinder = &throw.cylinder;
+    /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre;
+    /// and as effects see it, where there are any.
+    fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
+        let (throw, cylinder) = (self.throw, &self.throw.cylinder);
+        let (expanding, mode) = match end {
+            End::Head => (self.mode.outward, &self.mode.head_end),
+            End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
+        };
+        let lines = [cylinder.suction, cylinder.discharge];
+        let mut chamber = Chamber {
+            dead,
+            filled: throw.crank_radius * 2.0 + dead,
+            lines,
+            exponents: [cylinder.exponent, cylinder.expansion_exponent],
+        };
+        if !self.effects.any() {
+            return (chamber.state(distance, expanding, lines, None, mode), None);
+        }
+        let mut seen = self.seen(end, distance, expanding, mode);
+        chamber.filled -= self.retreat(end);
+        chamber.lines = self.lines_at_centres(end, seen);
+        let drift = self.drift.map(|drift| drift[end as usize]);
+        let open = self.lines(end, &seen);
+        let state = chamber.state(distance, expanding, open, drift, mode);
+        seen.pressure = state.pressure;
+        if drift.is_some() {
+            seen.warmth = chamber.warmth(state.pressure, distance, expanding);
+        }
+        (state, Some(seen))
+    }
+
+    /// The chamber as effects see it, before its pressure is known.
+    fn seen(&self, end: End, distance: S, expanding: S, mode: &ChamberMode<S>) -> ChamberAt<S> {
+        let (throw, motion, cylinder) = (self.throw, self.motion, &self.throw.cylinder);
         let pin = throw.crank_radius * self.speed.abs();
         let outward = motion.crosshead_rate / pin;
-        let (growth, expanding, mode) = match end {
-            End::Head => (-outward, self.mode.outward, &self.mode.head_end),
-            End::Crank => {
-                let inward = S::one() - self.mode.outward;
-                (outward, inward, &self.mode.crank_end)
-            }
+        let (growth, rod) = match (end, &cylinder.crank_end) {
+            (End::Head, _) => (-outward, S::zero()),
+            (End::Crank, None) => (outward, S::zero()),
+            (End::Crank, Some(crank_end)) => (outward, area(crank_end.rod_radius)),
         };
-        let rod = match (end, &cylinder.crank_end) {
-            (End::Crank, Some(crank_end)) => area(crank_end.rod_radius),
-            _ => S::zero(),
-        };
-        let mut seen = ChamberAt {
+        ChamberAt {
             angle: motion.angle,
             growth,
             distance,
@@ -301,35 +325,25 @@ impl<S: Scalar> CylinderAt<'_, S> {
             suction: cylinder.suction,
             exponent: flagged(expanding, cylinder.expansion_exponent, cylinder.exponent),
             closed: S::one() - mode.suction - mode.discharge,
-        };
-        // The strokes start where the valves leave off, at the dead centres.
-        let [filled, emptied] = match end {
+        }
+    }
+
+    /// Suction and discharge pressure where the valves leave off and the strokes start, at the dead
+    /// centres.
+    fn lines_at_centres(&self, end: End, seen: ChamberAt<S>) -> [S; 2] {
+        let angles = match end {
             End::Head => [PI, 0.0],
             End::Crank => [0.0, PI],
         };
-        let [mut at_filled, mut at_emptied] = [seen, seen];
-        for (at, angle) in [(&mut at_filled, filled), (&mut at_emptied, emptied)] {
-            at.angle = S::constant(angle);
-            at.growth = S::zero();
-        }
-        let lines = [
-            self.lines(end, &at_filled)[0],
-            self.lines(end, &at_emptied)[1],
-        ];
-        let chamber = Chamber {
-            dead,
-            filled: throw.crank_radius * 2.0 + dead - self.retreat(end),
-            lines,
-            exponents: [cylinder.exponent, cylinder.expansion_exponent],
-        };
-        let drift = self.drift.map(|drift| drift[end as usize]);
-        let open = self.lines(end, &seen);
-        let state = chamber.state(distance, expanding, open, drift, mode);
-        seen.pressure = state.pressure;
-        if drift.is_some() {
-            seen.warmth = chamber.warmth(state.pressure, distance, expanding);
-        }
-        (state, seen)
+        let [filled, emptied] = angles.map(|angle| {
+            let at_centre = ChamberAt {
+                angle: S::constant(angle),
+                growth: S::zero(),
+                ..seen
+            };
+            self.lines(end, &at_centre)
+        });
+        [filled[0], emptied[1]]
     }
 
     /// Pressures at which the open valves hold the chamber: suction, discharge.
@@ -359,11 +373,11 @@ impl<S: Scalar> CylinderAt<'_, S> {
     }
 
     /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none.
-    fn drifts(&self, chambers: [Option<ChamberAt<S>>; 2]) -> [S; 2] {
+    fn drifts(&self, chambers: &[Option<ChamberAt<S>>; 2]) -> [S; 2] {
         if self.drift.is_none() {
             return [S::zero(); 2];
         }
-        let pressures = chambers.map(|chamber| chamber.map(|chamber| chamber.pressure));
+        let pressures = [0, 1].map(|end: usize| chambers[end].map(|chamber| chamber.pressure));
         [End::Head, End::Crank].map(|end| {
             let Some(mut chamber) = chambers[end as usize] else {
                 return S::zero();

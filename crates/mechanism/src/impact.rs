@@ -4,7 +4,6 @@ use crate::drive::Drive;
 use crate::dynamics::{Dynamics, Place};
 use crate::plane::{Vec2, origin};
 use crate::shaft::{Shaft, Turning};
-use crate::throw::Loads;
 use scalar::Scalar;
 
 impl<S: Scalar> Dynamics<S> {
@@ -18,7 +17,7 @@ impl<S: Scalar> Dynamics<S> {
         let before = self.energy().total();
         let wanted = -self.joint(place).1.penetration_rate;
         for at in &mut self.evaluation_mut().throws {
-            at.loads = Loads::none(at.loads.stretch.is_some());
+            at.loads = at.loads.silent();
         }
         match place {
             Place::Main => {}
@@ -32,12 +31,14 @@ impl<S: Scalar> Dynamics<S> {
         };
         let (sine, cosine) = self.evaluation().angle.sin_cos();
         let direction = Vec2::new(cosine, sine);
-        let mut shaft = Shaft::new(self.machine(), direction, S::zero(), origin());
+        let shaft = Shaft::new(self.machine(), direction, S::zero(), origin());
         let turning = match &self.machine().drive {
             Drive::Given(_) => Turning::Acceleration(S::zero()),
             Drive::Free(_) => Turning::Torque(S::zero()),
         };
-        self.couple(&mut shaft, turning, main_target);
+        self.respond();
+        self.turn(shaft, turning, main_target);
+        self.follow();
         self.add_jumps(y);
 
         self.evaluate_forces(t, y);

@@ -33,7 +33,7 @@ impl<const W: usize> System<Lanes<W>> for SideBySide<W> {
     }
 
     fn derivative(&mut self, t: Lanes<W>, y: &[Lanes<W>], dy: &mut [Lanes<W>]) {
-        self.0.evaluate(t, y);
+        self.0.evaluate_rates(t, y);
         self.0.write_derivative(y, dy);
     }
 

@@ -65,26 +65,24 @@ pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S>
     scales
 }
 
+/// Writes the derivative of the two coordinates at `index` and of their rates.
+#[inline]
+fn write<S: Scalar>(index: Option<usize>, second: Vec2<S>, y: &[S], dy: &mut [S]) {
+    let Some(i) = index else { return };
+    if let ([_, _, first @ ..], [to, ..]) = (&y[i..i + 4], dy[i..i + 4].as_chunks_mut().0) {
+        *to = [first[0], first[1], second.x, second.y];
+    }
+}
+
 impl<S: Scalar> Dynamics<S> {
     /// Writes the derivative of the state that belongs to the last evaluation.
     pub(crate) fn write_derivative(&self, y: &[S], dy: &mut [S]) {
         let (layout, at) = (self.layout(), self.evaluation());
-        let mut write = |index: Option<usize>, second: Vec2<S>| {
-            if let Some(i) = index {
-                dy[i] = y[i + 2];
-                dy[i + 1] = y[i + 3];
-                dy[i + 2] = second.x;
-                dy[i + 3] = second.y;
-            }
-        };
-        write(layout.main, at.shaft.centre);
+        write(layout.main, at.shaft.centre, y, dy);
         for (layout, throw) in layout.throws.iter().zip(&at.throws) {
-            write(layout.big_end, throw.accelerations.big_end);
-            write(layout.small_end, throw.accelerations.small_end);
-            write(layout.guide, throw.accelerations.guide);
-        }
-        write(layout.frame, at.frame);
-        for (layout, throw) in layout.throws.iter().zip(&at.throws) {
+            write(layout.big_end, throw.accelerations.big_end, y, dy);
+            write(layout.small_end, throw.accelerations.small_end, y, dy);
+            write(layout.guide, throw.accelerations.guide, y, dy);
             if let Some(i) = layout.rod {
                 dy[i] = y[i + 1];
                 dy[i + 1] = throw.accelerations.stretch;
@@ -93,6 +91,7 @@ impl<S: Scalar> Dynamics<S> {
                 dy[i..i + 2].copy_from_slice(&throw.gas.drift);
             }
         }
+        write(layout.frame, at.frame, y, dy);
         if let Some(i) = layout.crank {
             dy[i] = y[i + 1];
             dy[i + 1] = at.shaft.angular;
@@ -185,7 +184,7 @@ impl<S: Real> System<S> for Dynamics<S> {
     }
 
     fn derivative(&mut self, t: S, y: &[S], dy: &mut [S]) {
-        self.evaluate(t, y);
+        self.evaluate_rates(t, y);
         self.write_derivative(y, dy);
     }
 

@@ -61,6 +61,9 @@ pub(crate) struct Loads<S> {
     pub pin_bias: Vec2<S>,
     pub big_bias: Vec2<S>,
     pub small_bias: Vec2<S>,
+    pub arms: Arms<S>,
+    /// Moment of inertia of the stretched rod about its centre of mass, kg m².
+    pub rod_inertia: S,
     /// Wanted relative acceleration of following joints along their normal.
     pub big_target: S,
     pub small_target: S,
@@ -83,6 +86,8 @@ impl<S: Scalar> Loads<S> {
             pin_bias: origin(),
             big_bias: origin(),
             small_bias: origin(),
+            arms: Arms::none(),
+            rod_inertia: S::one(),
             big_target: zero,
             small_target: zero,
             stretch: elastic.then_some(zero),
@@ -163,16 +168,11 @@ pub(crate) struct Response<S> {
     /// Small-end force on the rod: `small_offset − small_slope × big-end force`.
     small_slope: Matrix2<S>,
     small_offset: Vec2<S>,
-    arms: Arms<S>,
-    rod_free: (Vec2<S>, S),
-    inertia: S,
-    crosshead_free: Vec2<S>,
-    crosshead_give: Matrix2<S>,
 }
 
 /// Arms from the rod's centre of mass to its eyes and to where the rigid joints' forces act.
 #[derive(Clone, Copy, Debug)]
-struct Arms<S> {
+pub(crate) struct Arms<S> {
     /// Unit vector along the rod.
     along: Vec2<S>,
     /// Where big and small end lie on the unloaded rod, from its centre of mass, m.
@@ -222,10 +222,12 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// The pose with the shaft's centre at `shaft` (position and velocity), the crank at `angle`
-    /// turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its rate.
+    /// Finds the pose with the shaft's centre at `shaft` (position and velocity), the crank at
+    /// `angle` turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its
+    /// rate.
     #[allow(clippy::too_many_arguments)]
-    pub(crate) fn new(
+    pub(crate) fn find(
+        &mut self,
         throw: &Throw<S>,
         shaft: [Vec2<S>; 2],
         angle: S,
@@ -234,7 +236,7 @@ impl<S: Scalar> Motion<S> {
         small: [Vec2<S>; 2],
         guide: [Vec2<S>; 2],
         [stretch, stretch_rate]: [S; 2],
-    ) -> Self {
+    ) {
         let (sine, cosine) = angle.sin_cos();
         let pin = Vec2::new(cosine, sine) * throw.crank_radius;
         let eye = shaft[0] + pin - big[0];
@@ -247,7 +249,7 @@ impl<S: Scalar> Motion<S> {
         let rod_sine = rise / length;
         let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
         let rod_rate = (rise_rate - length_rate * rod_sine) / (length * rod_cosine);
-        Self {
+        *self = Self {
             angle,
             angle_sin_cos: (sine, cosine),
             pin,
@@ -260,7 +262,7 @@ impl<S: Scalar> Motion<S> {
                 + small[1].x,
             stretch,
             stretch_rate,
-        }
+        };
     }
 
     /// Length of the rod over that without load, 1 + η.
@@ -286,8 +288,9 @@ pub struct Joints<S> {
 }
 
 impl<S: Scalar> Loads<S> {
-    /// The loads, with the rod as the spring that it is.
-    pub fn new(
+    /// Finds the loads, with the rod as the spring that it is.
+    pub fn find(
+        &mut self,
         throw: &Throw<S>,
         spring: Option<&RodSpring<S>>,
         gravity: Vec2<S>,
@@ -295,39 +298,90 @@ impl<S: Scalar> Loads<S> {
         motion: &Motion<S>,
         joints: &Joints<S>,
         gas: &Gas<S>,
-    ) -> Self {
+    ) {
         let arms = Arms::new(throw, motion, joints);
         let (big, small) = (&joints.big_end, &joints.small_end);
-        let mut loads = Self::none(false);
-        loads.rod_force = gravity * throw.rod.mass - big.force - small.force;
         let whirl = motion.stretch_rate * motion.rod_rate * 2.0;
-        loads.rod_moment = -moment(arms.big_force, big.force)
-            - moment(arms.small_force, small.force)
-            - throw.rod.inertia * motion.lengthening() * whirl;
-        loads.crosshead_force = gravity * throw.crosshead.mass
-            + small.force
-            + joints.guide.force
-            + Vec2::new(gas.force + gas.effects, S::zero());
-        loads.crosshead_moment = moment(small.arm, small.force) + joints.guide.moment;
-        loads.pin_force = big.force;
-        loads.pin_moment = moment(motion.pin + big.arm, big.force);
-        loads.pin_bias = -(motion.pin * (speed * speed));
         let rate2 = motion.rod_rate * motion.rod_rate;
         let across = turned(arms.along);
         let [of_big, of_small] = arms.shares;
-        loads.big_bias = across * (of_big * whirl) - arms.big * rate2;
-        loads.small_bias = across * (of_small * whirl) - arms.small * rate2;
-        loads.stretch = spring.map(|spring| {
-            let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
-            motion.lengthening() * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
-        });
-        loads.big_target = following_target(big);
-        loads.small_target = following_target(small);
-        loads
+        let target = |joint: &Revolute<S>, state| match joint.is_following() {
+            true => following_target(state),
+            false => S::zero(),
+        };
+        *self = Self {
+            rod_force: gravity * throw.rod.mass - big.force - small.force,
+            rod_moment: -moment(arms.big_force, big.force)
+                - moment(arms.small_force, small.force)
+                - throw.rod.inertia * motion.lengthening() * whirl,
+            crosshead_force: gravity * throw.crosshead.mass
+                + small.force
+                + joints.guide.force
+                + Vec2::new(gas.force + gas.effects, S::zero()),
+            crosshead_moment: moment(small.arm, small.force) + joints.guide.moment,
+            pin_force: big.force,
+            pin_moment: moment(motion.pin + big.arm, big.force),
+            pin_bias: -(motion.pin * (speed * speed)),
+            big_bias: across * (of_big * whirl) - arms.big * rate2,
+            small_bias: across * (of_small * whirl) - arms.small * rate2,
+            arms,
+            rod_inertia: arms.inertia(throw, motion),
+            big_target: target(&throw.big_end, big),
+            small_target: target(&throw.small_end, small),
+            stretch: spring.map(|spring| {
+                let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
+                motion.lengthening() * rate2
+                    + (pull + spring.pull(throw, motion)) / throw.rod.inertia
+            }),
+        };
+    }
+
+    /// What is left of the loads where an impulse takes the place of every force.
+    pub fn silent(&self) -> Self {
+        Self {
+            arms: self.arms,
+            rod_inertia: self.rod_inertia,
+            ..Self::none(self.stretch.is_some())
+        }
+    }
+
+    /// Acceleration of the rod's centre of mass, and its angular one, without rigid joints' forces.
+    fn free_rod(&self, throw: &Throw<S>) -> (Vec2<S>, S) {
+        (
+            self.rod_force / throw.rod.mass,
+            self.rod_moment / self.rod_inertia,
+        )
+    }
+
+    /// The crosshead's acceleration without rigid joints' forces.
+    fn free_crosshead(&self, throw: &Throw<S>) -> Vec2<S> {
+        apply(&crosshead_give(throw), self.crosshead_force)
     }
 }
 
+/// How the crosshead's acceleration answers to a force on it: an ideal guide lets it move along
+/// alone.
+fn crosshead_give<S: Scalar>(throw: &Throw<S>) -> Matrix2<S> {
+    let light = S::one() / throw.crosshead.mass;
+    let across = match throw.guide.clear() {
+        Some(_) => light,
+        None => S::zero(),
+    };
+    diagonal(light, across)
+}
+
 impl<S: Scalar> Arms<S> {
+    fn none() -> Self {
+        Self {
+            along: origin(),
+            shares: [S::zero(); 2],
+            big: origin(),
+            small: origin(),
+            big_force: origin(),
+            small_force: origin(),
+        }
+    }
+
     fn new(throw: &Throw<S>, motion: &Motion<S>, joints: &Joints<S>) -> Self {
         let along = motion.along_rod();
         let shares = [
@@ -370,17 +424,22 @@ impl<S: Scalar> RodSpring<S> {
 }
 
 impl<S: Scalar> Response<S> {
+    /// That of joints whose forces are known.
+    pub fn none() -> Self {
+        let zero = diagonal(S::zero(), S::zero());
+        Self {
+            slope: zero,
+            offset: origin(),
+            small_slope: zero,
+            small_offset: origin(),
+        }
+    }
+
     /// Eliminates the throw's rigid joints. `touching` are the flags of big and small end.
-    pub fn new(
-        throw: &Throw<S>,
-        motion: &Motion<S>,
-        joints: &Joints<S>,
-        loads: &Loads<S>,
-        touching: [S; 2],
-    ) -> Self {
-        let arms = Arms::new(throw, motion, joints);
+    pub fn new(throw: &Throw<S>, joints: &Joints<S>, loads: &Loads<S>, touching: [S; 2]) -> Self {
+        let arms = &loads.arms;
         let [of_big, of_small] = arms.shares;
-        let (mass, inertia) = (throw.rod.mass, arms.inertia(throw, motion));
+        let (mass, inertia) = (throw.rod.mass, loads.rod_inertia);
         // Acceleration of an eye for a unit force: W = 1/m + (turned arm of the eye)(turned arm
         // of the force)ᵀ / I; an elastic rod gives along its axis too.
         let answer = |[eye, force]: [Vec2<S>; 2], shares: [S; 2]| {
@@ -394,7 +453,7 @@ impl<S: Scalar> Response<S> {
                 }
             }
         };
-        let free = (loads.rod_force / mass, loads.rod_moment / inertia);
+        let free = loads.free_rod(throw);
         let free_at = |eye: Vec2<S>, share: S, bias: Vec2<S>| {
             let rigid = free.0 + turned(eye) * free.1 + bias;
             match loads.stretch {
@@ -403,30 +462,12 @@ impl<S: Scalar> Response<S> {
             }
         };
 
-        let light = S::one() / throw.crosshead.mass;
-        let across = match throw.guide.clear() {
-            Some(_) => light,
-            None => S::zero(),
-        };
-        let crosshead_give = diagonal(light, across);
-        let crosshead_free = apply(&crosshead_give, loads.crosshead_force);
-
-        let mut response = Self {
-            slope: diagonal(S::zero(), S::zero()),
-            offset: origin(),
-            small_slope: diagonal(S::zero(), S::zero()),
-            small_offset: origin(),
-            arms,
-            rod_free: free,
-            inertia,
-            crosshead_free,
-            crosshead_give,
-        };
+        let mut response = Self::none();
         let small = Constraint::new(&throw.small_end, &joints.small_end, touching[1]);
         let small_answer =
-            || answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give;
+            || answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give(throw);
         if let Some(stiff) = small.stiffen(small_answer) {
-            let missing = crosshead_free
+            let missing = loads.free_crosshead(throw)
                 - free_at(arms.small, of_small, loads.small_bias)
                 - joints.small_end.normal * loads.small_target;
             response.small_offset = stiff * missing;
@@ -445,43 +486,70 @@ impl<S: Scalar> Response<S> {
         response
     }
 
-    /// The accelerations, once the crank pin's is known.
-    pub fn accelerations(
-        &self,
+    /// The forces of big and small end on the rod, once the crank pin's acceleration is known.
+    pub fn forces(&self, pin: Vec2<S>) -> [Vec2<S>; 2] {
+        let big = apply(&self.slope, pin) + self.offset;
+        [big, self.small_offset - apply(&self.small_slope, big)]
+    }
+}
+
+impl<S: Scalar> Accelerations<S> {
+    /// Nothing yet.
+    pub(crate) fn none() -> Self {
+        let zero = S::zero();
+        Self {
+            crosshead: zero,
+            big_end: origin(),
+            small_end: origin(),
+            guide: origin(),
+            big_force: origin(),
+            small_force: origin(),
+            rod: zero,
+            stretch: zero,
+        }
+    }
+
+    /// Finds the accelerations under the loads and the rigid joints' forces, if there are any, with
+    /// the crank pin's own.
+    pub(crate) fn find(
+        &mut self,
         throw: &Throw<S>,
         loads: &Loads<S>,
         joints: &Joints<S>,
         pin: Vec2<S>,
-    ) -> Accelerations<S> {
-        let arms = &self.arms;
-        let big_force = apply(&self.slope, pin) + self.offset;
-        let small_force = self.small_offset - apply(&self.small_slope, big_force);
-        let centre = self.rod_free.0 + (big_force + small_force) / throw.rod.mass;
-        let rod = self.rod_free.1
-            + (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
-                / self.inertia;
+        forces: Option<[Vec2<S>; 2]>,
+    ) {
+        let arms = &loads.arms;
+        let (mut centre, mut rod) = loads.free_rod(throw);
+        let mut crosshead = loads.free_crosshead(throw);
+        let mut tilting = loads.crosshead_moment;
         let [of_big, of_small] = arms.shares;
+        let mut stretch = loads.stretch;
+        let [big_force, small_force] = forces.unwrap_or([origin(); 2]);
+        if forces.is_some() {
+            centre += (big_force + small_force) / throw.rod.mass;
+            rod += (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
+                / loads.rod_inertia;
+            crosshead -= apply(&crosshead_give(throw), small_force);
+            tilting -= moment(joints.small_end.arm, small_force);
+            let pull = (big_force * of_big + small_force * of_small).dot(&arms.along);
+            stretch = stretch.map(|stretch| stretch + pull / throw.rod.inertia);
+        }
         let mut big_eye = centre + turned(arms.big) * rod + loads.big_bias;
         let mut small_eye = centre + turned(arms.small) * rod + loads.small_bias;
-        let stretch = loads.stretch.map_or(S::zero(), |stretch| {
-            let pull = (big_force * of_big + small_force * of_small).dot(&arms.along);
-            let stretch = stretch + pull / throw.rod.inertia;
+        if let Some(stretch) = stretch {
             big_eye += arms.along * (of_big * stretch);
             small_eye += arms.along * (of_small * stretch);
-            stretch
-        });
-        let crosshead = self.crosshead_free - apply(&self.crosshead_give, small_force);
-        let tilt = (loads.crosshead_moment - moment(joints.small_end.arm, small_force))
-            / throw.crosshead.inertia;
-        Accelerations {
+        }
+        *self = Self {
             crosshead: crosshead.x,
             big_end: pin - big_eye,
             small_end: crosshead - small_eye,
-            guide: Vec2::new(crosshead.y, tilt),
+            guide: Vec2::new(crosshead.y, tilting / throw.crosshead.inertia),
             big_force,
             small_force,
             rod,
-            stretch,
-        }
+            stretch: stretch.unwrap_or(S::zero()),
+        };
     }
 }

@@ -191,6 +191,11 @@ impl<'a, S: Scalar> Acting<'a, S> {
             .map(|effect| effect.law.acts())
     }
 
+    /// Whether there are any on the whole machine.
+    pub fn any(self) -> bool {
+        !self.effects.is_empty()
+    }
+
     /// All of them.
     pub fn all(self) -> impl Iterator<Item = &'a dyn Acts<S>> {
         self.wherever(|_| true)

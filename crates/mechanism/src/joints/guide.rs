@@ -129,6 +129,12 @@ impl<S: Scalar> GuideState<S> {
             corners: [corner; 4],
         }
     }
+
+    /// Lets go of the crosshead.
+    pub(crate) fn release(&mut self) {
+        self.force = origin();
+        self.moment = S::zero();
+    }
 }
 
 impl<S: Scalar> GuideClearance<S> {

@@ -78,8 +78,13 @@ impl<S> Revolute<S> {
     /// True where the joint's force is not known from the offset, but makes the centres keep
     /// their distance.
     pub(crate) fn is_rigid(&self) -> bool {
+        self.clear().is_none() || self.is_following()
+    }
+
+    /// True where the journal follows a rigid surface.
+    pub(crate) fn is_following(&self) -> bool {
         self.clear()
-            .is_none_or(|c| c.model != JointModel::ThreeMode)
+            .is_some_and(|c| c.model != JointModel::ThreeMode)
     }
 }
 
@@ -154,17 +159,16 @@ impl<S: Scalar> JointState<S> {
 }
 
 impl<S: Scalar> Clearance<S> {
-    /// The joint at offset `e` (m), rate `v` (m/s), with journal and bearing turning at `spins`
-    /// (rad/s).
-    #[inline]
-    pub(crate) fn state(
+    /// Finds the joint's `state` at offset `e` (m), rate `v` (m/s), with journal and bearing turning
+    /// at `spins` (rad/s).
+    pub(crate) fn find(
         &self,
-        offset: Vec2<S>,
-        rate: Vec2<S>,
+        state: &mut JointState<S>,
+        [offset, rate]: [Vec2<S>; 2],
         spins: [S; 2],
         mode: &ContactMode<S>,
         effects: &AtJoint<'_, S>,
-    ) -> JointState<S> {
+    ) {
         let surface = self.surface(offset, rate, spins, effects);
         let Surface {
             normal,
@@ -201,7 +205,7 @@ impl<S: Scalar> Clearance<S> {
             arm -= tangent * (uneven.change / uneven.steepness);
         }
         let friction_force = coefficient * normal_force;
-        JointState {
+        *state = JointState {
             offset,
             rate,
             normal,
@@ -215,7 +219,7 @@ impl<S: Scalar> Clearance<S> {
             damping_power: (pressed - stored - film) * penetration_rate,
             arm,
             coefficient,
-        }
+        };
     }
 
     /// The surfaces at offset `e`, as the shapes of bearing and journal have them.
