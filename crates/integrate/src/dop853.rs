@@ -85,10 +85,11 @@ impl<S: Scalar> Step<S> {
     /// Evaluates stage number `stage` from those before it.
     fn stage(&mut self, system: &mut impl System<S>, stage: usize) {
         let n = self.dimension();
-        combine(&mut self.scratch, STAGE[stage], &self.stages);
-        for (at, from) in self.scratch.iter_mut().zip(&self.from) {
-            *at = *from + self.length * *at;
-        }
+        let (from, length) = (&self.from, self.length);
+        let scratch = &mut self.scratch;
+        combine(n, [STAGE[stage]], &self.stages, |j, [slope]| {
+            scratch[j] = from[j] + length * slope;
+        });
         let t = self.start + self.length * NODES[stage];
         let (_, rest) = self.stages.split_at_mut(stage * n);
         system.derivative(t, &self.scratch, &mut rest[..n]);
@@ -97,15 +98,15 @@ impl<S: Scalar> Step<S> {
     /// Squares of the estimated errors of order 5 and 3, summed over the components, each over its
     /// entry of `scale`; components with an infinite scale do not count.
     pub fn squared_errors(&self, scale: impl Fn(usize) -> S) -> [S; 2] {
-        let n = self.dimension();
         let mut sums = [S::zero(); 2];
-        for j in 0..n {
+        let rows = [ERROR_5, ERROR_3];
+        combine(self.dimension(), rows, &self.stages, |j, errors| {
             let scale = scale(j);
-            for (sum, row) in sums.iter_mut().zip([ERROR_5, ERROR_3]) {
-                let error = weighted(row, &self.stages, n, j) / scale;
+            for (sum, error) in sums.iter_mut().zip(errors) {
+                let error = error / scale;
                 *sum += error * error;
             }
-        }
+        });
         sums
     }
 
@@ -122,9 +123,9 @@ impl<S: Scalar> Step<S> {
             self.pieces[j] = difference;
             self.pieces[n + j] = first;
             self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
-            for (i, row) in DENSE.iter().enumerate() {
-                self.pieces[(3 + i) * n + j] = h * weighted(row, &self.stages, n, j);
-            }
+        }
+        for (row, piece) in DENSE.iter().zip(self.pieces[3 * n..].chunks_mut(n)) {
+            combine(n, [*row], &self.stages, |j, [sum]| piece[j] = h * sum);
         }
     }
 
@@ -190,15 +191,47 @@ impl<S: Scalar> Step<S> {
     }
 }
 
-/// `out[j] = sum of weight * stages[stage][j]`.
-fn combine<S: Scalar>(out: &mut [S], row: Row, stages: &[S]) {
-    let n = out.len();
-    out.fill(S::zero());
-    for &(stage, weight) in row {
-        for (sum, k) in out.iter_mut().zip(&stages[stage * n..]) {
-            *sum += *k * weight;
+/// Hands the sums of weight × derivative over the stages of each row to `take`, component by component.
+///
+/// Plain numbers are summed four components at a time, so that the processor can do that side by side.
+fn combine<S: Scalar, const R: usize>(
+    dimension: usize,
+    rows: [Row; R],
+    stages: &[S],
+    mut take: impl FnMut(usize, [S; R]),
+) {
+    let together = match size_of::<S>() == size_of::<f64>() {
+        true => dimension / 4 * 4,
+        false => 0,
+    };
+    for j in (0..together).step_by(4) {
+        let sums = rows.map(|row| weighted::<S, 4>(row, stages, dimension, j));
+        for i in 0..4 {
+            take(j + i, sums.map(|sum| sum[i]));
         }
     }
+    for j in together..dimension {
+        let sums = rows.map(|row| weighted::<S, 1>(row, stages, dimension, j));
+        take(j, sums.map(|[sum]| sum));
+    }
+}
+
+/// The weighted sums of `B` components over the stages, from component `first` on.
+#[inline]
+fn weighted<S: Scalar, const B: usize>(
+    row: Row,
+    stages: &[S],
+    dimension: usize,
+    first: usize,
+) -> [S; B] {
+    let mut sums = [S::zero(); B];
+    for &(stage, weight) in row {
+        let slopes = &stages[stage * dimension + first..][..B];
+        for (sum, slope) in sums.iter_mut().zip(slopes) {
+            *sum += *slope * weight;
+        }
+    }
+    sums
 }
 
 /// A scalar of which single lanes can be read and written.
@@ -216,13 +249,6 @@ impl<const W: usize> Lane for Lanes<W> {
     fn set_lane(&mut self, lane: usize, x: f64) {
         self.0[lane] = x;
     }
-}
-
-/// The weighted sum of one component over the stages.
-fn weighted<S: Scalar>(row: Row, stages: &[S], n: usize, component: usize) -> S {
-    row.iter().fold(S::zero(), |sum, &(stage, weight)| {
-        sum + stages[stage * n + component] * weight
-    })
 }
 
 impl Step<f64> {
