@@ -12,7 +12,7 @@ use crate::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
 use crate::plane::{Vec2, moment, origin, turned};
 use crate::shaft::{Shaft, ShaftMotion, Turning};
 use crate::state::Layout;
-use crate::system;
+use crate::system::{self, Watch};
 use crate::throw::{Response, following_target};
 use scalar::Scalar;
 
@@ -23,6 +23,7 @@ pub struct Dynamics<S> {
     layout: Layout,
     pub(crate) mode: Mode<S>,
     scales: Vec<S>,
+    watches: Vec<Watch>,
     evaluation: Evaluation<S>,
     /// The throws' eliminated joints.
     responses: Vec<Response<S>>,
@@ -67,6 +68,7 @@ impl<S: Scalar> Dynamics<S> {
         };
         let mut dynamics = Self {
             scales: system::scales(&machine, &layout),
+            watches: system::watches(&machine),
             machine,
             layout,
             mode,
@@ -152,6 +154,10 @@ impl<S: Scalar> Dynamics<S> {
     /// The present mode, to be changed: whoever steps lanes puts each lane into its own.
     pub fn mode_mut(&mut self) -> &mut Mode<S> {
         &mut self.mode
+    }
+
+    pub(crate) fn watches(&self) -> &[Watch] {
+        &self.watches
     }
 
     pub(crate) fn tolerance_scales(&self) -> &[S] {

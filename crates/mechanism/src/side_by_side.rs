@@ -42,7 +42,7 @@ impl<const W: usize> System<Lanes<W>> for SideBySide<W> {
     }
 
     fn guard_count(&self) -> usize {
-        self.0.count_guards()
+        self.0.watches().len()
     }
 
     fn guards_here(&mut self, guards: &mut [Lanes<W>]) -> bool {

@@ -23,8 +23,51 @@ const DRIFT: f64 = 1e-3;
 /// Scale of the crank angle's deviation, rad.
 const ANGLE: f64 = 1e-3;
 
-/// Guards of a throw: big end, small end, four corners, dead centres, two valves a chamber.
-const THROW_GUARDS: usize = 6 * CONTACT_GUARDS + 5;
+/// What a guard watches, and which of that place's guards it is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch {
+    place: Watched,
+    part: usize,
+}
+
+/// Where a guard watches.
+#[derive(Clone, Copy, Debug)]
+enum Watched {
+    /// A revolute joint with clearance.
+    Joint(Place),
+    /// A corner of the crosshead of a throw.
+    Corner(usize, usize),
+    /// The gas of a throw: dead centres, and two valves a chamber.
+    Gas(usize),
+}
+
+/// The guards that a machine of this build has, in the order in which they are written.
+pub(crate) fn watches<S: Scalar>(machine: &Machine<S>) -> Vec<Watch> {
+    let mut watches = Vec::new();
+    let mut add = |place, parts| {
+        watches.extend((0..parts).map(|part| Watch { place, part }));
+    };
+    let mut joint = |joint: &Revolute<S>, place| {
+        if joint.clear().is_some() {
+            add(Watched::Joint(place), CONTACT_GUARDS);
+        }
+    };
+    joint(&machine.main, Place::Main);
+    for (i, throw) in machine.throws.iter().enumerate() {
+        joint(&throw.big_end, Place::BigEnd(i));
+        joint(&throw.small_end, Place::SmallEnd(i));
+    }
+    for (i, throw) in machine.throws.iter().enumerate() {
+        if throw.guide.clear().is_some() {
+            for corner in 0..4 {
+                add(Watched::Corner(i, corner), CONTACT_GUARDS);
+            }
+        }
+        let chambers = 1 + usize::from(throw.cylinder.crank_end.is_some());
+        add(Watched::Gas(i), 1 + 2 * chambers);
+    }
+    watches
+}
 
 /// The size of each component of the state that counts as 1 for the tolerance: clearances for
 /// offsets. The ledger does not steer the step.
@@ -105,10 +148,6 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
-    pub(crate) fn count_guards(&self) -> usize {
-        CONTACT_GUARDS + THROW_GUARDS * self.machine().throws.len()
-    }
-
     /// True where a joint's guard needs the forces of rigid joints.
     fn has_two_mode_joint(&self) -> bool {
         let two_mode = |joint: &Revolute<S>| {
@@ -124,55 +163,44 @@ impl<S: Scalar> Dynamics<S> {
                 .any(|t| two_mode(&t.big_end) || two_mode(&t.small_end))
     }
 
+    /// Writes the guards in the order of [`watches`].
     pub(crate) fn write_guards(&self, guards: &mut [S]) {
-        guards.fill(S::one());
         let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
+        let mut rest = guards.iter_mut();
+        let mut put = |values: &[S]| {
+            // The values first, so that the one after the last is not taken off the guards.
+            for (value, guard) in values.iter().zip(rest.by_ref()) {
+                *guard = *value;
+            }
+        };
         if let Revolute::Clear(clear) = &machine.main {
-            let values = clear.guards(&at.main, &mode.main, at.shaft.push);
-            guards[..CONTACT_GUARDS].copy_from_slice(&values);
+            put(&clear.guards(&at.main, &mode.main, at.shaft.push));
         }
-        let chunks = guards[CONTACT_GUARDS..].chunks_mut(THROW_GUARDS);
-        for (((throw, at), mode), guards) in machine
-            .throws
-            .iter()
-            .zip(&at.throws)
-            .zip(&mode.throws)
-            .zip(chunks)
-        {
-            let joints = &at.joints;
-            let mut slots = guards.chunks_mut(CONTACT_GUARDS);
-            for (joint, state, mode, force) in [
-                (
-                    &throw.big_end,
-                    &joints.big_end,
-                    &mode.big_end,
-                    at.accelerations.big_force,
-                ),
-                (
-                    &throw.small_end,
-                    &joints.small_end,
-                    &mode.small_end,
-                    at.accelerations.small_force,
-                ),
-            ] {
-                let slot = slots.next();
-                if let (Revolute::Clear(clear), Some(slot)) = (joint, slot) {
-                    let push = state.normal.dot(&force);
-                    slot.copy_from_slice(&clear.guards(state, mode, push));
+        let throws = || machine.throws.iter().zip(&at.throws).zip(&mode.throws);
+        for ((throw, at), mode) in throws() {
+            let forces = &at.accelerations;
+            if let Revolute::Clear(clear) = &throw.big_end {
+                let state = &at.joints.big_end;
+                let push = state.normal.dot(&forces.big_force);
+                put(&clear.guards(state, &mode.big_end, push));
+            }
+            if let Revolute::Clear(clear) = &throw.small_end {
+                let state = &at.joints.small_end;
+                let push = state.normal.dot(&forces.small_force);
+                put(&clear.guards(state, &mode.small_end, push));
+            }
+        }
+        for ((throw, at), mode) in throws() {
+            if let Guide::Clear(clear) = &throw.guide {
+                for (corner, mode) in at.joints.guide.corners.iter().zip(&mode.guide) {
+                    put(&clear.guards(corner, mode));
                 }
             }
-            for (corner, mode) in joints.guide.corners.iter().zip(&mode.guide) {
-                let slot = slots.next();
-                if let (Guide::Clear(clear), Some(slot)) = (&throw.guide, slot) {
-                    slot.copy_from_slice(&clear.guards(corner, mode));
-                }
-            }
-            let gas = &mut guards[6 * CONTACT_GUARDS..];
             let sine = at.motion.angle_sin_cos.0 * machine.drive.sense();
-            gas[0] = flagged(mode.outward, sine, -sine);
-            gas[1..3].copy_from_slice(&at.gas.head_end.guards(&mode.head_end));
+            put(&[flagged(mode.outward, sine, -sine)]);
+            put(&at.gas.head_end.guards(&mode.head_end));
             if throw.cylinder.crank_end.is_some() {
-                gas[3..5].copy_from_slice(&at.gas.crank_end.guards(&mode.crank_end));
+                put(&at.gas.crank_end.guards(&mode.crank_end));
             }
         }
     }
@@ -193,7 +221,7 @@ impl<S: Real> System<S> for Dynamics<S> {
     }
 
     fn guard_count(&self) -> usize {
-        self.count_guards()
+        self.watches().len()
     }
 
     fn guards(&mut self, t: S, y: &[S], guards: &mut [S]) {
@@ -212,22 +240,16 @@ impl<S: Real> System<S> for Dynamics<S> {
 
     fn switch(&mut self, guard: usize, t: S, y: &mut [S]) {
         self.evaluate(t, y);
-        let Some(index) = guard.checked_sub(CONTACT_GUARDS) else {
-            return self.switch_joint(Place::Main, guard, t, y);
-        };
-        let (throw, guard) = (index / THROW_GUARDS, index % THROW_GUARDS);
-        let (contact, part) = (guard / CONTACT_GUARDS, guard % CONTACT_GUARDS);
-        match contact {
-            0 => self.switch_joint(Place::BigEnd(throw), part, t, y),
-            1 => self.switch_joint(Place::SmallEnd(throw), part, t, y),
-            2..=5 => {
-                let corner = contact - 2;
+        let Watch { place, part } = self.watches()[guard];
+        match place {
+            Watched::Joint(place) => self.switch_joint(place, part, t, y),
+            Watched::Corner(throw, corner) => {
                 let rate =
                     self.evaluation().throws[throw].joints.guide.corners[corner].penetration_rate;
                 let mode = &mut self.mode_mut().throws[throw].guide[corner];
                 switch_contact(mode, part, rate);
             }
-            _ => self.switch_gas(throw, part, t, y),
+            Watched::Gas(throw) => self.switch_gas(throw, part, t, y),
         }
     }
 }
