@@ -347,11 +347,15 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
 
 fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &[&Path]) {
     println!("{}, {}", machine.name, rpm(machine.speed));
+    let energy = record.energy_residual.map_or(String::new(), |missing| {
+        format!(
+            ", energy closed to {:.1e} of the energy turned over",
+            missing.abs()
+        )
+    });
     println!(
-        "  {} steps, {} contact and gas switches, energy closed to {:.1e} of the energy turned over",
-        record.work.accepted,
-        record.work.switches,
-        record.energy_residual.abs()
+        "  {} steps, {} contact and gas switches{energy}",
+        record.work.accepted, record.work.switches
     );
     for channel in channels {
         let samples = channel.samples.iter().map(|x| f64::from(*x));

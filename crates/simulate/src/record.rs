@@ -52,8 +52,8 @@ pub struct Record {
     /// True where the transient was found to have settled.
     pub settled: bool,
     /// Energy that the ledger misses over the recorded revolutions, as a share of the energy turned
-    /// over: the run's own measure of its accuracy.
-    pub energy_residual: f64,
+    /// over: the run's own measure of its accuracy. Works are integrated where the motion is traced.
+    pub energy_residual: Option<f64>,
     /// Steps, rejected steps and located switches of the integration.
     pub work: integrate::Work,
 }

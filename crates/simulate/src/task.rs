@@ -44,7 +44,7 @@ struct Recording<'a> {
     start: f64,
     sampling: Sampling,
     sampler: Sampler<'a>,
-    before: Ledger,
+    before: Option<Ledger>,
 }
 
 impl<'a> Task<'a> {
@@ -55,7 +55,7 @@ impl<'a> Task<'a> {
             transient,
             ..
         } = *asked.settings;
-        let mut run = Run::start(asked.machine.clone(), tolerance, true);
+        let mut run = Run::start(asked.machine.clone(), tolerance, traced);
         let leaving = Leaving::new(&mut run, transient);
         let next = leaving.next(&run);
         let mut task = Self {
@@ -102,7 +102,7 @@ impl<'a> Task<'a> {
         Ok(Recording {
             left,
             start,
-            before: self.run.ledger(),
+            before: self.traced.then(|| self.run.ledger()),
             sampler: Sampler::begin(&mut self.run, sensors, sampling.instants(start), trace),
             sampling,
         })
@@ -158,7 +158,7 @@ impl<'a> Task<'a> {
                     series: series.collect::<Result<_, _>>()?,
                     transient: left.transient,
                     settled: left.period.is_some(),
-                    energy_residual: run.residual(&before),
+                    energy_residual: before.map(|before| run.residual(&before)),
                     work: run.work(),
                 }))
             }
