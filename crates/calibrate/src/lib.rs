@@ -34,7 +34,7 @@ pub mod relation;
 pub mod replay;
 pub mod run_condition;
 mod search;
-mod throw_alone;
+pub mod throw_alone;
 pub mod transfer;
 
 pub use comparison::{Comparison, compare, compare_models};

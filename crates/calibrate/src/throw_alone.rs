@@ -12,8 +12,11 @@ use input::MachineFile;
 use serde_json::Value;
 
 /// A throw's own problem, and which of the whole problem's parameters it has.
-pub(crate) struct ThrowAlone {
+#[derive(Clone, Debug)]
+pub struct ThrowAlone {
+    /// Its problem.
     pub problem: Problem,
+    /// The indices of its parameters among those of the whole.
     pub parameters: Vec<usize>,
 }
 
@@ -22,7 +25,7 @@ pub(crate) struct ThrowAlone {
 ///
 /// # Errors
 /// A machine that is none.
-pub(crate) fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
+pub fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
     let machine = MachineFile::from_tree(&problem.tree)?.resolve()?;
     let names: Vec<&str> = machine
         .machine
@@ -38,8 +41,10 @@ pub(crate) fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> 
 }
 
 fn alone(problem: &Problem, name: &str) -> ThrowAlone {
-    let belongs = |path: &str| throw(path).is_none_or(|of| of == name);
     let mut tree = problem.tree.clone();
+    let effects = Effects::of(&tree, name);
+    let belongs =
+        |path: &str| throw(path).is_none_or(|of| of == name) && effects.renamed(path).is_some();
     keep(&mut tree, "throws", |item| word(item, "name") == Some(name));
     for list in ["sensors", "effects"] {
         keep(&mut tree, list, |item| {
@@ -52,6 +57,10 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
     let own = parameters.iter().map(|i| {
         let mut parameter = problem.parameters[*i].clone();
         parameter.places.retain(|place| belongs(place));
+        let places = parameter.places.iter_mut();
+        for path in places.chain([&mut parameter.path]) {
+            *path = effects.renamed(path).unwrap_or_default();
+        }
         parameter
     });
     let runs = problem.runs.iter().map(|run| Observation {
@@ -81,6 +90,31 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
     }
 }
 
+/// The effects of a machine that one throw feels, by their indices.
+struct Effects(Vec<usize>);
+
+impl Effects {
+    fn of(tree: &Value, name: &str) -> Self {
+        let effects = tree.get("effects").and_then(Value::as_array);
+        let all = effects.into_iter().flatten().enumerate();
+        let felt = all.filter(|(_, item)| word(item, "throw").is_none_or(|of| of == name));
+        Self(felt.map(|(i, _)| i).collect())
+    }
+
+    /// A path where only these effects are left; none where it belongs to one of the others.
+    fn renamed(&self, path: &str) -> Option<String> {
+        let indexed = path
+            .strip_prefix("effects.")
+            .and_then(|rest| rest.split_once('.'))
+            .and_then(|(index, key)| Some((index.parse::<usize>().ok()?, key)));
+        let Some((index, key)) = indexed else {
+            return Some(path.to_owned());
+        };
+        let place = self.0.iter().position(|felt| *felt == index)?;
+        Some(format!("effects.{place}.{key}"))
+    }
+}
+
 fn keep(tree: &mut Value, list: &str, whether: impl Fn(&Value) -> bool) {
     if let Some(Value::Array(items)) = tree.get_mut(list) {
         items.retain(whether);
@@ -89,4 +123,21 @@ fn keep(tree: &mut Value, list: &str, whether: impl Fn(&Value) -> bool) {
 
 fn word<'a>(item: &'a Value, key: &str) -> Option<&'a str> {
     item.get(key).and_then(Value::as_str)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn effects_of_other_throws_are_left_out_and_the_others_counted_anew() {
+        let tree = json!({"effects": [{"throw": "one"}, {}, {"throw": "two"}]});
+        let effects = Effects::of(&tree, "two");
+        let renamed = |path| effects.renamed(path);
+        assert_eq!(renamed("effects.0.valve_loss.suction"), None);
+        assert_eq!(renamed("effects.1.a.b").as_deref(), Some("effects.0.a.b"));
+        assert_eq!(renamed("effects.2.a.b").as_deref(), Some("effects.1.a.b"));
+        assert_eq!(renamed("speed").as_deref(), Some("speed"));
+    }
 }

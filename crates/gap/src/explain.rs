@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 /// Most evaluations of the calibration to begin with.
 const CALIBRATION: u64 = 400;
 /// Most effects.
-const MOST: usize = 3;
+pub(crate) const MOST: usize = 3;
 
 /// What the workflow did and found.
 #[derive(Clone, Debug)]
@@ -223,7 +223,10 @@ impl Search<'_> {
             all.retain(|candidate| !known || !candidate.is_of_gas());
             all
         };
-        let (model, others, refused) = self.while_they_earn(model, NOISE, MOST, candidates)?;
+        let (model, of_throws) = self.throw_by_throw(model, &candidates)?;
+        let most = MOST.saturating_sub(of_throws.len());
+        let (model, others, refused) = self.while_they_earn(model, NOISE, most, candidates)?;
+        found.extend(of_throws);
         found.extend(others);
         Ok((baseline, model, found, refused))
     }
@@ -360,7 +363,7 @@ impl Search<'_> {
 
     /// The model with one candidate after another until it is at `noise` or none earns its place;
     /// and what was refused at last.
-    fn while_they_earn(
+    pub(crate) fn while_they_earn(
         &self,
         mut model: Model,
         noise: f64,

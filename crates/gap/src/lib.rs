@@ -26,6 +26,7 @@ pub mod residual_map;
 pub mod scaling;
 pub mod screening;
 mod stability_selection;
+mod throw_by_throw;
 
 pub use candidate::Candidate;
 pub use decision::{Evidence, Verdict};

@@ -9,7 +9,8 @@
 //! The line printed is the CPU time of one revolution (ms) without reading the machine. The file
 //! holds the crosshead's acceleration at 10 kHz from the centred start, as plain samples without a
 //! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself,
-//! `--width 8` eight of them side by side; the time is then that of one.
+//! `--width 8` eight of them side by side; the time is then that of one. The run is repeated for
+//! `--seconds 0.2`.
 
 use input::{MachineFile, Resolved};
 use integrate::{Ensemble, Integrator, Step, Traveller};
@@ -28,14 +29,15 @@ const CLEARANCE: &str = "0.3 mm";
 const LANES: usize = 8;
 /// Longest step, as a share of a revolution: that of `simulate`.
 const LONGEST_STEP: f64 = 0.05;
-/// CPU time for which the run is repeated, s.
-const MEASURED: f64 = 0.2;
+/// CPU time for which the run is repeated, s, unless the command line has another.
+const SECONDS: f64 = 0.2;
 
 /// What the command line asks for.
 struct Task {
     tolerance: f64,
     revolutions: u32,
     width: usize,
+    seconds: f64,
     out: Option<PathBuf>,
 }
 
@@ -47,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         LANES => together,
         width => return Err(format!("there are {LANES} lanes, or 0; not {width}").into()),
     };
-    let (milliseconds, samples) = measure(|| run(&machine, &task))?;
+    let (milliseconds, samples) = measure(task.seconds, || run(&machine, &task))?;
     if let Some(path) = &task.out {
         let bytes: Vec<u8> = samples.iter().flat_map(|x| x.to_le_bytes()).collect();
         std::fs::write(path, bytes)?;
@@ -68,6 +70,7 @@ impl Task {
             tolerance: 1e-6,
             revolutions: 20,
             width: 0,
+            seconds: SECONDS,
             out: None,
         };
         while let Some(flag) = words.next() {
@@ -76,6 +79,7 @@ impl Task {
                 "--tolerance" => task.tolerance = value.parse()?,
                 "--revolutions" => task.revolutions = value.parse()?,
                 "--width" => task.width = value.parse()?,
+                "--seconds" => task.seconds = value.parse()?,
                 "--out" => task.out = Some(value.into()),
                 _ => return Err(format!("{flag} is not known").into()),
             }
@@ -209,14 +213,15 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
     Ok(first.samples.seen)
 }
 
-/// CPU time of one run of `work`, ms, and what it found. The first run warms the caches up.
-fn measure<T>(work: impl Fn() -> Result<T, Box<dyn Error>>) -> Result<(f64, T), Box<dyn Error>> {
+/// CPU time of one run of `work`, ms, and what it found: one run to warm the caches up, then as many
+/// as take so many seconds, at least one.
+fn measure<T>(seconds: f64, work: impl Fn() -> Result<T, Box<dyn Error>>) -> Result<(f64, T), Box<dyn Error>> {
     work()?;
     let start = thread_time()?;
     for runs in 1.. {
         let found = work()?;
         let passed = thread_time()? - start;
-        if passed > MEASURED {
+        if passed > seconds {
             return Ok((1e3 * passed / f64::from(runs), found));
         }
     }

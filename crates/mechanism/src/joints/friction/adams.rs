@@ -30,23 +30,19 @@ impl<S: Scalar> Adams<S> {
     #[inline]
     pub(super) fn coefficient(&self, slip: S) -> S {
         let (low, high) = (self.stiction_speed, self.transition_speed);
+        let (still, moving) = (self.static_coefficient, self.dynamic_coefficient);
         let speed = slip.abs();
-        let rising = step(
-            slip,
-            -low,
-            -self.static_coefficient,
-            low,
-            self.static_coefficient,
+        let creeping = speed.lt(low);
+        let pick = |rising, falling| S::select(creeping, rising, falling);
+        let size = step(
+            pick(slip, speed),
+            pick(-low, low),
+            pick(-still, still),
+            pick(low, high),
+            pick(still, moving),
         );
-        let falling = step(
-            speed,
-            low,
-            self.static_coefficient,
-            high,
-            self.dynamic_coefficient,
-        );
-        let signed = S::select(slip.lt(S::zero()), -falling, falling);
-        S::select(speed.lt(low), rising, signed)
+        let backward = slip.lt(S::zero());
+        S::select(creeping, size, S::select(backward, -size, size))
     }
 }
 
