@@ -124,7 +124,8 @@ impl<S: Scalar> Step<S> {
             self.pieces[n + j] = first;
             self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
         }
-        for (row, piece) in DENSE.iter().zip(self.pieces[3 * n..].chunks_mut(n)) {
+        for (i, row) in DENSE.iter().enumerate() {
+            let piece = &mut self.pieces[(3 + i) * n..];
             combine(n, [*row], &self.stages, |j, [sum]| piece[j] = h * sum);
         }
     }

@@ -215,7 +215,10 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
 
 /// CPU time of one run of `work`, ms, and what it found: one run to warm the caches up, then as many
 /// as take so many seconds, at least one.
-fn measure<T>(seconds: f64, work: impl Fn() -> Result<T, Box<dyn Error>>) -> Result<(f64, T), Box<dyn Error>> {
+fn measure<T>(
+    seconds: f64,
+    work: impl Fn() -> Result<T, Box<dyn Error>>,
+) -> Result<(f64, T), Box<dyn Error>> {
     work()?;
     let start = thread_time()?;
     for runs in 1.. {

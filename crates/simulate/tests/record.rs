@@ -222,3 +222,21 @@ fn an_ideal_machine_is_recorded_too() {
     assert!(record.series.iter().flatten().all(|x| x.is_finite()));
     assert!(record.energy_residual.unwrap().abs() < 1e-9);
 }
+
+#[test]
+fn a_machine_without_a_state_is_recorded() {
+    // Joints are ideal, the speed is given, and no works are integrated: nothing is left to be solved.
+    let ideal = machine("ideal");
+    let settings = settings();
+    let plain = simulate(&ideal.machine, &ideal.sensors, &settings, false).unwrap();
+    let traced = record(&ideal, &settings);
+    assert_eq!(plain.energy_residual, None);
+    for (plain, traced) in plain
+        .series
+        .iter()
+        .flatten()
+        .zip(traced.series.iter().flatten())
+    {
+        assert!((plain - traced).abs() <= 1e-9 * traced.abs().max(1.0));
+    }
+}
