@@ -46,11 +46,10 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
     let belongs =
         |path: &str| throw(path).is_none_or(|of| of == name) && effects.renamed(path).is_some();
     keep(&mut tree, "throws", |item| word(item, "name") == Some(name));
-    for list in ["sensors", "effects"] {
-        keep(&mut tree, list, |item| {
-            word(item, "throw").is_none_or(|of| of == name)
-        });
-    }
+    keep(&mut tree, "sensors", |item| {
+        word(item, "throw").is_none_or(|of| of == name)
+    });
+    keep(&mut tree, "effects", |item| acts_on(item, name));
     let parameters: Vec<usize> = (0..problem.parameters.len())
         .filter(|i| belongs(&problem.parameters[*i].path))
         .collect();
@@ -97,7 +96,7 @@ impl Effects {
     fn of(tree: &Value, name: &str) -> Self {
         let effects = tree.get("effects").and_then(Value::as_array);
         let all = effects.into_iter().flatten().enumerate();
-        let felt = all.filter(|(_, item)| word(item, "throw").is_none_or(|of| of == name));
+        let felt = all.filter(|(_, item)| acts_on(item, name));
         Self(felt.map(|(i, _)| i).collect())
     }
 
@@ -113,6 +112,13 @@ impl Effects {
         let place = self.0.iter().position(|felt| *felt == index)?;
         Some(format!("effects.{place}.{key}"))
     }
+}
+
+/// Whether an effect, a section by its name, acts on a throw.
+fn acts_on(effect: &Value, name: &str) -> bool {
+    let mut sections = effect.as_object().into_iter().flatten();
+    let throw = sections.find_map(|(_, section)| word(section, "throw"));
+    throw.is_none_or(|of| of == name)
 }
 
 fn keep(tree: &mut Value, list: &str, whether: impl Fn(&Value) -> bool) {
@@ -132,7 +138,8 @@ mod tests {
 
     #[test]
     fn effects_of_other_throws_are_left_out_and_the_others_counted_anew() {
-        let tree = json!({"effects": [{"throw": "one"}, {}, {"throw": "two"}]});
+        let at = |throw: &str| json!({"valve_loss": {"throw": throw}});
+        let tree = json!({"effects": [at("one"), {"mains_hum": {}}, at("two")]});
         let effects = Effects::of(&tree, "two");
         let renamed = |path| effects.renamed(path);
         assert_eq!(renamed("effects.0.valve_loss.suction"), None);

@@ -142,6 +142,9 @@ pub fn empirical_force(
     let search = Search { effort, watch, say };
     let mut best: Option<(Candidate, Dense)> = None;
     for library in libraries(&model.problem) {
+        if best.is_some() && !effort.goes_on() {
+            break;
+        }
         let Some(dense) = search.dense(&few(model, effort), &library)? else {
             continue;
         };
@@ -229,7 +232,7 @@ impl Search<'_> {
         if model.fitted > NOISE {
             model = model.better(from(&few.x)?);
         }
-        if model.fitted > NOISE {
+        if model.fitted > NOISE && self.effort.goes_on() {
             (self.say)("estimating the force further", model.fitted);
             let start = Some(model.x.clone());
             let further = self.searched(&model.problem, start, FURTHER)?;
@@ -249,7 +252,11 @@ impl Search<'_> {
         found: Vec<Found>,
     ) -> Result<(Model, Vec<Found>, Vec<MissingForce>), Error> {
         let explained = verdict(baseline, &model, found.len());
-        let settled = matches!(explained, Verdict::NoGap | Verdict::Explained);
+        let settled = match explained {
+            Verdict::NoGap | Verdict::Explained => true,
+            Verdict::PartlyExplained => !self.effort.goes_on(),
+            Verdict::Unexplained => false,
+        };
         // Pressures do not feel it, and without derivatives there is no regression.
         if settled || is_of_pressures(problem) || self.effort.chaotic {
             return Ok((model, found, Vec::new()));
@@ -261,7 +268,10 @@ impl Search<'_> {
         }
         let (mut model, mut found) = (model, found);
         let mut missing = Vec::new();
-        for (start, mut effects) in starts {
+        for (i, (start, mut effects)) in starts.into_iter().enumerate() {
+            if i > 0 && !self.effort.goes_on() {
+                break;
+            }
             let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {
                 continue;
             };

@@ -25,32 +25,40 @@ impl Search<'_> {
             own.retain(|candidate| candidate.throw().is_some());
             own
         };
-        let mut x = model.x.clone();
         let mut found: Vec<Found> = Vec::new();
+        let mut alone = Vec::new();
         for throw in throws_alone(&model.problem)? {
-            let most = MOST.saturating_sub(found.len());
             let start = throw.parameters.iter().map(|i| model.x[*i]).collect();
-            let alone = Model::at(throw.problem, start, self.effort)?;
-            let (alone, of_throw, _) = self.while_they_earn(alone, NOISE, most, &own)?;
-            if !of_throw.is_empty() {
-                for (i, own) in throw.parameters.iter().zip(&alone.x) {
-                    x[*i] = *own;
-                }
+            let throw_model = Model::at(throw.problem, start, self.effort)?;
+            alone.push((throw_model, throw.parameters));
+        }
+        // Where most is missing an effect is seen best, and may be all that there is.
+        alone.sort_by(|(a, _), (b, _)| b.fitted.total_cmp(&a.fitted));
+        let mut explained = model;
+        for (throw, parameters) in alone {
+            let most = MOST.saturating_sub(found.len());
+            if explained.fitted <= NOISE || most == 0 {
+                break;
+            }
+            let (throw, of_throw, _) = self.while_they_earn(throw, NOISE, most, &own)?;
+            if of_throw.is_empty() {
+                continue;
+            }
+            let mut with = explained.problem.clone();
+            for found in &of_throw {
+                with = found.candidate.added(&with, &found.values)?;
+            }
+            let mut x = explained.x.clone();
+            for (i, own) in parameters.iter().zip(&throw.x) {
+                x[*i] = *own;
+            }
+            x.resize(with.parameters.len(), 0.0);
+            let after = Model::fit(with, &x, self.effort, self.watch)?;
+            if earns(&explained, &after) {
+                explained = after;
                 found.extend(of_throw);
             }
         }
-        if found.is_empty() {
-            return Ok((model, found));
-        }
-        let mut with = model.problem.clone();
-        for found in &found {
-            with = found.candidate.added(&with, &found.values)?;
-        }
-        x.resize(with.parameters.len(), 0.0);
-        let after = Model::fit(with, &x, self.effort, self.watch)?;
-        match earns(&model, &after) {
-            true => Ok((after, found)),
-            false => Ok((model, Vec::new())),
-        }
+        Ok((explained, found))
     }
 }
