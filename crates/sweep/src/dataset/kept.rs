@@ -22,7 +22,7 @@ impl Output {
             if let Some(folder) = self.path(&path).parent() {
                 fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
             }
-            self.write(&path, &content)?;
+            self.store.write(&path, &content)?;
         }
         Ok(())
     }
