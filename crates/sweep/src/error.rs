@@ -81,6 +81,21 @@ pub enum Error {
          have changed): --overwrite replaces it, or choose another folder", .0.display()
     )]
     OtherCalibration(PathBuf),
+    /// Datasets are not removed from object storage.
+    #[error(
+        "`{}` is in object storage, where nothing is replaced: remove it by the storage's own means, \
+         or choose another prefix", .0.display()
+    )]
+    NoOverwrite(PathBuf),
+    /// Calibrations are made in folders.
+    #[error(
+        "`{}` is in object storage, where no machine is calibrated: plan the sweep in a folder, and \
+         then that folder's sweep.yaml in object storage", .0.display()
+    )]
+    NoCalibration(PathBuf),
+    /// The program was built without object storage.
+    #[error("`{}`: this program was built without object storage (feature `s3`)", .0.display())]
+    NoObjectStorage(PathBuf),
     /// Another process writes to the output folder.
     #[error("`{}` is being written by another process ({by})", path.display())]
     InUse {
@@ -184,6 +199,9 @@ impl Error {
                 | Error::NotOurs(_)
                 | Error::OtherPlan { .. }
                 | Error::NotPlanned(_)
+                | Error::NoOverwrite(_)
+                | Error::NoCalibration(_)
+                | Error::NoObjectStorage(_)
                 | Error::NoShard { .. }
                 | Error::LargeShards { .. }
                 | Error::OtherCalibration(_)

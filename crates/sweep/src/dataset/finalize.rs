@@ -5,10 +5,9 @@ use std::collections::BTreeMap;
 use input::paths;
 use recordings::{Counts, DatasetCard, FileEntry, Manifest, Subset};
 
-use super::commit::{Commit, DiagramCommit};
 use super::diagrams::{self, DiagramTable};
 use super::output::Output;
-use super::parts::Part;
+use super::parts::{Made, scan};
 use super::tables::Tables;
 use crate::split::Split;
 use crate::sweep_file::Format;
@@ -30,25 +29,18 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let mut files: Vec<FileEntry> = Vec::new();
     let mut failed = Vec::new();
     let mut missing = Vec::new();
-    for index in 0..plan.parts() {
-        match plan.part(index) {
-            Some(Part::Shard(shard)) => match Commit::read(output, plan, shard)? {
-                Some(commit) => {
-                    add(&mut rows, commit.rows);
-                    files.extend(commit.files);
-                    failed.extend(commit.failed);
-                }
-                None => missing.push(index),
-            },
-            Some(Part::Diagram(diagram)) => {
-                match DiagramCommit::read(output, plan, &diagram.name)? {
-                    Some(commit) => files.push(commit.file),
-                    None => missing.push(index),
-                }
+    scan(plan, output, 0..plan.parts(), |index, made| {
+        match made {
+            Some(Made::Shard(commit)) => {
+                add(&mut rows, commit.rows);
+                files.extend(commit.files);
+                failed.extend(commit.failed);
             }
-            None => {}
+            Some(Made::Diagram(commit)) => files.push(commit.file),
+            None => missing.push(index),
         }
-    }
+        Ok(())
+    })?;
     if !missing.is_empty() {
         let shards = plan.parts();
         return Err(Error::Incomplete { shards, missing });

@@ -36,6 +36,7 @@ use crate::plan::MOST_CASES;
 use crate::{Case, Error, Plan};
 use attempts::Attempts;
 use case_rows::{failed, run_cases};
+use parts::scan;
 use shard::ShardWriter;
 
 /// What a simulated case gives: the channels of the machine's sensors, in their order.
@@ -118,11 +119,10 @@ pub fn generate_in(
     plan.check_size()?;
     let output = claim.open(plan)?;
     let mut pending = Vec::new();
-    for shard in 0..plan.shards() {
-        if Commit::read(&output, plan, shard)?.is_none() {
-            pending.push(shard);
-        }
-    }
+    scan(plan, &output, 0..plan.shards(), |shard, made| {
+        pending.extend(made.is_none().then_some(shard));
+        Ok(())
+    })?;
     let unfinished = cases_of(plan, &pending);
     progress.begins(plan.cases(), plan.cases() - unfinished);
     run_shards(plan, &output, &pending, options, runner, progress)?;

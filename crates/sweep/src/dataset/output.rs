@@ -93,6 +93,10 @@ impl Claim {
     /// Where the folder has something in it that `existing` does not allow for, another process
     /// writes to it, or it cannot be written to. It is then as it was.
     pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
+        let store = Store::at(root)?;
+        if store.folder().is_none() {
+            return Self::in_bucket(store, root, existing);
+        }
         let (empty, ours) = look(root)?;
         match existing {
             _ if empty => {}
@@ -104,7 +108,7 @@ impl Claim {
             make(&root.join(folder))?;
         }
         let output = Output {
-            store: Store::at(root)?,
+            store,
             lock: Some(lock(root)?),
             root: root.to_owned(),
         };
@@ -118,12 +122,37 @@ impl Claim {
         })
     }
 
+    /// The same in object storage. Nothing is locked there: whose plan is written first has it.
+    fn in_bucket(store: Store, root: &Path, existing: Existing) -> Result<Self, Error> {
+        let begun = store.length(PLAN)?.is_some();
+        let empty = begun || store.names("")?.is_empty();
+        let root = root.to_owned();
+        match existing {
+            _ if !empty => return Err(Error::NotOurs(root)),
+            Existing::Overwrite => return Err(Error::NoOverwrite(root)),
+            Existing::Refuse if begun => return Err(Error::Exists(root)),
+            Existing::Refuse | Existing::Resume => {}
+        }
+        Ok(Self {
+            output: Output {
+                store,
+                root,
+                lock: None,
+            },
+            existing,
+            calibrated: false,
+        })
+    }
+
     /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
     /// already. Where it is not, a dataset that is to be replaced goes first.
     ///
     /// # Errors
     /// Where a dataset was begun with another calibration, or the folder cannot be written to.
     pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
+        if self.output.store.folder().is_none() {
+            return Err(Error::NoCalibration(self.output.root.clone()));
+        }
         self.calibrated = true;
         if !is_kept {
             match self.existing {
@@ -147,6 +176,13 @@ impl Claim {
     /// # Errors
     /// Where it holds the dataset of another plan, or cannot be written to.
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
+        if self.output.store.folder().is_none() {
+            self.output.record(plan)?;
+            if let Some(from) = &plan.calibrated {
+                self.output.copy_calibration(from)?;
+            }
+            return Ok(self.output);
+        }
         let begun = self.begun();
         let output = self.output;
         let own = output.path(CALIBRATION);
@@ -191,7 +227,9 @@ impl Output {
     /// makes the whole dataset.
     pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
         let (mut output, plan) = Self::look(root)?;
-        output.lock = lock_shared(root)?;
+        if output.store.folder().is_some() {
+            output.lock = lock_shared(root)?;
+        }
         Ok((output, plan))
     }
 
@@ -224,8 +262,10 @@ impl Output {
     /// # Errors
     /// Where it cannot be removed.
     pub(super) fn tidy(&self) -> Result<(), Error> {
-        let Store::Folder(folder) = &self.store;
-        let Ok(entries) = fs::read_dir(folder.root().join("_sweep/tmp")) else {
+        let Some(folder) = self.store.folder() else {
+            return Ok(());
+        };
+        let Ok(entries) = fs::read_dir(folder.join("_sweep/tmp")) else {
             return Ok(());
         };
         for entry in entries.flatten() {

@@ -1,10 +1,13 @@
 //! The parts of a sweep that processes make by themselves: its shards, and after them its
 //! bifurcation diagrams, numbered from 0 throughout.
 
+use std::ops::Range;
+
 use super::commit::{Commit, DiagramCommit};
 use super::diagrams::compute;
 use super::output::Output;
-use super::{Options, Progress, Runner, run_shards};
+use super::{Options, Progress, Runner, pool, run_shards};
+use crate::in_order::in_order;
 use crate::plan::Diagram;
 use crate::{Error, Plan};
 
@@ -30,6 +33,46 @@ impl Plan {
         let diagram = self.diagrams.get((index - self.shards()) as usize);
         diagram.map(Part::Diagram)
     }
+}
+
+/// What a finished part left.
+pub(super) enum Made {
+    /// A shard.
+    Shard(Commit),
+    /// A bifurcation diagram.
+    Diagram(DiagramCommit),
+}
+
+/// Records that are read at a time: on storage that takes its time they would else take long.
+const READERS: usize = 16;
+
+/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished.
+///
+/// # Errors
+/// The first error of `each`, or a record that cannot be read.
+pub(super) fn scan(
+    plan: &Plan,
+    output: &Output,
+    indices: Range<u64>,
+    mut each: impl FnMut(u64, Option<Made>) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let read = |index: &u64| -> Result<Option<Made>, Error> {
+        match plan.part(*index) {
+            Some(Part::Shard(shard)) => Ok(Commit::read(output, plan, shard)?.map(Made::Shard)),
+            Some(Part::Diagram(diagram)) => {
+                let commit = DiagramCommit::read(output, plan, &diagram.name)?;
+                Ok(commit.map(Made::Diagram))
+            }
+            None => Ok(None),
+        }
+    };
+    in_order(
+        &pool(READERS)?,
+        4 * READERS,
+        indices,
+        read,
+        |index, made| each(index, made?),
+    )
 }
 
 /// Makes part `index` of a sweep, and tells whether there was anything to do: a part that is

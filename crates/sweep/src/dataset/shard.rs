@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use recordings::formats::parquet::TableWriter;
-use recordings::{FailedCase, FileEntry, Schema, Value, WholeFile};
+use recordings::{FailedCase, FileEntry, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
 use super::commit::Commit;
 use super::output::Output;
+use super::store::NewFile;
 use super::tables::Tables;
 use crate::split::Split;
 use crate::sweep_file::Format;
@@ -27,7 +28,7 @@ pub(super) struct ShardWriter<'a> {
 /// One file of a table.
 struct PartFile {
     path: String,
-    table: TableWriter<WholeFile>,
+    table: TableWriter<NewFile>,
 }
 
 impl<'a> ShardWriter<'a> {

@@ -1,9 +1,8 @@
 //! How far a sweep has got.
 
 use super::attempts;
-use super::commit::{Commit, DiagramCommit};
 use super::output::Output;
-use super::parts::Part;
+use super::parts::{Made, scan};
 use crate::{Error, Plan};
 
 /// How far a sweep has got.
@@ -35,28 +34,21 @@ pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
         complete: output.store.length("manifest.json")?.is_some(),
     };
     let attempts = attempts::counts(output)?;
-    for index in 0..plan.parts() {
-        let commit = match plan.part(index) {
-            Some(Part::Shard(shard)) => {
-                Commit::read(output, plan, shard)?.map(|c| (c.cases, c.failed))
-            }
-            Some(Part::Diagram(diagram)) => {
-                let commit = DiagramCommit::read(output, plan, &diagram.name)?;
-                commit.map(|_| ([0, 0], Vec::new()))
-            }
-            None => None,
-        };
-        match commit {
-            Some(([start, end], failed)) => {
+    scan(plan, output, 0..plan.parts(), |index, made| {
+        match made {
+            Some(Made::Shard(commit)) => {
+                let [start, end] = commit.cases;
                 status.cases += end - start;
-                status.failed += failed.len() as u64;
+                status.failed += commit.failed.len() as u64;
             }
+            Some(Made::Diagram(_)) => {}
             None => {
                 status.missing.push(index);
                 let count = attempts.get(&index.to_string());
                 status.attempts.extend(count.map(|&count| (index, count)));
             }
         }
-    }
+        Ok(())
+    })?;
     Ok(status)
 }

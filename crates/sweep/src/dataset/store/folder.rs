@@ -67,6 +67,9 @@ impl Folder {
 
     pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {
         let path = self.path(path);
+        if path.is_dir() {
+            return Ok(None);
+        }
         let Some(mut file) = found("read", &path, File::open(&path))? else {
             return Ok(None);
         };
