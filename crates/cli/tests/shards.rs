@@ -271,7 +271,7 @@ fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
         .arg("--out")
         .arg(&broken));
     assert_same(&whole, &broken);
-    println!("{done} kills over {} datasets", rounds + 1);
+    eprintln!("{done} kills over {} datasets", rounds + 1);
 }
 
 #[test]

@@ -177,6 +177,7 @@ fn shard_script(submitted: &Submitted, folder: &Path) -> String {
         "#!/bin/sh
 #SBATCH --job-name={}
 #SBATCH --output={}
+#SBATCH --open-mode=append
 #SBATCH --requeue
 # Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
 # one of its cases, that case is found and left out.
@@ -200,6 +201,7 @@ fn finalize_script(submitted: &Submitted, folder: &Path) -> String {
         "#!/bin/sh
 #SBATCH --job-name={}
 #SBATCH --output={}
+#SBATCH --open-mode=append
 #SBATCH --requeue
 # Completes the dataset, or submits what is missing.
 exec {program} sweep finalize {root} --resubmit
