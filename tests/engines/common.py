@@ -6,6 +6,7 @@ The program is target/debug/crosshead, or what CROSSHEAD names.
 import hashlib
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import time
@@ -13,6 +14,9 @@ import time
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 TARGET = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", PROJECT / "target"))
 CROSSHEAD = os.environ.get("CROSSHEAD", str(TARGET / "debug" / "crosshead"))
+
+# Whoever ends a test lets it stop what it started.
+signal.signal(signal.SIGTERM, lambda *_: sys.exit("ended"))
 
 SWEEP = """
 name: engines

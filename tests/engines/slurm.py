@@ -10,7 +10,7 @@ import tempfile
 import time
 
 from common import CROSSHEAD, checksums, crosshead, expect, expect_same, say, wait_until, write_sweep
-from slurm_cluster import Cluster, install, kill
+from slurm_cluster import Cluster, install
 
 
 def commits(out):
@@ -68,22 +68,20 @@ def cancel(folder, sweep, whole):
         wait_until(lambda: not cluster.client("squeue", "-h"), 60, "no job")
         made = commits(out)
         expect(made < 41 and not (out / "manifest.json").exists(), f"{made} shards")
-        # Tasks that end by themselves without a result: their time is up.
         command("submit", out, "--engine", "slurm", "--", "--cpus-per-task=2")
         wait_until(lambda: commits(out) >= made + 3, 120, "three shards more")
-        for pid in cluster.payloads("n1"):
-            name = pathlib.Path(f"/proc/{pid}/comm")
-            if name.exists() and name.read_text().strip() == "slurm_script":
-                kill(pid)
+        ended = cluster.end_tasks("n1")
         wait_for_dataset(cluster, out, 400)
     expect_same(checksums(out), checksums(whole))
     rounds = re.findall("shards submitted", says(out))
-    say(f"cancelled after {made} shards and submitted again: the same files; {len(rounds)} rounds more")
+    say(f"cancelled after {made} shards and submitted again: the same files")
+    expect(rounds, f"{ended} processes ended, and nothing was submitted again")
+    say(f"a task that was ended ({ended} processes) was submitted again by the finalising job")
 
 
 def partition(folder):
     """A node loses its network and goes on alone, while its tasks run again elsewhere."""
-    sweep = write_sweep(folder, cases=48, shard_size=8, revolutions=250)
+    sweep = write_sweep(folder, cases=48, shard_size=8, revolutions=60)
     whole, out = folder / "whole-partition", folder / "partition"
     crosshead("gen-dataset", sweep, "--out", whole)
     crosshead("sweep", "plan", sweep, "--out", out)

@@ -176,6 +176,15 @@ class Cluster:
             kill(pid)
         return len(pids)
 
+    def end_tasks(self, node):
+        """The tasks on `node` end, the scripts before what they run; the node stays."""
+        name = lambda pid: pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
+        pids = {pid: name(pid) for pid in self.payloads(node)}
+        ended = [pid for pid, name in pids.items() if name != "slurmstepd"]
+        for pid in sorted(ended, key=lambda pid: pids[pid] != "slurm_script"):
+            kill(pid)
+        return len(ended)
+
     def hurry(self):
         """Tasks that were queued again wait for two minutes; not here."""
         for line in self.client("squeue", "-h", "-r", "-t", "PD", "-o", "%i %r").splitlines():

@@ -32,7 +32,7 @@ Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the ar
 pub struct Arguments {
     /// The sweep file
     sweep: PathBuf,
-    /// Folder of the dataset [default: datasets/NAME, NAME being the sweep's]
+    /// Folder of the dataset, or s3://BUCKET/PREFIX [default: datasets/NAME, NAME being the sweep's]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the recordings, instead of the sweep's own
