@@ -8,11 +8,12 @@ set -eu
 sweep=$1 out=$2 shards=$3
 shift 3
 crosshead sweep plan "$sweep" --out "$out" --shards "$shards"
+case $out in s3://*) ;; *) out=$(realpath "$out") ;; esac
 for round in 1 2 3; do
     missing=$(crosshead sweep finalize "$out") && exit 0
     # 0-3,7 as lines of numbers.
     for range in $(echo "$missing" | tr , ' '); do
         seq "${range%-*}" "${range#*-}"
-    done | parallel --retries 7 "$@" crosshead sweep shard "$PWD/$out" --threads 1 --index {} || true
+    done | parallel --retries 7 "$@" crosshead sweep shard "$out" --threads 1 --index {} || true
 done
 crosshead sweep finalize "$out"
