@@ -7,11 +7,13 @@ Needs the packages of requirements-object-storage.txt.
 import hashlib
 import os
 import pathlib
+import random
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import boto3
@@ -125,6 +127,59 @@ def race(s3, folder):
     say(f"{ROUNDS} rounds of {RACERS}: one winner each; {several / ROUNDS:.1f} simulated the shard")
 
 
+class Nuisance(threading.Thread):
+    """A proxy before the server whose connections come late and break off, in requests and in
+    answers: puts fail, or are done and said to have failed, and are done again."""
+
+    def __init__(self, address):
+        super().__init__(daemon=True)
+        self.server = ("127.0.0.1", int(address.rsplit(":", 1)[1]))
+        self.door = socket.create_server(("127.0.0.1", 0))
+        self.address = f"http://127.0.0.1:{self.door.getsockname()[1]}"
+        self.random = random.Random(1)
+        self.broken = 0
+
+    def run(self):
+        while True:
+            client, _ = self.door.accept()
+            time.sleep(0.2 * (self.random.random() < 0.1))
+            server = socket.create_connection(self.server)
+            for source, sink in [(client, server), (server, client)]:
+                threading.Thread(target=self.pass_on, args=(source, sink), daemon=True).start()
+
+    def pass_on(self, source, sink):
+        try:
+            while content := source.recv(1 << 16):
+                if self.random.random() < 0.05:
+                    self.broken += 1
+                    break
+                sink.sendall(content)
+        except OSError:
+            pass
+        for end in [source, sink]:
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+
+
+def nuisance(s3, folder, address):
+    """Connections break off and come late: nothing is lost, nothing doubled."""
+    sweep = write_sweep(folder, cases=20, shard_size=4)
+    proxy = Nuisance(address)
+    proxy.start()
+    environment = {**os.environ, "AWS_ENDPOINT_URL": proxy.address}
+    url = "s3://data/nuisance"
+    crosshead("gen-dataset", sweep, "--out", url, env=environment)
+    expect_same(objects(s3, "nuisance"), checksums(folder / "whole"))
+    for shard in range(6):
+        name = f"{shard}.json" if shard < 5 else "bifurcation-clearance.json"
+        written = versions(s3, f"nuisance/_sweep/commits/{name}")
+        expect(written == 1, f"{name} was written {written} times")
+    expect(proxy.broken > 0, "nothing broke")
+    say(f"{proxy.broken} connections broken: the same bytes, each record written once")
+
+
 def kill(s3, folder):
     """A process is killed while it sends a large object in parts: nobody sees any of it."""
     sweep = folder / "large.yaml"
@@ -170,6 +225,7 @@ def main():
             s3.put_bucket_versioning(Bucket="data", VersioningConfiguration=versioning)
             same_bytes(s3, folder)
             race(s3, folder)
+            nuisance(s3, folder, address)
             kill(s3, folder)
         finally:
             server.terminate()

@@ -1,5 +1,8 @@
 //! A dataset in steps, as several machines make it: the same bytes as gen-dataset, whatever ends.
 
+#[path = "../../../tests/readers/venv.rs"]
+mod venv;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -131,6 +134,12 @@ fn shards_made_twice_at_once_give_the_bytes_of_gen_dataset() {
     assert_eq!(none.status.code(), Some(2));
     run(&mut crosshead(&["sweep", "finalize", out, "--verify"]));
     assert_same(&whole, &parts);
+
+    // Whoever reads it does not meet what a crash left.
+    let left = parts.join("_sweep/tmp/features-train-00000-of-00003.parquet.host-1-2-3.part");
+    std::fs::write(left, "half").unwrap();
+    let script = venv::readers().join("read_dataset.py");
+    venv::run(Command::new(venv::python()).arg(script).arg(&parts));
 
     let status = run(&mut crosshead(&["sweep", "status", out, "--json"]));
     let status: serde_json::Value = serde_json::from_slice(&status.stdout).unwrap();

@@ -44,6 +44,14 @@ enum Engine {
 /// # Errors
 /// Nothing planned, jobs that are under way already, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.url.starts_with("s3:") {
+        return Err(Failure::input(format!(
+            "{}: scripts and logs of the jobs need a folder; for object storage, submit \
+             `crosshead sweep shard {}` as an array",
+            arguments.url.display(),
+            arguments.url.display()
+        )));
+    }
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
     let missing = status(&output, &plan).map_err(gen_dataset::failed)?.missing;
     match arguments.engine {
