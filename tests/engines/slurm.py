@@ -33,7 +33,7 @@ def says(out):
 def crash(folder):
     """One of two nodes crashes midway."""
     sweep = write_sweep(folder, cases=200, shard_size=5, revolutions=30)
-    whole, out = folder / "whole", folder / "crash"
+    whole, out = folder / "whole", folder / "a crash"
     crosshead("gen-dataset", sweep, "--out", whole)
     crosshead("sweep", "plan", sweep, "--out", out)
     with Cluster(folder / "crash-cluster") as cluster:

@@ -176,7 +176,7 @@ fn shard_script(submitted: &Submitted, folder: &Path) -> String {
     format!(
         "#!/bin/sh
 #SBATCH --job-name={}
-#SBATCH --output={}
+#SBATCH --output=\"{}\"
 #SBATCH --open-mode=append
 #SBATCH --requeue
 # Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
@@ -200,7 +200,7 @@ fn finalize_script(submitted: &Submitted, folder: &Path) -> String {
     format!(
         "#!/bin/sh
 #SBATCH --job-name={}
-#SBATCH --output={}
+#SBATCH --output=\"{}\"
 #SBATCH --open-mode=append
 #SBATCH --requeue
 # Completes the dataset, or submits what is missing.
