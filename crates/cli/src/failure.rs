@@ -10,6 +10,8 @@ pub enum Failure {
     Input(String),
     /// The work failed. Exit status 1.
     Work(String),
+    /// A dataset is not complete yet. Exit status 3.
+    Incomplete(String),
 }
 
 impl Failure {
@@ -41,6 +43,7 @@ pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Input(message)) => (message, 2),
         Err(Failure::Work(message)) => (message, 1),
+        Err(Failure::Incomplete(message)) => (message, 3),
     };
     eprintln!("error: {message}");
     ExitCode::from(status)

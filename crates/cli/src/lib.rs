@@ -2,7 +2,8 @@
 //!
 //! Every verb is a file here: its arguments as a struct, and a `run` that calls the libraries.
 //! Results go to files, summaries to standard output, progress and the one message of a failure to
-//! standard error. Exit status: 0 done, 1 the work failed, 2 the input or the arguments are wrong.
+//! standard error. Exit status: 0 done, 1 the work failed, 2 the input or the arguments are wrong, 3 a
+//! dataset is not complete yet.
 #![allow(clippy::print_stdout)]
 
 pub mod bundle;
@@ -16,5 +17,6 @@ pub mod replay;
 pub mod report;
 pub mod schema;
 pub mod simulate;
+pub mod sweep;
 
 pub use failure::{Failure, finish};

@@ -153,6 +153,16 @@ fn a_sweep_calibrates_first_and_its_bytes_follow_from_the_recordings() {
     let text = case.generate(&["sweep.yaml", "--out", "two", "--dry-run"]);
     assert!(text.contains("calibrated before"), "{text}");
 
+    // In steps.
+    let step = |arguments: &[&str]| {
+        let output = case.run(&[&["sweep"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {output:?}");
+    };
+    step(&["plan", "sweep.yaml", "--out", "steps"]);
+    step(&["shard", "steps", "--index", "0"]);
+    step(&["finalize", "steps", "--verify"]);
+    assert!(one == case.bytes("steps"), "in steps it gives other bytes");
+
     // One case, by the sweep and by the resolved sweep.
     for (sweep, out) in [("sweep.yaml", "a"), ("datasets/worn/sweep.yaml", "b")] {
         let output = case.run(&["simulate", sweep, "--case", "case-000002", "--out", out]);

@@ -55,6 +55,14 @@ impl WholeFile {
         })
     }
 
+    /// What has been written so far.
+    pub fn record(&self) -> FileRecord {
+        FileRecord {
+            bytes: self.bytes,
+            sha256: format!("{:x}", self.hash.clone().finalize()),
+        }
+    }
+
     /// Hands everything to the disk and gives the file its name, in place of any file of that name.
     ///
     /// # Errors
@@ -71,10 +79,7 @@ impl WholeFile {
             .map_err(Error::io("rename the finished file to", &self.destination))?;
         self.committed = true;
         sync_folder(&self.destination)?;
-        Ok(FileRecord {
-            bytes: self.bytes,
-            sha256: format!("{:x}", self.hash.finalize_reset()),
-        })
+        Ok(self.record())
     }
 
     /// The same error with the name of the file.

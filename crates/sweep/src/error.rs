@@ -3,6 +3,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::ranges::ranges;
+
 /// What can go wrong with a sweep. A case that fails is not among it: it stands in the manifest,
 /// and the others go on.
 #[derive(Debug, thiserror::Error)]
@@ -32,10 +34,38 @@ pub enum Error {
          folder", .0.display()
     )]
     NotOurs(PathBuf),
+    /// The place of a dataset has no plan.
+    #[error(
+        "`{}` holds no planned sweep: `crosshead sweep plan SWEEP.yaml --out {}` begins one",
+        .0.display(), .0.display()
+    )]
+    NotPlanned(PathBuf),
+    /// A number beyond the shards of the sweep.
+    #[error("there is no shard {index}: this sweep has shards 0 to {}", shards - 1)]
+    NoShard {
+        /// The number asked for.
+        index: u64,
+        /// Shards of the sweep, diagrams included.
+        shards: u64,
+    },
+    /// Shards of a size that is not allowed.
+    #[error(
+        "{cases} cases in {shards} shards are {size} a shard, and {most} are the most: give more shards"
+    )]
+    LargeShards {
+        /// Cases of the sweep.
+        cases: u64,
+        /// Shards asked for.
+        shards: u64,
+        /// Cases of each.
+        size: u64,
+        /// The most that are allowed.
+        most: u64,
+    },
     /// The output folder holds the dataset of another sweep.
     #[error(
-        "`{}` holds a dataset of another sweep or version (plan {}, not {}): --overwrite replaces \
-         it, or choose another folder", path.display(), short(found), short(expected)
+        "`{}` holds a dataset of another sweep or version (plan {}, not {}): gen-dataset \
+         --overwrite replaces it, or choose another folder", path.display(), short(found), short(expected)
     )]
     OtherPlan {
         /// The folder.
@@ -51,6 +81,21 @@ pub enum Error {
          have changed): --overwrite replaces it, or choose another folder", .0.display()
     )]
     OtherCalibration(PathBuf),
+    /// Datasets are not removed from object storage.
+    #[error(
+        "`{}` is in object storage, where nothing is replaced: remove it by the storage's own means, \
+         or choose another prefix", .0.display()
+    )]
+    NoOverwrite(PathBuf),
+    /// Calibrations are made in folders.
+    #[error(
+        "`{}` is in object storage, where no machine is calibrated: plan the sweep in a folder, and \
+         then that folder's sweep.yaml in object storage", .0.display()
+    )]
+    NoCalibration(PathBuf),
+    /// The program was built without object storage.
+    #[error("`{}`: this program was built without object storage (feature `s3`)", .0.display())]
+    NoObjectStorage(PathBuf),
     /// Another process writes to the output folder.
     #[error("`{}` is being written by another process ({by})", path.display())]
     InUse {
@@ -93,17 +138,27 @@ pub enum Error {
         /// Checksum of the new one.
         second: String,
     },
-    /// A dataset cannot be completed.
-    #[error("{} of {shards} shards are missing, the first is {}", missing.len(), missing[0])]
+    /// A dataset cannot be completed yet.
+    #[error("{} of {shards} shards are missing: {}", missing.len(), ranges(missing))]
     Incomplete {
-        /// Shards of the sweep.
+        /// Shards of the sweep, bifurcation diagrams included.
         shards: u64,
         /// Those that are missing; at least one.
         missing: Vec<u64>,
     },
-    /// A dataset cannot be completed.
-    #[error("the bifurcation diagram {0} is missing")]
-    MissingDiagram(String),
+    /// A file of a dataset is not the one that was written.
+    #[error(
+        "`{}` was changed (checksum {}, not {}): remove it, and its shard is made again",
+        path.display(), short(found), short(expected)
+    )]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// Checksum of what stands there, or why there is none.
+        found: String,
+        /// Checksum of what was written.
+        expected: String,
+    },
     /// The user wanted it to stop after the cases.
     #[error(
         "stopped; all cases and {done} of {diagrams} bifurcation diagrams are finished, and \
@@ -143,6 +198,12 @@ impl Error {
                 | Error::Exists(_)
                 | Error::NotOurs(_)
                 | Error::OtherPlan { .. }
+                | Error::NotPlanned(_)
+                | Error::NoOverwrite(_)
+                | Error::NoCalibration(_)
+                | Error::NoObjectStorage(_)
+                | Error::NoShard { .. }
+                | Error::LargeShards { .. }
                 | Error::OtherCalibration(_)
                 | Error::InUse { .. }
                 | Error::Unwritable { .. }

@@ -9,6 +9,7 @@ pub mod in_order;
 pub mod labels;
 mod normal;
 pub mod plan;
+pub mod ranges;
 mod runner;
 pub mod split;
 pub mod sweep_file;

@@ -285,6 +285,60 @@ fn two_processes_do_not_share_a_folder() {
     // A lock file that a dead process left does not hinder.
     fs::write(folder.path().join("_sweep/lock"), "process 1").unwrap();
     Output::open(folder.path(), &plan, Existing::Resume).unwrap();
+    // Those that make a shard each do share it, and keep out one that makes them all.
+    let (_first, found) = Output::join(folder.path()).unwrap();
+    let _second = Output::join(folder.path()).unwrap();
+    assert_eq!(found.id, plan.id);
+    let third = Output::open(folder.path(), &plan, Existing::Resume).unwrap_err();
+    assert!(third.to_string().contains("makes a shard"), "{third}");
+}
+
+#[test]
+fn shards_are_of_equal_size_and_part_of_the_plan() {
+    let given = plan(SWEEP);
+    let five = plan(SWEEP).with_shards(5).unwrap();
+    assert_eq!((five.shard_size, five.shards()), (6, 5));
+    assert_ne!(five.id, given.id);
+    // The size that the file has anyway.
+    assert_eq!(
+        plan(&SWEEP.replace("shard_size: 7", "shard_size: 6")).id,
+        five.id
+    );
+    let large = plan(&SWEEP.replace("repeats: 2", "repeats: 1000000")).with_shards(3);
+    let message = large.unwrap_err().to_string();
+    assert!(
+        message.contains("5000000 a shard, and 1000000"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_case_that_its_process_ends_with_is_found_and_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("set");
+    let plan = plan(SWEEP);
+    let deadly = |case: &Case| {
+        assert_ne!(case.index, 9, "the process ends");
+        record(case)
+    };
+    let cancel = AtomicBool::new(false);
+    let resume = options(Existing::Resume, 2, &cancel);
+    let attempt = || generate(&plan, &root, &resume, &each(deadly), &mut ());
+    let mut ended = 0;
+    let manifest = loop {
+        match std::panic::catch_unwind(std::panic::AssertUnwindSafe(attempt)) {
+            Ok(made) => break made.unwrap(),
+            Err(_) => ended += 1,
+        }
+        assert!(ended < 10);
+    };
+    assert_eq!(ended, 6);
+    assert_eq!(manifest.failed.len(), 1);
+    assert_eq!(manifest.failed[0].case_id, "case-000009");
+    let reason = "the process ended without a word, three times";
+    assert_eq!(manifest.failed[0].reason, reason);
+    let rows: u64 = manifest.counts.rows.values().flat_map(|f| f.values()).sum();
+    assert_eq!(rows, 2 * (CASES - 1));
 }
 
 #[test]

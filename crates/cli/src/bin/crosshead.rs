@@ -15,6 +15,8 @@ struct Arguments {
 enum Verb {
     /// Simulate a sweep of cases and write a labelled dataset (the same as the program gen-dataset)
     GenDataset(cli::gen_dataset::Arguments),
+    /// Make a dataset in steps, on many machines at once
+    Sweep(cli::sweep::Arguments),
     /// Simulate one run of a machine: signals and a picture
     Simulate(cli::simulate::Arguments),
     /// Compute the features of recordings, measured or simulated
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
     sigpipe::reset();
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
+        Verb::Sweep(arguments) => cli::sweep::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
         Verb::Features(arguments) => cli::features::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),

@@ -32,7 +32,7 @@ Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the ar
 pub struct Arguments {
     /// The sweep file
     sweep: PathBuf,
-    /// Folder of the dataset [default: datasets/NAME, NAME being the sweep's]
+    /// Folder of the dataset, or s3://BUCKET/PREFIX [default: datasets/NAME, NAME being the sweep's]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the recordings, instead of the sweep's own
@@ -52,8 +52,9 @@ pub struct Arguments {
     dry_run: bool,
 }
 
+/// Format of the recordings.
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum FormatArgument {
+pub(crate) enum FormatArgument {
     /// Parquet tables, one row per window
     Parquet,
     /// One MCAP file per case
@@ -83,29 +84,54 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (_, true) => Existing::Overwrite,
         _ => Existing::Refuse,
     };
-    let threads = arguments.threads.map_or_else(
-        || std::thread::available_parallelism().map_or(1, Into::into),
-        usize::from,
-    );
+    let threads = threads(arguments.threads);
     let options = Options {
         existing,
         threads,
         cancel: &cancel,
     };
     let started = Instant::now();
-    let (claim, plan) = match sweep.calibrate() {
-        None => (Claim::new(&out, existing).map_err(failed)?, nominal),
-        Some(_) => on_threads(threads, || {
-            calibrated::plan(&sweep, &out, existing, &cancel)
-        })?,
-    };
-    let plan = arguments.with_format(plan);
+    let claim = || claim(&sweep, nominal, &out, existing, &cancel);
+    let (claim, plan) = on_threads(threads, claim)?;
+    let plan = with_format(plan, arguments.format);
     let mut bar = Bar::default();
     let manifest = generate_in(claim, &plan, &options, &simulate_cases, &mut bar)
         .map_err(|error| failure(arguments, error))?;
     bar.finish();
     summarise(&manifest, &out, started.elapsed().as_secs_f64());
-    failures(&manifest)
+    failures(&manifest).map_or(Ok(()), |text| Err(Failure::work(text)))
+}
+
+/// Locks the place of the dataset, and calibrates the machine where the sweep asks for it; else its
+/// plan is `nominal`.
+pub(crate) fn claim(
+    sweep: &Sweep,
+    nominal: Plan,
+    out: &Path,
+    existing: Existing,
+    cancel: &AtomicBool,
+) -> Result<(Claim, Plan), Failure> {
+    match sweep.calibrate() {
+        None => Ok((Claim::new(out, existing).map_err(failed)?, nominal)),
+        Some(_) => calibrated::plan(sweep, out, existing, cancel),
+    }
+}
+
+/// Threads asked for, or one per core.
+pub(crate) fn threads(asked: Option<u16>) -> usize {
+    asked.map_or_else(
+        || std::thread::available_parallelism().map_or(1, Into::into),
+        usize::from,
+    )
+}
+
+/// `plan` with the recordings in another format, where one is asked for.
+pub(crate) fn with_format(plan: Plan, format: Option<FormatArgument>) -> Plan {
+    match format {
+        None => plan,
+        Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet),
+        Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap),
+    }
 }
 
 /// The folder of the dataset of a sweep with this name, where the user names none.
@@ -136,14 +162,6 @@ pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
 }
 
 impl Arguments {
-    fn with_format(&self, plan: Plan) -> Plan {
-        match self.format {
-            None => plan,
-            Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet),
-            Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap),
-        }
-    }
-
     /// The plan as far as it is known without calibrating anything.
     fn planned(&self, sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
         let plan = match sweep.calibrate() {
@@ -162,7 +180,7 @@ impl Arguments {
                 }
             },
         };
-        Ok(self.with_format(plan))
+        Ok(with_format(plan, self.format))
     }
 }
 
@@ -184,7 +202,8 @@ fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
     }
 }
 
-fn failed(error: sweep::Error) -> Failure {
+/// The failure that an error of a dataset is.
+pub(crate) fn failed(error: sweep::Error) -> Failure {
     if error.is_input() {
         Failure::input(error)
     } else {
@@ -194,7 +213,7 @@ fn failed(error: sweep::Error) -> Failure {
 
 /// The bar on standard error: rate and time left; nothing where that is no terminal.
 #[derive(Default)]
-struct Bar {
+pub(crate) struct Bar {
     bar: Option<ProgressBar>,
     failed: u64,
 }
@@ -238,14 +257,16 @@ impl Bar {
         self.bar = Some(bar);
     }
 
-    fn finish(&self) {
+    /// Takes it off the terminal.
+    pub(crate) fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
 }
 
-fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
+/// Prints what a finished dataset has.
+pub(crate) fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
     let bytes: u64 = manifest.files.iter().map(|file| file.bytes).sum();
     let rows: u64 = manifest
         .counts
@@ -262,15 +283,13 @@ fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
     );
 }
 
-fn failures(manifest: &Manifest) -> Result<(), Failure> {
-    let failed = &manifest.failed;
-    let Some(first) = failed.first() else {
-        return Ok(());
-    };
-    Err(Failure::work(format!(
+/// What is to be said of the cases that failed, if any did.
+pub(crate) fn failures(manifest: &Manifest) -> Option<String> {
+    let first = manifest.failed.first()?;
+    Some(format!(
         "{} of {} cases failed; the manifest has all of them. The first: {}: {}\n  again: {}",
         manifest.counts.failed, manifest.counts.cases, first.case_id, first.reason, first.command
-    )))
+    ))
 }
 
 /// Says how large the dataset will be and how long it will take, from a few simulated cases.

@@ -108,7 +108,9 @@ impl Bench<'_> {
         outcome.cpu_seconds = start.zip(cpu_seconds()).map(|(start, end)| end - start);
         match found.and_then(|results| Explained::of(&results)) {
             Ok(found) => outcome.found = Some(found),
-            Err(Failure::Input(message) | Failure::Work(message)) => outcome.error = Some(message),
+            Err(
+                Failure::Input(message) | Failure::Work(message) | Failure::Incomplete(message),
+            ) => outcome.error = Some(message),
         }
         if !self.keep {
             for part in [&bundle, &folder.join("simulated"), &folder.join("baseline")] {

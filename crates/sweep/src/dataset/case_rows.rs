@@ -57,7 +57,8 @@ pub(super) fn run_cases(
         .collect()
 }
 
-fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
+/// Case `index`, which failed.
+pub(super) fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
     let case_id = plan.case_id(index);
     FailedCase {
         reason: failure.to_string(),

@@ -6,8 +6,6 @@
 //! ever there twice, and a difference never passes unseen.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::ErrorKind;
 
 use recordings::{FailedCase, FileEntry};
 use serde::de::DeserializeOwned;
@@ -35,6 +33,18 @@ pub struct Commit {
 }
 
 impl Commit {
+    /// Compares it with the record of an attempt that finished before, if there is one.
+    ///
+    /// # Errors
+    /// Where that wrote other files.
+    pub(super) fn compare(&self, output: &Output, plan: &Plan) -> Result<bool, Error> {
+        if Self::read(output, plan, self.shard)?.is_none() {
+            return Ok(false);
+        }
+        self.write(output)?;
+        Ok(true)
+    }
+
     /// Says that the shard is finished.
     ///
     /// # Errors
@@ -53,8 +63,16 @@ impl Commit {
     /// # Errors
     /// Where the record is damaged or of another plan.
     pub(super) fn read(output: &Output, plan: &Plan, shard: u64) -> Result<Option<Self>, Error> {
-        let commit: Option<Self> = read(output, &name(shard), |c: &Self| c.plan_id == plan.id)?;
-        Ok(commit.filter(|c| c.files.iter().all(|file| is_whole(output, file))))
+        let commit = read(output, &name(shard), |c: &Self| c.plan_id == plan.id)?;
+        let Some(commit) = commit else {
+            return Ok(None);
+        };
+        for file in &commit.files {
+            if !is_whole(output, file)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(commit))
     }
 }
 
@@ -87,8 +105,10 @@ impl DiagramCommit {
     /// As [`Commit::read`].
     pub(super) fn read(output: &Output, plan: &Plan, diagram: &str) -> Result<Option<Self>, Error> {
         let name = diagram_name(diagram);
-        let commit: Option<Self> = read(output, &name, |c: &Self| c.plan_id == plan.id)?;
-        Ok(commit.filter(|c| is_whole(output, &c.file)))
+        match read(output, &name, |c: &Self| c.plan_id == plan.id)? {
+            Some(commit) if is_whole(output, &commit.file)? => Ok(Some(commit)),
+            _ => Ok(None),
+        }
     }
 }
 
@@ -98,18 +118,16 @@ fn diagram_name(diagram: &str) -> String {
 
 /// Writes the record of `part`, or compares it with the one that is there.
 fn write(output: &Output, name: &str, part: &str, commit: &impl Serialize) -> Result<(), Error> {
-    let Some(before) = create_only(output, name, commit)? else {
-        return Ok(());
-    };
     let now = text(commit)?;
-    if before == now {
-        return Ok(());
+    let before = output.store.create_only(name, &now)?;
+    match before.filter(|before| *before != now) {
+        None => Ok(()),
+        Some(before) => Err(Error::NotDeterministic {
+            part: part.to_owned(),
+            first: checksum(&before),
+            second: checksum(&now),
+        }),
     }
-    Err(Error::NotDeterministic {
-        part: part.to_owned(),
-        first: checksum(&before),
-        second: checksum(&now),
-    })
 }
 
 /// The record `name`, if there is one; `ours` tells that it belongs to this plan.
@@ -118,15 +136,12 @@ fn read<T: DeserializeOwned>(
     name: &str,
     ours: impl Fn(&T) -> bool,
 ) -> Result<Option<T>, Error> {
-    let path = output.path(name);
     let damaged = |reason| Error::Damaged {
-        path: path.clone(),
+        path: output.path(name),
         reason,
     };
-    let text = match fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(damaged(error.to_string())),
+    let Some(text) = output.store.read(name)? else {
+        return Ok(None);
     };
     let commit: T = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
     if !ours(&commit) {
@@ -136,39 +151,12 @@ fn read<T: DeserializeOwned>(
 }
 
 /// Whether a file is there in full length.
-fn is_whole(output: &Output, file: &FileEntry) -> bool {
-    let found = fs::metadata(output.path(&file.path));
-    found.is_ok_and(|found| found.len() == file.bytes)
+fn is_whole(output: &Output, file: &FileEntry) -> Result<bool, Error> {
+    Ok(output.store.length(&file.path)? == Some(file.bytes))
 }
 
-/// Writes `record` to `path` unless there is a file already, whose content is then handed back.
-/// Of several processes that try at once one succeeds.
-pub(super) fn create_only(
-    output: &Output,
-    path: &str,
-    record: &impl Serialize,
-) -> Result<Option<String>, Error> {
-    let destination = output.path(path);
-    let io = |source| recordings::Error::Io {
-        action: "create",
-        path: destination.clone(),
-        source,
-    };
-    if !destination.exists() {
-        let staged = format!("_sweep/tmp/{}.staged", path.replace('/', "-"));
-        output.write(&staged, text(record)?.as_bytes())?;
-        let linked = fs::hard_link(output.path(&staged), &destination);
-        fs::remove_file(output.path(&staged)).map_err(io)?;
-        match linked {
-            Ok(()) => return Ok(None),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(io(error).into()),
-        }
-    }
-    Ok(Some(fs::read_to_string(&destination).map_err(io)?))
-}
-
-fn text(record: &impl Serialize) -> Result<String, Error> {
+/// A record as it is written.
+pub(super) fn text(record: &impl Serialize) -> Result<String, Error> {
     let json = serde_json::to_string_pretty(record).map_err(|e| {
         let message = e.to_string();
         recordings::Error::Write(std::io::Error::other(message))

@@ -41,15 +41,26 @@ pub fn run_diagrams(
             pending.push(diagram);
         }
     }
+    if pending.is_empty() {
+        return Ok(());
+    }
+    compute(plan, output, &pending, options, progress)
+}
+
+/// Computes the diagrams `pending` of `plan`.
+pub(super) fn compute(
+    plan: &Plan,
+    output: &Output,
+    pending: &[&Diagram],
+    options: &Options,
+    progress: &mut dyn Progress,
+) -> Result<(), Error> {
     let cancelled = || options.cancel.load(Ordering::Relaxed);
     let stopped = |done: usize| Error::DiagramsCancelled {
         done,
         diagrams: plan.diagrams.len(),
     };
     let mut done = plan.diagrams.len() - pending.len();
-    if pending.is_empty() {
-        return Ok(());
-    }
     let values = plan.estimate_diagrams().values;
     let chunks: Vec<(&Diagram, Chunk)> = pending
         .iter()
@@ -199,7 +210,7 @@ impl DiagramTable {
         rows: Vec<Vec<Value>>,
     ) -> Result<(), Error> {
         let path = format!("{FOLDER}/{}.parquet", diagram.name);
-        let file = output.create(&path)?;
+        let file = output.store.create(&path)?;
         let mut table = TableWriter::new(file, &self.schema, ROWS_PER_GROUP)?;
         for row in rows {
             table.write(row)?;

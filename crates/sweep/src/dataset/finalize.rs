@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use input::paths;
 use recordings::{Counts, DatasetCard, FileEntry, Manifest, Subset};
 
-use super::commit::{Commit, DiagramCommit};
 use super::diagrams::{self, DiagramTable};
 use super::output::Output;
+use super::parts::{Made, scan};
 use super::tables::Tables;
 use crate::split::Split;
 use crate::sweep_file::Format;
@@ -18,9 +18,9 @@ use crate::{Error, Plan};
 /// # Errors
 /// Where a shard or a bifurcation diagram is missing, or a file cannot be written.
 pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
-    let commits = commits(output, plan)?;
+    output.tidy()?;
     let tables = Tables::new(plan)?;
-    let mut rows: BTreeMap<String, BTreeMap<String, u64>> = BTreeMap::new();
+    let mut rows = Rows::new();
     for (split, share) in Split::ALL.iter().zip(plan.shares) {
         if share > 0.0 {
             rows.insert(split.name().into(), BTreeMap::new());
@@ -28,20 +28,22 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     }
     let mut files: Vec<FileEntry> = Vec::new();
     let mut failed = Vec::new();
-    for commit in commits {
-        for (split, faults) in commit.rows {
-            let sums = rows.entry(split).or_default();
-            for (fault, count) in faults {
-                *sums.entry(fault).or_default() += count;
+    let mut missing = Vec::new();
+    scan(plan, output, 0..plan.parts(), |index, made| {
+        match made {
+            Some(Made::Shard(commit)) => {
+                add(&mut rows, commit.rows);
+                files.extend(commit.files);
+                failed.extend(commit.failed);
             }
+            Some(Made::Diagram(commit)) => files.push(commit.file),
+            None => missing.push(index),
         }
-        files.extend(commit.files);
-        failed.extend(commit.failed);
-    }
-    for diagram in &plan.diagrams {
-        let commit = DiagramCommit::read(output, plan, &diagram.name)?;
-        let commit = commit.ok_or_else(|| Error::MissingDiagram(diagram.name.clone()))?;
-        files.push(commit.file);
+        Ok(())
+    })?;
+    if !missing.is_empty() {
+        let shards = plan.parts();
+        return Err(Error::Incomplete { shards, missing });
     }
     if plan.calibrated.is_some() {
         files.extend(output.calibration_entries()?);
@@ -50,7 +52,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let card = card(plan, &tables, &bifurcations, &rows, &files).to_string();
     let sweep = input::yaml::to_string(plan.sweep())?;
     for (path, text) in [("README.md", card), ("sweep.yaml", sweep)] {
-        let record = output.write(path, text.as_bytes())?;
+        let record = output.store.write(path, text.as_bytes())?;
         files.push(FileEntry {
             path: path.into(),
             bytes: record.bytes,
@@ -70,25 +72,40 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
         files,
         failed,
     };
-    output.write("manifest.json", manifest.to_json()?.as_bytes())?;
+    output
+        .store
+        .write("manifest.json", manifest.to_json()?.as_bytes())?;
     Ok(manifest)
 }
 
-fn commits(output: &Output, plan: &Plan) -> Result<Vec<Commit>, Error> {
-    let mut commits = Vec::new();
-    let mut missing = Vec::new();
-    for shard in 0..plan.shards() {
-        match Commit::read(output, plan, shard)? {
-            Some(commit) => commits.push(commit),
-            None => missing.push(shard),
+/// Checks every file of a finalized dataset against its checksum.
+///
+/// # Errors
+/// The first file that is not the one that was written.
+pub fn verify(output: &Output, manifest: &Manifest) -> Result<(), Error> {
+    for file in &manifest.files {
+        let found = output.store.record(&file.path)?;
+        let found = found.map_or("none".into(), |found| found.sha256);
+        if found != file.sha256 {
+            return Err(Error::Changed {
+                path: output.path(&file.path),
+                found,
+                expected: file.sha256.clone(),
+            });
         }
     }
-    match missing.as_slice() {
-        [] => Ok(commits),
-        _ => Err(Error::Incomplete {
-            shards: plan.shards(),
-            missing,
-        }),
+    Ok(())
+}
+
+/// Rows by split, then by fault.
+type Rows = BTreeMap<String, BTreeMap<String, u64>>;
+
+fn add(rows: &mut Rows, more: Rows) {
+    for (split, faults) in more {
+        let sums = rows.entry(split).or_default();
+        for (fault, count) in faults {
+            *sums.entry(fault).or_default() += count;
+        }
     }
 }
 
@@ -96,7 +113,7 @@ fn card(
     plan: &Plan,
     tables: &Tables,
     bifurcations: &recordings::Schema,
-    rows: &BTreeMap<String, BTreeMap<String, u64>>,
+    rows: &Rows,
     files: &[FileEntry],
 ) -> DatasetCard {
     let subset = |name: &str, schema: &recordings::Schema| Subset {

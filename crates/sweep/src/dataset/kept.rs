@@ -4,8 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use recordings::FileEntry;
-use sha2::{Digest, Sha256};
+use recordings::{FileEntry, FileRecord};
 
 use super::output::{CALIBRATION, Output};
 use crate::Error;
@@ -19,31 +18,35 @@ impl Output {
         for name in names(from, "")? {
             let content = read(&from.join(&name))?;
             let path = format!("{CALIBRATION}/{name}");
-            if let Some(folder) = self.path(&path).parent() {
+            if self.store.folder().is_some()
+                && let Some(folder) = self.path(&path).parent()
+            {
                 fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
             }
-            self.write(&path, &content)?;
+            self.store.write(&path, &content)?;
         }
         Ok(())
     }
 
     /// The files of the calibration as the manifest has them.
     pub(super) fn calibration_entries(&self) -> Result<Vec<FileEntry>, Error> {
-        let folder = self.path(CALIBRATION);
-        if !folder.is_dir() {
-            return Ok(Vec::new());
+        let mut entries = Vec::new();
+        let mut folders = vec![CALIBRATION.to_owned()];
+        while let Some(folder) = folders.pop() {
+            for name in self.store.names(&folder)? {
+                let path = format!("{folder}/{name}");
+                match self.store.record(&path)? {
+                    None => folders.push(path),
+                    Some(FileRecord { bytes, sha256 }) => entries.push(FileEntry {
+                        path,
+                        bytes,
+                        sha256,
+                        rows: None,
+                    }),
+                }
+            }
         }
-        let entry = |name: String| {
-            let content = read(&folder.join(&name))?;
-            let digest = Sha256::digest(&content);
-            Ok(FileEntry {
-                path: format!("{CALIBRATION}/{name}"),
-                bytes: content.len() as u64,
-                sha256: digest.iter().map(|byte| format!("{byte:02x}")).collect(),
-                rows: None,
-            })
-        };
-        names(&folder, "")?.into_iter().map(entry).collect()
+        Ok(entries)
     }
 }
 

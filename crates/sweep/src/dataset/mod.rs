@@ -1,5 +1,6 @@
 //! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
 
+mod attempts;
 mod case_rows;
 mod commit;
 mod diagrams;
@@ -7,15 +8,21 @@ mod finalize;
 mod judged;
 mod kept;
 mod output;
+mod parts;
 mod shard;
+mod status;
+mod store;
 mod tables;
 
 pub use commit::Commit;
 pub use diagrams::{run_diagrams, sample_diagram};
-pub use finalize::finalize;
+pub use finalize::{finalize, verify};
 pub use output::{CALIBRATION, Claim, Existing, Output};
+pub use parts::run_part;
+pub use status::{Status, status};
 pub use tables::{Tables, feature_column};
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,7 +34,9 @@ use simulate::Motion;
 use crate::in_order::in_order;
 use crate::plan::MOST_CASES;
 use crate::{Case, Error, Plan};
-use case_rows::run_cases;
+use attempts::Attempts;
+use case_rows::{failed, run_cases};
+use parts::scan;
 use shard::ShardWriter;
 
 /// What a simulated case gives: the channels of the machine's sensors, in their order.
@@ -110,17 +119,19 @@ pub fn generate_in(
     plan.check_size()?;
     let output = claim.open(plan)?;
     let mut pending = Vec::new();
-    for shard in 0..plan.shards() {
-        if Commit::read(&output, plan, shard)?.is_none() {
-            pending.push(shard);
-        }
-    }
+    scan(plan, &output, 0..plan.shards(), |shard, made| {
+        pending.extend(made.is_none().then_some(shard));
+        Ok(())
+    })?;
+    let unfinished = cases_of(plan, &pending);
+    progress.begins(plan.cases(), plan.cases() - unfinished);
     run_shards(plan, &output, &pending, options, runner, progress)?;
     run_diagrams(plan, &output, options, progress)?;
     finalize(&output, plan)
 }
 
-/// Runs the shards `pending` of a sweep, in this order.
+/// Runs the shards `pending` of a sweep. Those that several processes ended in come first, case by
+/// case.
 ///
 /// # Errors
 /// Where a file cannot be written, or a shard comes out differently than it did before.
@@ -132,57 +143,143 @@ pub fn run_shards(
     runner: &Runner,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
-    let tables = Tables::new(plan)?;
-    let sweep_yaml = input::yaml::to_string(plan.sweep())?;
-    let unfinished: u64 = pending
-        .iter()
-        .map(|&shard| plan.shard(shard).count() as u64)
-        .sum();
-    progress.begins(plan.cases(), plan.cases() - unfinished);
-
-    let cancelled = || options.cancel.load(Ordering::Relaxed);
-    let stopped = |done: u64| Error::Cancelled {
-        done,
-        shards: plan.shards(),
+    let mut shards = Shards {
+        plan,
+        output,
+        options,
+        runner,
+        progress,
+        tables: Tables::new(plan)?,
+        sweep_yaml: input::yaml::to_string(plan.sweep())?,
+        done: plan.shards() - pending.len() as u64,
     };
-    let mut done = plan.shards() - pending.len() as u64;
-    let mut writer: Option<ShardWriter> = None;
-    let together = plan.together(options.threads);
-    let cases = pending
-        .iter()
-        .flat_map(|&shard| pieces(plan.shard(shard), together).map(move |cases| (shard, cases)));
-    in_order(
-        &pool(options.threads)?,
-        2 * options.threads.max(1),
-        cases.take_while(|_| !cancelled()),
-        |(_, cases)| run_cases(plan, cases.clone(), runner, &sweep_yaml),
-        |(shard, cases), rows| {
-            if cancelled() {
-                return Err(stopped(done));
-            }
-            let mut open = match writer.take() {
-                Some(open) => open,
-                None => ShardWriter::new(output, plan, &tables, shard)?,
+    let counts = attempts::counts(output)?;
+    let in_vain = |shard: &u64| attempts::are_too_many(counts.get(&shard.to_string()));
+    let (slow, fast): (Vec<u64>, Vec<u64>) = pending.iter().partition(|shard| in_vain(shard));
+    for shard in slow {
+        shards.one_by_one(shard, &counts)?;
+    }
+    shards.side_by_side(&fast)
+}
+
+/// What running shards takes.
+struct Shards<'a> {
+    plan: &'a Plan,
+    output: &'a Output,
+    options: &'a Options<'a>,
+    runner: &'a Runner<'a>,
+    progress: &'a mut dyn Progress,
+    tables: Tables,
+    sweep_yaml: String,
+    /// Finished shards.
+    done: u64,
+}
+
+impl Shards<'_> {
+    fn check_cancelled(&self) -> Result<(), Error> {
+        check_cancelled(self.plan, self.options, self.done)
+    }
+
+    /// Runs shards on all threads.
+    fn side_by_side(&mut self, pending: &[u64]) -> Result<(), Error> {
+        let Self {
+            plan,
+            output,
+            options,
+            runner,
+            progress,
+            tables,
+            sweep_yaml,
+            done,
+        } = self;
+        let (plan, output, options) = (*plan, *output, *options);
+        let (threads, cancel) = (options.threads, options.cancel);
+        let together = plan.together(cases_of(plan, pending), threads);
+        let attempts = Attempts::new(output);
+        let inputs = pending.iter().flat_map(|&shard| {
+            let begun = attempts.begin(&shard.to_string()).err().map(Err);
+            let pieces = pieces(plan.shard(shard), together);
+            begun
+                .into_iter()
+                .chain(pieces.map(move |cases| Ok((shard, cases))))
+        });
+        let mut writer: Option<ShardWriter> = None;
+        in_order(
+            &pool(threads)?,
+            2 * threads.max(1),
+            inputs.take_while(|_| !cancel.load(Ordering::Relaxed)),
+            |piece| match piece {
+                Ok((_, cases)) => run_cases(plan, cases.clone(), *runner, sweep_yaml),
+                Err(_) => Vec::new(),
+            },
+            |piece, rows| {
+                let (shard, cases) = piece?;
+                check_cancelled(plan, options, *done)?;
+                let mut open = match writer.take() {
+                    Some(open) => open,
+                    None => ShardWriter::new(output, plan, tables, shard)?,
+                };
+                let end = cases.end;
+                for (case, rows) in cases.zip(rows) {
+                    progress.case_done(case, rows.is_err());
+                    open.write(rows)?;
+                }
+                if end < plan.shard(shard).end {
+                    writer = Some(open);
+                    return Ok(());
+                }
+                open.commit(plan)?;
+                *done += 1;
+                attempts.end(&shard.to_string())
+            },
+        )?;
+        // Cancelled before the first case, or between two shards.
+        match self.done < plan.shards() {
+            true => self.check_cancelled(),
+            false => Ok(()),
+        }
+    }
+
+    /// Runs a shard that processes ended in, so that the next one to end tells which case it is.
+    fn one_by_one(&mut self, shard: u64, counts: &BTreeMap<String, u64>) -> Result<(), Error> {
+        let plan = self.plan;
+        let attempts = Attempts::new(self.output);
+        attempts.begin(&shard.to_string())?;
+        let mut open = ShardWriter::new(self.output, plan, &self.tables, shard)?;
+        for case in plan.shard(shard) {
+            self.check_cancelled()?;
+            let marker = format!("{shard}.{}", plan.case_id(case));
+            let rows = if attempts::are_too_many(counts.get(&marker)) {
+                vec![Err(failed(plan, case, &attempts::REASON.into()))]
+            } else {
+                attempts.begin(&marker)?;
+                let rows = run_cases(plan, case..case + 1, self.runner, &self.sweep_yaml);
+                attempts.end(&marker)?;
+                rows
             };
-            let end = cases.end;
-            for (case, rows) in cases.zip(rows) {
-                progress.case_done(case, rows.is_err());
+            for rows in rows {
+                self.progress.case_done(case, rows.is_err());
                 open.write(rows)?;
             }
-            if end == plan.shard(shard).end {
-                open.commit()?;
-                done += 1;
-            } else {
-                writer = Some(open);
-            }
-            Ok(())
-        },
-    )?;
-    // Cancelled before the first case, or between two shards.
-    if done < plan.shards() && cancelled() {
-        return Err(stopped(done));
+        }
+        open.commit(plan)?;
+        self.done += 1;
+        attempts.end(&shard.to_string())
     }
-    Ok(())
+}
+
+fn check_cancelled(plan: &Plan, options: &Options, done: u64) -> Result<(), Error> {
+    let shards = plan.shards();
+    match options.cancel.load(Ordering::Relaxed) {
+        true => Err(Error::Cancelled { done, shards }),
+        false => Ok(()),
+    }
+}
+
+/// Cases in `shards`.
+fn cases_of(plan: &Plan, shards: &[u64]) -> u64 {
+    let cases = |&shard| plan.shard(shard).count() as u64;
+    shards.iter().map(cases).sum()
 }
 
 /// A range in pieces of at most `size`.
@@ -202,13 +299,13 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
 }
 
 impl Plan {
-    /// How many cases are simulated together, so that no thread of so many is without any for long.
+    /// How many of `cases` are simulated together, so that no thread of so many is without any for long.
     /// Judging a motion takes as long as many simulations and gains nothing by it.
-    fn together(&self, threads: usize) -> u64 {
+    fn together(&self, cases: u64, threads: usize) -> u64 {
         if self.judgement.is_some() {
             return 1;
         }
-        let share = self.cases().div_ceil(4 * threads.max(1) as u64);
+        let share = cases.div_ceil(4 * threads.max(1) as u64);
         share.clamp(1, TOGETHER)
     }
 

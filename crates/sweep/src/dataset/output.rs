@@ -2,19 +2,25 @@
 //!
 //! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
 //! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
-//! shard K is finished, `tmp/` holds files that are being written, and `lock` is locked by the
-//! process at work. The operating system unlocks it when that process ends, however it ends.
+//! shard K is finished, `attempts/` who is at work on which shard, `tmp/` holds files that are being
+//! written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
+//! or by any number that make a shard each. The operating system unlocks it when a process ends,
+//! however it ends.
+//!
 //! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
 //! sweep names that folder, and whoever runs it gets a copy.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use recordings::{FileRecord, Manifest, WholeFile};
+use input::yaml::Document;
+use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
-use super::commit::create_only;
+use super::commit::text;
+use super::store::Store;
 use crate::{Error, Plan};
 
 /// What to do with a folder that has something in it.
@@ -38,11 +44,20 @@ pub struct Claim {
     calibrated: bool,
 }
 
-/// A locked output folder.
+/// The place of a dataset that has been begun, locked unless it is only looked at.
 #[derive(Debug)]
 pub struct Output {
+    pub(super) store: Store,
     root: PathBuf,
-    lock: File,
+    lock: Option<Lock>,
+}
+
+/// A locked file.
+#[derive(Debug)]
+struct Lock {
+    file: File,
+    /// Whether nobody else holds it.
+    alone: bool,
 }
 
 /// Content of `_sweep/plan.json`.
@@ -52,11 +67,19 @@ struct PlanRecord {
     name: String,
     cases: u64,
     shards: u64,
+    #[serde(default)]
+    diagrams: u64,
 }
+
+const PLAN: &str = "_sweep/plan.json";
+const SWEEP: &str = "sweep.yaml";
+/// What each process leaves alone in `_sweep/tmp` unless it is alone: younger files may be under way.
+const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 
 /// What a dataset has at its top, apart from `_sweep`.
 const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
+const WORK: [&str; 3] = ["_sweep/commits", "_sweep/attempts", "_sweep/tmp"];
 /// The folder of the calibration that a dataset begins with.
 pub const CALIBRATION: &str = "calibration";
 /// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
@@ -70,6 +93,10 @@ impl Claim {
     /// Where the folder has something in it that `existing` does not allow for, another process
     /// writes to it, or it cannot be written to. It is then as it was.
     pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
+        let store = Store::at(root)?;
+        if store.folder().is_none() {
+            return Self::in_bucket(store, root, existing);
+        }
         let (empty, ours) = look(root)?;
         match existing {
             _ if empty => {}
@@ -77,11 +104,12 @@ impl Claim {
             Existing::Refuse => return Err(Error::Exists(root.to_owned())),
             Existing::Resume | Existing::Overwrite => {}
         }
-        for folder in ["_sweep/commits", "_sweep/tmp"] {
+        for folder in WORK {
             make(&root.join(folder))?;
         }
         let output = Output {
-            lock: lock(root)?,
+            store,
+            lock: Some(lock(root)?),
             root: root.to_owned(),
         };
         // What an interrupted process left: nobody else writes here now.
@@ -94,12 +122,37 @@ impl Claim {
         })
     }
 
+    /// The same in object storage. Nothing is locked there: whose plan is written first has it.
+    fn in_bucket(store: Store, root: &Path, existing: Existing) -> Result<Self, Error> {
+        let begun = store.length(PLAN)?.is_some();
+        let empty = begun || store.names("")?.is_empty();
+        let root = root.to_owned();
+        match existing {
+            _ if !empty => return Err(Error::NotOurs(root)),
+            Existing::Overwrite => return Err(Error::NoOverwrite(root)),
+            Existing::Refuse if begun => return Err(Error::Exists(root)),
+            Existing::Refuse | Existing::Resume => {}
+        }
+        Ok(Self {
+            output: Output {
+                store,
+                root,
+                lock: None,
+            },
+            existing,
+            calibrated: false,
+        })
+    }
+
     /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
     /// already. Where it is not, a dataset that is to be replaced goes first.
     ///
     /// # Errors
     /// Where a dataset was begun with another calibration, or the folder cannot be written to.
     pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
+        if self.output.store.folder().is_none() {
+            return Err(Error::NoCalibration(self.output.root.clone()));
+        }
         self.calibrated = true;
         if !is_kept {
             match self.existing {
@@ -115,7 +168,7 @@ impl Claim {
 
     /// Whether a dataset has been begun here.
     fn begun(&self) -> bool {
-        self.output.path("_sweep/plan.json").exists()
+        self.output.path(PLAN).exists()
     }
 
     /// Makes the folder ready for the dataset of `plan`.
@@ -123,6 +176,13 @@ impl Claim {
     /// # Errors
     /// Where it holds the dataset of another plan, or cannot be written to.
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
+        if self.output.store.folder().is_none() {
+            self.output.record(plan)?;
+            if let Some(from) = &plan.calibrated {
+                self.output.copy_calibration(from)?;
+            }
+            return Ok(self.output);
+        }
         let begun = self.begun();
         let output = self.output;
         let own = output.path(CALIBRATION);
@@ -159,49 +219,79 @@ impl Output {
         Claim::new(root, existing)?.open(plan)
     }
 
-    /// The folder.
-    pub fn root(&self) -> &Path {
-        &self.root
+    /// The planned dataset at `root`, and its plan, for one of any number of processes that make it
+    /// together.
+    ///
+    /// # Errors
+    /// Where nothing has been planned there, or by another version of the program, or a process
+    /// makes the whole dataset.
+    pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
+        let (mut output, plan) = Self::look(root)?;
+        if output.store.folder().is_some() {
+            output.lock = lock_shared(root)?;
+        }
+        Ok((output, plan))
+    }
+
+    /// As [`Output::join`], to read only.
+    ///
+    /// # Errors
+    /// Where nothing has been planned there, or by another version of the program.
+    pub fn look(root: &Path) -> Result<(Self, Plan), Error> {
+        let output = Self {
+            store: Store::at(root)?,
+            root: root.to_owned(),
+            lock: None,
+        };
+        let not_planned = || Error::NotPlanned(root.to_owned());
+        let record = output.store.read(PLAN)?.ok_or_else(not_planned)?;
+        let sweep = output.store.read(SWEEP)?.ok_or_else(not_planned)?;
+        let sweep = Document::parse(&sweep, &output.path(SWEEP).display().to_string())?;
+        let plan = Plan::new(&sweep, root)?;
+        output.check(&record, &plan)?;
+        Ok((output, plan))
     }
 
     /// Where file `path` of the dataset stands.
     pub fn path(&self, path: &str) -> PathBuf {
-        self.root.join(path)
+        self.store.path(path)
     }
 
-    /// Starts a file that will stand at `path` when it is finished.
-    pub(super) fn create(&self, path: &str) -> Result<WholeFile, Error> {
-        let name = path.replace('/', "-");
-        let temporary = format!("_sweep/tmp/{name}.{}.part", std::process::id());
-        Ok(WholeFile::create(&self.path(&temporary), &self.path(path))?)
-    }
-
-    /// Writes a file at once.
-    pub(super) fn write(&self, path: &str, content: &[u8]) -> Result<FileRecord, Error> {
-        let mut file = self.create(path)?;
-        file.write_all(content).map_err(recordings::Error::Write)?;
-        Ok(file.commit()?)
+    /// Removes what crashes left a day ago or earlier.
+    ///
+    /// # Errors
+    /// Where it cannot be removed.
+    pub(super) fn tidy(&self) -> Result<(), Error> {
+        let Some(folder) = self.store.folder() else {
+            return Ok(());
+        };
+        let Ok(entries) = fs::read_dir(folder.join("_sweep/tmp")) else {
+            return Ok(());
+        };
+        for entry in entries.flatten() {
+            let modified = entry.metadata().and_then(|found| found.modified()).ok();
+            let age = modified.and_then(|time| time.elapsed().ok());
+            if age.is_some_and(|age| age > DAY) {
+                remove(&entry.path(), |path| fs::remove_file(path))?;
+            }
+        }
+        Ok(())
     }
 
     /// Removes a dataset, and nothing else; its calibration stays where that is asked for.
     fn clear(&self, keep_calibration: bool) -> Result<(), Error> {
         // The manifest goes first: without it the folder is not a complete dataset.
-        for file in FILES
-            .into_iter()
-            .rev()
-            .chain(["_sweep/plan.json"])
-            .chain(PAGES)
-        {
+        for file in FILES.into_iter().rev().chain([PLAN]).chain(PAGES) {
             remove(&self.path(file), |path| fs::remove_file(path))?;
         }
-        for folder in FOLDERS.into_iter().chain(["_sweep/commits"]) {
+        for folder in FOLDERS.into_iter().chain(WORK) {
             remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
         }
         self.clear_figures()?;
         if !keep_calibration {
             self.clear_calibration()?;
         }
-        make(&self.path("_sweep/commits"))
+        WORK.iter().try_for_each(|folder| make(&self.path(folder)))
     }
 
     fn clear_calibration(&self) -> Result<(), Error> {
@@ -232,30 +322,39 @@ impl Output {
             name: plan.name.clone(),
             cases: plan.cases(),
             shards: plan.shards(),
+            diagrams: plan.diagrams.len() as u64,
         };
-        let path = self.path("_sweep/plan.json");
-        let Some(before) = create_only(self, "_sweep/plan.json", &record)? else {
-            return Ok(());
-        };
-        let before: PlanRecord = serde_json::from_str(&before).map_err(|e| Error::Damaged {
-            path,
+        if let Some(before) = self.store.create_only(PLAN, &text(&record)?)? {
+            self.check(&before, plan)?;
+        }
+        let sweep = input::yaml::to_string(plan.sweep())?;
+        self.store.write(SWEEP, sweep.as_bytes())?;
+        Ok(())
+    }
+
+    /// Checks that `record` is that of `plan`.
+    fn check(&self, record: &str, plan: &Plan) -> Result<(), Error> {
+        let record: PlanRecord = serde_json::from_str(record).map_err(|e| Error::Damaged {
+            path: self.path(PLAN),
             reason: e.to_string(),
         })?;
-        if before.plan_id == plan.id {
+        if record.plan_id == plan.id {
             return Ok(());
         }
         Err(Error::OtherPlan {
             path: self.root.clone(),
-            found: before.plan_id,
+            found: record.plan_id,
             expected: plan.id.clone(),
         })
     }
 }
 
-impl Drop for Output {
+impl Drop for Lock {
     fn drop(&mut self) {
-        // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
-        let _ = self.lock.set_len(0);
+        if self.alone {
+            // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
+            let _ = self.file.set_len(0);
+        }
     }
 }
 
@@ -270,8 +369,7 @@ fn look(root: &Path) -> Result<(bool, bool), Error> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => true,
         Err(error) => return Err(unwritable(error)),
     };
-    let ours = root.join("_sweep/plan.json").is_file()
-        || Manifest::read(&root.join("manifest.json")).is_ok();
+    let ours = root.join(PLAN).is_file() || Manifest::read(&root.join("manifest.json")).is_ok();
     // A crash before the plan is written leaves only work files, and perhaps a calibration.
     let begun = !empty && only_work_files(root).map_err(unwritable)?;
     Ok((empty || begun, ours))
@@ -306,25 +404,11 @@ fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Erro
 }
 
 /// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
-fn lock(root: &Path) -> Result<File, Error> {
-    let path = root.join("_sweep/lock");
-    let unwritable = |source| Error::Unwritable {
-        path: path.clone(),
-        source,
-    };
-    let mut options = OpenOptions::new();
-    let options = options.read(true).write(true).create(true).truncate(false);
-    let mut file = options.open(&path).map_err(unwritable)?;
+fn lock(root: &Path) -> Result<Lock, Error> {
+    let (mut file, unwritable) = lock_file(root)?;
     match file.try_lock() {
         Ok(()) => {}
-        Err(TryLockError::WouldBlock) => {
-            let mut by = String::new();
-            let _ = file.read_to_string(&mut by);
-            return Err(Error::InUse {
-                path: root.to_owned(),
-                by: if by.is_empty() { "unknown".into() } else { by },
-            });
-        }
+        Err(TryLockError::WouldBlock) => return Err(in_use(root, file)),
         Err(TryLockError::Error(source)) => return Err(unwritable(source)),
     }
     let mut sign = || {
@@ -333,5 +417,42 @@ fn lock(root: &Path) -> Result<File, Error> {
         write!(file, "process {}", std::process::id())
     };
     sign().map_err(unwritable)?;
-    Ok(file)
+    Ok(Lock { file, alone: true })
+}
+
+/// Locks `_sweep/lock` together with others; nothing where the file system knows no locks, because
+/// the records of a dataset do not need them.
+fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
+    let (file, unwritable) = lock_file(root)?;
+    match file.try_lock_shared() {
+        Ok(()) => Ok(Some(Lock { file, alone: false })),
+        Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
+        Err(TryLockError::Error(source)) => Err(unwritable(source)),
+    }
+}
+
+fn lock_file(root: &Path) -> Result<(File, impl Fn(io::Error) -> Error), Error> {
+    let path = root.join("_sweep/lock");
+    let mut options = OpenOptions::new();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let file = options.open(&path);
+    let unwritable = move |source| Error::Unwritable {
+        path: path.clone(),
+        source,
+    };
+    Ok((file.map_err(&unwritable)?, unwritable))
+}
+
+fn in_use(root: &Path, mut lock: File) -> Error {
+    let mut by = String::new();
+    let _ = lock.read_to_string(&mut by);
+    Error::InUse {
+        path: root.to_owned(),
+        by: if by.is_empty() {
+            "one that makes a shard".into()
+        } else {
+            by
+        },
+    }
 }

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use recordings::formats::parquet::TableWriter;
-use recordings::{FailedCase, FileEntry, Schema, Value, WholeFile};
+use recordings::{FailedCase, FileEntry, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
 use super::commit::Commit;
 use super::output::Output;
+use super::store::NewFile;
 use super::tables::Tables;
 use crate::split::Split;
 use crate::sweep_file::Format;
@@ -27,7 +28,7 @@ pub(super) struct ShardWriter<'a> {
 /// One file of a table.
 struct PartFile {
     path: String,
-    table: TableWriter<WholeFile>,
+    table: TableWriter<NewFile>,
 }
 
 impl<'a> ShardWriter<'a> {
@@ -43,7 +44,8 @@ impl<'a> ShardWriter<'a> {
         let part = |folder: &str, schema: &Schema, split: Split| {
             let (name, shards) = (split.name(), plan.shards());
             let path = format!("{folder}/{name}-{shard:05}-of-{shards:05}.parquet");
-            let table = TableWriter::new(output.create(&path)?, schema, rows_per_group(plan))?;
+            let table =
+                TableWriter::new(output.store.create(&path)?, schema, rows_per_group(plan))?;
             Ok::<_, Error>((split, PartFile { path, table }))
         };
         let cases = plan.shard(shard);
@@ -88,28 +90,38 @@ impl<'a> ShardWriter<'a> {
             Signals::Rows(rows) => write_rows(&mut self.signals, case.split, rows)?,
             Signals::Mcap(bytes) => {
                 let path = format!("mcap/{}.mcap", case.case_id);
-                let record = self.output.write(&path, &bytes)?;
+                let record = self.output.store.write(&path, &bytes)?;
                 self.commit.files.push(entry(path, record, None));
             }
         }
         write_rows(&mut self.features, case.split, case.features)
     }
 
-    /// Finishes the files and says so.
-    pub(super) fn commit(self) -> Result<Commit, Error> {
+    /// Finishes the files and says so. Where another process did so meanwhile, its files stay, and
+    /// must be the same.
+    pub(super) fn commit(self, plan: &Plan) -> Result<(), Error> {
         let mut commit = self.commit;
+        let mut files = Vec::new();
         for part in self
             .signals
             .into_values()
             .chain(self.features.into_values())
         {
             let rows = part.table.rows();
-            let record = part.table.finish()?.commit()?;
-            commit.files.push(entry(part.path, record, Some(rows)));
+            let file = part.table.finish()?;
+            commit
+                .files
+                .push(entry(part.path, file.record(), Some(rows)));
+            files.push(file);
         }
         commit.files.sort_by(|a, b| a.path.cmp(&b.path));
-        commit.write(self.output)?;
-        Ok(commit)
+        if commit.compare(self.output, plan)? {
+            return Ok(());
+        }
+        for file in files {
+            file.commit()?;
+        }
+        commit.write(self.output)
     }
 }
 

@@ -32,7 +32,7 @@ use simulate::{ExponentSettings, Extent, Settings, Transient};
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Amount, Format, Run, SweepFile, Windows};
+use crate::sweep_file::{Amount, Format, MOST_CASES_A_SHARD, Run, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use sampler::Sampler;
@@ -151,6 +151,29 @@ impl Plan {
         self.sweep["format"] = json!(format.name());
         self.id = id(&self.sweep);
         self
+    }
+
+    /// The same sweep in `shards` shards of equal size, or a few less where the cases do not divide
+    /// evenly.
+    ///
+    /// # Errors
+    /// Where the shards would be too large.
+    pub fn with_shards(mut self, shards: u64) -> Result<Self, crate::Error> {
+        let cases = self.cases();
+        let size = cases.div_ceil(shards.max(1)).max(1);
+        let most = MOST_CASES_A_SHARD.into();
+        if size > most {
+            return Err(crate::Error::LargeShards {
+                cases,
+                shards,
+                size,
+                most,
+            });
+        }
+        self.shard_size = size;
+        self.sweep["shard_size"] = json!(size);
+        self.id = id(&self.sweep);
+        Ok(self)
     }
 
     fn build(

@@ -82,8 +82,11 @@ pub struct SweepFile {
     /// Cases in one shard: what is finished together and not simulated again after an
     /// interruption. 256 where it is left out.
     #[serde(default)]
-    pub shard_size: Option<Count<1, 1_000_000>>,
+    pub shard_size: Option<Count<1, MOST_CASES_A_SHARD>>,
 }
+
+/// Most cases of one shard.
+pub const MOST_CASES_A_SHARD: u32 = 1_000_000;
 
 /// The JSON Schema of sweep.yaml, for editors and checks.
 pub fn schema() -> Value {

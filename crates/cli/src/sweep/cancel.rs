@@ -1,0 +1,26 @@
+//! `sweep cancel`: what was submitted is taken back.
+
+use super::slurm;
+use crate::Failure;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `sweep cancel`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  crosshead sweep cancel /scratch/faults
+
+Shards that are made stay; `sweep submit` goes on from there.")]
+pub struct Arguments {
+    /// The folder of the dataset
+    url: PathBuf,
+}
+
+/// Cancels the jobs.
+///
+/// # Errors
+/// Nothing submitted, or an engine that refuses.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    slurm::cancel(&arguments.url)
+}

@@ -1,0 +1,63 @@
+//! `sweep finalize`: the dataset is completed.
+
+use super::slurm;
+use crate::Failure;
+use crate::gen_dataset;
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Instant;
+use sweep::Error;
+use sweep::dataset::{Output, finalize, verify};
+use sweep::ranges::ranges;
+
+/// Arguments of `sweep finalize`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  crosshead sweep finalize /scratch/faults || sbatch --array=$(crosshead sweep finalize /scratch/faults) ...
+
+Where shards are missing, their numbers are printed as schedulers take them: 0-3,7. Cases that failed
+do not hinder; the manifest has them. Doing it again changes nothing.
+
+Exit status: 0 the dataset is complete; 1 the work failed; 2 the input or the arguments are wrong;
+3 shards are missing.")]
+pub struct Arguments {
+    /// The dataset, as it was planned
+    url: PathBuf,
+    /// Compare every file with its checksum
+    #[arg(long)]
+    verify: bool,
+    /// Submit what is missing again to Slurm, as the finalising job of `sweep submit` does
+    #[arg(long, hide = true)]
+    resubmit: bool,
+}
+
+/// Completes the dataset.
+///
+/// # Errors
+/// Shards that are missing, or an output that cannot be read or written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let started = Instant::now();
+    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    let manifest = match finalize(&output, &plan) {
+        Ok(manifest) => manifest,
+        Err(Error::Incomplete { shards, missing }) => {
+            println!("{}", ranges(&missing));
+            if arguments.resubmit {
+                slurm::submit_again(&arguments.url, &missing)?;
+            }
+            let text = format!("{} of {shards} shards are missing", missing.len());
+            return Err(Failure::Incomplete(text));
+        }
+        Err(error) => return Err(gen_dataset::failed(error)),
+    };
+    if arguments.verify {
+        verify(&output, &manifest).map_err(gen_dataset::failed)?;
+    }
+    let seconds = started.elapsed().as_secs_f64();
+    gen_dataset::summarise(&manifest, &arguments.url, seconds);
+    if let Some(text) = gen_dataset::failures(&manifest) {
+        println!("{text}");
+    }
+    Ok(())
+}

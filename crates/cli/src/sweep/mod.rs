@@ -1,0 +1,59 @@
+//! `sweep`: `gen-dataset` in steps, which any number of machines take together. The sweep is
+//! planned once, its shards are made anywhere and in any order, and the dataset is finalized.
+
+mod cancel;
+mod finalize;
+mod index;
+mod plan;
+mod shard;
+mod slurm;
+mod status;
+mod submit;
+
+use crate::Failure;
+use clap::{Args, Subcommand};
+
+/// Arguments of `sweep`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example, with four processes in the place of four machines:
+  crosshead sweep plan pipelines/paper2.yaml --out paper2 --shards 4
+  for k in 0 1 2 3; do crosshead sweep shard paper2 --index $k & done; wait
+  crosshead sweep finalize paper2
+
+A URL is a folder that all machines see, or s3://BUCKET/PREFIX.")]
+pub struct Arguments {
+    #[command(subcommand)]
+    step: Step,
+}
+
+#[derive(Subcommand, Debug)]
+enum Step {
+    /// Begin a dataset: write what its shards need to know
+    Plan(plan::Arguments),
+    /// Make one shard; again is no harm
+    Shard(shard::Arguments),
+    /// Complete the dataset when all its shards are made
+    Finalize(finalize::Arguments),
+    /// Tell how far the dataset has got
+    Status(status::Arguments),
+    /// Hand the shards to an engine that runs them on its machines
+    Submit(submit::Arguments),
+    /// Take back what was submitted
+    Cancel(cancel::Arguments),
+}
+
+/// Takes a step.
+///
+/// # Errors
+/// Wrong input, an output that cannot be written, or a dataset that is not complete yet.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.step {
+        Step::Plan(arguments) => plan::run(arguments),
+        Step::Shard(arguments) => shard::run(arguments),
+        Step::Finalize(arguments) => finalize::run(arguments),
+        Step::Status(arguments) => status::run(arguments),
+        Step::Submit(arguments) => submit::run(arguments),
+        Step::Cancel(arguments) => cancel::run(arguments),
+    }
+}

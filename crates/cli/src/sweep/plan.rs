@@ -1,0 +1,64 @@
+//! `sweep plan`: a dataset is begun.
+
+use crate::Failure;
+use crate::gen_dataset::{self, FormatArgument};
+use clap::Args;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use sweep::Sweep;
+
+/// Arguments of `sweep plan`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  crosshead sweep plan pipelines/bearing-faults.yaml --out /scratch/faults --shards 100
+
+A sweep that calibrates its machine does so here. Planned again, a sweep stays as it is; another
+sweep in its place is refused. The shards are of equal size, as `shard_size` of the sweep file has it
+or --shards; each bifurcation diagram is a shard more. The bytes of a dataset depend on that size and
+not on who makes the shards.
+
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// The sweep file
+    sweep: PathBuf,
+    /// Folder of the dataset, seen by all machines that make it, or s3://BUCKET/PREFIX
+    #[arg(long, value_name = "URL")]
+    out: PathBuf,
+    /// Number of shards, or a few less where the cases do not divide evenly
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    shards: Option<u64>,
+    /// Format of the recordings, instead of the sweep's own
+    #[arg(long, value_enum)]
+    format: Option<FormatArgument>,
+}
+
+/// Plans the sweep.
+///
+/// # Errors
+/// Wrong input, or a place that holds another dataset or cannot be written to.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let sweep = Sweep::read(&arguments.sweep)?;
+    let nominal = sweep.nominal()?;
+    nominal.check_size().map_err(gen_dataset::failed)?;
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let out = &arguments.out;
+    let (claim, plan) = gen_dataset::claim(&sweep, nominal, out, sweep::Existing::Resume, &cancel)?;
+    let mut plan = gen_dataset::with_format(plan, arguments.format);
+    if let Some(shards) = arguments.shards {
+        plan = plan.with_shards(shards).map_err(gen_dataset::failed)?;
+    }
+    claim.open(&plan).map_err(gen_dataset::failed)?;
+    println!(
+        "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",
+        out.display(),
+        plan.cases(),
+        plan.parts() - 1,
+        plan.shards(),
+        plan.diagrams.len()
+    );
+    Ok(())
+}

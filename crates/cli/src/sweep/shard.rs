@@ -1,0 +1,80 @@
+//! `sweep shard`: one shard is made.
+
+use super::index;
+use crate::Failure;
+use crate::gen_dataset::{self, Bar};
+use clap::Args;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use sweep::dataset::{Existing, Options, Output, run_part};
+use sweep::{Error, simulate_cases};
+
+/// Arguments of `sweep shard`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  crosshead sweep shard /scratch/faults --index 17
+  sbatch --array=0-99 --wrap 'crosshead sweep shard /scratch/faults --threads 1'
+
+Without --index the number is taken from the first of these variables that has one:
+SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX, PBS_ARRAYID, LSB_JOBINDEX, SGE_TASK_ID, JOB_COMPLETION_INDEX.
+Shards count from 0; LSF and Grid Engine count tasks from 1, so that their task 1 is shard 0.
+
+A shard that is made already stays as it is. Two processes may make the same shard at once.
+
+Exit status: 0 the shard is made; 1 the work failed; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// The dataset, as it was planned
+    url: PathBuf,
+    /// Number of the shard, from 0 [default: the engine's variable]
+    #[arg(long)]
+    index: Option<u64>,
+    /// Is added to the number, for arrays that cannot count far enough
+    #[arg(long, default_value_t = 0, value_name = "NUMBER")]
+    offset: u64,
+    /// Threads that simulate [default: one per core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+/// Makes the shard.
+///
+/// # Errors
+/// Nothing planned, no such shard, or an output that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let index = match arguments.index {
+        Some(index) => index,
+        None => index::from_engine(|name| std::env::var(name).ok())?,
+    };
+    let index = index.saturating_add(arguments.offset);
+    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    let cancel = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&cancel);
+    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let options = Options {
+        existing: Existing::Resume,
+        threads: gen_dataset::threads(arguments.threads),
+        cancel: &cancel,
+    };
+    let started = Instant::now();
+    let mut bar = Bar::default();
+    let made = run_part(&plan, &output, index, &options, &simulate_cases, &mut bar);
+    bar.finish();
+    match made {
+        Ok(true) => {
+            let seconds = started.elapsed().as_secs_f64();
+            println!("shard {index}: made in {seconds:.1} s");
+            Ok(())
+        }
+        Ok(false) => {
+            println!("shard {index}: was made before");
+            Ok(())
+        }
+        Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => Err(Failure::work(
+            format!("stopped; shard {index} is not made, and the same command begins it again"),
+        )),
+        Err(error) => Err(gen_dataset::failed(error)),
+    }
+}

@@ -1,0 +1,247 @@
+//! Slurm: job arrays make the shards, and a job that waits for their end completes the dataset.
+//!
+//! It waits by `afterany`: `afterok` never comes true once a task has failed, even if it was queued
+//! again and succeeded. It looks itself whether all is there.
+
+use crate::Failure;
+use recordings::WholeFile;
+use serde::{Deserialize, Serialize};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use sweep::ranges::ranges;
+
+/// How often shards are submitted in all.
+const ROUNDS: u64 = 3;
+/// How often a task begins its shard: three times as usual, three times case by case, and once
+/// without the case that ended the six before.
+const BEGINNINGS: u64 = 7;
+
+/// What was submitted: `_sweep/slurm/submitted.json`.
+#[derive(Serialize, Deserialize)]
+struct Submitted {
+    name: String,
+    program: PathBuf,
+    array_size: u64,
+    flags: Vec<String>,
+    round: u64,
+    jobs: Vec<String>,
+}
+
+/// Submits the shards `missing` of the dataset called `name` in the folder `root`.
+///
+/// # Errors
+/// Jobs that are under way already, or an sbatch that refuses.
+pub(super) fn submit(
+    root: &Path,
+    name: &str,
+    missing: &[u64],
+    array_size: u64,
+    flags: &[String],
+) -> Result<(), Failure> {
+    if let Some(job) = jobs(root).first() {
+        return Err(Failure::input(format!(
+            "job {job} of this dataset is still there: `crosshead sweep cancel {}` takes it back",
+            root.display()
+        )));
+    }
+    let folder = std::fs::canonicalize(root).map_err(|error| Failure::unwritten(root, error))?;
+    let slurm = folder.join("_sweep/slurm");
+    std::fs::create_dir_all(&slurm).map_err(|error| Failure::unwritten(&slurm, error))?;
+    let submitted = Submitted {
+        name: name.to_owned(),
+        program: std::env::current_exe().map_err(Failure::work)?,
+        array_size,
+        flags: flags.to_vec(),
+        round: 1,
+        jobs: Vec::new(),
+    };
+    write(&folder, "shard.sh", &shard_script(&submitted, &folder))?;
+    write(
+        &folder,
+        "finalize.sh",
+        &finalize_script(&submitted, &folder),
+    )?;
+    submit_round(submitted, &folder, missing)
+}
+
+/// Submits what is still missing, unless that has been done often enough.
+///
+/// # Errors
+/// Nothing submitted before, or an sbatch that refuses.
+pub(super) fn submit_again(root: &Path, missing: &[u64]) -> Result<(), Failure> {
+    let mut submitted = submitted(root)?;
+    if submitted.round >= ROUNDS {
+        let text = format!(
+            "submitted {ROUNDS} times, and no more; still missing: {}",
+            ranges(missing)
+        );
+        return Err(Failure::Incomplete(text));
+    }
+    submitted.round += 1;
+    let folder = std::fs::canonicalize(root).map_err(|error| Failure::unwritten(root, error))?;
+    submit_round(submitted, &folder, missing)
+}
+
+/// The jobs that Slurm still has, with their states.
+pub(super) fn jobs(root: &Path) -> Vec<String> {
+    let Ok(submitted) = submitted(root) else {
+        return Vec::new();
+    };
+    // Slurm forgets jobs, and then says so of each; those are over.
+    let state = |job: &String| {
+        let arguments = [
+            "--noheader",
+            "--states=PD,R,CG,S,RQ",
+            "--format=%i %T %r",
+            "--jobs",
+        ];
+        let lines = run(
+            "squeue",
+            arguments.map(String::from).into_iter().chain([job.clone()]),
+        );
+        let lines = lines.unwrap_or_default();
+        lines.lines().map(str::to_owned).collect::<Vec<_>>()
+    };
+    submitted.jobs.iter().flat_map(state).collect()
+}
+
+/// Cancels all jobs.
+///
+/// # Errors
+/// Nothing submitted, or an scancel that refuses.
+pub(super) fn cancel(root: &Path) -> Result<(), Failure> {
+    let jobs = submitted(root)?.jobs;
+    // The last one is that which would submit again.
+    run("scancel", jobs.iter().rev().cloned())?;
+    println!("cancelled: {}", jobs.join(" "));
+    Ok(())
+}
+
+fn submit_round(mut submitted: Submitted, folder: &Path, missing: &[u64]) -> Result<(), Failure> {
+    submitted.jobs.clear();
+    let array_size = submitted.array_size.max(1);
+    let script = |name: &str| folder.join("_sweep/slurm").join(name).display().to_string();
+    for shards in missing.chunk_by(|a, b| a / array_size == b / array_size) {
+        let offset = shards[0] / array_size * array_size;
+        let tasks: Vec<u64> = shards.iter().map(|shard| shard - offset).collect();
+        let array = [format!("--array={}", ranges(&tasks))];
+        let script = [script("shard.sh"), offset.to_string()];
+        let job = sbatch(&submitted, array.into_iter(), script)?;
+        submitted.jobs.push(job);
+        record(&submitted, folder)?;
+    }
+    let after = (!submitted.jobs.is_empty()).then(|| submitted.jobs.join(":"));
+    let after = after.map(|jobs| format!("--dependency=afterany:{jobs}"));
+    let script = [script("finalize.sh"), String::new()];
+    let job = sbatch(&submitted, after.into_iter(), script)?;
+    submitted.jobs.push(job);
+    record(&submitted, folder)?;
+    println!(
+        "{} shards submitted: jobs {}",
+        missing.len(),
+        submitted.jobs.join(" ")
+    );
+    Ok(())
+}
+
+fn sbatch(
+    submitted: &Submitted,
+    own: impl Iterator<Item = String>,
+    script: [String; 2],
+) -> Result<String, Failure> {
+    let arguments = ["--parsable".to_owned()].into_iter();
+    let arguments = arguments.chain(submitted.flags.iter().cloned()).chain(own);
+    let answer = run("sbatch", arguments.chain(script))?;
+    // The number, and on a federation of clusters a name after a semicolon.
+    let job = answer.trim().split(';').next().unwrap_or_default();
+    Ok(job.to_owned())
+}
+
+/// What a program of Slurm prints.
+fn run(program: &str, arguments: impl Iterator<Item = String>) -> Result<String, Failure> {
+    let output = Command::new(program).args(arguments).output();
+    let output = output.map_err(|error| Failure::work(format!("cannot run {program}: {error}")))?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    }
+    let message = String::from_utf8_lossy(&output.stderr);
+    Err(Failure::work(format!("{program}: {}", message.trim())))
+}
+
+fn shard_script(submitted: &Submitted, folder: &Path) -> String {
+    let beginnings: Vec<String> = (1..=BEGINNINGS).map(|n| n.to_string()).collect();
+    let (program, root) = (quoted(&submitted.program), quoted(folder));
+    let logs = folder.join("_sweep/slurm/%A_%a.log");
+    format!(
+        "#!/bin/sh
+#SBATCH --job-name={}
+#SBATCH --output=\"{}\"
+#SBATCH --open-mode=append
+#SBATCH --requeue
+# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
+# one of its cases, that case is found and left out.
+for beginning in {}; do
+    {program} sweep shard {root} --offset \"$1\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
+    status=$?
+    [ $status -gt 128 ] || exit $status
+done
+exit $status
+",
+        job_name(submitted),
+        logs.display(),
+        beginnings.join(" "),
+    )
+}
+
+fn finalize_script(submitted: &Submitted, folder: &Path) -> String {
+    let (program, root) = (quoted(&submitted.program), quoted(folder));
+    let logs = folder.join("_sweep/slurm/%j-finalize.log");
+    format!(
+        "#!/bin/sh
+#SBATCH --job-name={}
+#SBATCH --output=\"{}\"
+#SBATCH --open-mode=append
+#SBATCH --requeue
+# Completes the dataset, or submits what is missing.
+exec {program} sweep finalize {root} --resubmit
+",
+        job_name(submitted),
+        logs.display(),
+    )
+}
+
+fn job_name(submitted: &Submitted) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+    submitted.name.chars().map(plain).collect()
+}
+
+/// A path as a word of the shell.
+fn quoted(path: &Path) -> String {
+    format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
+}
+
+fn submitted(root: &Path) -> Result<Submitted, Failure> {
+    let path = root.join("_sweep/slurm/submitted.json");
+    let failed = |error: String| {
+        let path = path.display();
+        Failure::input(format!("nothing was submitted from here ({path}: {error})"))
+    };
+    let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
+    serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
+}
+
+fn record(submitted: &Submitted, folder: &Path) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(submitted).map_err(Failure::work)?;
+    write(folder, "submitted.json", &text)
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
+    let path = folder.join("_sweep/slurm").join(name);
+    let under_way = folder
+        .join("_sweep/tmp")
+        .join(format!("slurm-{name}.{}.part", std::process::id()));
+    let mut file = WholeFile::create(&under_way, &path).map_err(Failure::work)?;
+    file.write_all(text.as_bytes()).map_err(Failure::work)?;
+    file.commit().map_err(Failure::work).map(|_| ())
+}

@@ -1,0 +1,75 @@
+//! `sweep status`: how far a dataset has got.
+
+use super::slurm;
+use crate::Failure;
+use crate::gen_dataset;
+use clap::Args;
+use serde_json::json;
+use std::path::PathBuf;
+use sweep::dataset::{Output, status};
+use sweep::ranges::ranges;
+
+/// Arguments of `sweep status`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  crosshead sweep status /scratch/faults")]
+pub struct Arguments {
+    /// The dataset, as it was planned
+    url: PathBuf,
+    /// As JSON, for programs
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints how far the dataset has got.
+///
+/// # Errors
+/// Nothing planned, or records that cannot be read.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
+    let found = status(&output, &plan).map_err(gen_dataset::failed)?;
+    let jobs = slurm::jobs(&arguments.url);
+    let made = plan.parts() - found.missing.len() as u64;
+    if arguments.json {
+        let attempts = found.attempts.iter();
+        let attempts = attempts.map(|(shard, count)| json!({"shard": shard, "attempts": count}));
+        let value = json!({
+            "plan_id": plan.id,
+            "name": plan.name,
+            "complete": found.complete,
+            "shards": plan.parts(),
+            "made": made,
+            "missing": ranges(&found.missing),
+            "cases": plan.cases(),
+            "cases_made": found.cases,
+            "cases_failed": found.failed,
+            "attempts": attempts.collect::<Vec<_>>(),
+            "jobs": jobs,
+        });
+        println!("{value:#}");
+        return Ok(());
+    }
+    let complete = match found.complete {
+        true => "complete",
+        false => "not finalized",
+    };
+    println!("{}: {complete}", arguments.url.display());
+    println!("shards: {made} of {} are made", plan.parts());
+    println!(
+        "cases: {} of {}, {} failed",
+        found.cases,
+        plan.cases(),
+        found.failed
+    );
+    if !found.missing.is_empty() {
+        println!("missing: {}", ranges(&found.missing));
+    }
+    for (shard, count) in found.attempts {
+        println!("shard {shard}: {count} processes at work, or ended without a word");
+    }
+    for job in jobs {
+        println!("Slurm job {job}");
+    }
+    Ok(())
+}

@@ -1,0 +1,320 @@
+//! A dataset in steps, as several machines make it: the same bytes as gen-dataset, whatever ends.
+
+#[path = "../../../tests/readers/venv.rs"]
+mod venv;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+/// Twelve cases in three shards, and two diagrams.
+const SWEEP: &str = "
+name: small
+machine: MACHINE
+seed: 7
+run: {revolutions: 4, transient: 2, tolerance: 1e-8, chaos: false}
+shard_size: 4
+splits: {train: 60 %, test: 40 %}
+cases:
+  - random:
+      count: 12
+      axes:
+        joints: [[], [big_end], [big_end, small_end]]
+        clearance: {log_uniform: [0.1 mm, 0.3 mm]}
+bifurcations:
+  - {name: clearance, path: joints.big_end.clearance, from: 0.1 mm, to: 0.2 mm, steps: 3,
+     transient: 1, revolutions: 2, chunk: 2}
+  - {name: speed, path: speed, from: 450 rpm, to: 500 rpm, steps: 2, transient: 1, revolutions: 3,
+     joints: [small_end], set: {clearance: 0.1 mm}, at: 30 deg}
+";
+
+/// A folder with the sweep in it.
+fn begin(sweep: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let machine =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
+    let text = sweep.replace("MACHINE", &machine.display().to_string());
+    let path = folder.path().join("sweep.yaml");
+    std::fs::write(&path, text).unwrap();
+    (folder, path)
+}
+
+fn crosshead(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_crosshead"));
+    command.args(arguments);
+    command
+}
+
+fn run(command: &mut Command) -> Output {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {output:?}");
+    output
+}
+
+fn gen_dataset(sweep: &Path, out: &Path) {
+    run(crosshead(&["gen-dataset"]).arg(sweep).arg("--out").arg(out));
+}
+
+fn text(output: &[u8]) -> &str {
+    std::str::from_utf8(output).unwrap()
+}
+
+/// Every file of a dataset that readers see, with its bytes.
+fn bytes(root: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(root).unwrap().display().to_string();
+            if name == "_sweep" {
+                continue;
+            }
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                files.insert(name, std::fs::read(path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (bytes(one), bytes(other));
+    assert!(
+        one.keys().eq(other.keys()),
+        "{:?} and {:?}",
+        one.keys(),
+        other.keys()
+    );
+    for (name, content) in &one {
+        assert!(*content == other[name], "{name} differs");
+    }
+}
+
+#[test]
+fn shards_made_twice_at_once_give_the_bytes_of_gen_dataset() {
+    let (folder, sweep) = begin(SWEEP);
+    let (whole, parts) = (folder.path().join("whole"), folder.path().join("parts"));
+    gen_dataset(&sweep, &whole);
+    let out = parts.to_str().unwrap();
+    let plan = || {
+        run(crosshead(&["sweep", "plan"])
+            .arg(&sweep)
+            .args(["--out", out]))
+    };
+    plan();
+    let planned = plan();
+    assert!(
+        text(&planned.stdout).contains("shards 0 to 4 (3 of cases, 2 bif"),
+        "{planned:?}"
+    );
+
+    let finalize = crosshead(&["sweep", "finalize", out]).output().unwrap();
+    assert_eq!(finalize.status.code(), Some(3));
+    assert_eq!(text(&finalize.stdout), "0-4\n");
+    // From here on the sweep file is not needed: the plan has it.
+    let mut at_once: Vec<_> = (0..10)
+        .map(|task: u32| {
+            let mut shard = crosshead(&["sweep", "shard", out, "--threads", "1"]);
+            shard.env("SLURM_ARRAY_TASK_ID", (task % 5).to_string());
+            shard.stdout(Stdio::null()).spawn().unwrap()
+        })
+        .collect();
+    for shard in &mut at_once {
+        assert!(shard.wait().unwrap().success());
+    }
+    let again = run(&mut crosshead(&["sweep", "shard", out, "--index", "3"]));
+    assert_eq!(text(&again.stdout), "shard 3: was made before\n");
+    let none = crosshead(&["sweep", "shard", out, "--index", "5"])
+        .output()
+        .unwrap();
+    assert_eq!(none.status.code(), Some(2));
+    run(&mut crosshead(&["sweep", "finalize", out, "--verify"]));
+    assert_same(&whole, &parts);
+
+    // Whoever reads it does not meet what a crash left.
+    let left = parts.join("_sweep/tmp/features-train-00000-of-00003.parquet.host-1-2-3.part");
+    std::fs::write(left, "half").unwrap();
+    let script = venv::readers().join("read_dataset.py");
+    venv::run(Command::new(venv::python()).arg(script).arg(&parts));
+
+    let status = run(&mut crosshead(&["sweep", "status", out, "--json"]));
+    let status: serde_json::Value = serde_json::from_slice(&status.stdout).unwrap();
+    let found = ["complete", "shards", "made", "cases_made", "missing"].map(|key| &status[key]);
+    assert_eq!(
+        serde_json::json!(found),
+        serde_json::json!([true, 5, 5, 12, ""])
+    );
+
+    let changed = std::fs::read_to_string(&sweep)
+        .unwrap()
+        .replace("seed: 7", "seed: 8");
+    std::fs::write(&sweep, changed).unwrap();
+    let refused = crosshead(&["sweep", "plan"])
+        .arg(&sweep)
+        .args(["--out", out])
+        .output()
+        .unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        text(&refused.stderr).contains("another sweep"),
+        "{refused:?}"
+    );
+
+    // A byte that changed on the disk is seen, and its shard made again.
+    let damaged = parts.join("features/train-00001-of-00003.parquet");
+    let mut content = std::fs::read(&damaged).unwrap();
+    content[100] ^= 1;
+    std::fs::write(&damaged, content).unwrap();
+    let verify = crosshead(&["sweep", "finalize", out, "--verify"])
+        .output()
+        .unwrap();
+    assert_eq!(verify.status.code(), Some(1));
+    std::fs::remove_file(damaged).unwrap();
+    run(&mut crosshead(&["sweep", "shard", out, "--index", "1"]));
+    run(&mut crosshead(&["sweep", "finalize", out, "--verify"]));
+    assert_same(&whole, &parts);
+}
+
+#[test]
+fn the_number_of_shards_can_be_chosen() {
+    let (folder, sweep) = begin(SWEEP);
+    let out = folder.path().join("out");
+    let plan = run(crosshead(&["sweep", "plan"])
+        .arg(&sweep)
+        .arg("--out")
+        .arg(&out)
+        .args(["--shards", "6"]));
+    assert!(
+        text(&plan.stdout).contains("shards 0 to 7 (6 of cases"),
+        "{plan:?}"
+    );
+    let nothing = crosshead(&["sweep", "shard"])
+        .arg(folder.path())
+        .args(["--index", "0"])
+        .output()
+        .unwrap();
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(
+        text(&nothing.stderr).contains("no planned sweep"),
+        "{nothing:?}"
+    );
+}
+
+/// Many cases that take no time, in many shards.
+const TINY: &str = "
+name: tiny
+machine: MACHINE
+run: {revolutions: 1, transient: 1, sample_rate: 1 kHz, tolerance: 1e-6, chaos: false}
+shard_size: 8
+splits: {train: 100 %}
+cases:
+  - random: {count: 240, axes: {joints: [[], [big_end]], clearance: {uniform: [0.1 mm, 0.2 mm]}}}
+";
+
+/// Commits, by name and the time they were made at.
+fn commits(root: &Path) -> BTreeMap<String, std::time::SystemTime> {
+    let entries = std::fs::read_dir(root.join("_sweep/commits"))
+        .into_iter()
+        .flatten();
+    entries
+        .map(|entry| entry.unwrap())
+        .map(|entry| {
+            let name = entry.file_name().into_string().unwrap();
+            (name, entry.metadata().unwrap().modified().unwrap())
+        })
+        .collect()
+}
+
+/// `CROSSHEAD_KILLS=200` for a long trial.
+#[test]
+fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
+    let kills = std::env::var("CROSSHEAD_KILLS");
+    let kills: u64 = kills.map_or(5, |kills| kills.parse().unwrap());
+    let (folder, sweep) = begin(TINY);
+    let (whole, broken) = (folder.path().join("whole"), folder.path().join("broken"));
+    gen_dataset(&sweep, &whole);
+    let (mut done, mut rounds) = (0, 0_u32);
+    let mut random = 1_u64;
+    while done < kills {
+        if commits(&broken).len() == 30 {
+            run(crosshead(&["gen-dataset", "--resume"])
+                .arg(&sweep)
+                .arg("--out")
+                .arg(&broken));
+            assert_same(&whole, &broken);
+            std::fs::remove_dir_all(&broken).unwrap();
+            rounds += 1;
+        }
+        let before = commits(&broken);
+        let mut child = crosshead(&["gen-dataset", "--resume", "--threads", "2"])
+            .arg(&sweep)
+            .arg("--out")
+            .arg(&broken)
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap();
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        std::thread::sleep(Duration::from_millis(20 + (random >> 33) % 400));
+        // SIGKILL.
+        child.kill().unwrap();
+        done += u64::from(!child.wait().unwrap().success());
+        // What was finished before was not made again.
+        let after = commits(&broken);
+        assert!(before.iter().all(|(name, time)| after[name] == *time));
+        // Whatever stands under a final name is whole.
+        for (name, content) in bytes(&broken) {
+            assert!(
+                !name.ends_with(".parquet") || content.ends_with(b"PAR1"),
+                "{name}"
+            );
+        }
+    }
+    run(crosshead(&["gen-dataset", "--resume"])
+        .arg(&sweep)
+        .arg("--out")
+        .arg(&broken));
+    assert_same(&whole, &broken);
+    eprintln!("{done} kills over {} datasets", rounds + 1);
+}
+
+#[test]
+fn a_case_that_its_processes_die_of_is_found() {
+    let (folder, sweep) = begin(TINY);
+    let out = folder.path().join("out");
+    run(crosshead(&["sweep", "plan"])
+        .arg(&sweep)
+        .arg("--out")
+        .arg(&out));
+    // What six processes leave that end in the fourth case of the first shard.
+    let attempts = out.join("_sweep/attempts");
+    for attempt in 1..=3 {
+        std::fs::write(attempts.join(format!("0.{attempt}")), "").unwrap();
+        std::fs::write(attempts.join(format!("0.case-000003.{attempt}")), "").unwrap();
+    }
+    run(crosshead(&["sweep", "shard"])
+        .arg(&out)
+        .args(["--index", "0"]));
+    let commit = std::fs::read_to_string(out.join("_sweep/commits/0.json")).unwrap();
+    let commit: serde_json::Value = serde_json::from_str(&commit).unwrap();
+    assert_eq!(commit["failed"].as_array().unwrap().len(), 1);
+    assert_eq!(commit["failed"][0]["case_id"], "case-000003");
+    assert_eq!(
+        commit["failed"][0]["reason"],
+        "the process ended without a word, three times"
+    );
+    assert_eq!(
+        commit["rows"]["train"]
+            .as_object()
+            .unwrap()
+            .values()
+            .filter_map(|n| n.as_u64())
+            .sum::<u64>(),
+        7
+    );
+}

@@ -1,0 +1,109 @@
+//! The parts of a sweep that processes make by themselves: its shards, and after them its
+//! bifurcation diagrams, numbered from 0 throughout.
+
+use std::ops::Range;
+
+use super::commit::{Commit, DiagramCommit};
+use super::diagrams::compute;
+use super::output::Output;
+use super::{Options, Progress, Runner, pool, run_shards};
+use crate::in_order::in_order;
+use crate::plan::Diagram;
+use crate::{Error, Plan};
+
+/// A part of a sweep.
+pub(super) enum Part<'a> {
+    /// A shard of its cases.
+    Shard(u64),
+    /// A bifurcation diagram.
+    Diagram(&'a Diagram),
+}
+
+impl Plan {
+    /// Number of parts: shards and bifurcation diagrams.
+    pub fn parts(&self) -> u64 {
+        self.shards() + self.diagrams.len() as u64
+    }
+
+    /// Part number `index`.
+    pub(super) fn part(&self, index: u64) -> Option<Part<'_>> {
+        if index < self.shards() {
+            return Some(Part::Shard(index));
+        }
+        let diagram = self.diagrams.get((index - self.shards()) as usize);
+        diagram.map(Part::Diagram)
+    }
+}
+
+/// What a finished part left.
+pub(super) enum Made {
+    /// A shard.
+    Shard(Commit),
+    /// A bifurcation diagram.
+    Diagram(DiagramCommit),
+}
+
+/// Records that are read at a time: on storage that takes its time they would else take long.
+const READERS: usize = 16;
+
+/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished.
+///
+/// # Errors
+/// The first error of `each`, or a record that cannot be read.
+pub(super) fn scan(
+    plan: &Plan,
+    output: &Output,
+    indices: Range<u64>,
+    mut each: impl FnMut(u64, Option<Made>) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let read = |index: &u64| -> Result<Option<Made>, Error> {
+        match plan.part(*index) {
+            Some(Part::Shard(shard)) => Ok(Commit::read(output, plan, shard)?.map(Made::Shard)),
+            Some(Part::Diagram(diagram)) => {
+                let commit = DiagramCommit::read(output, plan, &diagram.name)?;
+                Ok(commit.map(Made::Diagram))
+            }
+            None => Ok(None),
+        }
+    };
+    in_order(
+        &pool(READERS)?,
+        4 * READERS,
+        indices,
+        read,
+        |index, made| each(index, made?),
+    )
+}
+
+/// Makes part `index` of a sweep, and tells whether there was anything to do: a part that is
+/// finished stays as it is.
+///
+/// # Errors
+/// Where there is no such part, a file cannot be written, or the part comes out differently than
+/// another process made it meanwhile.
+pub fn run_part(
+    plan: &Plan,
+    output: &Output,
+    index: u64,
+    options: &Options,
+    runner: &Runner,
+    progress: &mut dyn Progress,
+) -> Result<bool, Error> {
+    let shards = plan.parts();
+    match plan.part(index).ok_or(Error::NoShard { index, shards })? {
+        Part::Shard(shard) => {
+            if Commit::read(output, plan, shard)?.is_some() {
+                return Ok(false);
+            }
+            progress.begins(plan.shard(shard).count() as u64, 0);
+            run_shards(plan, output, &[shard], options, runner, progress)?;
+        }
+        Part::Diagram(diagram) => {
+            if DiagramCommit::read(output, plan, &diagram.name)?.is_some() {
+                return Ok(false);
+            }
+            compute(plan, output, &[diagram], options, progress)?;
+        }
+    }
+    Ok(true)
+}

@@ -1,0 +1,126 @@
+//! A dataset in a folder: hard links make records that are created once.
+
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use recordings::{FileRecord, WholeFile};
+use sha2::{Digest, Sha256};
+
+use super::temporary::temporary;
+use crate::Error;
+
+/// The folder of a dataset.
+#[derive(Debug)]
+pub(in crate::dataset) struct Folder(PathBuf);
+
+impl Folder {
+    pub(super) fn new(root: &Path) -> Self {
+        Self(root.to_owned())
+    }
+
+    /// The folder itself.
+    pub(in crate::dataset) fn root(&self) -> &Path {
+        &self.0
+    }
+
+    pub(super) fn path(&self, path: &str) -> PathBuf {
+        self.0.join(path)
+    }
+
+    pub(super) fn create(&self, path: &str) -> Result<WholeFile, Error> {
+        Ok(WholeFile::create(
+            &self.path(&temporary(path)),
+            &self.path(path),
+        )?)
+    }
+
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+        let destination = self.path(path);
+        if let Some(before) = self.read(path)? {
+            return Ok(Some(before));
+        }
+        // Written whole under a name of its own, and then linked, which fails where a file stands.
+        let staged = temporary(&format!("{path}.staged"));
+        let mut file = self.create(&staged)?;
+        let written = file.write_all(content.as_bytes());
+        written.map_err(recordings::Error::Write)?;
+        file.commit()?;
+        let linked = fs::hard_link(self.path(&staged), &destination);
+        self.remove(&staged)?;
+        match linked {
+            Ok(()) => Ok(None),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => self.read(path),
+            Err(error) => Err(failed("create", &destination, error)),
+        }
+    }
+
+    pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+        let path = self.path(path);
+        found("read", &path, fs::read_to_string(&path))
+    }
+
+    pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
+        let path = self.path(path);
+        Ok(found("read", &path, fs::metadata(&path))?.map(|found| found.len()))
+    }
+
+    pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {
+        let path = self.path(path);
+        if path.is_dir() {
+            return Ok(None);
+        }
+        let Some(mut file) = found("read", &path, File::open(&path))? else {
+            return Ok(None);
+        };
+        let (mut hash, mut bytes, mut part) = (Sha256::new(), 0, vec![0; 1 << 16]);
+        loop {
+            match file.read(&mut part) {
+                Ok(0) => break,
+                Ok(count) => {
+                    hash.update(&part[..count]);
+                    bytes += count as u64;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(failed("read", &path, error)),
+            }
+        }
+        let sha256 = format!("{:x}", hash.finalize());
+        Ok(Some(FileRecord { bytes, sha256 }))
+    }
+
+    pub(super) fn names(&self, folder: &str) -> Result<Vec<String>, Error> {
+        let folder = self.path(folder);
+        let Some(entries) = found("read", &folder, fs::read_dir(&folder))? else {
+            return Ok(Vec::new());
+        };
+        let name = |entry: io::Result<fs::DirEntry>| {
+            let entry = entry.map_err(|error| failed("read", &folder, error))?;
+            Ok(entry.file_name().to_string_lossy().into_owned())
+        };
+        entries.map(name).collect()
+    }
+
+    pub(super) fn remove(&self, path: &str) -> Result<(), Error> {
+        let path = self.path(path);
+        found("remove", &path, fs::remove_file(&path)).map(|_| ())
+    }
+}
+
+/// What was found at `path`; none where nothing stands there.
+fn found<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<Option<T>, Error> {
+    match result {
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(failed(action, path, error)),
+    }
+}
+
+fn failed(action: &'static str, path: &Path, source: io::Error) -> Error {
+    let path = path.to_owned();
+    Error::File(recordings::Error::Io {
+        action,
+        path,
+        source,
+    })
+}

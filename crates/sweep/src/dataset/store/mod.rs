@@ -1,0 +1,132 @@
+//! Where a dataset is kept, with the few things that its commits ask of such a place: a file
+//! appears whole or not at all, and of several processes that create a record one succeeds.
+
+#[cfg(feature = "s3")]
+mod bucket;
+mod folder;
+mod new_file;
+mod temporary;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use recordings::FileRecord;
+
+use crate::Error;
+#[cfg(feature = "s3")]
+use bucket::Bucket;
+use folder::Folder;
+pub(super) use new_file::NewFile;
+pub(super) use temporary::process;
+
+/// The place of a dataset. Paths in it have `/` between folders.
+#[derive(Debug)]
+pub(super) enum Store {
+    /// A folder of a file system.
+    Folder(Folder),
+    /// A prefix of a bucket.
+    #[cfg(feature = "s3")]
+    Bucket(Bucket),
+}
+
+impl Store {
+    /// The place that `root` names: a folder, or `s3://BUCKET/PREFIX`.
+    pub(super) fn at(root: &Path) -> Result<Self, Error> {
+        match root.to_str().and_then(|url| url.strip_prefix("s3://")) {
+            None => Ok(Self::Folder(Folder::new(root))),
+            #[cfg(feature = "s3")]
+            Some(address) => Ok(Self::Bucket(Bucket::new(root, address)?)),
+            #[cfg(not(feature = "s3"))]
+            Some(_) => Err(Error::NoObjectStorage(root.to_owned())),
+        }
+    }
+
+    /// The folder that it is, if it is one.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        match self {
+            Self::Folder(store) => Some(store.root()),
+            #[cfg(feature = "s3")]
+            Self::Bucket(_) => None,
+        }
+    }
+
+    /// Where `path` stands, for messages.
+    pub(super) fn path(&self, path: &str) -> PathBuf {
+        match self {
+            Self::Folder(store) => store.path(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.path(path),
+        }
+    }
+
+    /// Starts a file that will stand at `path` when it is finished, in place of any other.
+    pub(super) fn create(&self, path: &str) -> Result<NewFile, Error> {
+        match self {
+            Self::Folder(store) => Ok(NewFile::File(store.create(path)?)),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => Ok(NewFile::Object(Box::new(store.create(path)))),
+        }
+    }
+
+    /// Writes a file at once.
+    pub(super) fn write(&self, path: &str, content: &[u8]) -> Result<FileRecord, Error> {
+        let mut file = self.create(path)?;
+        file.write_all(content).map_err(recordings::Error::Write)?;
+        file.commit()
+    }
+
+    /// Writes `content` to `path` unless something stands there already, which is then handed back.
+    /// Of several processes that try at once one succeeds.
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+        match self {
+            Self::Folder(store) => store.create_only(path, content),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.create_only(path, content),
+        }
+    }
+
+    /// The text at `path`, if something stands there.
+    pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+        match self {
+            Self::Folder(store) => store.read(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.read(path),
+        }
+    }
+
+    /// Length and checksum of what stands at `path`, if something does.
+    pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {
+        match self {
+            Self::Folder(store) => store.record(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.record(path),
+        }
+    }
+
+    /// Length in bytes of what stands at `path`, if something does.
+    pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
+        match self {
+            Self::Folder(store) => store.length(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.length(path),
+        }
+    }
+
+    /// The names of the files and folders in `folder`, in any order; none where there is no such folder.
+    pub(super) fn names(&self, folder: &str) -> Result<Vec<String>, Error> {
+        match self {
+            Self::Folder(store) => store.names(folder),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.names(folder),
+        }
+    }
+
+    /// Removes the file at `path`, if there is one.
+    pub(super) fn remove(&self, path: &str) -> Result<(), Error> {
+        match self {
+            Self::Folder(store) => store.remove(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.remove(path),
+        }
+    }
+}

@@ -1,0 +1,236 @@
+#!/usr/bin/env python3
+"""A dataset in object storage: a server process that speaks S3 on this machine, and the same bytes.
+
+Needs the packages of requirements-object-storage.txt.
+"""
+
+import hashlib
+import os
+import pathlib
+import random
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+import boto3
+import botocore
+
+from common import CROSSHEAD, PROJECT, checksums, crosshead, expect, expect_same, say, wait_until, write_sweep
+
+ROUNDS, RACERS = 30, 16
+
+# Eight cases of 17 MB each, quickly simulated.
+LARGE = """
+name: large
+machine: {machine}
+run: {{revolutions: 60, transient: 0, sample_rate: 200 kHz, tolerance: 1e-5, chaos: false}}
+splits: {{train: 100 %}}
+cases:
+  - grid: {{speed: [500 rpm, 501 rpm, 502 rpm, 503 rpm, 504 rpm, 505 rpm, 506 rpm, 507 rpm]}}
+"""
+
+
+def start_server(log):
+    """The server's process and its address."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    program = pathlib.Path(sys.executable).with_name("moto_server")
+    arguments = [program, "-H", "127.0.0.1", "-p", str(port)]
+    server = subprocess.Popen(arguments, stdout=log, stderr=log)
+    return server, f"http://127.0.0.1:{port}"
+
+
+def client(address):
+    return boto3.client("s3", endpoint_url=address)
+
+
+def objects(s3, prefix):
+    """The keys below `prefix` that readers see, with the checksums of their content."""
+    found = {}
+    for page in s3.get_paginator("list_objects_v2").paginate(Bucket="data", Prefix=prefix + "/"):
+        for item in page.get("Contents", []):
+            name = item["Key"].removeprefix(prefix + "/")
+            if not name.startswith("_sweep/"):
+                body = s3.get_object(Bucket="data", Key=item["Key"])["Body"].read()
+                found[name] = hashlib.sha256(body).hexdigest()
+    return found
+
+
+def versions(s3, key):
+    """How often `key` was written."""
+    answer = s3.list_object_versions(Bucket="data", Prefix=key)
+    return len([v for v in answer.get("Versions", []) if v["Key"] == key])
+
+
+def same_bytes(s3, folder):
+    sweep = write_sweep(folder, cases=20, shard_size=4)
+    whole = folder / "whole"
+    crosshead("gen-dataset", sweep, "--out", whole)
+    url = "s3://data/sets/steps"
+    crosshead("sweep", "plan", sweep, "--out", url)
+    missing = crosshead("sweep", "finalize", url, status=3)
+    expect(missing == "0-5\n", missing)
+    # Two at a time, and each shard twice.
+    for first in range(0, 12, 2):
+        pair = [
+            subprocess.Popen(
+                [CROSSHEAD, "sweep", "shard", url, "--index", str(index % 6), "--threads", "1"],
+                stdout=subprocess.DEVNULL,
+            )
+            for index in (first, first + 1)
+        ]
+        expect(all(shard.wait() == 0 for shard in pair), f"shards {first}, {first + 1}")
+    crosshead("sweep", "finalize", url, "--verify")
+    expect_same(objects(s3, "sets/steps"), checksums(whole))
+    say(f"in steps: the bytes of gen-dataset in a folder ({len(checksums(whole))} objects)")
+
+    url = "s3://data/sets/one"
+    crosshead("gen-dataset", sweep, "--out", url)
+    expect_same(objects(s3, "sets/one"), checksums(whole))
+    begun = time.monotonic()
+    crosshead("gen-dataset", sweep, "--out", url, "--resume")
+    say(f"in one process: the same; again: {time.monotonic() - begun:.1f} s")
+    crosshead("gen-dataset", sweep, "--out", url, status=2)
+    changed = folder / "changed.yaml"
+    changed.write_text(sweep.read_text().replace("seed: 5", "seed: 6"))
+    crosshead("sweep", "plan", changed, "--out", url, status=2)
+    say("a changed sweep is refused")
+    return sweep
+
+
+def race(s3, folder):
+    """Many processes commit one shard at once: one record is written, and all are content."""
+    sweep = write_sweep(folder, cases=1, shard_size=1)
+    several = 0
+    for attempt in range(ROUNDS):
+        url = f"s3://data/race/{attempt}"
+        crosshead("sweep", "plan", sweep, "--out", url)
+        racers = [
+            subprocess.Popen(
+                [CROSSHEAD, "sweep", "shard", url, "--index", "0", "--threads", "1"],
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            for _ in range(RACERS)
+        ]
+        said = [racer.communicate()[0] for racer in racers]
+        expect(all(racer.returncode == 0 for racer in racers), f"round {attempt}: {said}")
+        made = sum("made in" in text for text in said)
+        several += made
+        key = f"race/{attempt}/_sweep/commits/0.json"
+        expect(versions(s3, key) == 1, f"round {attempt}: {versions(s3, key)} winners")
+    say(f"{ROUNDS} rounds of {RACERS}: one winner each; {several / ROUNDS:.1f} simulated the shard")
+
+
+class Nuisance(threading.Thread):
+    """A proxy before the server whose connections come late and break off, in requests and in
+    answers: puts fail, or are done and said to have failed, and are done again."""
+
+    def __init__(self, address):
+        super().__init__(daemon=True)
+        self.server = ("127.0.0.1", int(address.rsplit(":", 1)[1]))
+        self.door = socket.create_server(("127.0.0.1", 0))
+        self.address = f"http://127.0.0.1:{self.door.getsockname()[1]}"
+        self.random = random.Random(1)
+        self.broken = 0
+
+    def run(self):
+        while True:
+            client, _ = self.door.accept()
+            time.sleep(0.2 * (self.random.random() < 0.1))
+            server = socket.create_connection(self.server)
+            for source, sink in [(client, server), (server, client)]:
+                threading.Thread(target=self.pass_on, args=(source, sink), daemon=True).start()
+
+    def pass_on(self, source, sink):
+        try:
+            while content := source.recv(1 << 16):
+                if self.random.random() < 0.05:
+                    self.broken += 1
+                    break
+                sink.sendall(content)
+        except OSError:
+            pass
+        for end in [source, sink]:
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+
+
+def nuisance(s3, folder, address):
+    """Connections break off and come late: nothing is lost, nothing doubled."""
+    sweep = write_sweep(folder, cases=20, shard_size=4)
+    proxy = Nuisance(address)
+    proxy.start()
+    environment = {**os.environ, "AWS_ENDPOINT_URL": proxy.address}
+    url = "s3://data/nuisance"
+    crosshead("gen-dataset", sweep, "--out", url, env=environment)
+    expect_same(objects(s3, "nuisance"), checksums(folder / "whole"))
+    for shard in range(6):
+        name = f"{shard}.json" if shard < 5 else "bifurcation-clearance.json"
+        written = versions(s3, f"nuisance/_sweep/commits/{name}")
+        expect(written == 1, f"{name} was written {written} times")
+    expect(proxy.broken > 0, "nothing broke")
+    say(f"{proxy.broken} connections broken: the same bytes, each record written once")
+
+
+def kill(s3, folder):
+    """A process is killed while it sends a large object in parts: nobody sees any of it."""
+    sweep = folder / "large.yaml"
+    sweep.write_text(LARGE.format(machine=PROJECT / "data" / "machines" / "single-stage.yaml"))
+    url = "s3://data/kill"
+    crosshead("sweep", "plan", sweep, "--out", url)
+    shard = subprocess.Popen([CROSSHEAD, "sweep", "shard", url, "--index", "0"])
+    uploads = lambda: s3.list_multipart_uploads(Bucket="data").get("Uploads", [])
+    seconds = wait_until(lambda: uploads() or shard.poll() is not None, 300, "an upload in parts")
+    expect(shard.poll() is None, "the shard was made before it was killed")
+    shard.send_signal(signal.SIGKILL)
+    shard.wait()
+    expect(uploads(), "no upload was left")
+    expect(set(objects(s3, "kill")) == {"sweep.yaml"}, f"{objects(s3, 'kill').keys()}")
+    say(f"killed after {seconds:.1f} s, with an upload under way: no object to be seen")
+
+
+def main():
+    os.environ.update(
+        AWS_ACCESS_KEY_ID="test",
+        AWS_SECRET_ACCESS_KEY="test",
+        AWS_REGION="us-east-1",
+        AWS_DEFAULT_REGION="us-east-1",
+        AWS_ALLOW_HTTP="true",
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        with open(folder / "server.log", "w") as log:
+            server, address = start_server(log)
+        try:
+            os.environ["AWS_ENDPOINT_URL"] = address
+            s3 = client(address)
+
+            def answers():
+                try:
+                    s3.create_bucket(Bucket="data")
+                    return True
+                except botocore.exceptions.EndpointConnectionError:
+                    return False
+
+            wait_until(answers, 60, "the server")
+            versioning = {"Status": "Enabled"}
+            s3.put_bucket_versioning(Bucket="data", VersioningConfiguration=versioning)
+            same_bytes(s3, folder)
+            race(s3, folder)
+            nuisance(s3, folder, address)
+            kill(s3, folder)
+        finally:
+            server.terminate()
+            server.wait()
+
+
+if __name__ == "__main__":
+    main()
