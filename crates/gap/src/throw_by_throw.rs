@@ -40,7 +40,7 @@ impl Search<'_> {
             if explained.fitted <= NOISE || most == 0 {
                 break;
             }
-            let (throw, of_throw, _) = self.while_they_earn(throw, NOISE, most, &own)?;
+            let (throw, of_throw, _) = self.while_they_earn(throw, NOISE, most, own)?;
             if of_throw.is_empty() {
                 continue;
             }
