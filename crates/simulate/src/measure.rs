@@ -152,7 +152,7 @@ mod tests {
             trace: None,
             transient: 0,
             settled: false,
-            energy_residual: 0.0,
+            energy_residual: None,
             work: Default::default(),
         };
         let mut noisy = sensor(ACCELERATION, None, None);
