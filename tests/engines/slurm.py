@@ -70,13 +70,13 @@ def cancel(folder, sweep, whole):
         expect(made < 41 and not (out / "manifest.json").exists(), f"{made} shards")
         command("submit", out, "--engine", "slurm", "--", "--cpus-per-task=2")
         wait_until(lambda: commits(out) >= made + 3, 120, "three shards more")
-        ended = cluster.end_tasks("n1")
+        wait_until(lambda: cluster.end_tasks("n1") > 1, 60, "a task to end")
         wait_for_dataset(cluster, out, 400)
     expect_same(checksums(out), checksums(whole))
     rounds = re.findall("shards submitted", says(out))
     say(f"cancelled after {made} shards and submitted again: the same files")
-    expect(rounds, f"{ended} processes ended, and nothing was submitted again")
-    say(f"a task that was ended ({ended} processes) was submitted again by the finalising job")
+    expect(rounds, "a task was ended, and nothing was submitted again")
+    say("a task that was ended was submitted again by the finalising job")
 
 
 def partition(folder):

@@ -178,8 +178,10 @@ class Cluster:
 
     def end_tasks(self, node):
         """The tasks on `node` end, the scripts before what they run; the node stays."""
-        name = lambda pid: pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
-        pids = {pid: name(pid) for pid in self.payloads(node)}
+        pids = {}
+        for pid in self.payloads(node):
+            with contextlib.suppress(OSError):
+                pids[pid] = pathlib.Path(f"/proc/{pid}/comm").read_text().strip()
         ended = [pid for pid, name in pids.items() if name != "slurmstepd"]
         for pid in sorted(ended, key=lambda pid: pids[pid] != "slurm_script"):
             kill(pid)

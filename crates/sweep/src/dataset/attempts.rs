@@ -52,9 +52,11 @@ impl<'a> Attempts<'a> {
     }
 
     /// Ends the one at `what`, which came to a result.
-    pub(super) fn end(&self, what: &str) -> Result<(), Error> {
-        let path = self.under_way.borrow_mut().remove(what);
-        path.map_or(Ok(()), |path| self.output.store.remove(&path))
+    pub(super) fn end(&self, what: &str) {
+        if let Some(path) = self.under_way.borrow_mut().remove(what) {
+            // One that stays only makes the next attempt more careful.
+            let _ = self.output.store.remove(&path);
+        }
     }
 }
 

@@ -230,7 +230,8 @@ impl Shards<'_> {
                 }
                 open.commit(plan)?;
                 *done += 1;
-                attempts.end(&shard.to_string())
+                attempts.end(&shard.to_string());
+                Ok::<(), Error>(())
             },
         )?;
         // Cancelled before the first case, or between two shards.
@@ -254,7 +255,7 @@ impl Shards<'_> {
             } else {
                 attempts.begin(&marker)?;
                 let rows = run_cases(plan, case..case + 1, self.runner, &self.sweep_yaml);
-                attempts.end(&marker)?;
+                attempts.end(&marker);
                 rows
             };
             for rows in rows {
@@ -264,7 +265,8 @@ impl Shards<'_> {
         }
         open.commit(plan)?;
         self.done += 1;
-        attempts.end(&shard.to_string())
+        attempts.end(&shard.to_string());
+        Ok(())
     }
 }
 

@@ -8,6 +8,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::Arc;
+use std::time::Duration;
 
 use object_store::aws::AmazonS3Builder;
 use object_store::buffered::BufWriter;
@@ -22,6 +23,8 @@ use crate::Error;
 
 /// Bytes that are read at a time.
 const PART: u64 = 8 << 20;
+/// How often a request is tried whose connection breaks off.
+const TRIES: u32 = 5;
 
 /// The prefix of a bucket.
 #[derive(Debug)]
@@ -72,12 +75,15 @@ impl Bucket {
     }
 
     pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
-        let options = PutOptions::from(PutMode::Create);
-        let payload = PutPayload::from(content.as_bytes().to_vec());
         let key = self.key(path);
-        let put = self.objects.put_opts(&key, payload, options);
-        match self.runtime.block_on(put) {
+        let put = || {
+            let payload = PutPayload::from(content.as_bytes().to_vec());
+            let options = PutOptions::from(PutMode::Create);
+            self.objects.put_opts(&key, payload, options)
+        };
+        match self.persist(put) {
             Ok(_) => Ok(None),
+            // Perhaps by this put, whose answer was lost: the content tells.
             Err(object_store::Error::AlreadyExists { .. }) => self.read(path),
             Err(error) => Err(failed("create", &self.path(path), &error)),
         }
@@ -85,7 +91,7 @@ impl Bucket {
 
     pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
         let key = self.key(path);
-        let text = async { self.objects.get(&key).await?.bytes().await };
+        let text = || async { self.objects.get(&key).await?.bytes().await };
         let Some(content) = self.found("read", path, text)? else {
             return Ok(None);
         };
@@ -96,7 +102,7 @@ impl Bucket {
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
         let key = self.key(path);
-        let head = self.found("read", path, self.objects.head(&key))?;
+        let head = self.found("read", path, || self.objects.head(&key))?;
         Ok(head.map(|object| object.size))
     }
 
@@ -107,7 +113,7 @@ impl Bucket {
         let (key, mut hash) = (self.key(path), Sha256::new());
         for start in (0..bytes).step_by(PART as usize) {
             let range = start..bytes.min(start + PART);
-            let part = self.runtime.block_on(self.objects.get_range(&key, range));
+            let part = self.persist(|| self.objects.get_range(&key, range.clone()));
             hash.update(part.map_err(|error| failed("read", &self.path(path), &error))?);
         }
         let sha256 = format!("{:x}", hash.finalize());
@@ -116,9 +122,7 @@ impl Bucket {
 
     pub(super) fn names(&self, folder: &str) -> Result<Vec<String>, Error> {
         let key = self.key(folder);
-        let listed = self
-            .runtime
-            .block_on(self.objects.list_with_delimiter(Some(&key)));
+        let listed = self.persist(|| self.objects.list_with_delimiter(Some(&key)));
         let listed = listed.map_err(|error| failed("list", &self.path(folder), &error))?;
         let objects = listed.objects.iter().map(|object| &object.location);
         let names = objects
@@ -129,21 +133,42 @@ impl Bucket {
 
     pub(super) fn remove(&self, path: &str) -> Result<(), Error> {
         let key = self.key(path);
-        self.found("remove", path, self.objects.delete(&key))
+        self.found("remove", path, || self.objects.delete(&key))
             .map(|_| ())
     }
 
     /// What an action finds; none where nothing stands there.
-    fn found<T>(
+    fn found<T, F: Future<Output = Result<T, object_store::Error>>>(
         &self,
         action: &'static str,
         path: &str,
-        what: impl Future<Output = Result<T, object_store::Error>>,
+        what: impl Fn() -> F,
     ) -> Result<Option<T>, Error> {
-        match self.runtime.block_on(what) {
+        match self.persist(what) {
             Ok(found) => Ok(Some(found)),
             Err(object_store::Error::NotFound { .. }) => Ok(None),
             Err(error) => Err(failed(action, &self.path(path), &error)),
+        }
+    }
+
+    /// Does `what` until it gets an answer, or has been tried often enough.
+    fn persist<T, F: Future<Output = Result<T, object_store::Error>>>(
+        &self,
+        what: impl Fn() -> F,
+    ) -> Result<T, object_store::Error> {
+        use object_store::Error::{AlreadyExists, NotFound};
+        let mut tries = 1;
+        loop {
+            match self.runtime.block_on(what()) {
+                Err(error)
+                    if tries < TRIES
+                        && !matches!(error, AlreadyExists { .. } | NotFound { .. }) =>
+                {
+                    std::thread::sleep(Duration::from_secs(1));
+                    tries += 1;
+                }
+                done => return done,
+            }
         }
     }
 }
