@@ -232,13 +232,15 @@ impl<S: Scalar> Dynamics<S> {
             self.evaluate(t, y);
             return;
         }
+        // A frame feels the main bearing's force.
+        let framed = self.machine.frame.is_some();
         self.evaluate_forces(t, y);
         self.respond();
-        if self.pins_give() {
+        if framed || self.pins_give() {
             self.turn_shaft(t);
         }
         self.follow();
-        if self.machine.frame.is_some() {
+        if framed {
             self.shake_frame(y);
         }
     }

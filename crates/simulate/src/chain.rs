@@ -18,6 +18,7 @@ const LEAST_FACTOR: f64 = 4.0;
 const MOST_FACTOR: f64 = 4096.0;
 
 /// How a record is sampled: more finely first, then decimated.
+#[derive(Clone)]
 pub(crate) struct Sampling {
     decimator: Decimator,
     /// Inner samples per recorded one.
@@ -104,40 +105,100 @@ impl Sampling {
         start: f64,
         inner: &[f64],
     ) -> Result<Vec<f64>, Error> {
-        // An angle has a jump a revolution, which no filter must touch.
-        if sensor.measured == Measured::CrankAngle {
-            let recorded = inner[self.lead()..].iter().step_by(self.factor);
-            let offset = sensor.chain.angle_offset;
-            return Ok(recorded
-                .take(self.samples)
-                .map(|x| shifted(*x, offset))
-                .collect());
-        }
-        let mut filters = filters(sensor, self.inner_rate).map_err(|source| {
+        let mut under_way = self.begin(sensor, machine)?;
+        under_way.extend(inner.iter().copied());
+        Ok(under_way.end(start))
+    }
+
+    /// Begins a record of `sensor`.
+    pub(crate) fn begin(&self, sensor: &Sensor, machine: &Machine) -> Result<UnderWay, Error> {
+        let filters = filters(sensor, self.inner_rate).map_err(|source| {
             let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
             Error::Sensor {
                 column: sensor.measured.column(&names),
                 source,
             }
         })?;
-        let gain = sensor.chain.gain;
-        if let Some(first) = inner.first() {
-            filters.iter_mut().for_each(|f| f.settle(first * gain));
+        Ok(UnderWay {
+            sensor: sensor.clone(),
+            filters,
+            seen: 0,
+            waiting: Vec::new(),
+            recorded: Vec::with_capacity(self.samples),
+            sampling: self.clone(),
+        })
+    }
+}
+
+/// Recorded samples that are made at a time.
+const AT_A_TIME: usize = 256;
+
+/// A sensor's record under way: inner samples go in one after another, and only those are kept that
+/// the decimation still needs.
+pub(crate) struct UnderWay {
+    sensor: Sensor,
+    filters: Vec<Filter>,
+    /// Inner samples so far.
+    seen: usize,
+    /// Those of them, filtered, that are not decimated yet.
+    waiting: Vec<f64>,
+    recorded: Vec<f64>,
+    sampling: Sampling,
+}
+
+impl UnderWay {
+    /// Takes the next inner samples.
+    pub(crate) fn extend(&mut self, inner: impl IntoIterator<Item = f64>) {
+        for x in inner {
+            // An angle has a jump a revolution, which no filter must touch.
+            match self.sensor.measured {
+                Measured::CrankAngle => self.pick(x),
+                _ => self.filter(x),
+            }
+            self.seen += 1;
         }
-        let filtered: Vec<f64> = inner
-            .iter()
-            .map(|x| filters.iter_mut().fold(x * gain, |x, f| f.run(x)))
-            .collect();
-        let mut recorded = self.decimator.apply(&filtered);
-        if let Some(hum) = sensor.chain.hum {
-            let rate = self.inner_rate / self.factor as f64;
-            for (i, x) in recorded.iter_mut().enumerate() {
+    }
+
+    fn pick(&mut self, angle: f64) {
+        let since = self.seen.checked_sub(self.sampling.lead());
+        let due = since.is_some_and(|since| since.is_multiple_of(self.sampling.factor));
+        if due && self.recorded.len() < self.sampling.samples {
+            let offset = self.sensor.chain.angle_offset;
+            self.recorded.push(shifted(angle, offset));
+        }
+    }
+
+    fn filter(&mut self, x: f64) {
+        let x = x * self.sensor.chain.gain;
+        if self.seen == 0 {
+            self.filters.iter_mut().for_each(|f| f.settle(x));
+        }
+        let x = self.filters.iter_mut().fold(x, |x, f| f.run(x));
+        self.waiting.push(x);
+        if self.waiting.len() >= self.sampling.decimator.input_length(AT_A_TIME) {
+            self.decimate();
+        }
+    }
+
+    fn decimate(&mut self) {
+        let recorded = self.sampling.decimator.apply(&self.waiting);
+        self.waiting.drain(..recorded.len() * self.sampling.factor);
+        self.recorded.extend(recorded);
+    }
+
+    /// The record, which begins at `start`, s.
+    pub(crate) fn end(mut self, start: f64) -> Vec<f64> {
+        self.decimate();
+        let rate = self.sampling.inner_rate / self.sampling.factor as f64;
+        let hum = self.sensor.chain.hum;
+        if let Some(hum) = hum.filter(|_| self.sensor.measured != Measured::CrankAngle) {
+            for (i, x) in self.recorded.iter_mut().enumerate() {
                 let time = start + i as f64 / rate;
                 let (_, cosine) = Scalar::sin_cos(TAU * hum.frequency * time + hum.phase);
                 *x += hum.amplitude * cosine;
             }
         }
-        Ok(recorded)
+        self.recorded
     }
 }
 

@@ -3,6 +3,7 @@
 //! Instants are many, four to eight of them to a recorded sample, so that those within a step are
 //! evaluated side by side.
 
+use crate::chain::UnderWay;
 use crate::run::{Instants, Run};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
@@ -20,7 +21,7 @@ pub(crate) struct Sampler<'a> {
     sensors: &'a [Sensor],
     instants: Instants,
     seen: usize,
-    series: Vec<Vec<f64>>,
+    series: Vec<UnderWay>,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
     wide: Dynamics<Lanes<WIDTH>>,
@@ -35,6 +36,7 @@ impl<'a> Sampler<'a> {
     pub fn begin(
         run: &mut Run<f64>,
         sensors: &'a [Sensor],
+        series: Vec<UnderWay>,
         instants: Instants,
         trace: Option<(Trace, Range<usize>)>,
     ) -> Self {
@@ -48,7 +50,7 @@ impl<'a> Sampler<'a> {
             mode: dynamics.mode().clone(),
             states: vec![Lanes([0.0; WIDTH]); dimension],
             state: vec![0.0; dimension],
-            series: vec![Vec::with_capacity(instants.count); sensors.len()],
+            series,
             sensors,
             instants,
             seen: 0,
@@ -70,7 +72,7 @@ impl<'a> Sampler<'a> {
 
     fn look(&mut self, at: &Evaluation<f64>) {
         for (sensor, series) in self.sensors.iter().zip(&mut self.series) {
-            series.push(sensor.measured.value(at));
+            series.extend([sensor.measured.value(at)]);
         }
         if let Some((trace, range)) = &mut self.trace
             && range.contains(&self.seen)
@@ -125,12 +127,14 @@ impl<'a> Sampler<'a> {
         self.seen += count;
     }
 
-    /// The series of each sensor. Rounding may leave the very last instant beyond the last step.
-    pub fn end_with(mut self, run: &mut Run<f64>) -> (Vec<Vec<f64>>, Option<Trace>) {
+    /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond
+    /// the last step.
+    pub fn end_with(mut self, run: &mut Run<f64>, start: f64) -> (Vec<Vec<f64>>, Option<Trace>) {
         let last = run.evaluate();
         while self.seen < self.instants.count {
             self.look(last);
         }
-        (self.series, self.trace.map(|(trace, _)| trace))
+        let series = self.series.into_iter().map(|series| series.end(start));
+        (series.collect(), self.trace.map(|(trace, _)| trace))
     }
 }

@@ -42,7 +42,6 @@ struct Recording<'a> {
     left: Left,
     /// When it begins, s.
     start: f64,
-    sampling: Sampling,
     sampler: Sampler<'a>,
     before: Option<Ledger>,
 }
@@ -99,12 +98,18 @@ impl<'a> Task<'a> {
         let trace = self
             .traced
             .then(|| (Trace::new(machine, sampling.factor), recorded));
+        let series = sensors.iter().map(|sensor| sampling.begin(sensor, machine));
         Ok(Recording {
             left,
             start,
             before: self.traced.then(|| self.run.ledger()),
-            sampler: Sampler::begin(&mut self.run, sensors, sampling.instants(start), trace),
-            sampling,
+            sampler: Sampler::begin(
+                &mut self.run,
+                sensors,
+                series.collect::<Result<_, _>>()?,
+                sampling.instants(start),
+                trace,
+            ),
         })
     }
 
@@ -137,25 +142,16 @@ impl<'a> Task<'a> {
                 let Recording {
                     left,
                     start,
-                    sampling,
                     sampler,
                     before,
                 } = *recording;
                 let run = &mut self.run;
-                let (inner, trace) = sampler.end_with(run);
-                let Asked {
-                    machine,
-                    sensors,
-                    settings,
-                } = self.asked;
-                let chains = sensors.iter().zip(&inner);
-                let series =
-                    chains.map(|(sensor, inner)| sampling.record(sensor, machine, start, inner));
+                let (series, trace) = sampler.end_with(run, start);
                 Ok(Ok(Record {
-                    sample_rate: settings.sample_rate,
+                    sample_rate: self.asked.settings.sample_rate,
                     start,
                     trace,
-                    series: series.collect::<Result<_, _>>()?,
+                    series,
                     transient: left.transient,
                     settled: left.period.is_some(),
                     energy_residual: before.map(|before| run.residual(&before)),
