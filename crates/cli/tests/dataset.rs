@@ -1,9 +1,10 @@
 //! gen-dataset as a user runs it: the same bytes however it is run, and Python reads them.
 
+mod dataset_bytes;
 #[path = "../../../tests/readers/venv.rs"]
 mod venv;
 
-use std::collections::BTreeMap;
+use dataset_bytes::bytes;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -62,27 +63,6 @@ fn gen_dataset(arguments: &[&str]) -> Output {
         String::from_utf8_lossy(&output.stderr)
     );
     output
-}
-
-/// Every file of a dataset that readers see, with its bytes.
-fn bytes(root: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![root.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(root).unwrap().display().to_string();
-            if name.starts_with("_sweep") {
-                continue;
-            }
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                files.insert(name, std::fs::read(&path).unwrap());
-            }
-        }
-    }
-    files
 }
 
 #[test]

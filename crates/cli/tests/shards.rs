@@ -1,8 +1,10 @@
 //! A dataset in steps, as several machines make it: the same bytes as gen-dataset, whatever ends.
 
+mod dataset_bytes;
 #[path = "../../../tests/readers/venv.rs"]
 mod venv;
 
+use dataset_bytes::bytes;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -58,27 +60,6 @@ fn gen_dataset(sweep: &Path, out: &Path) {
 
 fn text(output: &[u8]) -> &str {
     std::str::from_utf8(output).unwrap()
-}
-
-/// Every file of a dataset that readers see, with its bytes.
-fn bytes(root: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![root.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            let name = path.strip_prefix(root).unwrap().display().to_string();
-            if name == "_sweep" {
-                continue;
-            }
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                files.insert(name, std::fs::read(path).unwrap());
-            }
-        }
-    }
-    files
 }
 
 fn assert_same(one: &Path, other: &Path) {

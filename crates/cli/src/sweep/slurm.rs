@@ -174,12 +174,7 @@ fn shard_script(submitted: &Submitted, folder: &Path) -> String {
     let (program, root) = (quoted(&submitted.program), quoted(folder));
     let logs = folder.join("_sweep/slurm/%A_%a.log");
     format!(
-        "#!/bin/sh
-#SBATCH --job-name={}
-#SBATCH --output=\"{}\"
-#SBATCH --open-mode=append
-#SBATCH --requeue
-# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
+        "{}# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
 # one of its cases, that case is found and left out.
 for beginning in {}; do
     {program} sweep shard {root} --offset \"$1\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
@@ -188,8 +183,7 @@ for beginning in {}; do
 done
 exit $status
 ",
-        job_name(submitted),
-        logs.display(),
+        header(submitted, &logs),
         beginnings.join(" "),
     )
 }
@@ -198,13 +192,21 @@ fn finalize_script(submitted: &Submitted, folder: &Path) -> String {
     let (program, root) = (quoted(&submitted.program), quoted(folder));
     let logs = folder.join("_sweep/slurm/%j-finalize.log");
     format!(
+        "{}# Completes the dataset, or submits what is missing.
+exec {program} sweep finalize {root} --resubmit
+",
+        header(submitted, &logs),
+    )
+}
+
+/// How a batch script begins that logs to `logs`.
+fn header(submitted: &Submitted, logs: &Path) -> String {
+    format!(
         "#!/bin/sh
 #SBATCH --job-name={}
 #SBATCH --output=\"{}\"
 #SBATCH --open-mode=append
 #SBATCH --requeue
-# Completes the dataset, or submits what is missing.
-exec {program} sweep finalize {root} --resubmit
 ",
         job_name(submitted),
         logs.display(),

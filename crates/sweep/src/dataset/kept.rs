@@ -1,12 +1,12 @@
 //! The calibration that a dataset begins with: its files, in the folder `calibration/`.
 
 use std::fs;
-use std::io;
 use std::path::Path;
 
 use recordings::{FileEntry, FileRecord};
 
 use super::output::{CALIBRATION, Output};
+use super::store::failed;
 use crate::Error;
 
 impl Output {
@@ -69,13 +69,4 @@ fn names(folder: &Path, prefix: &str) -> Result<Vec<String>, Error> {
 
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     fs::read(path).map_err(|source| failed("read", path, source))
-}
-
-fn failed(action: &'static str, path: &Path, source: io::Error) -> Error {
-    let path = path.to_owned();
-    Error::File(recordings::Error::Io {
-        action,
-        path,
-        source,
-    })
 }

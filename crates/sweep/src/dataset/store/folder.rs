@@ -116,7 +116,8 @@ fn found<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<
     }
 }
 
-fn failed(action: &'static str, path: &Path, source: io::Error) -> Error {
+/// The error of an action at a file.
+pub(in crate::dataset) fn failed(action: &'static str, path: &Path, source: io::Error) -> Error {
     let path = path.to_owned();
     Error::File(recordings::Error::Io {
         action,

@@ -16,6 +16,7 @@ use crate::Error;
 #[cfg(feature = "s3")]
 use bucket::Bucket;
 use folder::Folder;
+pub(super) use folder::failed;
 pub(super) use new_file::NewFile;
 pub(super) use temporary::process;
 
