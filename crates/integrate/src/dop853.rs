@@ -87,9 +87,20 @@ impl<S: Scalar> Step<S> {
         let n = self.dimension();
         let (from, length) = (&self.from, self.length);
         let scratch = &mut self.scratch;
-        combine(n, [STAGE[stage]], &self.stages, |j, [slope]| {
-            scratch[j] = from[j] + length * slope;
-        });
+        S::vectorised(
+            #[inline(always)]
+            || {
+                combine(
+                    n,
+                    [STAGE[stage]],
+                    &self.stages,
+                    #[inline(always)]
+                    |j, [slope]| {
+                        scratch[j] = from[j] + length * slope;
+                    },
+                );
+            },
+        );
         let t = self.start + self.length * NODES[stage];
         let (_, rest) = self.stages.split_at_mut(stage * n);
         system.derivative(t, &self.scratch, &mut rest[..n]);
@@ -98,16 +109,27 @@ impl<S: Scalar> Step<S> {
     /// Squares of the estimated errors of order 5 and 3, summed over the components, each over its
     /// entry of `scale`; components with an infinite scale do not count.
     pub fn squared_errors(&self, scale: impl Fn(usize) -> S) -> [S; 2] {
-        let mut sums = [S::zero(); 2];
         let rows = [ERROR_5, ERROR_3];
-        combine(self.dimension(), rows, &self.stages, |j, errors| {
-            let scale = scale(j);
-            for (sum, error) in sums.iter_mut().zip(errors) {
-                let error = error / scale;
-                *sum += error * error;
-            }
-        });
-        sums
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let mut sums = [S::zero(); 2];
+                combine(
+                    self.dimension(),
+                    rows,
+                    &self.stages,
+                    #[inline(always)]
+                    |j, errors| {
+                        let scale = S::one() / scale(j);
+                        for (sum, error) in sums.iter_mut().zip(errors) {
+                            let error = error * scale;
+                            *sum += error * error;
+                        }
+                    },
+                );
+                sums
+            },
+        )
     }
 
     /// Computes the continuous extension: three more derivatives.
@@ -117,34 +139,45 @@ impl<S: Scalar> Step<S> {
             self.stage(system, stage);
         }
         let h = self.length;
-        for j in 0..n {
-            let difference = self.to[j] - self.from[j];
-            let first = h * self.stages[j] - difference;
-            self.pieces[j] = difference;
-            self.pieces[n + j] = first;
-            self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
-        }
-        for (i, row) in DENSE.iter().enumerate() {
-            let piece = &mut self.pieces[(3 + i) * n..];
-            combine(n, [*row], &self.stages, |j, [sum]| piece[j] = h * sum);
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                for j in 0..n {
+                    let difference = self.to[j] - self.from[j];
+                    let first = h * self.stages[j] - difference;
+                    self.pieces[j] = difference;
+                    self.pieces[n + j] = first;
+                    self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
+                }
+                for (i, row) in DENSE.iter().enumerate() {
+                    let piece = &mut self.pieces[(3 + i) * n..];
+                    combine(
+                        n,
+                        [*row],
+                        &self.stages,
+                        #[inline(always)]
+                        |j, [sum]| piece[j] = h * sum,
+                    );
+                }
+            },
+        );
     }
 
     /// Copies a lane of `self` into the step of a plain number; with its stages, if asked for.
-    pub(crate) fn lane(&self, lane: usize, stages: bool, other: &mut Step<f64>)
+    pub(crate) fn lane<const W: usize>(&self, lane: usize, stages: bool, other: &mut Step<f64>)
     where
-        S: Lane,
+        S: Lanes<W>,
     {
         let copy = |to: &mut [f64], from: &[S]| {
             for (to, from) in to.iter_mut().zip(from) {
-                *to = from.lane(lane);
+                *to = from.get(lane);
             }
         };
         let n = self.dimension();
         copy(&mut other.from, &self.from);
         copy(&mut other.stages[..n], &self.stages);
         if stages {
-            other.length = self.length.lane(lane);
+            other.length = self.length.get(lane);
             copy(&mut other.to, &self.to);
             copy(&mut other.stages[12 * n..13 * n], &self.stages[12 * n..]);
             copy(&mut other.pieces, &self.pieces);
@@ -152,14 +185,14 @@ impl<S: Scalar> Step<S> {
     }
 
     /// Takes beginning and derivative there of a lane from the step of a plain number.
-    pub(crate) fn take_beginning(&mut self, lane: usize, other: &Step<f64>)
+    pub(crate) fn take_beginning<const W: usize>(&mut self, lane: usize, other: &Step<f64>)
     where
-        S: Lane,
+        S: Lanes<W>,
     {
         let n = self.dimension();
         for j in 0..n {
-            self.from[j].set_lane(lane, other.from[j]);
-            self.stages[j].set_lane(lane, other.stages[j]);
+            self.from[j].set(lane, other.from[j]);
+            self.stages[j].set(lane, other.stages[j]);
         }
     }
 
@@ -168,12 +201,17 @@ impl<S: Scalar> Step<S> {
         let n = self.dimension();
         let (first, rest) = self.stages.split_at_mut(n);
         let last = &rest[11 * n..12 * n];
-        for (first, last) in first.iter_mut().zip(last) {
-            *first = S::select(mask, *last, *first);
-        }
-        for (from, to) in self.from.iter_mut().zip(&self.to) {
-            *from = S::select(mask, *to, *from);
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                for (first, last) in first.iter_mut().zip(last) {
+                    *first = S::select(mask, *last, *first);
+                }
+                for (from, to) in self.from.iter_mut().zip(&self.to) {
+                    *from = S::select(mask, *to, *from);
+                }
+            },
+        );
     }
 
     /// The state at `share` of the step, 0 at its beginning and 1 at its end, after
@@ -195,6 +233,7 @@ impl<S: Scalar> Step<S> {
 /// Hands the sums of weight × derivative over the stages of each row to `take`, component by component.
 ///
 /// Plain numbers are summed four components at a time, so that the processor can do that side by side.
+#[inline(always)]
 fn combine<S: Scalar, const R: usize>(
     dimension: usize,
     rows: [Row; R],
@@ -218,7 +257,7 @@ fn combine<S: Scalar, const R: usize>(
 }
 
 /// The weighted sums of `B` components over the stages, from component `first` on.
-#[inline]
+#[inline(always)]
 fn weighted<S: Scalar, const B: usize>(
     row: Row,
     stages: &[S],
@@ -235,35 +274,23 @@ fn weighted<S: Scalar, const B: usize>(
     sums
 }
 
-/// A scalar of which single lanes can be read and written.
-pub(crate) trait Lane: Scalar {
-    /// The number in a lane.
-    fn lane(self, lane: usize) -> f64;
-    /// Puts a number into a lane.
-    fn set_lane(&mut self, lane: usize, x: f64);
-}
-
-impl<const W: usize> Lane for Lanes<W> {
-    fn lane(self, lane: usize) -> f64 {
-        self.0[lane]
-    }
-    fn set_lane(&mut self, lane: usize, x: f64) {
-        self.0[lane] = x;
-    }
-}
-
 impl Step<f64> {
     /// The states at several shares of the step, side by side, as [`interpolate`](Self::interpolate).
-    pub fn interpolate_lanes<const W: usize>(&self, share: Lanes<W>, out: &mut [Lanes<W>]) {
+    pub fn interpolate_lanes<L: Scalar>(&self, share: L, out: &mut [L]) {
         let n = self.dimension();
-        let rest = Lanes::constant(1.0) - share;
-        for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
-            let mut sum = Lanes::constant(0.0);
-            for i in (0..PIECES).rev() {
-                let factor = if i % 2 == 0 { share } else { rest };
-                sum = (sum + self.pieces[i * n + j]) * factor;
-            }
-            *out = Lanes::constant(*from) + sum;
-        }
+        L::vectorised(
+            #[inline(always)]
+            || {
+                let rest = L::one() - share;
+                for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
+                    let mut sum = L::zero();
+                    for i in (0..PIECES).rev() {
+                        let factor = if i % 2 == 0 { share } else { rest };
+                        sum = (sum + self.pieces[i * n + j]) * factor;
+                    }
+                    *out = L::constant(*from) + sum;
+                }
+            },
+        );
     }
 }

@@ -9,14 +9,14 @@ use crate::dop853::Step;
 use crate::glance::Glances;
 use crate::integrator::{Course, Error, Integrator, Trial};
 use crate::system::System;
-use scalar::{Lanes, Mask, Scalar};
+use scalar::{Lanes, Scalar};
 
 /// The lanes' steps.
 #[derive(Clone, Debug)]
-pub struct Ensemble<const W: usize> {
-    step: Step<Lanes<W>>,
-    glances: Glances<Lanes<W>, Lanes<W>>,
-    tolerances: Lanes<W>,
+pub struct Ensemble<L: Scalar, const W: usize> {
+    step: Step<L>,
+    glances: Glances<L>,
+    tolerances: L,
     /// How many components steer the steps, the same in every lane.
     counted: usize,
 }
@@ -36,17 +36,17 @@ pub struct Traveller<'a, T, F> {
     pub observe: Option<F>,
 }
 
-impl<const W: usize> Ensemble<W> {
+impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
     /// Room for lanes of a system.
-    pub fn new(system: &impl System<Lanes<W>>) -> Self {
+    pub fn new(system: &impl System<L>) -> Self {
         Self {
             step: Step::new(system.dimension()),
             glances: Glances::new(system.guard_count()),
-            tolerances: Lanes([1.0; W]),
+            tolerances: L::one(),
             counted: system
                 .scales()
                 .iter()
-                .filter(|s| s.0[0].is_finite())
+                .filter(|s| s.get(0).is_finite())
                 .count(),
         }
     }
@@ -55,27 +55,27 @@ impl<const W: usize> Ensemble<W> {
     pub fn place(&mut self, lane: usize, integrator: &Integrator<f64>) {
         self.step.take_beginning(lane, &integrator.step);
         self.glances.take_beginning(lane, &integrator.glances);
-        self.tolerances.0[lane] = integrator.tolerance;
+        self.tolerances.set(lane, integrator.tolerance);
     }
 
     /// Tries one step in each lane in which somebody travels. `wide` are the systems of all lanes in
     /// their modes. What became of each: where it fails, the lane's integrator is of no use any more.
     pub fn advance<T: System<f64>, F: FnMut(&mut T, &Step<f64>)>(
         &mut self,
-        wide: &mut impl System<Lanes<W>>,
+        wide: &mut impl System<L>,
         lanes: [Option<Traveller<T, F>>; W],
     ) -> [Result<(), Error>; W] {
-        let mut lengths = Lanes::constant(0.0);
+        let mut lengths = L::zero();
         for (lane, traveller) in lanes.iter().enumerate() {
             if let Some(traveller) = traveller {
-                self.step.start.0[lane] = traveller.integrator.time();
-                lengths.0[lane] = traveller.trial.length;
+                self.step.start.set(lane, traveller.integrator.time());
+                lengths.set(lane, traveller.trial.length);
             }
         }
         let look = |stage, system: &mut _| self.glances.stage(stage, system);
         self.step.take(wide, lengths, look);
         let squares = self.squared_errors(wide.scales());
-        let quiet = self.glances.quiet().unwrap_or([false; W]);
+        let quiet = self.glances.quiet().map_or([false; W], L::truths);
 
         let (mut kept, mut shown) = ([false; W], [false; W]);
         let mut lanes = lanes;
@@ -83,7 +83,7 @@ impl<const W: usize> Ensemble<W> {
             let Some(traveller) = traveller else {
                 continue;
             };
-            let squares = squares.map(|s| s.0[lane]);
+            let squares = squares.map(|s| s.get(lane));
             if traveller
                 .integrator
                 .judge(traveller.trial, squares, self.counted)
@@ -92,7 +92,7 @@ impl<const W: usize> Ensemble<W> {
                 kept[lane] = !shown[lane];
             }
         }
-        if shown.any() {
+        if shown.contains(&true) {
             self.step.extend(wide);
         }
         let mut results = [const { Ok(()) }; W];
@@ -103,12 +103,14 @@ impl<const W: usize> Ensemble<W> {
                 results[lane] = self.conclude(lane, traveller, quiet[lane]);
             }
         }
-        self.step.shift_where(kept);
-        self.glances.shift_where(kept);
+        self.step.shift_where(L::mask(kept));
+        self.glances.shift_where(L::mask(kept));
         for (lane, traveller) in lanes.into_iter().enumerate() {
             if let Some(traveller) = traveller {
                 if kept[lane] {
-                    traveller.integrator.pass(lengths.0[lane], traveller.course);
+                    traveller
+                        .integrator
+                        .pass(lengths.get(lane), traveller.course);
                 }
                 // Whoever looks at an integrator at the end of its course finds its state.
                 if traveller.integrator.time() >= traveller.course.end() {
@@ -145,11 +147,14 @@ impl<const W: usize> Ensemble<W> {
         self.glances.give(lane, &mut integrator.glances);
     }
 
-    fn squared_errors(&self, scales: &[Lanes<W>]) -> [Lanes<W>; 2] {
+    fn squared_errors(&self, scales: &[L]) -> [L; 2] {
         let step = &self.step;
-        step.squared_errors(|j| {
-            let size = step.from[j].abs().max(step.to[j].abs()).max(scales[j]);
-            self.tolerances * size
-        })
+        step.squared_errors(
+            #[inline(always)]
+            |j| {
+                let size = step.from[j].abs().max(step.to[j].abs()).max(scales[j]);
+                self.tolerances * size
+            },
+        )
     }
 }

@@ -6,7 +6,7 @@
 //! takes three derivatives for the extension and one more for each look.
 
 use crate::dop853::Step;
-use crate::system::{Real, System};
+use crate::system::System;
 use scalar::{Lanes, Mask, Scalar};
 
 /// Stages that are looked at, beside the beginning.
@@ -18,38 +18,20 @@ const NEAR: f64 = 0.05;
 /// And where the parabola through three of its values falls below this share of the middle one.
 const DIP: f64 = 0.25;
 
-/// What of a guard is looked at: its plain value, one in each lane.
-pub(crate) trait Seen<P>: Scalar {
-    /// It, or them.
-    fn seen(self) -> P;
-}
-
-impl<S: Real> Seen<f64> for S {
-    fn seen(self) -> f64 {
-        self.value()
-    }
-}
-
-impl<const W: usize> Seen<Self> for Lanes<W> {
-    fn seen(self) -> Self {
-        self
-    }
-}
-
 /// What the guards were at the stages of a step.
 #[derive(Clone, Debug)]
-pub(crate) struct Glances<S, P = f64> {
+pub(crate) struct Glances<S: Scalar> {
     room: Vec<S>,
-    seen: [Vec<P>; SHARES.len()],
+    seen: [Vec<S::Plain>; SHARES.len()],
     /// Whether the system shows its guards.
     shown: bool,
 }
 
-impl<S: Seen<P>, P: Scalar> Glances<S, P> {
+impl<S: Scalar> Glances<S> {
     pub fn new(guards: usize) -> Self {
         Self {
             room: vec![S::constant(0.0); guards],
-            seen: std::array::from_fn(|_| vec![P::constant(0.0); guards]),
+            seen: std::array::from_fn(|_| vec![S::Plain::constant(0.0); guards]),
             shown: false,
         }
     }
@@ -57,7 +39,7 @@ impl<S: Seen<P>, P: Scalar> Glances<S, P> {
     fn see(&mut self, index: usize, system: &mut impl System<S>) {
         self.shown = system.guards_here(&mut self.room);
         for (seen, guard) in self.seen[index].iter_mut().zip(&self.room) {
-            *seen = guard.seen();
+            *seen = guard.plain();
         }
     }
 
@@ -81,42 +63,66 @@ impl<S: Seen<P>, P: Scalar> Glances<S, P> {
 
     /// Where no guard can have crossed zero within the step; none where the system does not show
     /// them.
-    pub fn quiet(&self) -> Option<P::Mask> {
-        let all = P::constant(0.0).lt(P::constant(1.0));
-        let of = |guard: usize| std::array::from_fn(|i| self.seen[i][guard]);
-        let clear = (0..self.room.len()).map(|guard| clear_of_zero(&of(guard)));
-        self.shown.then(|| clear.fold(all, Mask::and))
+    pub fn quiet(&self) -> Option<S::Mask> {
+        self.shown.then(|| {
+            S::vectorised(
+                #[inline(always)]
+                || {
+                    let mut quiet = S::Plain::constant(0.0).lt(S::Plain::constant(1.0));
+                    for guard in 0..self.room.len() {
+                        let seen = [0, 1, 2, 3, 4].map(
+                            #[inline(always)]
+                            |i: usize| self.seen[i][guard],
+                        );
+                        quiet = quiet.and(clear_of_zero(&seen));
+                    }
+                    quiet
+                },
+            )
+        })
     }
 }
 
-impl<const W: usize> Glances<Lanes<W>, Lanes<W>> {
+impl<L: Scalar<Plain = L>> Glances<L> {
     /// In the lanes of the mask the end becomes the beginning.
-    pub fn shift_where(&mut self, mask: [bool; W]) {
+    pub fn shift_where(&mut self, mask: L::Mask) {
         let [first, .., last] = &mut self.seen;
-        for (first, last) in first.iter_mut().zip(last) {
-            *first = Scalar::select(mask, *last, *first);
-        }
+        L::vectorised(
+            #[inline(always)]
+            || {
+                for (first, last) in first.iter_mut().zip(last) {
+                    *first = L::select(mask, *last, *first);
+                }
+            },
+        );
     }
 
     /// Makes the guards at the beginning or at the end of a lane's step those of `other`.
-    pub fn give(&self, lane: usize, other: &mut Glances<f64>) {
+    pub fn give<const W: usize>(&self, lane: usize, other: &mut Glances<f64>)
+    where
+        L: Lanes<W>,
+    {
         other.shown = self.shown;
         for at in [0, SHARES.len() - 1] {
             for (to, from) in other.seen[at].iter_mut().zip(&self.seen[at]) {
-                *to = from.0[lane];
+                *to = from.get(lane);
             }
         }
     }
 
     /// Takes the guards at the beginning of a lane's step from `other`.
-    pub fn take_beginning(&mut self, lane: usize, other: &Glances<f64>) {
+    pub fn take_beginning<const W: usize>(&mut self, lane: usize, other: &Glances<f64>)
+    where
+        L: Lanes<W>,
+    {
         for (to, from) in self.seen[0].iter_mut().zip(&other.seen[0]) {
-            to.0[lane] = *from;
+            to.set(lane, *from);
         }
     }
 }
 
 /// Whether a guard of these values stays above zero between them. No division: they take long.
+#[inline(always)]
 fn clear_of_zero<T: Scalar>(seen: &[T; SHARES.len()]) -> T::Mask {
     let zero = T::constant(0.0);
     let [mut least, mut most] = [seen[0]; 2];

@@ -4,6 +4,7 @@ use crate::dop853::Step;
 use crate::events::Finder;
 use crate::glance::Glances;
 use crate::system::{Real, System};
+use scalar::Scalar;
 
 /// Why an integration stopped.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -83,7 +84,7 @@ pub struct Trial {
 
 /// A system's state as it is carried forward in time.
 #[derive(Clone, Debug)]
-pub struct Integrator<S> {
+pub struct Integrator<S: Scalar> {
     pub(crate) step: Step<S>,
     finder: Finder<S>,
     pub(crate) glances: Glances<S>,
@@ -304,14 +305,17 @@ impl<S: Real> Integrator<S> {
         let look = |stage, system: &mut _| self.glances.stage(stage, system);
         self.step.take(system, back + trial.length, look);
         let scales = system.scales();
-        let squares = self.step.squared_errors(|j| {
-            let size = self.step.from[j]
-                .value()
-                .abs()
-                .max(self.step.to[j].value().abs())
-                .max(scales[j].value());
-            S::constant(self.tolerance * size)
-        });
+        let squares = self.step.squared_errors(
+            #[inline(always)]
+            |j| {
+                let size = self.step.from[j]
+                    .value()
+                    .abs()
+                    .max(self.step.to[j].value().abs())
+                    .max(scales[j].value());
+                S::constant(self.tolerance * size)
+            },
+        );
         Ok(self.judge(trial, squares.map(S::value), counted(scales)))
     }
 

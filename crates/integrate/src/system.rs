@@ -3,26 +3,22 @@
 use scalar::{Dual, Scalar};
 
 /// A scalar with one plain value: what step control and event location look at.
-pub trait Real: Scalar {
+pub trait Real: Scalar<Mask = bool, Plain = f64> {
     /// The plain value.
-    fn value(self) -> f64;
+    fn value(self) -> f64 {
+        self.plain()
+    }
     /// True where the number carries a derivative other than 0.
     fn varies(self) -> bool;
 }
 
 impl Real for f64 {
-    fn value(self) -> f64 {
-        self
-    }
     fn varies(self) -> bool {
         false
     }
 }
 
 impl<const N: usize> Real for Dual<f64, N> {
-    fn value(self) -> f64 {
-        self.value
-    }
     fn varies(self) -> bool {
         self.tangent.iter().any(|t| *t != 0.0)
     }

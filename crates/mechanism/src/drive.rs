@@ -40,6 +40,7 @@ parameters! {
 
 impl<S: Scalar> GivenSpeed<S> {
     /// Crank angle, its rate and its second derivative at the time `t`.
+    #[inline(always)]
     pub(crate) fn motion(&self, t: S) -> [S; 3] {
         let turned = self.speed * t;
         let mut motion = [turned, self.speed, S::zero()];
@@ -68,6 +69,7 @@ parameters! {
 
 impl<S: Scalar> Drive<S> {
     /// The speed about which the crank turns, rad/s.
+    #[inline(always)]
     pub fn reference_speed(&self) -> S {
         match self {
             Drive::Given(given) => given.speed,
@@ -76,12 +78,14 @@ impl<S: Scalar> Drive<S> {
     }
 
     /// The sense of rotation: 1 counter-clockwise, −1 clockwise (a negative speed).
+    #[inline(always)]
     pub(crate) fn sense(&self) -> S {
         let clockwise = self.reference_speed().lt(S::zero());
         S::select(clockwise, -S::one(), S::one())
     }
 
     /// Whether the crank's speed is the same at all times.
+    #[inline(always)]
     pub(crate) fn is_constant(&self) -> bool {
         matches!(self, Drive::Given(given) if given.fluctuation.is_empty())
     }

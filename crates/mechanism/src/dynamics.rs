@@ -202,6 +202,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Crank angle and speed.
+    #[inline(always)]
     fn crank(&self, t: S, y: &[S]) -> (S, S) {
         match (&self.machine.drive, self.layout.crank) {
             (Drive::Free(motor), Some(i)) => {
@@ -247,49 +248,55 @@ impl<S: Scalar> Dynamics<S> {
 
     /// Poses, rates, and the forces that follow from them.
     pub(crate) fn evaluate_forces(&mut self, t: S, y: &[S]) {
-        let (angle, speed) = self.crank(t, y);
-        let on_shaft = Acting::on_shaft(&self.machine.effects);
-        self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
-        let gravity = self.gravity();
-        let evaluation = &mut self.evaluation;
-        evaluation.angle = angle;
-        evaluation.speed = speed;
-        find_joint(
-            &mut evaluation.main,
-            &self.machine.main,
-            pair(y, self.layout.main),
-            [speed, S::zero()],
-            &self.mode.main,
-            || AtJoint {
-                acting: on_shaft,
-                joint: Joint::Main,
-                axes: [along_x(), direction(angle)],
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let (angle, speed) = self.crank(t, y);
+                let on_shaft = Acting::on_shaft(&self.machine.effects);
+                self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
+                let gravity = self.gravity();
+                let evaluation = &mut self.evaluation;
+                evaluation.angle = angle;
+                evaluation.speed = speed;
+                find_joint(
+                    &mut evaluation.main,
+                    &self.machine.main,
+                    pair(y, self.layout.main),
+                    [speed, S::zero()],
+                    &self.mode.main,
+                    || AtJoint {
+                        acting: on_shaft,
+                        joint: Joint::Main,
+                        axes: [along_x(), direction(angle)],
+                    },
+                );
+                for (i, found) in evaluation.throws.iter_mut().enumerate() {
+                    let throw = &self.machine.throws[i];
+                    let (layout, mode) = (&self.layout.throws[i], &self.mode.throws[i]);
+                    let [place, rate] = pair(y, self.layout.main);
+                    let shaft = [throw.local(place), throw.local(rate)];
+                    let gravity = throw.local(gravity);
+                    let angle = throw.local_angle(angle);
+                    found.find(
+                        throw,
+                        Acting::on_throw(&self.machine.effects, i),
+                        Standing {
+                            layout,
+                            mode,
+                            shaft,
+                            angle,
+                            speed,
+                            gravity,
+                        },
+                        y,
+                    );
+                }
             },
-        );
-        for (i, found) in evaluation.throws.iter_mut().enumerate() {
-            let throw = &self.machine.throws[i];
-            let (layout, mode) = (&self.layout.throws[i], &self.mode.throws[i]);
-            let [place, rate] = pair(y, self.layout.main);
-            let shaft = [throw.local(place), throw.local(rate)];
-            let gravity = throw.local(gravity);
-            let angle = throw.local_angle(angle);
-            found.find(
-                throw,
-                Acting::on_throw(&self.machine.effects, i),
-                Standing {
-                    layout,
-                    mode,
-                    shaft,
-                    angle,
-                    speed,
-                    gravity,
-                },
-                y,
-            );
-        }
+        )
     }
 
     /// Gravity, as a frame that is shaken feels it.
+    #[inline(always)]
     fn gravity(&self) -> Vec2<S> {
         let gravity = Vec2::new(self.machine.gravity_x, self.machine.gravity_y);
         match self.evaluation.shaken {
@@ -300,121 +307,151 @@ impl<S: Scalar> Dynamics<S> {
 
     /// Finds how the shaft moves under the forces.
     fn turn_shaft(&mut self, t: S) {
-        let speed = self.evaluation.speed;
-        let (sine, cosine) = self.evaluation.angle.sin_cos();
-        let shaft = Shaft::new(
-            &self.machine,
-            Vec2::new(cosine, sine),
-            speed,
-            self.gravity(),
-        );
-        let turning = match &self.machine.drive {
-            Drive::Given(given) => Turning::Acceleration(given.motion(t)[2]),
-            Drive::Free(motor) => {
-                Turning::Torque(motor.mean_torque + motor.slope * (motor.reference_speed - speed))
-            }
-        };
-        let target = following_target(&self.evaluation.main);
-        self.turn(shaft, turning, target);
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let speed = self.evaluation.speed;
+                let (sine, cosine) = self.evaluation.angle.sin_cos();
+                let shaft = Shaft::new(
+                    &self.machine,
+                    Vec2::new(cosine, sine),
+                    speed,
+                    self.gravity(),
+                );
+                let turning = match &self.machine.drive {
+                    Drive::Given(given) => Turning::Acceleration(given.motion(t)[2]),
+                    Drive::Free(motor) => Turning::Torque(
+                        motor.mean_torque + motor.slope * (motor.reference_speed - speed),
+                    ),
+                };
+                let target = following_target(&self.evaluation.main);
+                self.turn(shaft, turning, target);
+            },
+        )
     }
 
     /// Whether the crank pins' accelerations are more than their bias: not at constant speed in an
     /// ideal main bearing.
+    #[inline(always)]
     fn pins_give(&self) -> bool {
         !self.machine.drive.is_constant() || self.machine.main.clear().is_some()
     }
 
     /// Eliminates the throws' rigid joints from the loads stored in the evaluation.
     pub(crate) fn respond(&mut self) {
-        let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
-        let modes = self.mode.throws.iter().zip(&mut self.responses);
-        for ((throw, at), (mode, response)) in throws.zip(modes) {
-            if throw.has_rigid_end() {
-                let touching = [mode.big_end.touching, mode.small_end.touching];
-                *response = Response::new(throw, &at.joints, &at.loads, touching);
-            }
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
+                let modes = self.mode.throws.iter().zip(&mut self.responses);
+                for ((throw, at), (mode, response)) in throws.zip(modes) {
+                    if throw.has_rigid_end() {
+                        let touching = [mode.big_end.touching, mode.small_end.touching];
+                        *response = Response::new(throw, &at.joints, &at.loads, touching);
+                    }
+                }
+            },
+        )
     }
 
     /// Joins throws and shaft, and finds how the shaft moves.
     pub(crate) fn turn(&mut self, mut shaft: Shaft<S>, turning: Turning<S>, target: S) {
-        let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
-        for ((throw, at), response) in throws.zip(&self.responses) {
-            shaft.add_force(throw.local(at.loads.pin_force), at.loads.pin_moment);
-            if throw.big_end.is_rigid() {
-                shaft.add_throw(
-                    &response.slope,
-                    throw.local(response.offset),
-                    throw.local(at.motion.pin),
-                    throw.local(at.motion.pin + at.joints.big_end.arm),
-                    throw.local(at.loads.pin_bias),
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
+                for ((throw, at), response) in throws.zip(&self.responses) {
+                    shaft.add_force(throw.local(at.loads.pin_force), at.loads.pin_moment);
+                    if throw.big_end.is_rigid() {
+                        shaft.add_throw(
+                            response.slope,
+                            throw.local(response.offset),
+                            throw.local(at.motion.pin),
+                            throw.local(at.motion.pin + at.joints.big_end.arm),
+                            throw.local(at.loads.pin_bias),
+                        );
+                    }
+                }
+                self.evaluation.shaft = shaft.solve(
+                    &self.machine.main,
+                    &self.evaluation.main,
+                    self.mode.main.touching,
+                    turning,
+                    target,
                 );
-            }
-        }
-        self.evaluation.shaft = shaft.solve(
-            &self.machine.main,
-            &self.evaluation.main,
-            self.mode.main.touching,
-            turning,
-            target,
-        );
+            },
+        )
     }
 
     /// Finds the throws' accelerations under their loads and the shaft's motion.
     pub(crate) fn follow(&mut self) {
-        let give = self.pins_give();
-        let Evaluation { shaft, throws, .. } = &mut self.evaluation;
-        let throws = self.machine.throws.iter().zip(throws);
-        for ((throw, at), response) in throws.zip(&self.responses) {
-            let mut pin = at.loads.pin_bias;
-            if give {
-                pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
-            }
-            let forces = throw.has_rigid_end().then(|| response.forces(pin));
-            at.accelerations
-                .find(throw, &at.loads, &at.joints, pin, forces);
-            if throw.guide.clear().is_none() {
-                // What an ideal guide must bear, so that the crosshead stays on its line.
-                let small = at.accelerations.small_force;
-                at.joints.guide.force = Vec2::new(S::zero(), small.y - at.loads.crosshead_force.y);
-                at.joints.guide.moment =
-                    moment(at.joints.small_end.arm, small) - at.loads.crosshead_moment;
-            }
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let give = self.pins_give();
+                let Evaluation { shaft, throws, .. } = &mut self.evaluation;
+                let throws = self.machine.throws.iter().zip(throws);
+                for ((throw, at), response) in throws.zip(&self.responses) {
+                    let mut pin = at.loads.pin_bias;
+                    if give {
+                        pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
+                    }
+                    let forces = throw.has_rigid_end().then(|| response.forces(pin));
+                    at.accelerations
+                        .find(throw, &at.loads, &at.joints, pin, forces);
+                    if throw.guide.clear().is_none() {
+                        // What an ideal guide must bear, so that the crosshead stays on its line.
+                        let small = at.accelerations.small_force;
+                        at.joints.guide.force =
+                            Vec2::new(S::zero(), small.y - at.loads.crosshead_force.y);
+                        at.joints.guide.moment =
+                            moment(at.joints.small_end.arm, small) - at.loads.crosshead_moment;
+                    }
+                }
+            },
+        )
     }
 
     /// Force on the frame: the reactions of main bearing, guides and cylinder covers.
     fn shake_frame(&mut self, y: &[S]) {
-        let evaluation = &mut self.evaluation;
-        let mut force = -evaluation.shaft.bearing_force;
-        for (throw, at) in self.machine.throws.iter().zip(&evaluation.throws) {
-            let along = Vec2::new(at.gas.force + at.gas.effects, S::zero());
-            force += throw.local(-(along + at.joints.guide.force));
-        }
-        evaluation.frame_force = force;
-        if let Some(frame) = &self.machine.frame {
-            let [place, rate] = pair(y, self.layout.frame);
-            evaluation.frame = frame.acceleration(force, place, rate);
-        }
-        let mut carried = evaluation.shaken;
-        if self
-            .machine
-            .frame
-            .as_ref()
-            .is_some_and(|frame| frame.carries)
-        {
-            carried = Some(carried.unwrap_or(origin()) + evaluation.frame);
-        }
-        if let Some(carried) = carried {
-            for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
-                at.carried = throw.local(carried);
-            }
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let evaluation = &mut self.evaluation;
+                let mut force = -evaluation.shaft.bearing_force;
+                for (throw, at) in self.machine.throws.iter().zip(&evaluation.throws) {
+                    let along = Vec2::new(at.gas.force + at.gas.effects, S::zero());
+                    force += throw.local(-(along + at.joints.guide.force));
+                }
+                evaluation.frame_force = force;
+                if let Some(frame) = &self.machine.frame {
+                    let [place, rate] = pair(y, self.layout.frame);
+                    evaluation.frame = frame.acceleration(force, place, rate);
+                }
+                let mut carried = evaluation.shaken;
+                if self
+                    .machine
+                    .frame
+                    .as_ref()
+                    .is_some_and(|frame| frame.carries)
+                {
+                    carried = Some(carried.unwrap_or(origin()) + evaluation.frame);
+                }
+                if let Some(carried) = carried {
+                    for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
+                        at.carried = throw.local(carried);
+                    }
+                }
+            },
+        )
     }
 
     /// Kinetic, potential and elastic energy at the last evaluation, J.
     pub fn energy(&self) -> Energy<S> {
-        energy::of(&self.machine, &self.evaluation)
+        S::vectorised(
+            #[inline(always)]
+            || energy::of(&self.machine, &self.evaluation),
+        )
     }
 }
 

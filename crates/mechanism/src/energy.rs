@@ -25,6 +25,7 @@ pub struct Energy<S> {
 
 impl<S: Scalar> Energy<S> {
     /// All together.
+    #[inline(always)]
     pub fn total(&self) -> S {
         self.kinetic + self.potential + self.elastic
     }
@@ -43,6 +44,7 @@ pub struct Powers<S> {
     pub damping: S,
 }
 
+#[inline(always)]
 pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<S> {
     let gravity = Vec2::new(machine.gravity_x, machine.gravity_y);
     let shaft = &machine.crankshaft;
@@ -86,6 +88,7 @@ pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<
     energy
 }
 
+#[inline(always)]
 fn stored<S: Scalar>(joint: &Revolute<S>, state: &JointState<S>) -> S {
     match joint {
         Revolute::Clear(clear) if !joint.is_rigid() => {
@@ -96,6 +99,7 @@ fn stored<S: Scalar>(joint: &Revolute<S>, state: &JointState<S>) -> S {
 }
 
 /// Momentum of the moving parts in the frame, kg m/s.
+#[inline(always)]
 fn momentum<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Vec2<S> {
     let shaft = &machine.crankshaft;
     let (sine, cosine) = at.angle.sin_cos();
@@ -111,6 +115,7 @@ fn momentum<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Vec2<S> {
 
 impl<S: Scalar> ThrowEvaluation<S> {
     /// Centre of mass of the rod, m, and its velocity, m/s.
+    #[inline(always)]
     fn rod_centre(&self, throw: &Throw<S>) -> [Vec2<S>; 2] {
         let motion = &self.motion;
         let along = motion.along_rod() * throw.rod.centre_of_mass;
@@ -122,6 +127,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
 }
 
 /// The rates at which the works of the ledger grow.
+#[inline(always)]
 pub(crate) fn powers<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Powers<S> {
     let mut powers = Powers {
         gas: S::zero(),
@@ -164,6 +170,7 @@ pub(crate) fn powers<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Pow
 
 impl<S: Scalar> JointState<S> {
     /// Power lost to friction, W; `push` is the normal force of a rigid joint model.
+    #[inline(always)]
     fn friction_power(&self, push: S) -> S {
         (self.friction_force + self.coefficient * push) * self.slip
     }

@@ -35,6 +35,7 @@ pub struct Evaluation<S> {
 
 impl<S: Scalar> Evaluation<S> {
     /// Acceleration of the frame, m/s²: on its springs, and as effects shake it.
+    #[inline(always)]
     pub fn frame_acceleration(&self) -> Vec2<S> {
         match self.shaken {
             None => self.frame,
@@ -72,6 +73,7 @@ pub(crate) struct Standing<'a, S> {
 
 impl<S: Scalar> ThrowEvaluation<S> {
     /// Nothing yet.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         Self {
             motion: Motion::none(),
@@ -88,6 +90,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
     }
 
     /// Finds poses, rates and loads, in place: there is too much of it to be moved about.
+    #[inline(always)]
     pub(crate) fn find(
         &mut self,
         throw: &Throw<S>,
@@ -164,6 +167,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
 
 impl<S: Scalar> Throw<S> {
     /// Angle since this throw's own top dead centre, rad.
+    #[inline(always)]
     pub fn local_angle(&self, angle: S) -> S {
         match self.direction {
             Direction::Forward => angle + self.pin_angle,
@@ -172,12 +176,14 @@ impl<S: Scalar> Throw<S> {
     }
 
     /// Whether a force at an end of its rod follows from accelerations.
+    #[inline(always)]
     pub(crate) fn has_rigid_end(&self) -> bool {
         self.big_end.is_rigid() || self.small_end.is_rigid()
     }
 
     /// A vector of the machine's frame in the throw's own, and back: an opposed throw's frame is
     /// turned by half a revolution.
+    #[inline(always)]
     pub(crate) fn local(&self, v: Vec2<S>) -> Vec2<S> {
         match self.direction {
             Direction::Forward => v,
@@ -187,6 +193,7 @@ impl<S: Scalar> Throw<S> {
 }
 
 /// Two vectors at `at`: position and rate; zeros where there is nothing.
+#[inline(always)]
 pub(crate) fn pair<S: Scalar>(y: &[S], at: Option<usize>) -> [Vec2<S>; 2] {
     match at {
         None => [origin(); 2],
@@ -195,17 +202,20 @@ pub(crate) fn pair<S: Scalar>(y: &[S], at: Option<usize>) -> [Vec2<S>; 2] {
 }
 
 /// The direction of the x axis.
+#[inline(always)]
 pub(crate) fn along_x<S: Scalar>() -> Vec2<S> {
     Vec2::new(S::one(), S::zero())
 }
 
 /// The direction at an angle, rad.
+#[inline(always)]
 pub(crate) fn direction<S: Scalar>(angle: S) -> Vec2<S> {
     let (sine, cosine) = angle.sin_cos();
     Vec2::new(cosine, sine)
 }
 
 /// Finds the state of a joint with clearance; that of an ideal one never changes.
+#[inline(always)]
 pub(crate) fn find_joint<'a, S: Scalar>(
     state: &mut JointState<S>,
     joint: &Revolute<S>,

@@ -34,6 +34,7 @@ parameters! {
 
 impl<S: Scalar> Frame<S> {
     /// Acceleration under `force` (N) at displacement `place` (m) and `rate` (m/s), m/s².
+    #[inline(always)]
     pub(crate) fn acceleration(&self, force: Vec2<S>, place: Vec2<S>, rate: Vec2<S>) -> Vec2<S> {
         let net = Vec2::new(
             force.x - self.stiffness_x * place.x - self.damping_x * rate.x,

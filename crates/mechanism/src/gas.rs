@@ -1,6 +1,6 @@
 //! Gas force with ideal valves, single or double acting (MODEL.md, sections 3 and 6).
 
-use crate::effects::{Acting, ChamberAt, End, PistonAt};
+use crate::effects::{Acting, Acts, ChamberAt, End, PistonAt};
 use crate::joints::revolute::Revolute;
 use crate::lift::parameters;
 use crate::machine::Throw;
@@ -70,6 +70,7 @@ pub struct GasState<S> {
 
 impl<S: Scalar> GasState<S> {
     /// A chamber that is not there.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         Self {
             pressure: S::zero(),
@@ -81,6 +82,7 @@ impl<S: Scalar> GasState<S> {
     /// Where the drift of the chamber's next stroke starts, at a dead centre where `next` is the
     /// same gas in that stroke: 0, as the valve that was open leaves the line's pressure behind,
     /// unless it never opened.
+    #[inline(always)]
     pub(crate) fn carried(&self, next: &Self, expanding: S) -> S {
         let zero = S::zero();
         let short = (self.closed / next.closed).ln().min(zero);
@@ -89,6 +91,7 @@ impl<S: Scalar> GasState<S> {
     }
 
     /// Guards of the suction and the discharge valve's state in `mode`.
+    #[inline(always)]
     pub(crate) fn guards(&self, mode: &ChamberMode<S>) -> [S; 2] {
         let [low, high] = self.open;
         let shut = S::one();
@@ -108,6 +111,7 @@ impl<S: Scalar> GasState<S> {
     }
 
     /// The mode that the pressures call for.
+    #[inline(always)]
     pub(crate) fn mode(&self) -> ChamberMode<S> {
         let flag = |mask| S::select(mask, S::one(), S::zero());
         ChamberMode {
@@ -121,7 +125,7 @@ impl<S: Scalar> Chamber<S> {
     /// The gas with the piston `distance` from the cover; `expanding` is 1 while it moves away,
     /// `open` are the pressures at which open valves hold the chamber, `drift` is the logarithm of
     /// how far the closed chamber has left its polytrope.
-    #[inline]
+    #[inline(always)]
     pub fn state(
         &self,
         distance: S,
@@ -155,6 +159,7 @@ impl<S: Scalar> Chamber<S> {
 impl<S: Scalar> Chamber<S> {
     /// Temperature of the gas at `pressure` over that in the suction line. What the cylinder holds
     /// stays, while the valves are closed; what is left in the clearance was compressed before.
+    #[inline(always)]
     fn warmth(&self, pressure: S, distance: S, expanding: S) -> S {
         let [suction, discharge] = self.lines;
         let [compression, _] = self.exponents;
@@ -185,6 +190,7 @@ pub struct Gas<S> {
 
 impl<S: Scalar> Gas<S> {
     /// Nothing yet.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         Self {
             head_end: GasState::none(),
@@ -216,6 +222,7 @@ pub(crate) struct CylinderAt<'a, S> {
 
 impl<S: Scalar> CylinderAt<'_, S> {
     /// The gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston.
+    #[inline(always)]
     pub fn gas(&self) -> Gas<S> {
         let (throw, motion) = (self.throw, self.motion);
         let cylinder = &throw.cylinder;
@@ -274,35 +281,41 @@ impl<S: Scalar> CylinderAt<'_, S> {
     /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre;
     /// and as effects see it, where there are any.
     fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
-        let (throw, cylinder) = (self.throw, &self.throw.cylinder);
-        let (expanding, mode) = match end {
-            End::Head => (self.mode.outward, &self.mode.head_end),
-            End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
-        };
-        let lines = [cylinder.suction, cylinder.discharge];
-        let mut chamber = Chamber {
-            dead,
-            filled: throw.crank_radius * 2.0 + dead,
-            lines,
-            exponents: [cylinder.exponent, cylinder.expansion_exponent],
-        };
-        if !self.effects.any() {
-            return (chamber.state(distance, expanding, lines, None, mode), None);
-        }
-        let mut seen = self.seen(end, distance, expanding, mode);
-        chamber.filled -= self.retreat(end);
-        chamber.lines = self.lines_at_centres(end, seen);
-        let drift = self.drift.map(|drift| drift[end as usize]);
-        let open = self.lines(end, &seen);
-        let state = chamber.state(distance, expanding, open, drift, mode);
-        seen.pressure = state.pressure;
-        if drift.is_some() {
-            seen.warmth = chamber.warmth(state.pressure, distance, expanding);
-        }
-        (state, Some(seen))
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let (throw, cylinder) = (self.throw, &self.throw.cylinder);
+                let (expanding, mode) = match end {
+                    End::Head => (self.mode.outward, &self.mode.head_end),
+                    End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
+                };
+                let lines = [cylinder.suction, cylinder.discharge];
+                let mut chamber = Chamber {
+                    dead,
+                    filled: throw.crank_radius * 2.0 + dead,
+                    lines,
+                    exponents: [cylinder.exponent, cylinder.expansion_exponent],
+                };
+                if !self.effects.any() {
+                    return (chamber.state(distance, expanding, lines, None, mode), None);
+                }
+                let mut seen = self.seen(end, distance, expanding, mode);
+                chamber.filled -= self.retreat(end);
+                chamber.lines = self.lines_at_centres(end, seen);
+                let drift = self.drift.map(|drift| drift[end as usize]);
+                let open = self.lines(end, &seen);
+                let state = chamber.state(distance, expanding, open, drift, mode);
+                seen.pressure = state.pressure;
+                if drift.is_some() {
+                    seen.warmth = chamber.warmth(state.pressure, distance, expanding);
+                }
+                (state, Some(seen))
+            },
+        )
     }
 
     /// The chamber as effects see it, before its pressure is known.
+    #[inline(always)]
     fn seen(&self, end: End, distance: S, expanding: S, mode: &ChamberMode<S>) -> ChamberAt<S> {
         let (throw, motion, cylinder) = (self.throw, self.motion, &self.throw.cylinder);
         let pin = throw.crank_radius * self.speed.abs();
@@ -330,6 +343,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
 
     /// Suction and discharge pressure where the valves leave off and the strokes start, at the dead
     /// centres.
+    #[inline(always)]
     fn lines_at_centres(&self, end: End, seen: ChamberAt<S>) -> [S; 2] {
         let angles = match end {
             End::Head => [PI, 0.0],
@@ -347,6 +361,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
     }
 
     /// Pressures at which the open valves hold the chamber: suction, discharge.
+    #[inline(always)]
     fn lines(&self, end: End, seen: &ChamberAt<S>) -> [S; 2] {
         let mut lines = [self.throw.cylinder.suction, self.throw.cylinder.discharge];
         for effect in self.effects.at_end(end) {
@@ -356,6 +371,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
     }
 
     /// How far the ideal piston has come back from the dead centre when the suction valve closes, m.
+    #[inline(always)]
     fn retreat(&self, end: End) -> S {
         let mut held = self.effects.at_end(end).filter_map(|e| e.suction_held());
         let Some(angle) = held.next() else {
@@ -373,6 +389,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
     }
 
     /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none.
+    #[inline(always)]
     fn drifts(&self, chambers: &[Option<ChamberAt<S>>; 2]) -> [S; 2] {
         if self.drift.is_none() {
             return [S::zero(); 2];
@@ -390,6 +407,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
 }
 
 /// Offset of a joint along x over its clearance; 0 in an ideal one.
+#[inline(always)]
 fn eccentricity<S: Scalar>(joint: &Revolute<S>, offset: Vec2<S>) -> S {
     match joint.clear() {
         None => S::zero(),
@@ -397,6 +415,7 @@ fn eccentricity<S: Scalar>(joint: &Revolute<S>, offset: Vec2<S>) -> S {
     }
 }
 
+#[inline(always)]
 fn area<S: Scalar>(radius: S) -> S {
     radius * radius * PI
 }

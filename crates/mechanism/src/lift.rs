@@ -73,9 +73,9 @@ pub fn build<T: Lift<()>>(plain: &T) -> T::Lifted {
 }
 
 /// `W` machines of the same build, side by side.
-pub fn lanes<const W: usize, T: Lift<Lanes<W>>>(machines: [&T; W]) -> T::Lifted {
+pub fn lanes<L: Lanes<W>, const W: usize, T: Lift<L>>(machines: [&T; W]) -> T::Lifted {
     T::lift(&machines, &mut |x| {
-        Lanes(std::array::from_fn(|lane| x[lane]))
+        L::from_array(std::array::from_fn(|lane| x[lane]))
     })
 }
 

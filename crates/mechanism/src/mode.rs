@@ -61,6 +61,42 @@ parameters! {
     }
 }
 
+impl<S> Mode<S> {
+    /// Shows each number of the mode to `put`, with the one of `other` in the same place.
+    pub(crate) fn each(&mut self, other: &Mode, mut put: impl FnMut(&mut S, f64)) {
+        self.main.each(&other.main, &mut put);
+        for (throw, other) in self.throws.iter_mut().zip(&other.throws) {
+            throw.big_end.each(&other.big_end, &mut put);
+            throw.small_end.each(&other.small_end, &mut put);
+            for (corner, other) in throw.guide.iter_mut().zip(&other.guide) {
+                corner.each(other, &mut put);
+            }
+            put(&mut throw.outward, other.outward);
+            throw.head_end.each(&other.head_end, &mut put);
+            throw.crank_end.each(&other.crank_end, &mut put);
+        }
+    }
+}
+
+impl<S> ContactMode<S> {
+    fn each(&mut self, other: &ContactMode, put: &mut impl FnMut(&mut S, f64)) {
+        put(&mut self.touching, other.touching);
+        put(&mut self.pressed, other.pressed);
+        put(&mut self.deep, other.deep);
+        for (slipping, other) in self.slipping.iter_mut().zip(other.slipping) {
+            put(slipping, other);
+        }
+        put(&mut self.approach, other.approach);
+    }
+}
+
+impl<S> ChamberMode<S> {
+    fn each(&mut self, other: &ChamberMode, put: &mut impl FnMut(&mut S, f64)) {
+        put(&mut self.suction, other.suction);
+        put(&mut self.discharge, other.discharge);
+    }
+}
+
 impl<S: Scalar> ContactMode<S> {
     /// Apart.
     pub fn apart() -> Self {
@@ -86,7 +122,7 @@ impl<S: Scalar> ChamberMode<S> {
 }
 
 /// `yes` where the flag is 1, `no` where it is 0.
-#[inline]
+#[inline(always)]
 pub(crate) fn flagged<S: Scalar>(flag: S, yes: S, no: S) -> S {
     S::select(S::zero().lt(flag), yes, no)
 }

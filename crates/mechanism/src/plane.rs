@@ -1,58 +1,182 @@
-//! Vectors of the plane.
+//! Vectors and matrices of the plane.
+//!
+//! Ours rather than nalgebra's, whose operators are loops over matrices of any size: all that the
+//! right-hand side does must be inlined for lanes to be fast ([`Scalar::vectorised`]).
 
-use nalgebra::{Matrix2, Vector2};
 use scalar::Scalar;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// A vector of the plane.
-pub type Vec2<S> = Vector2<S>;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vec2<S> {
+    /// Along x.
+    pub x: S,
+    /// Along y.
+    pub y: S,
+}
+
+impl<S: Scalar> Vec2<S> {
+    /// The vector with these components.
+    #[inline(always)]
+    pub fn new(x: S, y: S) -> Self {
+        Self { x, y }
+    }
+
+    /// The scalar product.
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> S {
+        self.x * other.x + self.y * other.y
+    }
+}
+
+impl<S: Scalar> Add for Vec2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::new(self.x + other.x, self.y + other.y)
+    }
+}
+
+impl<S: Scalar> Sub for Vec2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.x - other.x, self.y - other.y)
+    }
+}
+
+impl<S: Scalar> Neg for Vec2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y)
+    }
+}
+
+impl<S: Scalar> Mul<S> for Vec2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, by: S) -> Self {
+        Self::new(self.x * by, self.y * by)
+    }
+}
+
+impl<S: Scalar> Div<S> for Vec2<S> {
+    type Output = Self;
+    /// One division: they take long.
+    #[inline(always)]
+    fn div(self, by: S) -> Self {
+        self * (S::one() / by)
+    }
+}
+
+impl<S: Scalar> AddAssign for Vec2<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Scalar> SubAssign for Vec2<S> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+/// A 2 × 2 matrix, as its rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Mat2<S>(pub [Vec2<S>; 2]);
+
+impl<S: Scalar> Mat2<S> {
+    #[inline(always)]
+    pub fn transpose(&self) -> Self {
+        let Self([a, b]) = *self;
+        Self([Vec2::new(a.x, b.x), Vec2::new(a.y, b.y)])
+    }
+
+    /// The inverse of a matrix that is known to have one.
+    #[inline(always)]
+    pub fn inverse(&self) -> Self {
+        let Self([a, b]) = *self;
+        let scale = S::one() / (a.x * b.y - a.y * b.x);
+        Self([
+            Vec2::new(b.y * scale, -a.y * scale),
+            Vec2::new(-b.x * scale, a.x * scale),
+        ])
+    }
+}
+
+impl<S: Scalar> Mul<Vec2<S>> for Mat2<S> {
+    type Output = Vec2<S>;
+    #[inline(always)]
+    fn mul(self, v: Vec2<S>) -> Vec2<S> {
+        Vec2::new(self.0[0].dot(&v), self.0[1].dot(&v))
+    }
+}
+
+impl<S: Scalar> Mul for Mat2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let Self(columns) = other.transpose();
+        Self(
+            self.0
+                .map(|row| Vec2::new(row.dot(&columns[0]), row.dot(&columns[1]))),
+        )
+    }
+}
+
+impl<S: Scalar> Mul<S> for Mat2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, by: S) -> Self {
+        Self([self.0[0] * by, self.0[1] * by])
+    }
+}
+
+impl<S: Scalar> Add for Mat2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
+    }
+}
+
+impl<S: Scalar> Sub for Mat2<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self([self.0[0] - other.0[0], self.0[1] - other.0[1]])
+    }
+}
 
 /// The vector turned by +90°: the velocity of a point `r` from the pivot is `ω turned(r)`.
-#[inline]
+#[inline(always)]
 pub fn turned<S: Scalar>(r: Vec2<S>) -> Vec2<S> {
     Vec2::new(-r.y, r.x)
 }
 
 /// Moment of a force about the origin of its arm, r × F.
-#[inline]
+#[inline(always)]
 pub fn moment<S: Scalar>(arm: Vec2<S>, force: Vec2<S>) -> S {
     arm.x * force.y - arm.y * force.x
 }
 
 /// The zero vector.
-#[inline]
+#[inline(always)]
 pub fn origin<S: Scalar>() -> Vec2<S> {
     Vec2::new(S::zero(), S::zero())
 }
 
-/// Inverse of a 2 × 2 matrix that is known to have one.
-#[inline]
-pub fn inverse<S: Scalar>(m: &Matrix2<S>) -> Matrix2<S> {
-    let determinant = m[(0, 0)] * m[(1, 1)] - m[(0, 1)] * m[(1, 0)];
-    let scale = S::one() / determinant;
-    Matrix2::new(
-        m[(1, 1)] * scale,
-        -m[(0, 1)] * scale,
-        -m[(1, 0)] * scale,
-        m[(0, 0)] * scale,
-    )
-}
-
-/// `m v`, inlined wherever it stands.
-pub fn apply<S: Scalar>(m: &Matrix2<S>, v: Vec2<S>) -> Vec2<S> {
-    Vec2::new(
-        m[(0, 0)] * v.x + m[(0, 1)] * v.y,
-        m[(1, 0)] * v.x + m[(1, 1)] * v.y,
-    )
-}
-
 /// `a bᵀ`.
-#[inline]
-pub fn outer<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> Matrix2<S> {
-    Matrix2::new(a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y)
+#[inline(always)]
+pub(crate) fn outer<S: Scalar>(a: Vec2<S>, b: Vec2<S>) -> Mat2<S> {
+    Mat2([b * a.x, b * a.y])
 }
 
 /// A diagonal matrix.
-#[inline]
-pub fn diagonal<S: Scalar>(x: S, y: S) -> Matrix2<S> {
-    Matrix2::new(x, S::zero(), S::zero(), y)
+#[inline(always)]
+pub(crate) fn diagonal<S: Scalar>(x: S, y: S) -> Mat2<S> {
+    Mat2([Vec2::new(x, S::zero()), Vec2::new(S::zero(), y)])
 }

@@ -12,8 +12,7 @@
 
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Machine;
-use crate::plane::{Vec2, diagonal, inverse, moment, origin, outer, turned};
-use nalgebra::Matrix2;
+use crate::plane::{Mat2, Vec2, diagonal, moment, origin, outer, turned};
 use scalar::Scalar;
 
 /// The shaft's equations of motion as `matrix × (θ̈, Ö) = right`, throws included.
@@ -24,7 +23,7 @@ pub(crate) struct Shaft<S> {
     /// Coefficients of Ö in the moment equation, and of θ̈ in the force equation.
     pub coupling: [Vec2<S>; 2],
     /// Coefficient of Ö in the force equation, kg.
-    pub mass: Matrix2<S>,
+    pub mass: Mat2<S>,
     /// Right side of the moment equation, without the drive's torque.
     pub moment: S,
     /// Right side of the force equation.
@@ -57,6 +56,7 @@ pub struct ShaftMotion<S> {
 
 impl<S: Scalar> Shaft<S> {
     /// The shaft alone, in direction `u` turning at `speed`, under gravity.
+    #[inline(always)]
     pub fn new(machine: &Machine<S>, u: Vec2<S>, speed: S, gravity: Vec2<S>) -> Self {
         let shaft = &machine.crankshaft;
         let lever = turned(u) * (shaft.mass * shaft.eccentricity);
@@ -70,6 +70,7 @@ impl<S: Scalar> Shaft<S> {
     }
 
     /// Adds a known force on a crank pin.
+    #[inline(always)]
     pub fn add_force(&mut self, force: Vec2<S>, moment: S) {
         self.force += force;
         self.moment += moment;
@@ -77,9 +78,10 @@ impl<S: Scalar> Shaft<S> {
 
     /// Adds the throw's rigid big-end force: on the pin acts `−(slope A + offset)`, where the pin's
     /// acceleration is `A = Ö + θ̈ turned(pin) + bias`. `arm` is where it acts.
+    #[inline(always)]
     pub fn add_throw(
         &mut self,
-        slope: &Matrix2<S>,
+        slope: Mat2<S>,
         offset: Vec2<S>,
         pin: Vec2<S>,
         arm: Vec2<S>,
@@ -87,7 +89,7 @@ impl<S: Scalar> Shaft<S> {
     ) {
         let along = turned(pin);
         let known = slope * bias + offset;
-        self.mass += *slope;
+        self.mass = self.mass + slope;
         self.coupling[1] += slope * along;
         self.coupling[0] += slope.transpose() * turned(arm);
         self.inertia += turned(arm).dot(&(slope * along));
@@ -95,6 +97,7 @@ impl<S: Scalar> Shaft<S> {
     }
 
     /// Solves for the shaft's motion; `joint` is the main bearing.
+    #[inline(always)]
     pub fn solve(
         &self,
         main: &Revolute<S>,
@@ -130,7 +133,7 @@ impl<S: Scalar> Shaft<S> {
         let contact_moment = moment(joint.arm, joint.force);
         // Eliminate θ̈ = given + give (moment + drive − coupling·Ö + ...).
         let condensed = self.mass - outer(self.coupling[1], self.coupling[0]) * give;
-        let answer = inverse(&condensed);
+        let answer = condensed.inverse();
         let centre_for = |force: Vec2<S>, moment: S| {
             answer
                 * (self.force + force

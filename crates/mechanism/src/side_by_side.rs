@@ -2,42 +2,52 @@
 
 use crate::dynamics::Dynamics;
 use crate::lift;
+use crate::mode::Mode;
 use integrate::System;
-use scalar::Lanes;
+use scalar::{Lanes, Scalar};
 
 /// `W` machines side by side, each in its own mode. Switches are made in each machine by itself.
 #[derive(Clone, Debug)]
-pub struct SideBySide<const W: usize>(Dynamics<Lanes<W>>);
+pub struct SideBySide<L>(Dynamics<L>);
 
-impl<const W: usize> SideBySide<W> {
+impl<L> SideBySide<L> {
     /// The machines of these lanes as they are.
     ///
     /// Panics where they differ in build.
-    pub fn new(lanes: [&Dynamics<f64>; W]) -> Self {
+    pub fn new<const W: usize>(lanes: [&Dynamics<f64>; W]) -> Self
+    where
+        L: Lanes<W>,
+    {
         let machines = lift::lanes(lanes.map(Dynamics::machine));
         let ledger = lanes[0].layout().ledger.is_some();
         let mut all = Self(Dynamics::new(machines, ledger));
-        all.set_modes(lanes);
+        for (lane, dynamics) in lanes.into_iter().enumerate() {
+            all.set_mode(lane, dynamics.mode());
+        }
         all
     }
 
-    /// Puts each lane into the mode of its machine.
-    pub fn set_modes(&mut self, lanes: [&Dynamics<f64>; W]) {
-        *self.0.mode_mut() = lift::lanes(lanes.map(Dynamics::mode));
+    /// Puts a lane into a mode.
+    pub fn set_mode<const W: usize>(&mut self, lane: usize, mode: &Mode)
+    where
+        L: Lanes<W>,
+    {
+        let put = |number: &mut L, of: f64| number.set(lane, of);
+        self.0.mode_mut().each(mode, put);
     }
 }
 
-impl<const W: usize> System<Lanes<W>> for SideBySide<W> {
+impl<L: Scalar> System<L> for SideBySide<L> {
     fn dimension(&self) -> usize {
         self.0.layout().dimension
     }
 
-    fn derivative(&mut self, t: Lanes<W>, y: &[Lanes<W>], dy: &mut [Lanes<W>]) {
+    fn derivative(&mut self, t: L, y: &[L], dy: &mut [L]) {
         self.0.evaluate_rates(t, y);
         self.0.write_derivative(y, dy);
     }
 
-    fn scales(&self) -> &[Lanes<W>] {
+    fn scales(&self) -> &[L] {
         self.0.tolerance_scales()
     }
 
@@ -45,7 +55,7 @@ impl<const W: usize> System<Lanes<W>> for SideBySide<W> {
         self.0.watches().len()
     }
 
-    fn guards_here(&mut self, guards: &mut [Lanes<W>]) -> bool {
+    fn guards_here(&mut self, guards: &mut [L]) -> bool {
         self.0.write_guards(guards);
         true
     }

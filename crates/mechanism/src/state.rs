@@ -7,7 +7,7 @@
 //! mechanism with none is pure kinematics.
 
 use crate::drive::Drive;
-use crate::effects::Acting;
+use crate::effects::{Acting, Acts};
 use crate::machine::Machine;
 use scalar::Scalar;
 

@@ -109,7 +109,7 @@ pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S>
 }
 
 /// Writes the derivative of the two coordinates at `index` and of their rates.
-#[inline]
+#[inline(always)]
 fn write<S: Scalar>(index: Option<usize>, second: Vec2<S>, y: &[S], dy: &mut [S]) {
     let Some(i) = index else { return };
     if let ([_, _, first @ ..], [to, ..]) = (&y[i..i + 4], dy[i..i + 4].as_chunks_mut().0) {
@@ -120,35 +120,41 @@ fn write<S: Scalar>(index: Option<usize>, second: Vec2<S>, y: &[S], dy: &mut [S]
 impl<S: Scalar> Dynamics<S> {
     /// Writes the derivative of the state that belongs to the last evaluation.
     pub(crate) fn write_derivative(&self, y: &[S], dy: &mut [S]) {
-        let (layout, at) = (self.layout(), self.evaluation());
-        write(layout.main, at.shaft.centre, y, dy);
-        for (layout, throw) in layout.throws.iter().zip(&at.throws) {
-            write(layout.big_end, throw.accelerations.big_end, y, dy);
-            write(layout.small_end, throw.accelerations.small_end, y, dy);
-            write(layout.guide, throw.accelerations.guide, y, dy);
-            if let Some(i) = layout.rod {
-                dy[i] = y[i + 1];
-                dy[i + 1] = throw.accelerations.stretch;
-            }
-            if let Some(i) = layout.gas {
-                dy[i..i + 2].copy_from_slice(&throw.gas.drift);
-            }
-        }
-        write(layout.frame, at.frame, y, dy);
-        if let Some(i) = layout.crank {
-            dy[i] = y[i + 1];
-            dy[i + 1] = at.shaft.angular;
-        }
-        if let Some(i) = layout.ledger {
-            let powers = energy::powers(self.machine(), at);
-            dy[i] = powers.gas;
-            dy[i + 1] = powers.drive;
-            dy[i + 2] = powers.friction;
-            dy[i + 3] = powers.damping;
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let (layout, at) = (self.layout(), self.evaluation());
+                write(layout.main, at.shaft.centre, y, dy);
+                for (layout, throw) in layout.throws.iter().zip(&at.throws) {
+                    write(layout.big_end, throw.accelerations.big_end, y, dy);
+                    write(layout.small_end, throw.accelerations.small_end, y, dy);
+                    write(layout.guide, throw.accelerations.guide, y, dy);
+                    if let Some(i) = layout.rod {
+                        dy[i] = y[i + 1];
+                        dy[i + 1] = throw.accelerations.stretch;
+                    }
+                    if let Some(i) = layout.gas {
+                        dy[i..i + 2].copy_from_slice(&throw.gas.drift);
+                    }
+                }
+                write(layout.frame, at.frame, y, dy);
+                if let Some(i) = layout.crank {
+                    dy[i] = y[i + 1];
+                    dy[i + 1] = at.shaft.angular;
+                }
+                if let Some(i) = layout.ledger {
+                    let powers = energy::powers(self.machine(), at);
+                    dy[i] = powers.gas;
+                    dy[i + 1] = powers.drive;
+                    dy[i + 2] = powers.friction;
+                    dy[i + 3] = powers.damping;
+                }
+            },
+        )
     }
 
     /// True where a joint's guard needs the forces of rigid joints.
+    #[inline(always)]
     fn has_two_mode_joint(&self) -> bool {
         let two_mode = |joint: &Revolute<S>| {
             joint
@@ -165,44 +171,49 @@ impl<S: Scalar> Dynamics<S> {
 
     /// Writes the guards in the order of [`watches`].
     pub(crate) fn write_guards(&self, guards: &mut [S]) {
-        let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
-        let mut rest = guards.iter_mut();
-        let mut put = |values: &[S]| {
-            // The values first, so that the one after the last is not taken off the guards.
-            for (value, guard) in values.iter().zip(rest.by_ref()) {
-                *guard = *value;
-            }
-        };
-        if let Revolute::Clear(clear) = &machine.main {
-            put(&clear.guards(&at.main, &mode.main, at.shaft.push));
-        }
-        let throws = || machine.throws.iter().zip(&at.throws).zip(&mode.throws);
-        for ((throw, at), mode) in throws() {
-            let forces = &at.accelerations;
-            if let Revolute::Clear(clear) = &throw.big_end {
-                let state = &at.joints.big_end;
-                let push = state.normal.dot(&forces.big_force);
-                put(&clear.guards(state, &mode.big_end, push));
-            }
-            if let Revolute::Clear(clear) = &throw.small_end {
-                let state = &at.joints.small_end;
-                let push = state.normal.dot(&forces.small_force);
-                put(&clear.guards(state, &mode.small_end, push));
-            }
-        }
-        for ((throw, at), mode) in throws() {
-            if let Guide::Clear(clear) = &throw.guide {
-                for (corner, mode) in at.joints.guide.corners.iter().zip(&mode.guide) {
-                    put(&clear.guards(corner, mode));
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
+                let mut rest = guards.iter_mut();
+                let mut put = |values: &[S]| {
+                    // The values first, so that the one after the last is not taken off the guards.
+                    for (value, guard) in values.iter().zip(rest.by_ref()) {
+                        *guard = *value;
+                    }
+                };
+                if let Revolute::Clear(clear) = &machine.main {
+                    put(&clear.guards(&at.main, &mode.main, at.shaft.push));
                 }
-            }
-            let sine = at.motion.angle_sin_cos.0 * machine.drive.sense();
-            put(&[flagged(mode.outward, sine, -sine)]);
-            put(&at.gas.head_end.guards(&mode.head_end));
-            if throw.cylinder.crank_end.is_some() {
-                put(&at.gas.crank_end.guards(&mode.crank_end));
-            }
-        }
+                let throws = || machine.throws.iter().zip(&at.throws).zip(&mode.throws);
+                for ((throw, at), mode) in throws() {
+                    let forces = &at.accelerations;
+                    if let Revolute::Clear(clear) = &throw.big_end {
+                        let state = &at.joints.big_end;
+                        let push = state.normal.dot(&forces.big_force);
+                        put(&clear.guards(state, &mode.big_end, push));
+                    }
+                    if let Revolute::Clear(clear) = &throw.small_end {
+                        let state = &at.joints.small_end;
+                        let push = state.normal.dot(&forces.small_force);
+                        put(&clear.guards(state, &mode.small_end, push));
+                    }
+                }
+                for ((throw, at), mode) in throws() {
+                    if let Guide::Clear(clear) = &throw.guide {
+                        for (corner, mode) in at.joints.guide.corners.iter().zip(&mode.guide) {
+                            put(&clear.guards(corner, mode));
+                        }
+                    }
+                    let sine = at.motion.angle_sin_cos.0 * machine.drive.sense();
+                    put(&[flagged(mode.outward, sine, -sine)]);
+                    put(&at.gas.head_end.guards(&mode.head_end));
+                    if throw.cylinder.crank_end.is_some() {
+                        put(&at.gas.crank_end.guards(&mode.crank_end));
+                    }
+                }
+            },
+        )
     }
 }
 

@@ -13,8 +13,7 @@ use crate::gas::Gas;
 use crate::joints::guide::GuideState;
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Throw;
-use crate::plane::{Vec2, apply, diagonal, inverse, moment, origin, outer, turned};
-use nalgebra::Matrix2;
+use crate::plane::{Mat2, Vec2, diagonal, moment, origin, outer, turned};
 use scalar::Scalar;
 
 /// Rate, 1/s, at which a following journal is drawn back onto its surface should rounding have
@@ -74,6 +73,7 @@ pub(crate) struct Loads<S> {
 
 impl<S: Scalar> Loads<S> {
     /// No loads: with a target, the answer to an impulse instead of a force.
+    #[inline(always)]
     pub fn none(elastic: bool) -> Self {
         let zero = S::zero();
         Self {
@@ -112,6 +112,7 @@ enum Constraint<S> {
 }
 
 impl<S: Scalar> Constraint<S> {
+    #[inline(always)]
     fn new(joint: &Revolute<S>, state: &JointState<S>, touching: S) -> Self {
         let following = |active| Constraint::Following {
             normal: state.normal,
@@ -130,16 +131,17 @@ impl<S: Scalar> Constraint<S> {
 
     /// The matrix that turns the missing relative acceleration into the joint's force, given how
     /// the relative acceleration answers to that force.
-    fn stiffen(&self, answer: impl FnOnce() -> Matrix2<S>) -> Option<Matrix2<S>> {
+    #[inline(always)]
+    fn stiffen(&self, answer: impl FnOnce() -> Mat2<S>) -> Option<Mat2<S>> {
         match *self {
             Constraint::Open => None,
-            Constraint::Pinned => Some(inverse(&answer())),
+            Constraint::Pinned => Some(answer().inverse()),
             Constraint::Following {
                 normal,
                 force,
                 active,
             } => {
-                let give = normal.dot(&apply(&answer(), force));
+                let give = normal.dot(&(answer() * force));
                 Some(outer(force, normal) * (active / give))
             }
         }
@@ -147,6 +149,7 @@ impl<S: Scalar> Constraint<S> {
 }
 
 /// The target that keeps a following journal at its clearance: r̈ = 0 with stabilisation.
+#[inline(always)]
 pub(crate) fn following_target<S: Scalar>(joint: &JointState<S>) -> S {
     let tangent = turned(joint.normal).dot(&joint.rate);
     let distance = joint
@@ -163,10 +166,10 @@ pub(crate) fn following_target<S: Scalar>(joint: &JointState<S>) -> S {
 /// big end `slope A + offset`, both as forces on the rod.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Response<S> {
-    pub slope: Matrix2<S>,
+    pub slope: Mat2<S>,
     pub offset: Vec2<S>,
     /// Small-end force on the rod: `small_offset − small_slope × big-end force`.
-    small_slope: Matrix2<S>,
+    small_slope: Mat2<S>,
     small_offset: Vec2<S>,
 }
 
@@ -206,6 +209,7 @@ pub struct Accelerations<S> {
 
 impl<S: Scalar> Motion<S> {
     /// Nothing yet.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         let zero = S::zero();
         Self {
@@ -226,6 +230,7 @@ impl<S: Scalar> Motion<S> {
     /// `angle` turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its
     /// rate.
     #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
     pub(crate) fn find(
         &mut self,
         throw: &Throw<S>,
@@ -266,11 +271,13 @@ impl<S: Scalar> Motion<S> {
     }
 
     /// Length of the rod over that without load, 1 + η.
+    #[inline(always)]
     pub(crate) fn lengthening(&self) -> S {
         self.stretch + 1.0
     }
 
     /// Unit vector along the rod, from big to small end.
+    #[inline(always)]
     pub(crate) fn along_rod(&self) -> Vec2<S> {
         Vec2::new(self.rod_sin_cos.1, self.rod_sin_cos.0)
     }
@@ -289,6 +296,7 @@ pub struct Joints<S> {
 
 impl<S: Scalar> Loads<S> {
     /// Finds the loads, with the rod as the spring that it is.
+    #[inline(always)]
     pub fn find(
         &mut self,
         throw: &Throw<S>,
@@ -337,6 +345,7 @@ impl<S: Scalar> Loads<S> {
     }
 
     /// What is left of the loads where an impulse takes the place of every force.
+    #[inline(always)]
     pub fn silent(&self) -> Self {
         Self {
             arms: self.arms,
@@ -346,6 +355,7 @@ impl<S: Scalar> Loads<S> {
     }
 
     /// Acceleration of the rod's centre of mass, and its angular one, without rigid joints' forces.
+    #[inline(always)]
     fn free_rod(&self, throw: &Throw<S>) -> (Vec2<S>, S) {
         (
             self.rod_force / throw.rod.mass,
@@ -354,14 +364,16 @@ impl<S: Scalar> Loads<S> {
     }
 
     /// The crosshead's acceleration without rigid joints' forces.
+    #[inline(always)]
     fn free_crosshead(&self, throw: &Throw<S>) -> Vec2<S> {
-        apply(&crosshead_give(throw), self.crosshead_force)
+        crosshead_give(throw) * self.crosshead_force
     }
 }
 
 /// How the crosshead's acceleration answers to a force on it: an ideal guide lets it move along
 /// alone.
-fn crosshead_give<S: Scalar>(throw: &Throw<S>) -> Matrix2<S> {
+#[inline(always)]
+fn crosshead_give<S: Scalar>(throw: &Throw<S>) -> Mat2<S> {
     let light = S::one() / throw.crosshead.mass;
     let across = match throw.guide.clear() {
         Some(_) => light,
@@ -371,6 +383,7 @@ fn crosshead_give<S: Scalar>(throw: &Throw<S>) -> Matrix2<S> {
 }
 
 impl<S: Scalar> Arms<S> {
+    #[inline(always)]
     fn none() -> Self {
         Self {
             along: origin(),
@@ -382,6 +395,7 @@ impl<S: Scalar> Arms<S> {
         }
     }
 
+    #[inline(always)]
     fn new(throw: &Throw<S>, motion: &Motion<S>, joints: &Joints<S>) -> Self {
         let along = motion.along_rod();
         let shares = [
@@ -402,6 +416,7 @@ impl<S: Scalar> Arms<S> {
 
 impl<S: Scalar> Arms<S> {
     /// Moment of inertia of the stretched rod about its centre of mass, kg m².
+    #[inline(always)]
     fn inertia(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
         throw.rod.inertia * motion.lengthening() * motion.lengthening()
     }
@@ -410,6 +425,7 @@ impl<S: Scalar> Arms<S> {
 impl<S: Scalar> RodSpring<S> {
     /// Moment of the spring and its damping on the stretch η, N m: −L² (k η + c η̇), with c so that
     /// the free rod has the damping ratio.
+    #[inline(always)]
     fn pull(&self, throw: &Throw<S>, motion: &Motion<S>) -> S {
         let length = throw.rod.length;
         -(self.stiffness * length * length * motion.stretch)
@@ -417,6 +433,7 @@ impl<S: Scalar> RodSpring<S> {
     }
 
     /// Damping L² c of the stretch, N m s.
+    #[inline(always)]
     pub(crate) fn damping(&self, throw: &Throw<S>) -> S {
         let critical = (self.stiffness * throw.rod.inertia).sqrt() * throw.rod.length * 2.0;
         self.damping_ratio * critical
@@ -425,6 +442,7 @@ impl<S: Scalar> RodSpring<S> {
 
 impl<S: Scalar> Response<S> {
     /// That of joints whose forces are known.
+    #[inline(always)]
     pub fn none() -> Self {
         let zero = diagonal(S::zero(), S::zero());
         Self {
@@ -436,6 +454,7 @@ impl<S: Scalar> Response<S> {
     }
 
     /// Eliminates the throw's rigid joints. `touching` are the flags of big and small end.
+    #[inline(always)]
     pub fn new(throw: &Throw<S>, joints: &Joints<S>, loads: &Loads<S>, touching: [S; 2]) -> Self {
         let arms = &loads.arms;
         let [of_big, of_small] = arms.shares;
@@ -444,7 +463,8 @@ impl<S: Scalar> Response<S> {
         // of the force)ᵀ / I; an elastic rod gives along its axis too.
         let answer = |[eye, force]: [Vec2<S>; 2], shares: [S; 2]| {
             let light = S::one() / mass;
-            let rigid = diagonal(light, light) + outer(turned(eye), turned(force)) / inertia;
+            let rigid =
+                diagonal(light, light) + outer(turned(eye), turned(force)) * (S::one() / inertia);
             match loads.stretch {
                 None => rigid,
                 Some(_) => {
@@ -487,14 +507,16 @@ impl<S: Scalar> Response<S> {
     }
 
     /// The forces of big and small end on the rod, once the crank pin's acceleration is known.
+    #[inline(always)]
     pub fn forces(&self, pin: Vec2<S>) -> [Vec2<S>; 2] {
-        let big = apply(&self.slope, pin) + self.offset;
-        [big, self.small_offset - apply(&self.small_slope, big)]
+        let big = self.slope * pin + self.offset;
+        [big, self.small_offset - self.small_slope * big]
     }
 }
 
 impl<S: Scalar> Accelerations<S> {
     /// Nothing yet.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         let zero = S::zero();
         Self {
@@ -511,6 +533,7 @@ impl<S: Scalar> Accelerations<S> {
 
     /// Finds the accelerations under the loads and the rigid joints' forces, if there are any, with
     /// the crank pin's own.
+    #[inline(always)]
     pub(crate) fn find(
         &mut self,
         throw: &Throw<S>,
@@ -530,7 +553,7 @@ impl<S: Scalar> Accelerations<S> {
             centre += (big_force + small_force) / throw.rod.mass;
             rod += (moment(arms.big_force, big_force) + moment(arms.small_force, small_force))
                 / loads.rod_inertia;
-            crosshead -= apply(&crosshead_give(throw), small_force);
+            crosshead -= crosshead_give(throw) * small_force;
             tilting -= moment(joints.small_end.arm, small_force);
             let pull = (big_force * of_big + small_force * of_small).dot(&arms.along);
             stretch = stretch.map(|stretch| stretch + pull / throw.rod.inertia);

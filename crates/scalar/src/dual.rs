@@ -181,6 +181,12 @@ impl<S: Scalar, const N: usize> One for Dual<S, N> {
 
 impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     type Mask = S::Mask;
+    type Plain = S::Plain;
+
+    #[inline]
+    fn plain(self) -> S::Plain {
+        self.value.plain()
+    }
 
     #[inline]
     fn constant(x: f64) -> Self {
@@ -222,6 +228,10 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     #[inline]
     fn ln(self) -> Self {
         self.chain(self.value.ln(), S::one() / self.value)
+    }
+    #[inline(always)]
+    fn vectorised<T>(work: impl FnOnce() -> T) -> T {
+        S::vectorised(work)
     }
 }
 

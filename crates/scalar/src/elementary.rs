@@ -6,6 +6,45 @@
 //! that the first term left out is below 1e-17 of the result. The tests below hold each to 4 units
 //! in the last place of the platform's function over 200,000 arguments.
 
+use crate::{Mask, Scalar};
+
+/// A number, or several side by side, that can be taken apart.
+pub trait Bits: Scalar {
+    /// Whether bit `number` of the representation is 1.
+    fn bit(self, number: u32) -> Self::Mask;
+    /// 2 to the power of the whole number in the lowest 11 bits of the representation.
+    fn two_to_the(self) -> Self;
+    /// f and k of x = 2^k f with f in [sqrt(1/2), sqrt(2)), for a positive, normal x.
+    fn split(self) -> (Self, Self);
+}
+
+/// What to add to the bits of x so that the exponent then is k + 1023: minus the bits of sqrt(1/2), and
+/// the bits of 1.
+pub(crate) const SPLIT_BIAS: u64 = (1023_u64 << 52).wrapping_sub(0x3fe6_a09e_667f_3bcd);
+/// 2^52, as bits: with a whole number below 2^52 in its place for the fraction it is the sum of both.
+pub(crate) const MAGIC_EXPONENT: u64 = 1075 << 52;
+/// 2^52 + 1023.
+pub(crate) const MAGIC: f64 = 4_503_599_627_371_519.0;
+
+impl Bits for f64 {
+    #[inline(always)]
+    fn bit(self, number: u32) -> bool {
+        self.to_bits() >> number & 1 == 1
+    }
+    #[inline(always)]
+    fn two_to_the(self) -> f64 {
+        f64::from_bits(self.to_bits().wrapping_add(1023) << 52)
+    }
+    #[inline(always)]
+    fn split(self) -> (f64, f64) {
+        let bits = self.to_bits();
+        let biased = bits.wrapping_add(SPLIT_BIAS) >> 52;
+        let fraction = bits.wrapping_sub((biased << 52).wrapping_sub(1023 << 52));
+        let exponent = f64::from_bits(biased | MAGIC_EXPONENT) - MAGIC;
+        (f64::from_bits(fraction), exponent)
+    }
+}
+
 /// Factorial reciprocals 1/0! ... 1/19!.
 const INVERSE_FACTORIAL: [f64; 20] = {
     let mut table = [1.0; 20];
@@ -49,9 +88,9 @@ const fn series<const N: usize>(first: usize, step: usize, alternating: bool) ->
 /// The polynomial with these coefficients at `x`: even and odd powers each by Horner's rule, so that
 /// two sums grow side by side (Knuth 1997, section 4.6.4).
 #[inline(always)]
-fn sum<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
+fn sum<S: Scalar, const N: usize>(coefficients: &[f64; N], x: S) -> S {
     let square = x * x;
-    let [mut last, mut other] = [coefficients[N - 1], coefficients[N - 2]];
+    let [mut last, mut other] = [N - 1, N - 2].map(|i| S::constant(coefficients[i]));
     let mut i = N - 2;
     while i > 0 {
         i -= 1;
@@ -78,61 +117,47 @@ const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
 
 /// Sine and cosine of `x` radians, for |x| below 1e6 (19,000 revolutions).
 #[inline(always)]
-pub fn sin_cos(x: f64) -> (f64, f64) {
+pub fn sin_cos<S: Bits>(x: S) -> (S, S) {
     let shifted = x * std::f64::consts::FRAC_2_PI + ROUNDER;
     let quarter = shifted - ROUNDER;
-    let quadrant = shifted.to_bits();
     let r = ((x - quarter * HALF_PI[0]) - quarter * HALF_PI[1]) - quarter * HALF_PI[2];
     let r2 = r * r;
 
     let sine = sum(&SINE, r2);
     let cosine = sum(&COSINE, r2);
     let sine = r + r * r2 * sine;
-    let cosine = 1.0 + r2 * cosine;
+    let cosine = S::constant(1.0) + r2 * cosine;
 
-    let swapped = quadrant & 1 == 1;
-    let (s, c) = if swapped {
-        (cosine, sine)
-    } else {
-        (sine, cosine)
-    };
-    let s = if quadrant & 2 == 2 { -s } else { s };
-    let c = if (quadrant.wrapping_add(1)) & 2 == 2 {
-        -c
-    } else {
-        c
-    };
-    (s, c)
+    // The quadrant is in the lowest two bits: 1 and 3 swap sine and cosine, 2 and 3 turn the sine's
+    // sign, 1 and 2 the cosine's.
+    let (odd, beyond) = (shifted.bit(0), shifted.bit(1));
+    let s = S::select(odd, cosine, sine);
+    let c = S::select(odd, sine, cosine);
+    let between = odd.and(beyond.not()).or(beyond.and(odd.not()));
+    (S::select(beyond, -s, s), S::select(between, -c, c))
 }
 
 /// e to the power `x`, for |x| below 700.
 #[inline(always)]
-pub fn exp(x: f64) -> f64 {
+pub fn exp<S: Bits>(x: S) -> S {
     let shifted = x * std::f64::consts::LOG2_E + ROUNDER;
     let k = shifted - ROUNDER;
     let r = (x - k * LN_2[0]) - k * LN_2[1];
-    let value = 1.0 + (r + r * r * sum(&EXPONENTIAL, r));
-    let power = shifted.to_bits().wrapping_sub(ROUNDER.to_bits());
-    value * f64::from_bits(power.wrapping_add(1023) << 52)
+    let value = S::constant(1.0) + (r + r * r * sum(&EXPONENTIAL, r));
+    value * shifted.two_to_the()
 }
 
 /// Natural logarithm of a positive, normal `x`.
 #[inline(always)]
-pub fn ln(x: f64) -> f64 {
-    // x = 2^k f with f in [sqrt(1/2), sqrt(2)).
-    const SQRT_HALF_BITS: u64 = 0x3fe6_a09e_667f_3bcd;
-    let bits = x.to_bits();
-    let offset = bits.wrapping_sub(SQRT_HALF_BITS);
-    let k = (offset as i64) >> 52;
-    let f = f64::from_bits(bits.wrapping_sub((k as u64) << 52));
+pub fn ln<S: Bits>(x: S) -> S {
+    let (f, k) = x.split();
     // ln f = 2 artanh s = 2 (s + s^3/3 + s^5/5 + ...), written as f - 1 and a correction, so
     // that nothing is lost near f = 1.
     let g = f - 1.0;
-    let s = g / (2.0 + g);
+    let s = g / (g + 2.0);
     let s2 = s * s;
-    let half_square = 0.5 * g * g;
-    let correction = s * (half_square + 2.0 * s2 * sum(&LOGARITHM, s2));
-    let k = k as f64;
+    let half_square = g * 0.5 * g;
+    let correction = s * (half_square + s2 * 2.0 * sum(&LOGARITHM, s2));
     k * LN_2[0] + (g - (half_square - (correction + k * LN_2[1])))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - `f64`: an ordinary run;
 //! - [`Dual`]: a value with its exact derivatives in `N` directions (over any other scalar);
-//! - [`Lanes`]: `W` cases side by side, laid out for the processor's vector unit.
+//! - [`Lanes`]: several cases side by side, in a register of the processor's vector unit.
 //!
 //! The elementary functions are our own ([`elementary`]): the platform's C library may take
 //! another path on another processor, and a chaotic run turns one different last bit into a
@@ -15,7 +15,7 @@ pub mod lanes;
 pub mod random;
 
 pub use dual::Dual;
-pub use lanes::Lanes;
+pub use lanes::{InLanes, Lanes, in_lanes};
 
 use num_traits::{One, Zero};
 use std::fmt::Debug;
@@ -61,6 +61,11 @@ pub trait Scalar:
 {
     /// What a comparison yields.
     type Mask: Mask;
+    /// The number without its derivatives.
+    type Plain: Scalar<Mask = Self::Mask, Plain = Self::Plain>;
+
+    /// The number without its derivatives.
+    fn plain(self) -> Self::Plain;
 
     /// The constant `x` (in every lane, with no derivative).
     fn constant(x: f64) -> Self;
@@ -77,47 +82,54 @@ pub trait Scalar:
     /// Natural logarithm of a positive number.
     fn ln(self) -> Self;
 
+    /// Does `work` with the instructions that the processor has for this scalar. Only what is inlined
+    /// into `work` gains by it.
+    #[inline(always)]
+    fn vectorised<T>(work: impl FnOnce() -> T) -> T {
+        work()
+    }
+
     /// `self` raised to `exponent`; `self` must be positive.
-    #[inline]
+    #[inline(always)]
     fn powf(self, exponent: Self) -> Self {
         (self.ln() * exponent).exp()
     }
     /// The larger of two, by value.
-    #[inline]
+    #[inline(always)]
     fn max(self, other: Self) -> Self {
         Self::select(self.lt(other), other, self)
     }
     /// The smaller of two, by value.
-    #[inline]
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self::select(other.lt(self), other, self)
     }
     /// Absolute value.
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
         Self::select(self.lt(Self::zero()), -self, self)
     }
     /// `self` kept between `low` and `high`.
-    #[inline]
+    #[inline(always)]
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
 }
 
 impl Mask for bool {
-    #[inline]
+    #[inline(always)]
     fn and(self, other: Self) -> Self {
         self & other
     }
-    #[inline]
+    #[inline(always)]
     fn or(self, other: Self) -> Self {
         self | other
     }
-    #[inline]
+    #[inline(always)]
     fn not(self) -> Self {
         !self
     }
-    #[inline]
+    #[inline(always)]
     fn any(self) -> bool {
         self
     }
@@ -125,32 +137,38 @@ impl Mask for bool {
 
 impl Scalar for f64 {
     type Mask = bool;
+    type Plain = Self;
 
-    #[inline]
+    #[inline(always)]
+    fn plain(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         x
     }
-    #[inline]
+    #[inline(always)]
     fn lt(self, other: Self) -> bool {
         self < other
     }
-    #[inline]
+    #[inline(always)]
     fn select(mask: bool, yes: Self, no: Self) -> Self {
         if mask { yes } else { no }
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         elementary::sin_cos(self)
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         elementary::exp(self)
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         elementary::ln(self)
     }

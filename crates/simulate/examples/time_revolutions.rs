@@ -9,13 +9,15 @@
 //! The line printed is the CPU time of one revolution (ms) without reading the machine. The file
 //! holds the crosshead's acceleration at 10 kHz from the centred start, as plain samples without a
 //! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself,
-//! `--width 8` eight of them side by side; the time is then that of one. The run is repeated for
+//! `--width 8` eight of them side by side, where the processor has as many lanes (`CROSSHEAD_LANES=4`
+//! holds them down); the time is then that of one. The run is repeated for
 //! `--seconds 0.2`.
 
 use input::{MachineFile, Resolved};
 use integrate::{Ensemble, Integrator, Step, Traveller};
 use mechanism::joints::revolute::Revolute;
 use mechanism::{Dynamics, Machine, SideBySide};
+use scalar::lanes::{self, InLanes, Lanes, in_lanes};
 use simulate::Flow;
 use std::error::Error;
 use std::io::Write;
@@ -25,8 +27,6 @@ use std::path::{Path, PathBuf};
 const RATE: f64 = 10_000.0;
 /// Radial clearance of both joints.
 const CLEARANCE: &str = "0.3 mm";
-/// Machines side by side.
-const LANES: usize = 8;
 /// Longest step, as a share of a revolution: that of `simulate`.
 const LONGEST_STEP: f64 = 0.05;
 /// CPU time for which the run is repeated, s, unless the command line has another.
@@ -46,8 +46,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let machine = machine()?.machine;
     let run = match task.width {
         0 => alone,
-        LANES => together,
-        width => return Err(format!("there are {LANES} lanes, or 0; not {width}").into()),
+        width if width == lanes::width() => together,
+        width => {
+            let has = lanes::width();
+            return Err(
+                format!("this processor has {has} lanes; {width} is neither that nor 0").into(),
+            );
+        }
     };
     let (milliseconds, samples) = measure(task.seconds, || run(&machine, &task))?;
     if let Some(path) = &task.out {
@@ -162,7 +167,26 @@ fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
 
 /// The machine in the first of several lanes; in the others the same with wider and wider joints.
 fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
-    let mut lanes: [Lane; LANES] = std::array::from_fn(|lane| {
+    in_lanes(Together { machine, task })
+}
+
+struct Together<'a> {
+    machine: &'a Machine,
+    task: &'a Task,
+}
+
+impl InLanes for Together<'_> {
+    type Output = Result<Vec<f64>, Box<dyn Error>>;
+    fn run<L: Lanes<W>, const W: usize>(self) -> Self::Output {
+        travel::<L, W>(self.machine, self.task)
+    }
+}
+
+fn travel<L: Lanes<W>, const W: usize>(
+    machine: &Machine,
+    task: &Task,
+) -> Result<Vec<f64>, Box<dyn Error>> {
+    let mut lanes: [Lane; W] = std::array::from_fn(|lane| {
         let mut machine = machine.clone();
         let throw = &mut machine.throws[0];
         for joint in [&mut throw.big_end, &mut throw.small_end] {
@@ -172,8 +196,8 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
         }
         Lane::start(&machine, task)
     });
-    let mut wide = SideBySide::new(lanes.each_ref().map(|lane| &lane.dynamics));
-    let mut ensemble = Ensemble::<LANES>::new(&wide);
+    let mut wide = SideBySide::<L>::new(lanes.each_ref().map(|lane| &lane.dynamics));
+    let mut ensemble = Ensemble::<L, W>::new(&wide);
     for (i, lane) in lanes.iter().enumerate() {
         ensemble.place(i, &lane.integrator);
     }
@@ -181,7 +205,7 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
     let courses = lanes.each_ref().map(|lane| lane.integrator.course(end));
     loop {
         let before = lanes.each_ref().map(|lane| lane.integrator.work().switches);
-        let mut trials = [None; LANES];
+        let mut trials = [None; W];
         for ((trial, lane), course) in trials.iter_mut().zip(&lanes).zip(&courses) {
             *trial = lane.integrator.propose(course)?;
         }
@@ -189,7 +213,7 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
             break;
         }
         let mut travellers = trials.iter().zip(&mut lanes).zip(&courses);
-        let travellers = [(); LANES].map(|()| {
+        let travellers = [(); W].map(|()| {
             let ((trial, lane), course) = travellers.next()?;
             let samples = &mut lane.samples;
             trial.map(|trial| Traveller {
@@ -205,11 +229,13 @@ fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> 
         for result in ensemble.advance(&mut wide, travellers) {
             result?;
         }
-        if lanes.each_ref().map(|lane| lane.integrator.work().switches) != before {
-            wide.set_modes(lanes.each_ref().map(|lane| &lane.dynamics));
+        for (i, lane) in lanes.iter().enumerate() {
+            if lane.integrator.work().switches != before[i] {
+                wide.set_mode(i, lane.dynamics.mode());
+            }
         }
     }
-    let [first, ..] = lanes;
+    let first = lanes.into_iter().next().ok_or("no lanes")?;
     Ok(first.samples.seen)
 }
 

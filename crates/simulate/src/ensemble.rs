@@ -5,16 +5,18 @@ use crate::record::{Error, Record};
 use crate::task::{Asked, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
-
-/// Lanes: as many numbers as the widest registers hold.
-const WIDTH: usize = 8;
+use scalar::{InLanes, Lanes, Scalar, in_lanes};
 
 /// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
 /// same bits.
 pub fn simulate_together(asked: &[Asked]) -> Vec<Result<Record, Error>> {
     let mut records: Vec<_> = asked.iter().map(|_| None).collect();
     for alike in of_one_build(asked) {
-        in_lanes::<WIDTH>(asked, &alike, &mut records);
+        in_lanes(Group {
+            asked,
+            alike: &alike,
+            records: &mut records,
+        });
     }
     records.into_iter().flatten().collect()
 }
@@ -72,14 +74,28 @@ impl<'a> Passenger<'a> {
     }
 }
 
-/// The lanes of a group.
-struct Lanes<'a, const W: usize> {
-    passengers: [Option<Passenger<'a>>; W],
-    ensemble: Ensemble<W>,
-    wide: SideBySide<W>,
+/// Cases that can share coach.
+struct Group<'a, 'b> {
+    asked: &'b [Asked<'a>],
+    alike: &'b [usize],
+    records: &'b mut Records,
 }
 
-fn in_lanes<const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Records) {
+impl InLanes for Group<'_, '_> {
+    type Output = ();
+    fn run<L: Lanes<W>, const W: usize>(self) {
+        travel::<L, W>(self.asked, self.alike, self.records);
+    }
+}
+
+/// The lanes of a group.
+struct Coach<'a, L: Scalar, const W: usize> {
+    passengers: [Option<Passenger<'a>>; W],
+    ensemble: Ensemble<L, W>,
+    wide: SideBySide<L>,
+}
+
+fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Records) {
     let mut queue = alike.iter().copied();
     let mut passengers = [const { None }; W];
     let mut next = |records: &mut Records| {
@@ -91,33 +107,33 @@ fn in_lanes<const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Reco
     for place in &mut passengers {
         *place = next(records);
     }
-    let Some(mut lanes) = Lanes::new(passengers) else {
+    let Some(mut coach) = Coach::<L, W>::new(passengers) else {
         return;
     };
-    while lanes.count() > 1 {
-        lanes.step(records);
+    while coach.count() > 1 {
+        coach.step(records);
         let mut boarded = false;
         for lane in 0..W {
-            if lanes.passengers[lane].is_none()
+            if coach.passengers[lane].is_none()
                 && let Some(passenger) = next(records)
             {
-                lanes.ensemble.place(lane, passenger.task.run.integrator());
-                lanes.passengers[lane] = Some(passenger);
+                coach.ensemble.place(lane, passenger.task.run.integrator());
+                coach.passengers[lane] = Some(passenger);
                 boarded = true;
             }
         }
         if boarded {
-            lanes.widen();
+            coach.widen();
         }
     }
     // Whoever is left alone is faster by itself.
-    let last = lanes.passengers.iter_mut().enumerate();
+    let last = coach.passengers.iter_mut().enumerate();
     for (lane, passenger) in last {
         if let Some(Passenger {
             index, mut task, ..
         }) = passenger.take()
         {
-            lanes.ensemble.give(lane, false, task.run.integrator_mut());
+            coach.ensemble.give(lane, false, task.run.integrator_mut());
             records[index] = Some(task.finish());
         }
     }
@@ -137,7 +153,7 @@ fn settle<'a>(
     None
 }
 
-impl<'a, const W: usize> Lanes<'a, W> {
+impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
     /// None without passengers.
     fn new(passengers: [Option<Passenger<'a>>; W]) -> Option<Self> {
         let wide = SideBySide::new(dynamics(&passengers)?);
@@ -185,14 +201,16 @@ impl<'a, const W: usize> Lanes<'a, W> {
             })
         });
         let results = self.ensemble.advance(&mut self.wide, travellers);
-        let mut switched = false;
-        for (place, result) in self.passengers.iter_mut().zip(results) {
+        for (lane, (place, result)) in self.passengers.iter_mut().zip(results).enumerate() {
             let Some(passenger) = place else {
                 continue;
             };
             let switches = passenger.task.run.work().switches;
-            switched |= switches != passenger.switches;
-            passenger.switches = switches;
+            if switches != passenger.switches {
+                let mode = passenger.task.run.dynamics().mode();
+                self.wide.set_mode(lane, mode);
+                passenger.switches = switches;
+            }
             match result.and_then(|()| passenger.task.propose()) {
                 Ok(Some(trial)) => passenger.trial = trial,
                 Ok(None) => *place = place.take().and_then(|p| p.go_on(records)),
@@ -201,9 +219,6 @@ impl<'a, const W: usize> Lanes<'a, W> {
                     *place = None;
                 }
             }
-        }
-        if switched && let Some(dynamics) = dynamics(&self.passengers) {
-            self.wide.set_modes(dynamics);
         }
     }
 }

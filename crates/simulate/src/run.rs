@@ -6,6 +6,7 @@ use crate::settings::Transient;
 use integrate::{Course, Integrator, Real, Step, System, Work};
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
+use scalar::Scalar;
 use std::f64::consts::TAU;
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
@@ -13,7 +14,7 @@ const LONGEST_STEP: f64 = 0.05;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
 /// A machine on its way.
-pub(crate) struct Run<S> {
+pub(crate) struct Run<S: Scalar> {
     dynamics: Dynamics<S>,
     integrator: Integrator<S>,
     revolution: f64,

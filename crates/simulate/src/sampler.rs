@@ -4,17 +4,14 @@
 //! evaluated side by side.
 
 use crate::chain::UnderWay;
+use crate::lookout::{self, Lookout};
 use crate::run::{Instants, Run};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
 use integrate::Step;
 use mechanism::mode::Mode;
-use mechanism::{Dynamics, Evaluation, lift};
-use scalar::Lanes;
+use mechanism::{Dynamics, Evaluation};
 use std::ops::Range;
-
-/// Instants that are evaluated side by side.
-const WIDTH: usize = 8;
 
 /// Series under way.
 pub(crate) struct Sampler<'a> {
@@ -24,10 +21,11 @@ pub(crate) struct Sampler<'a> {
     series: Vec<UnderWay>,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
-    wide: Dynamics<Lanes<WIDTH>>,
-    /// The mode that `wide` is in.
+    lookout: Box<dyn Lookout + Send>,
+    /// The mode that the lookout's machine is in.
     mode: Mode,
-    states: Vec<Lanes<WIDTH>>,
+    /// Instants within a step.
+    times: Vec<f64>,
     state: Vec<f64>,
 }
 
@@ -43,12 +41,9 @@ impl<'a> Sampler<'a> {
         let dynamics = run.dynamics();
         let dimension = run.state().len();
         let mut sampler = Self {
-            wide: Dynamics::new(
-                lift::constants(dynamics.machine()),
-                dynamics.layout().ledger.is_some(),
-            ),
+            lookout: lookout::at(dynamics.machine(), dynamics.layout().ledger.is_some()),
             mode: dynamics.mode().clone(),
-            states: vec![Lanes([0.0; WIDTH]); dimension],
+            times: Vec::new(),
             state: vec![0.0; dimension],
             series,
             sensors,
@@ -56,7 +51,7 @@ impl<'a> Sampler<'a> {
             seen: 0,
             trace,
         };
-        *sampler.wide.mode_mut() = lift::constants(&sampler.mode);
+        sampler.lookout.set_mode(&sampler.mode);
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
@@ -100,31 +95,21 @@ impl<'a> Sampler<'a> {
             }
             return;
         }
-        if within > 0 && *dynamics.mode() != self.mode {
+        if within == 0 {
+            return;
+        }
+        if *dynamics.mode() != self.mode {
             self.mode.clone_from(dynamics.mode());
-            *self.wide.mode_mut() = lift::constants(&self.mode);
+            self.lookout.set_mode(&self.mode);
         }
-        while within > 0 {
-            let count = within.min(WIDTH);
-            self.look_at_several(step, count);
-            within -= count;
-        }
-    }
-
-    /// Looks at the next `count` instants, all of them within the step.
-    fn look_at_several(&mut self, step: &Step<f64>, count: usize) {
-        // Lanes without an instant of their own look at the last one.
-        let instant = |lane: usize| self.instants.at(self.seen + lane.min(count - 1));
-        let times = Lanes(std::array::from_fn(instant));
-        let share = (times - step.start) / step.length;
-        step.interpolate_lanes(share, &mut self.states);
-        let at = self.wide.evaluate(times, &self.states);
-        for (sensor, series) in self.sensors.iter().zip(&mut self.series) {
-            let measured = sensor.measured;
-            let values = measured.unwrapped(at);
-            series.extend(values.0[..count].iter().map(|x| measured.wrapped(*x)));
-        }
-        self.seen += count;
+        let instants = self.seen..self.seen + within;
+        self.times.clear();
+        self.times.extend(instants.map(|i| self.instants.at(i)));
+        let series = &mut self.series;
+        let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
+        self.lookout
+            .look(step, &self.times, self.sensors, &mut show);
+        self.seen += within;
     }
 
     /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond

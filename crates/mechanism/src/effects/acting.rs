@@ -1,6 +1,6 @@
 //! Where effects act in the equations: one method a place, which does nothing unless a law says so.
 
-use super::{Effect, End, Joint, Place};
+use super::{Effect, End, Joint, Law, Place};
 use crate::plane::{Vec2, turned};
 use scalar::Scalar;
 
@@ -8,50 +8,59 @@ use scalar::Scalar;
 pub(crate) trait Acts<S: Scalar> {
     /// Pressures at which the suction and the discharge valve hold a chamber while open, Pa, from
     /// those without this effect.
+    #[inline(always)]
     fn line_pressures(&self, lines: [S; 2], _at: &ChamberAt<S>) -> [S; 2] {
         lines
     }
 
     /// Crank angle after the dead centre until which the suction valve is held open, rad; none
     /// where it closes by itself.
+    #[inline(always)]
     fn suction_held(&self) -> Option<S> {
         None
     }
 
     /// True where the gas of a closed chamber drifts off its polytrope, so that the chambers need
     /// a state.
+    #[inline(always)]
     fn drifts(&self) -> bool {
         false
     }
 
     /// Rate of the logarithm of the pressure in a closed chamber beyond its polytrope, 1/s.
+    #[inline(always)]
     fn drift(&self, _at: &ChamberAt<S>) -> S {
         S::zero()
     }
 
     /// Force on the crosshead body along x, N.
+    #[inline(always)]
     fn piston_force(&self, _at: &PistonAt<S>) -> S {
         S::zero()
     }
 
     /// Acceleration of the frame, on which everything stands, at crank angle `_angle` (rad) and
     /// speed `_speed` (rad/s), in the machine's coordinates, m/s²; none where the law moves no frame.
+    #[inline(always)]
     fn frame_acceleration(&self, _angle: S, _speed: S) -> Option<Vec2<S>> {
         None
     }
 
     /// The spring that a connecting rod is along its axis; none where it is rigid.
+    #[inline(always)]
     fn rod(&self) -> Option<RodSpring<S>> {
         None
     }
 
     /// By how much bearing and journal are out of round in the directions (cosine, sine) from the x
     /// axes of the two; none where both are round.
+    #[inline(always)]
     fn shape(&self, _bearing: Vec2<S>, _journal: Vec2<S>) -> Option<Shape<S>> {
         None
     }
 
     /// Force of the bearing on the journal along the normal, outward, N.
+    #[inline(always)]
     fn film_force(&self, _at: &JointAt<S>) -> S {
         S::zero()
     }
@@ -119,6 +128,7 @@ pub(crate) struct PistonAt<S> {
 impl<S: Scalar> PistonAt<S> {
     /// Acceleration along x with ideal joints and an even speed, m/s²: the second derivative of
     /// r cos α + √(L² − r² sin² α).
+    #[inline(always)]
     pub fn ideal_acceleration(&self) -> S {
         let (r, l) = (self.crank_radius, self.rod_length);
         let (sine, cosine) = self.angle.sin_cos();
@@ -171,42 +181,46 @@ pub(crate) struct Acting<'a, S> {
 
 impl<'a, S: Scalar> Acting<'a, S> {
     /// Those that act on the throw with the index `throw`.
+    #[inline(always)]
     pub fn on_throw(effects: &'a [Effect<S>], throw: usize) -> Self {
         let throw = Some(throw);
         Self { effects, throw }
     }
 
     /// Those that act on the shaft and what it turns in.
+    #[inline(always)]
     pub fn on_shaft(effects: &'a [Effect<S>]) -> Self {
         let throw = None;
         Self { effects, throw }
     }
 
-    fn wherever(self, holds: impl Fn(&Place) -> bool) -> impl Iterator<Item = &'a dyn Acts<S>> {
+    #[inline(always)]
+    fn wherever(self, holds: impl Fn(&Place) -> bool) -> impl Iterator<Item = &'a Law<S>> {
         let here = move |place: &Place| place.throw.is_none() || place.throw == self.throw;
         let acting = move |effect: &&'a Effect<S>| here(&effect.place) && holds(&effect.place);
-        self.effects
-            .iter()
-            .filter(acting)
-            .map(|effect| effect.law.acts())
+        self.effects.iter().filter(acting).map(|effect| &effect.law)
     }
 
     /// Whether there are any on the whole machine.
+    #[inline(always)]
     pub fn any(self) -> bool {
         !self.effects.is_empty()
     }
 
     /// All of them.
-    pub fn all(self) -> impl Iterator<Item = &'a dyn Acts<S>> {
+    #[inline(always)]
+    pub fn all(self) -> impl Iterator<Item = &'a Law<S>> {
         self.wherever(|_| true)
     }
 
     /// The spring that the throw's connecting rod is; none where it is rigid.
+    #[inline(always)]
     pub fn rod(self) -> Option<RodSpring<S>> {
         self.all().find_map(|effect| effect.rod())
     }
 
     /// Acceleration of the frame, m/s²; none where it stands still.
+    #[inline(always)]
     pub fn frame_acceleration(self, angle: S, speed: S) -> Option<Vec2<S>> {
         let moves = self
             .all()
@@ -215,12 +229,14 @@ impl<'a, S: Scalar> Acting<'a, S> {
     }
 
     /// Those that act at a joint.
-    pub fn at_joint(self, joint: Joint) -> impl Iterator<Item = &'a dyn Acts<S>> {
+    #[inline(always)]
+    pub fn at_joint(self, joint: Joint) -> impl Iterator<Item = &'a Law<S>> {
         self.wherever(move |place| place.joint.is_none_or(|j| j == joint))
     }
 
     /// Those that act in a chamber.
-    pub fn at_end(self, end: End) -> impl Iterator<Item = &'a dyn Acts<S>> {
+    #[inline(always)]
+    pub fn at_end(self, end: End) -> impl Iterator<Item = &'a Law<S>> {
         self.wherever(move |place| place.end.is_none_or(|e| e == end))
     }
 }
@@ -238,6 +254,7 @@ pub(crate) struct AtJoint<'a, S> {
 
 impl<S: Scalar> AtJoint<'_, S> {
     /// How far the joint is out of round in the direction `normal`; none where it is round.
+    #[inline(always)]
     pub fn shape(&self, normal: Vec2<S>) -> Option<Shape<S>> {
         let within = |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal));
         let [bearing, journal] = self.axes;
@@ -250,6 +267,7 @@ impl<S: Scalar> AtJoint<'_, S> {
     }
 
     /// Force of the film on the journal along the normal, N.
+    #[inline(always)]
     pub fn film_force(&self, at: &JointAt<S>) -> S {
         let effects = self.acting.at_joint(self.joint);
         effects.fold(S::zero(), |sum, effect| sum + effect.film_force(at))

@@ -39,6 +39,7 @@ pub enum Oval {
 }
 
 impl<S: Scalar> Acts<S> for BearingOvality<S> {
+    #[inline(always)]
     fn shape(&self, bearing: Vec2<S>, journal: Vec2<S>) -> Option<Shape<S>> {
         let direction = match self.oval {
             Oval::Bearing => bearing,

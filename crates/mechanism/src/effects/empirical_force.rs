@@ -54,6 +54,7 @@ parameters! {
 
 impl<S: Scalar> EmpiricalForce<S> {
     /// Σ (ak cos kα + bk sin kα), by the recurrence of the multiple angle.
+    #[inline(always)]
     fn harmonics(&self, at: &PistonAt<S>) -> S {
         let (sine, cosine) = at.angle.sin_cos();
         let (mut c, mut s) = (S::one(), S::zero());
@@ -66,6 +67,7 @@ impl<S: Scalar> EmpiricalForce<S> {
 }
 
 impl<S: Scalar> Acts<S> for EmpiricalForce<S> {
+    #[inline(always)]
     fn piston_force(&self, at: &PistonAt<S>) -> S {
         let x = at.displacement / at.crank_radius;
         let v = at.speed;

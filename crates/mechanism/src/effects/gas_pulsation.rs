@@ -29,6 +29,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for GasPulsation<S> {
+    #[inline(always)]
     fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
         let swing = |amplitude: S, phase: S| {
             let (_, cosine) = (self.order * at.angle + phase).sin_cos();

@@ -25,10 +25,12 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for HeatTransfer<S> {
+    #[inline(always)]
     fn drifts(&self) -> bool {
         true
     }
 
+    #[inline(always)]
     fn drift(&self, at: &ChamberAt<S>) -> S {
         let walls = (S::one() / at.distance + S::one() / at.radius) * 2.0;
         let excess = self.wall_temperature / at.warmth - 1.0;

@@ -28,6 +28,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for Misalignment<S> {
+    #[inline(always)]
     fn piston_force(&self, at: &PistonAt<S>) -> S {
         let (_, first) = (at.angle + self.first_phase).sin_cos();
         let (_, second) = (at.angle * 2.0 + self.second_phase).sin_cos();

@@ -10,6 +10,28 @@ mod acting;
 pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
 
 use crate::lift::{alternatives, parameters};
+use crate::plane::Vec2;
+use scalar::Scalar;
+
+/// The methods of [`Acts`], each as the law at hand has it.
+macro_rules! each_law {
+    ($kinds:tt $method:ident($($argument:ident: $type:ty),*) -> $output:ty; $($rest:tt)*) => {
+        fn $method(&self, $($argument: $type),*) -> $output {
+            S::vectorised(#[inline(always)] || at_hand! { $kinds self.$method($($argument),*) })
+        }
+        each_law! { $kinds $($rest)* }
+    };
+    ($kinds:tt) => {};
+}
+
+/// A method of the law at hand.
+macro_rules! at_hand {
+    ([$($kind:ident)*] $self:ident.$method:ident $arguments:tt) => {
+        match $self {
+            $( Law::$kind(law) => law.$method $arguments, )*
+        }
+    };
+}
 
 /// The one list of the effects that act in the equations: it makes the modules, [`Law`] and its
 /// dispatch.
@@ -24,12 +46,17 @@ macro_rules! catalogue {
             }
         }
 
-        impl<S: scalar::Scalar> Law<S> {
-            /// Where the law acts.
-            pub(crate) fn acts(&self) -> &dyn Acts<S> {
-                match self {
-                    $( Law::$kind(law) => law, )*
-                }
+        impl<S: Scalar> Acts<S> for Law<S> {
+            each_law! { [$($kind)*]
+                line_pressures(lines: [S; 2], at: &ChamberAt<S>) -> [S; 2];
+                suction_held() -> Option<S>;
+                drifts() -> bool;
+                drift(at: &ChamberAt<S>) -> S;
+                piston_force(at: &PistonAt<S>) -> S;
+                frame_acceleration(angle: S, speed: S) -> Option<Vec2<S>>;
+                rod() -> Option<RodSpring<S>>;
+                shape(bearing: Vec2<S>, journal: Vec2<S>) -> Option<Shape<S>>;
+                film_force(at: &JointAt<S>) -> S;
             }
         }
     };

@@ -25,6 +25,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for RingFriction<S> {
+    #[inline(always)]
     fn piston_force(&self, at: &PistonAt<S>) -> S {
         let (speed, slip) = (at.speed, self.slip_speed);
         let size = self.coulomb_force + self.per_pressure * at.pressure;

@@ -29,10 +29,12 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for RingLeakage<S> {
+    #[inline(always)]
     fn drifts(&self) -> bool {
         true
     }
 
+    #[inline(always)]
     fn drift(&self, at: &ChamberAt<S>) -> S {
         let squares = at.pressure * at.pressure - at.across * at.across;
         let floor = at.suction * at.suction * (LAMINAR * LAMINAR);

@@ -25,6 +25,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for RodFlexibility<S> {
+    #[inline(always)]
     fn rod(&self) -> Option<RodSpring<S>> {
         Some(RodSpring {
             stiffness: S::one() / self.compliance,

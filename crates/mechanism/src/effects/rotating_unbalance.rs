@@ -41,6 +41,7 @@ pub enum Shaken {
 }
 
 impl<S: Scalar> RotatingUnbalance<S> {
+    #[inline(always)]
     fn acceleration(&self, angle: S, speed: S) -> Vec2<S> {
         let (sine, cosine) = (angle + self.phase).sin_cos();
         Vec2::new(cosine, sine) * (self.eccentricity * speed * speed)
@@ -48,10 +49,12 @@ impl<S: Scalar> RotatingUnbalance<S> {
 }
 
 impl<S: Scalar> Acts<S> for RotatingUnbalance<S> {
+    #[inline(always)]
     fn frame_acceleration(&self, angle: S, speed: S) -> Option<Vec2<S>> {
         (self.body == Shaken::Frame).then(|| self.acceleration(angle, speed))
     }
 
+    #[inline(always)]
     fn piston_force(&self, at: &PistonAt<S>) -> S {
         match self.body {
             Shaken::Frame => S::zero(),

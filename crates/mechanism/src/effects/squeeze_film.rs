@@ -28,6 +28,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for SqueezeFilm<S> {
+    #[inline(always)]
     fn film_force(&self, at: &JointAt<S>) -> S {
         let e = at.penetration / at.clearance + 1.0;
         let gap = S::one() - e * e;

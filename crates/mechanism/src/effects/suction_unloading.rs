@@ -31,15 +31,18 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for SuctionUnloading<S> {
+    #[inline(always)]
     fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
         let flow = at.growth * at.growth.abs();
         [suction * (S::one() - self.loss * flow), discharge]
     }
 
+    #[inline(always)]
     fn suction_held(&self) -> Option<S> {
         Some(self.held)
     }
 
+    #[inline(always)]
     fn drifts(&self) -> bool {
         true
     }

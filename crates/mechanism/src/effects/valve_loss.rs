@@ -24,6 +24,7 @@ parameters! {
 }
 
 impl<S: Scalar> Acts<S> for ValveLoss<S> {
+    #[inline(always)]
     fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
         let flow = at.growth * at.growth.abs();
         [

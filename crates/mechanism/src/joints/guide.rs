@@ -110,6 +110,7 @@ pub struct CornerState<S> {
 
 impl<S: Scalar> GuideState<S> {
     /// An ideal guide, whose force is not known yet.
+    #[inline(always)]
     pub(crate) fn ideal() -> Self {
         let zero = S::zero();
         let corner = CornerState {
@@ -131,6 +132,7 @@ impl<S: Scalar> GuideState<S> {
     }
 
     /// Lets go of the crosshead.
+    #[inline(always)]
     pub(crate) fn release(&mut self) {
         self.force = origin();
         self.moment = S::zero();
@@ -146,44 +148,50 @@ impl<S: Scalar> GuideClearance<S> {
         speed: S,
         modes: &[ContactMode<S>; 4],
     ) -> GuideState<S> {
-        let mut guide = GuideState::ideal();
-        guide.position = position;
-        guide.rate = rate;
-        let (sine, cosine) = position.y.sin_cos();
-        // 1 − cos τ without cancellation.
-        let versine = sine * sine / (cosine + 1.0);
-        for (i, ([along, across], mode)) in CORNERS.into_iter().zip(modes).enumerate() {
-            // Arm from the pin to the corner, and how far the corner has moved across.
-            let arm = Vec2::new(
-                self.half_length * cosine * along - self.half_height * sine * across,
-                self.half_length * sine * along + self.half_height * cosine * across,
-            );
-            let moved =
-                position.x + self.half_length * sine * along - self.half_height * versine * across;
-            let penetration = moved * across - self.clearance;
-            let penetration_rate = (rate.x + rate.y * arm.x) * across;
-            let slip = speed - rate.y * arm.y;
-            let law = self.contact.force(penetration, penetration_rate, mode);
-            let normal_force = flagged(mode.pressed, law.raw, S::zero());
-            let stored = flagged(mode.touching, law.elastic, S::zero());
-            let friction = self.friction.coefficient(slip) * normal_force;
-            let force = Vec2::new(-friction, normal_force * -across);
-            guide.force += force;
-            guide.moment += moment(arm, force);
-            guide.friction_power += friction * slip;
-            guide.damping_power += (normal_force - stored) * penetration_rate;
-            guide.corners[i] = CornerState {
-                penetration,
-                penetration_rate,
-                normal_force,
-                slip,
-                sign: law.sign,
-            };
-        }
-        guide
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let mut guide = GuideState::ideal();
+                guide.position = position;
+                guide.rate = rate;
+                let (sine, cosine) = position.y.sin_cos();
+                // 1 − cos τ without cancellation.
+                let versine = sine * sine / (cosine + 1.0);
+                for (i, ([along, across], mode)) in CORNERS.into_iter().zip(modes).enumerate() {
+                    // Arm from the pin to the corner, and how far the corner has moved across.
+                    let arm = Vec2::new(
+                        self.half_length * cosine * along - self.half_height * sine * across,
+                        self.half_length * sine * along + self.half_height * cosine * across,
+                    );
+                    let moved = position.x + self.half_length * sine * along
+                        - self.half_height * versine * across;
+                    let penetration = moved * across - self.clearance;
+                    let penetration_rate = (rate.x + rate.y * arm.x) * across;
+                    let slip = speed - rate.y * arm.y;
+                    let law = self.contact.force(penetration, penetration_rate, mode);
+                    let normal_force = flagged(mode.pressed, law.raw, S::zero());
+                    let stored = flagged(mode.touching, law.elastic, S::zero());
+                    let friction = self.friction.coefficient(slip) * normal_force;
+                    let force = Vec2::new(-friction, normal_force * -across);
+                    guide.force += force;
+                    guide.moment += moment(arm, force);
+                    guide.friction_power += friction * slip;
+                    guide.damping_power += (normal_force - stored) * penetration_rate;
+                    guide.corners[i] = CornerState {
+                        penetration,
+                        penetration_rate,
+                        normal_force,
+                        slip,
+                        sign: law.sign,
+                    };
+                }
+                guide
+            },
+        )
     }
 
     /// The guards of one corner in `mode`.
+    #[inline(always)]
     pub(crate) fn guards(
         &self,
         corner: &CornerState<S>,

@@ -68,6 +68,7 @@ impl<S> Lift<S> for Revolute<f64> {
 
 impl<S> Revolute<S> {
     /// The clearance, where there is one.
+    #[inline(always)]
     pub fn clear(&self) -> Option<&Clearance<S>> {
         match self {
             Revolute::Ideal => None,
@@ -77,11 +78,13 @@ impl<S> Revolute<S> {
 
     /// True where the joint's force is not known from the offset, but makes the centres keep
     /// their distance.
+    #[inline(always)]
     pub(crate) fn is_rigid(&self) -> bool {
         self.clear().is_none() || self.is_following()
     }
 
     /// True where the journal follows a rigid surface.
+    #[inline(always)]
     pub(crate) fn is_following(&self) -> bool {
         self.clear()
             .is_some_and(|c| c.model != JointModel::ThreeMode)
@@ -138,6 +141,7 @@ struct Uneven<S> {
 
 impl<S: Scalar> JointState<S> {
     /// An ideal joint.
+    #[inline(always)]
     pub(crate) fn ideal() -> Self {
         let zero = S::zero();
         Self {
@@ -169,57 +173,64 @@ impl<S: Scalar> Clearance<S> {
         mode: &ContactMode<S>,
         effects: &AtJoint<'_, S>,
     ) {
-        let surface = self.surface(offset, rate, spins, effects);
-        let Surface {
-            normal,
-            uneven,
-            penetration,
-            penetration_rate,
-            slip,
-        } = surface;
-        let tangent = turned(normal);
-        let coefficient = match self.model {
-            JointModel::MasslessLink => S::zero(),
-            JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
-        };
-        let NormalForce { raw, elastic, sign } = match self.model {
-            JointModel::ThreeMode => self.contact.force(penetration, penetration_rate, mode),
-            JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
-        };
-        let pressed = flagged(mode.pressed, raw, S::zero());
-        let stored = flagged(mode.touching, elastic, S::zero());
-        let film = effects.film_force(&JointAt {
-            penetration,
-            rate: penetration_rate,
-            clearance: self.clearance,
-            journal_radius: self.journal_radius,
-        });
-        let mut arm = match self.model {
-            JointModel::MasslessLink => origin(),
-            JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
-        };
-        let (mut normal_force, mut film_force) = (pressed, film);
-        if let Some(uneven) = uneven {
-            normal_force *= uneven.steepness;
-            film_force *= uneven.steepness;
-            arm -= tangent * (uneven.change / uneven.steepness);
-        }
-        let friction_force = coefficient * normal_force;
-        *state = JointState {
-            offset,
-            rate,
-            normal,
-            penetration,
-            penetration_rate,
-            slip,
-            normal_force,
-            friction_force,
-            force: -(normal * (normal_force - film_force)) - tangent * friction_force,
-            sign,
-            damping_power: (pressed - stored - film) * penetration_rate,
-            arm,
-            coefficient,
-        };
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let surface = self.surface(offset, rate, spins, effects);
+                let Surface {
+                    normal,
+                    uneven,
+                    penetration,
+                    penetration_rate,
+                    slip,
+                } = surface;
+                let tangent = turned(normal);
+                let coefficient = match self.model {
+                    JointModel::MasslessLink => S::zero(),
+                    JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
+                };
+                let NormalForce { raw, elastic, sign } = match self.model {
+                    JointModel::ThreeMode => {
+                        self.contact.force(penetration, penetration_rate, mode)
+                    }
+                    JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
+                };
+                let pressed = flagged(mode.pressed, raw, S::zero());
+                let stored = flagged(mode.touching, elastic, S::zero());
+                let film = effects.film_force(&JointAt {
+                    penetration,
+                    rate: penetration_rate,
+                    clearance: self.clearance,
+                    journal_radius: self.journal_radius,
+                });
+                let mut arm = match self.model {
+                    JointModel::MasslessLink => origin(),
+                    JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
+                };
+                let (mut normal_force, mut film_force) = (pressed, film);
+                if let Some(uneven) = uneven {
+                    normal_force *= uneven.steepness;
+                    film_force *= uneven.steepness;
+                    arm -= tangent * (uneven.change / uneven.steepness);
+                }
+                let friction_force = coefficient * normal_force;
+                *state = JointState {
+                    offset,
+                    rate,
+                    normal,
+                    penetration,
+                    penetration_rate,
+                    slip,
+                    normal_force,
+                    friction_force,
+                    force: -(normal * (normal_force - film_force)) - tangent * friction_force,
+                    sign,
+                    damping_power: (pressed - stored - film) * penetration_rate,
+                    arm,
+                    coefficient,
+                };
+            },
+        )
     }
 
     /// The surfaces at offset `e`, as the shapes of bearing and journal have them.
@@ -228,7 +239,7 @@ impl<S: Scalar> Clearance<S> {
     /// in the journal the penetration is δ = |e| − c, and its gradient n − (c'/|e|) t the normal. The
     /// force along it has the moments −F ∂c/∂φ on the bearing and −F ∂c/∂ψ on the journal: then energy
     /// is conserved.
-    #[inline]
+    #[inline(always)]
     fn surface(
         &self,
         offset: Vec2<S>,
@@ -276,6 +287,7 @@ impl<S: Scalar> Clearance<S> {
     }
 
     /// The guards of this contact in `mode`; `pull` is the following force of a rigid model, N.
+    #[inline(always)]
     pub(crate) fn guards(
         &self,
         joint: &JointState<S>,
@@ -305,6 +317,7 @@ impl<S: Scalar> Clearance<S> {
 pub(crate) const CONTACT_GUARDS: usize = 5;
 
 /// The guards of a compliant contact.
+#[inline(always)]
 pub(crate) fn contact_guards<S: Scalar>(
     contact: &ContactLaw<S>,
     friction: &FrictionLaw<S>,

@@ -4,7 +4,7 @@
 use scalar::Scalar;
 
 /// χ = 8 (1 − e) / (5 e).
-#[inline]
+#[inline(always)]
 pub(super) fn hysteresis<S: Scalar>(restitution: S) -> S {
     (S::one() - restitution) * 1.6 / restitution
 }

@@ -15,7 +15,7 @@ parameters! {
 }
 
 impl<S: Scalar> Hertz<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn force(&self, penetration: S) -> NormalForce<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         NormalForce {

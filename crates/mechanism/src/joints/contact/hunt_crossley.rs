@@ -4,7 +4,7 @@
 use scalar::Scalar;
 
 /// χ = 3 (1 − e) / 2.
-#[inline]
+#[inline(always)]
 pub(super) fn hysteresis<S: Scalar>(restitution: S) -> S {
     (S::one() - restitution) * 1.5
 }

@@ -28,7 +28,7 @@ parameters! {
 }
 
 impl<S: Scalar> Impact<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn force(&self, penetration: S, rate: S, deep: S) -> NormalForce<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         // Which side of the kink at u = 1 counts is the mode's to say.

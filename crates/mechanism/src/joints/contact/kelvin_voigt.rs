@@ -17,7 +17,7 @@ parameters! {
 }
 
 impl<S: Scalar> KelvinVoigt<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn force(&self, penetration: S, rate: S) -> NormalForce<S> {
         let elastic = self.stiffness * penetration.max(S::zero());
         NormalForce::damped(elastic, self.damping * rate)

@@ -4,7 +4,7 @@
 use scalar::Scalar;
 
 /// χ = 3 (1 − e²) / 4.
-#[inline]
+#[inline(always)]
 pub(super) fn hysteresis<S: Scalar>(restitution: S) -> S {
     (S::one() - restitution * restitution) * 0.75
 }

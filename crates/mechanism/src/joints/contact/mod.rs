@@ -55,6 +55,7 @@ pub struct NormalForce<S> {
 
 impl<S: Scalar> NormalForce<S> {
     /// No contact.
+    #[inline(always)]
     pub(crate) fn none() -> Self {
         Self {
             raw: S::zero(),
@@ -64,7 +65,7 @@ impl<S: Scalar> NormalForce<S> {
     }
 
     /// An elastic force with a damping force beside it.
-    #[inline]
+    #[inline(always)]
     fn damped(elastic: S, damping: S) -> Self {
         Self {
             raw: elastic + damping,
@@ -77,7 +78,7 @@ impl<S: Scalar> NormalForce<S> {
 impl<S: Scalar> ContactLaw<S> {
     /// The force at penetration δ (m) and rate δ̇ (m/s), in the contact's mode (approach speed, and
     /// which side of the law's kink).
-    #[inline]
+    #[inline(always)]
     pub fn force(&self, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S> {
         let approach = mode.approach;
         match self {
@@ -129,6 +130,7 @@ impl<S: Scalar> ContactLaw<S> {
     }
 
     /// The penetration at which the law has a kink of its own, m: IMPACT's damping depth.
+    #[inline(always)]
     pub fn kink(&self) -> Option<S> {
         match self {
             ContactLaw::Impact(law) => Some(law.depth),
@@ -138,7 +140,7 @@ impl<S: Scalar> ContactLaw<S> {
 }
 
 /// δⁿ for δ > 0, and 0 elsewhere. The common n = 1.5 costs a square root.
-#[inline]
+#[inline(always)]
 pub(crate) fn power<S: Scalar>(penetration: S, exponent: S) -> S {
     let positive = penetration.max(S::zero());
     let root = positive * positive.sqrt();

@@ -24,7 +24,7 @@ parameters! {
 }
 
 impl<S: Scalar> Restitution<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn force(&self, penetration: S, rate: S, approach: S, factor: S) -> NormalForce<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         let v0 = approach.max(self.slowest_approach);

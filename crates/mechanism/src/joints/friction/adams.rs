@@ -27,7 +27,7 @@ parameters! {
 }
 
 impl<S: Scalar> Adams<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn coefficient(&self, slip: S) -> S {
         let (low, high) = (self.stiction_speed, self.transition_speed);
         let (still, moving) = (self.static_coefficient, self.dynamic_coefficient);
@@ -47,7 +47,7 @@ impl<S: Scalar> Adams<S> {
 }
 
 /// The STEP function of ADAMS: a cubic from (x0, h0) to (x1, h1), level outside.
-#[inline]
+#[inline(always)]
 fn step<S: Scalar>(x: S, x0: S, h0: S, x1: S, h1: S) -> S {
     let u = ((x - x0) / (x1 - x0)).clamp(S::zero(), S::one());
     h0 + (h1 - h0) * u * u * (S::constant(3.0) - u - u)

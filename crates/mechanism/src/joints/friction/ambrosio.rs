@@ -20,7 +20,7 @@ parameters! {
 }
 
 impl<S: Scalar> Ambrosio<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn coefficient(&self, slip: S) -> S {
         let share = ((slip.abs() - self.slow) / (self.fast - self.slow)).clamp(S::zero(), S::one());
         let full = self.coefficient * share;

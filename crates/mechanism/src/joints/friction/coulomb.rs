@@ -14,7 +14,7 @@ parameters! {
 }
 
 impl<S: Scalar> Coulomb<S> {
-    #[inline]
+    #[inline(always)]
     pub(super) fn coefficient(&self, slip: S) -> S {
         self.coefficient * slip / (slip * slip + self.slip_speed * self.slip_speed).sqrt()
     }

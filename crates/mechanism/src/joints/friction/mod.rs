@@ -39,7 +39,7 @@ impl<S: Scalar> FrictionLaw<S> {
     }
 
     /// Coefficient μ at slip speed `slip`, m/s, with its sign.
-    #[inline]
+    #[inline(always)]
     pub fn coefficient(&self, slip: S) -> S {
         match self {
             FrictionLaw::None(law) => law.coefficient,
@@ -50,6 +50,7 @@ impl<S: Scalar> FrictionLaw<S> {
     }
 
     /// The slip speeds at which the law has a kink, m/s.
+    #[inline(always)]
     pub fn kinks(&self) -> Option<[S; 2]> {
         match self {
             FrictionLaw::None(_) | FrictionLaw::Coulomb(_) => None,
