@@ -247,6 +247,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Poses, rates, and the forces that follow from them.
+    #[inline(never)]
     pub(crate) fn evaluate_forces(&mut self, t: S, y: &[S]) {
         S::vectorised(
             #[inline(always)]
@@ -306,6 +307,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Finds how the shaft moves under the forces.
+    #[inline(never)]
     fn turn_shaft(&mut self, t: S) {
         S::vectorised(
             #[inline(always)]
@@ -338,6 +340,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Eliminates the throws' rigid joints from the loads stored in the evaluation.
+    #[inline(never)]
     pub(crate) fn respond(&mut self) {
         S::vectorised(
             #[inline(always)]
@@ -355,6 +358,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Joins throws and shaft, and finds how the shaft moves.
+    #[inline(never)]
     pub(crate) fn turn(&mut self, mut shaft: Shaft<S>, turning: Turning<S>, target: S) {
         S::vectorised(
             #[inline(always)]
@@ -384,6 +388,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Finds the throws' accelerations under their loads and the shaft's motion.
+    #[inline(never)]
     pub(crate) fn follow(&mut self) {
         S::vectorised(
             #[inline(always)]
@@ -413,6 +418,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Force on the frame: the reactions of main bearing, guides and cylinder covers.
+    #[inline(never)]
     fn shake_frame(&mut self, y: &[S]) {
         S::vectorised(
             #[inline(always)]
@@ -447,6 +453,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Kinetic, potential and elastic energy at the last evaluation, J.
+    #[inline(never)]
     pub fn energy(&self) -> Energy<S> {
         S::vectorised(
             #[inline(always)]

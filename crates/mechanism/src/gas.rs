@@ -280,6 +280,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
 
     /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre;
     /// and as effects see it, where there are any.
+    #[inline(never)]
     fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
         S::vectorised(
             #[inline(always)]

@@ -119,6 +119,7 @@ fn write<S: Scalar>(index: Option<usize>, second: Vec2<S>, y: &[S], dy: &mut [S]
 
 impl<S: Scalar> Dynamics<S> {
     /// Writes the derivative of the state that belongs to the last evaluation.
+    #[inline(never)]
     pub(crate) fn write_derivative(&self, y: &[S], dy: &mut [S]) {
         S::vectorised(
             #[inline(always)]
@@ -170,6 +171,7 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Writes the guards in the order of [`watches`].
+    #[inline(never)]
     pub(crate) fn write_guards(&self, guards: &mut [S]) {
         S::vectorised(
             #[inline(always)]

@@ -16,9 +16,11 @@
 use input::{MachineFile, Resolved};
 use integrate::{Ensemble, Integrator, Step, Traveller};
 use mechanism::joints::revolute::Revolute;
+use mechanism::mode::Mode;
 use mechanism::{Dynamics, Machine, SideBySide};
 use scalar::lanes::{self, InLanes, Lanes, in_lanes};
-use simulate::Flow;
+use simulate::lookout::{self, Lookout};
+use simulate::{Chain, Flow, Measured, Sensor};
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -119,7 +121,9 @@ struct Lane {
 /// Samples under way, up to so many.
 struct Samples {
     count: usize,
-    state: Vec<f64>,
+    lookout: Box<dyn Lookout>,
+    mode: Mode,
+    times: Vec<f64>,
     seen: Vec<f64>,
 }
 
@@ -130,12 +134,14 @@ impl Lane {
         let count = (task.end(machine) * RATE).round() as usize;
         Self {
             integrator: Integrator::new(&mut dynamics, 0.0, &state, task.tolerance, longest),
-            dynamics,
             samples: Samples {
                 count,
-                state,
+                lookout: lookout::at(machine, false),
+                mode: Mode::clone(dynamics.mode()),
+                times: Vec::new(),
                 seen: Vec::with_capacity(count),
             },
+            dynamics,
         }
     }
 }
@@ -143,12 +149,28 @@ impl Lane {
 impl Samples {
     fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
         let stop = step.start + step.length;
-        while self.seen.len() < self.count && self.seen.len() as f64 / RATE <= stop {
-            let time = self.seen.len() as f64 / RATE;
-            step.interpolate((time - step.start) / step.length, &mut self.state);
-            let throw = &dynamics.evaluate(time, &self.state).throws[0];
-            self.seen.push(throw.accelerations.crosshead);
+        let instants = (self.seen.len()..self.count).map(|i| i as f64 / RATE);
+        self.times.clear();
+        self.times.extend(instants.take_while(|time| *time <= stop));
+        if self.times.is_empty() {
+            return;
         }
+        if *dynamics.mode() != self.mode {
+            self.mode.clone_from(dynamics.mode());
+            self.lookout.set_mode(&self.mode);
+        }
+        let seen = &mut self.seen;
+        let mut show = |_, values: &[f64]| seen.extend(values);
+        self.lookout.look(step, &self.times, &[sensor()], &mut show);
+    }
+}
+
+/// An accelerometer without a measuring chain.
+fn sensor() -> Sensor {
+    let measured = Measured::CrossheadAcceleration { throw: 0 };
+    Sensor {
+        measured,
+        chain: Chain::default(),
     }
 }
 

@@ -13,7 +13,7 @@ mod chain;
 mod ensemble;
 pub mod flow;
 mod leaving;
-mod lookout;
+pub mod lookout;
 pub mod lyapunov;
 pub mod measure;
 mod orbit;

@@ -7,7 +7,7 @@ use mechanism::{Dynamics, Machine, lift};
 use scalar::{InLanes, Lanes, in_lanes};
 
 /// Looks at a machine at as many instants at once as the processor has lanes.
-pub(crate) trait Lookout {
+pub trait Lookout: Send {
     /// Puts the machine into a mode.
     fn set_mode(&mut self, mode: &Mode);
 
@@ -23,7 +23,7 @@ pub(crate) trait Lookout {
 }
 
 /// A lookout at a machine; with `ledger` its state holds the works too.
-pub(crate) fn at(machine: &Machine, ledger: bool) -> Box<dyn Lookout + Send> {
+pub fn at(machine: &Machine, ledger: bool) -> Box<dyn Lookout> {
     in_lanes(Opening { machine, ledger })
 }
 
@@ -33,7 +33,7 @@ struct Opening<'a> {
 }
 
 impl InLanes for Opening<'_> {
-    type Output = Box<dyn Lookout + Send>;
+    type Output = Box<dyn Lookout>;
 
     fn run<L: Lanes<W>, const W: usize>(self) -> Self::Output {
         let dynamics = Dynamics::<L>::new(lift::constants(self.machine), self.ledger);

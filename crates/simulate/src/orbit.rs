@@ -152,8 +152,6 @@ impl Orbit<'_> {
         let firsts = (0..count).into_par_iter().step_by(TOGETHER);
         let parts = firsts.map(|first| match count - first {
             1 => self.part::<1>(stretch, first),
-            2 => self.part::<2>(stretch, first),
-            3 | 4 => self.part::<4>(stretch, first),
             _ => self.part::<TOGETHER>(stretch, first),
         });
         let mut parts = parts.collect::<Result<Vec<_>, _>>()?;

@@ -21,7 +21,7 @@ pub(crate) struct Sampler<'a> {
     series: Vec<UnderWay>,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
-    lookout: Box<dyn Lookout + Send>,
+    lookout: Box<dyn Lookout>,
     /// The mode that the lookout's machine is in.
     mode: Mode,
     /// Instants within a step.

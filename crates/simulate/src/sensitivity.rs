@@ -98,8 +98,6 @@ fn from_start(
     let part = |chunk: &[Moved]| match chunk.len() {
         0 => tangents::<0>(machine, sensors, chunk, settings),
         1 => tangents::<1>(machine, sensors, chunk, settings),
-        2 => tangents::<2>(machine, sensors, chunk, settings),
-        3 | 4 => tangents::<4>(machine, sensors, chunk, settings),
         _ => tangents::<8>(machine, sensors, chunk, settings),
     };
     let mut chunks = moved.chunks(8);

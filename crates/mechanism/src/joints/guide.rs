@@ -141,6 +141,7 @@ impl<S: Scalar> GuideState<S> {
 
 impl<S: Scalar> GuideClearance<S> {
     /// The guide with the crosshead at `position` and `rate`, running along it at `speed`, m/s.
+    #[inline(never)]
     pub(crate) fn state(
         &self,
         position: Vec2<S>,

@@ -165,6 +165,7 @@ impl<S: Scalar> JointState<S> {
 impl<S: Scalar> Clearance<S> {
     /// Finds the joint's `state` at offset `e` (m), rate `v` (m/s), with journal and bearing turning
     /// at `spins` (rad/s).
+    #[inline(never)]
     pub(crate) fn find(
         &self,
         state: &mut JointState<S>,
