@@ -232,7 +232,7 @@ impl<S: Scalar> Step<S> {
 
 /// Hands the sums of weight × derivative over the stages of each row to `take`, component by component.
 ///
-/// Plain numbers are summed four components at a time, so that the processor can do that side by side.
+/// Small numbers are summed four components at a time: each weight is fetched once for all of them.
 #[inline(always)]
 fn combine<S: Scalar, const R: usize>(
     dimension: usize,
@@ -240,19 +240,38 @@ fn combine<S: Scalar, const R: usize>(
     stages: &[S],
     mut take: impl FnMut(usize, [S; R]),
 ) {
-    let together = match size_of::<S>() == size_of::<f64>() {
+    const LARGEST: usize = 8 * size_of::<f64>();
+    let together = match size_of::<S>() <= LARGEST {
         true => dimension / 4 * 4,
         false => 0,
     };
     for j in (0..together).step_by(4) {
-        let sums = rows.map(|row| weighted::<S, 4>(row, stages, dimension, j));
+        let sums = rows.map(
+            #[inline(always)]
+            |row| weighted::<S, 4>(row, stages, dimension, j),
+        );
         for i in 0..4 {
-            take(j + i, sums.map(|sum| sum[i]));
+            take(
+                j + i,
+                sums.map(
+                    #[inline(always)]
+                    |sum| sum[i],
+                ),
+            );
         }
     }
     for j in together..dimension {
-        let sums = rows.map(|row| weighted::<S, 1>(row, stages, dimension, j));
-        take(j, sums.map(|[sum]| sum));
+        let sums = rows.map(
+            #[inline(always)]
+            |row| weighted::<S, 1>(row, stages, dimension, j),
+        );
+        take(
+            j,
+            sums.map(
+                #[inline(always)]
+                |[sum]| sum,
+            ),
+        );
     }
 }
 

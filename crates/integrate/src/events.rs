@@ -12,6 +12,10 @@ const NEARBY: f64 = 1e-3;
 /// Looks at ever smaller shares before a guard counts as overdue: the last is at 4^−13.
 const EARLY_LOOKS: usize = 12;
 
+/// Share of the step to which a crossing is found, and looks that this may take.
+const RESOLUTION: f64 = 1e-13;
+const MOST_TRIES: usize = 100;
+
 /// A guard that crossed zero, and where in the step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
@@ -38,18 +42,28 @@ impl<S: Real> Finder<S> {
         }
     }
 
-    /// The earliest crossing in `step`, whose continuous extension must be there. Guards in
-    /// `ignored` are left out.
+    /// The earliest crossing in `step`, whose continuous extension must be there. `ends` are the guards
+    /// at its beginning and end, where they are known. Guards in `ignored` are left out.
     pub fn first(
         &mut self,
         system: &mut impl System<S>,
         step: &Step<S>,
+        ends: Option<[&[f64]; 2]>,
         ignored: Option<usize>,
     ) -> Option<Crossing> {
         if self.guards.is_empty() {
             return None;
         }
         for (i, share) in LOOKS.into_iter().enumerate() {
+            let known = match (share, ends) {
+                (0.0, Some([beginning, _])) => Some(beginning),
+                (1.0, Some([_, end])) => Some(end),
+                _ => None,
+            };
+            if let Some(known) = known {
+                self.looks[i].copy_from_slice(known);
+                continue;
+            }
             self.look(system, step, share);
             for (seen, guard) in self.looks[i].iter_mut().zip(&self.guards) {
                 *seen = guard.value();
@@ -151,37 +165,47 @@ impl<S: Real> Finder<S> {
         &self.guards
     }
 
-    /// The root of `guard` between two shares of opposite sign, by the Illinois method (Dowell and
-    /// Jarratt 1971), to the last few bits; never on the near side.
+    /// The root of `guard` between two shares of opposite sign, by inverse quadratic interpolation where
+    /// that is safe and bisection elsewhere (Chandrupatla 1997); never on the near side.
     fn root(
         &mut self,
         system: &mut impl System<S>,
         step: &Step<S>,
         guard: usize,
-        [mut a, mut b]: [f64; 2],
-        [mut fa, mut fb]: [f64; 2],
+        [near, far]: [f64; 2],
+        values: [f64; 2],
     ) -> f64 {
-        let mut last_side = 0;
-        for _ in 0..60 {
-            if b - a <= 4.0 * f64::EPSILON || fb == 0.0 {
+        // The newest share, the one on the other side of the root, and the one before.
+        let ([mut x1, mut x2], [mut f1, mut f2]) = ([far, near], [values[1], values[0]]);
+        // The first try is where the secant crosses.
+        let mut way = f1 / (f1 - f2);
+        for _ in 0..MOST_TRIES {
+            let width = (x2 - x1).abs();
+            if width <= RESOLUTION || f1 == 0.0 {
                 break;
             }
-            let mut middle = b - fb * (b - a) / (fb - fa);
-            if !(middle > a && middle < b) {
-                middle = 0.5 * (a + b);
-            }
-            let value = self.look(system, step, middle)[guard].value();
-            let side = if value > 0.0 { 1 } else { -1 };
-            if side > 0 {
-                (a, fa) = (middle, value);
-                fb *= if last_side > 0 { 0.5 } else { 1.0 };
+            let least = (0.5 * RESOLUTION / width).min(0.5);
+            let x = x1 + way.clamp(least, 1.0 - least) * (x2 - x1);
+            let f = self.look(system, step, x)[guard].value();
+            let (x3, f3);
+            if (f > 0.0) == (f1 > 0.0) {
+                (x3, f3) = (x1, f1);
             } else {
-                (b, fb) = (middle, value);
-                fa *= if last_side < 0 { 0.5 } else { 1.0 };
+                (x3, f3) = (x2, f2);
+                (x2, f2) = (x1, f1);
             }
-            last_side = side;
+            (x1, f1) = (x, f);
+            let (place, level) = ((x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2));
+            let safe = level * level < place && (1.0 - level) * (1.0 - level) < 1.0 - place;
+            way = match safe {
+                true => {
+                    f1 / (f2 - f1) * f3 / (f2 - f3)
+                        + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+                }
+                false => 0.5,
+            };
         }
-        b
+        if f1 > 0.0 { x2 } else { x1 }
     }
 }
 

@@ -61,6 +61,12 @@ impl<S: Scalar> Glances<S> {
         self.seen.swap(0, SHARES.len() - 1);
     }
 
+    /// The guards at the step's beginning and end; none where the system does not show them.
+    pub fn ends(&self) -> Option<[&[S::Plain]; 2]> {
+        let [first, .., last] = &self.seen;
+        self.shown.then_some([first, last])
+    }
+
     /// Where no guard can have crossed zero within the step; none where the system does not show
     /// them.
     pub fn quiet(&self) -> Option<S::Mask> {

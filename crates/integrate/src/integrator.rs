@@ -353,7 +353,8 @@ impl<S: Real> Integrator<S> {
         let (last, when, count) = self.last_switch;
         let now = self.time();
         let ignored = (when == now && count >= CALM).then_some(last);
-        let Some(crossing) = self.finder.first(system, &self.step, ignored) else {
+        let ends = self.glances.ends();
+        let Some(crossing) = self.finder.first(system, &self.step, ends, ignored) else {
             return Ok(Some(None));
         };
         let length = self.step.length.value() * crossing.share;

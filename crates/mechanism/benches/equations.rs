@@ -1,13 +1,14 @@
-//! One right-hand side (plain, dual, eight lanes), and one revolution.
+//! One right-hand side (plain, dual, lanes), and one revolution.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
 
 use common::{REVOLUTION, Run, with_clearance};
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use integrate::System;
-use mechanism::{Dynamics, lift};
-use scalar::{Dual, Lanes, Scalar};
+use mechanism::{Dynamics, Machine, lift};
+use scalar::{Dual, InLanes, Lanes, Scalar, in_lanes};
 use std::hint::black_box;
 
 /// A state of the settled motion, and its time.
@@ -42,14 +43,11 @@ fn right_hand_side(c: &mut Criterion) {
                 .speed
         });
     });
-    let mut lanes = Dynamics::new(lift::lanes([&machine; 8]), false);
-    let lanes_y: Vec<Lanes<8>> = y.iter().map(|y| Lanes([*y; 8])).collect();
-    group.bench_function("eight lanes", |b| {
-        b.iter(|| {
-            lanes
-                .evaluate(black_box(Lanes([t; 8])), black_box(&lanes_y))
-                .speed
-        });
+    in_lanes(LanesBench {
+        group: &mut group,
+        machine: &machine,
+        t,
+        y: &y,
     });
     let mut dy = y.clone();
     let mut with_ledger = Dynamics::new(machine, true);
@@ -60,6 +58,26 @@ fn right_hand_side(c: &mut Criterion) {
         b.iter(|| with_ledger.derivative(black_box(t), black_box(&y), &mut dy));
     });
     group.finish();
+}
+
+/// A right-hand side in as many lanes as the processor has.
+struct LanesBench<'a, 'b> {
+    group: &'a mut BenchmarkGroup<'b, WallTime>,
+    machine: &'a Machine,
+    t: f64,
+    y: &'a [f64],
+}
+
+impl InLanes for LanesBench<'_, '_> {
+    type Output = ();
+    fn run<L: Lanes<W>, const W: usize>(self) {
+        let mut lanes = Dynamics::<L>::new(lift::lanes([self.machine; W]), false);
+        let (t, y) = (L::constant(self.t), self.y.iter().map(|y| L::constant(*y)));
+        let y: Vec<L> = y.collect();
+        self.group.bench_function(format!("{W} lanes"), |b| {
+            b.iter(|| lanes.evaluate(black_box(t), black_box(&y)).speed);
+        });
+    }
 }
 
 fn revolution(c: &mut Criterion) {

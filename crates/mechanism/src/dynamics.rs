@@ -156,6 +156,11 @@ impl<S: Scalar> Dynamics<S> {
         &mut self.mode
     }
 
+    /// Puts the machine into a mode of a plain one of its build.
+    pub fn set_mode(&mut self, mode: &Mode) {
+        self.mode.each(mode, |number, of| *number = S::constant(of));
+    }
+
     pub(crate) fn watches(&self) -> &[Watch] {
         &self.watches
     }

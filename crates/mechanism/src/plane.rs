@@ -27,6 +27,12 @@ impl<S: Scalar> Vec2<S> {
     pub fn dot(&self, other: &Self) -> S {
         self.x * other.x + self.y * other.y
     }
+
+    /// The length.
+    #[inline(always)]
+    pub fn norm(&self) -> S {
+        self.dot(self).sqrt()
+    }
 }
 
 impl<S: Scalar> Add for Vec2<S> {

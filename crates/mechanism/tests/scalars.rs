@@ -15,7 +15,8 @@ use mechanism::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
 use mechanism::plane::Vec2;
 use mechanism::{Dynamics, Evaluation, Machine};
 use proptest::prelude::*;
-use scalar::{Dual, Lanes, Scalar};
+use scalar::lanes::in_all_lanes;
+use scalar::{Dual, InLanes, Lanes, Scalar};
 
 /// The machine with every number scaled by one plus `size` times a number of its own in [-1, 1].
 fn varied(machine: &Machine, size: f64, seed: u64) -> Machine {
@@ -114,35 +115,49 @@ fn settled(machine: &Machine, t: f64, seeds: &[f64]) -> (Dynamics<f64>, Vec<f64>
     (dynamics, y)
 }
 
-fn lanes_agree<const W: usize>(machine: &Machine, t: f64, seeds: &[f64]) {
-    let machines: [Machine; W] = std::array::from_fn(|lane| varied(machine, 1e-2, lane as u64 + 1));
-    #[expect(clippy::cast_precision_loss, reason = "small numbers")]
-    let times: [f64; W] = std::array::from_fn(|lane| t + 0.01 * lane as f64);
-    let mut alone: Vec<(Dynamics<f64>, Vec<f64>)> = (0..W)
-        .map(|lane| {
-            let mut seeds = seeds.to_vec();
-            seeds.rotate_left(lane);
-            settled(&machines[lane], times[lane], &seeds)
-        })
-        .collect();
+/// A machine varied in each lane, against the same ones alone.
+#[derive(Clone, Copy)]
+struct Agree<'a> {
+    machine: &'a Machine,
+    t: f64,
+    seeds: &'a [f64],
+}
 
-    let mut together = Dynamics::new(lanes::<W, Machine>(machines.each_ref()), false);
-    let modes: Vec<&Mode<f64>> = alone.iter().map(|(dynamics, _)| dynamics.mode()).collect();
-    *together.mode_mut() = pack_modes(&modes, &|x| Lanes(std::array::from_fn(|i| x[i])));
-    let y: Vec<Lanes<W>> = (0..alone[0].1.len())
-        .map(|j| Lanes(std::array::from_fn(|lane| alone[lane].1[j])))
-        .collect();
-    together.evaluate(Lanes(times), &y);
-    let packed = numbers(&together);
-    for (lane, (dynamics, y)) in alone.iter_mut().enumerate() {
-        dynamics.evaluate(times[lane], y);
-        for (i, (one, many)) in numbers(dynamics).iter().zip(&packed).enumerate() {
-            let many = many.0[lane];
-            assert_eq!(
-                one.to_bits(),
-                many.to_bits(),
-                "number {i} in lane {lane}: {one:e} alone, {many:e} together"
-            );
+impl InLanes for Agree<'_> {
+    type Output = ();
+    fn run<L: Lanes<W>, const W: usize>(self) {
+        let Self { machine, t, seeds } = self;
+        let machines: [Machine; W] =
+            std::array::from_fn(|lane| varied(machine, 1e-2, lane as u64 + 1));
+        #[expect(clippy::cast_precision_loss, reason = "small numbers")]
+        let times: [f64; W] = std::array::from_fn(|lane| t + 0.01 * lane as f64);
+        let mut alone: Vec<(Dynamics<f64>, Vec<f64>)> = (0..W)
+            .map(|lane| {
+                let mut seeds = seeds.to_vec();
+                seeds.rotate_left(lane);
+                settled(&machines[lane], times[lane], &seeds)
+            })
+            .collect();
+
+        let mut together = Dynamics::<L>::new(lanes(machines.each_ref()), false);
+        let modes: Vec<&Mode<f64>> = alone.iter().map(|(dynamics, _)| dynamics.mode()).collect();
+        *together.mode_mut() =
+            pack_modes(&modes, &|x| L::from_array(std::array::from_fn(|i| x[i])));
+        let y: Vec<L> = (0..alone[0].1.len())
+            .map(|j| L::from_array(std::array::from_fn(|lane| alone[lane].1[j])))
+            .collect();
+        together.evaluate(L::from_array(times), &y);
+        let packed = numbers(&together);
+        for (lane, (dynamics, y)) in alone.iter_mut().enumerate() {
+            dynamics.evaluate(times[lane], y);
+            for (i, (one, many)) in numbers(dynamics).iter().zip(&packed).enumerate() {
+                let many = many.get(lane);
+                assert_eq!(
+                    one.to_bits(),
+                    many.to_bits(),
+                    "number {i} in lane {lane} of {W}: {one:e} alone, {many:e} together"
+                );
+            }
         }
     }
 }
@@ -156,8 +171,7 @@ proptest! {
         t in 0.001..0.05_f64,
         seeds in proptest::collection::vec(-1.0..1.0_f64, SEEDS),
     ) {
-        lanes_agree::<4>(&machine, t, &seeds);
-        lanes_agree::<8>(&machine, t, &seeds);
+        in_all_lanes(Agree { machine: &machine, t, seeds: &seeds });
     }
 
     #[test]

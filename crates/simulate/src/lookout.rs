@@ -52,7 +52,7 @@ struct Wide<L, const W: usize> {
 
 impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
     fn set_mode(&mut self, mode: &Mode) {
-        *self.dynamics.mode_mut() = lift::constants(mode);
+        self.dynamics.set_mode(mode);
     }
 
     fn look(

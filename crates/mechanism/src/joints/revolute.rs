@@ -248,7 +248,7 @@ impl<S: Scalar> Clearance<S> {
         [journal, bearing]: [S; 2],
         effects: &AtJoint<'_, S>,
     ) -> Surface<S> {
-        let distance = offset.dot(&offset).sqrt();
+        let distance = offset.norm();
         // A centred journal has no direction; any will do, as nothing acts there.
         let least = S::constant(1e-300);
         let x = S::select(distance.lt(least), least, offset.x);
