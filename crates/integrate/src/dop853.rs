@@ -232,7 +232,7 @@ impl<S: Scalar> Step<S> {
 
 /// Hands the sums of weight × derivative over the stages of each row to `take`, component by component.
 ///
-/// Small numbers are summed four components at a time: each weight is fetched once for all of them.
+/// Small numbers are summed several components at a time: each weight is fetched once for all of them.
 #[inline(always)]
 fn combine<S: Scalar, const R: usize>(
     dimension: usize,
@@ -241,38 +241,41 @@ fn combine<S: Scalar, const R: usize>(
     mut take: impl FnMut(usize, [S; R]),
 ) {
     const LARGEST: usize = 8 * size_of::<f64>();
-    let together = match size_of::<S>() <= LARGEST {
-        true => dimension / 4 * 4,
-        false => 0,
-    };
-    for j in (0..together).step_by(4) {
+    let mut done = 0;
+    if size_of::<S>() <= LARGEST {
+        done = combine_blocks::<S, R, 8>(done, dimension, rows, stages, &mut take);
+        done = combine_blocks::<S, R, 4>(done, dimension, rows, stages, &mut take);
+    }
+    combine_blocks::<S, R, 1>(done, dimension, rows, stages, &mut take);
+}
+
+/// As [`combine`], from component `first` on as many whole blocks of `B` as there are; which component
+/// is next.
+#[inline(always)]
+fn combine_blocks<S: Scalar, const R: usize, const B: usize>(
+    mut first: usize,
+    dimension: usize,
+    rows: [Row; R],
+    stages: &[S],
+    take: &mut impl FnMut(usize, [S; R]),
+) -> usize {
+    while first + B <= dimension {
         let sums = rows.map(
             #[inline(always)]
-            |row| weighted::<S, 4>(row, stages, dimension, j),
+            |row| weighted::<S, B>(row, stages, dimension, first),
         );
-        for i in 0..4 {
+        for i in 0..B {
             take(
-                j + i,
+                first + i,
                 sums.map(
                     #[inline(always)]
                     |sum| sum[i],
                 ),
             );
         }
+        first += B;
     }
-    for j in together..dimension {
-        let sums = rows.map(
-            #[inline(always)]
-            |row| weighted::<S, 1>(row, stages, dimension, j),
-        );
-        take(
-            j,
-            sums.map(
-                #[inline(always)]
-                |[sum]| sum,
-            ),
-        );
-    }
+    first
 }
 
 /// The weighted sums of `B` components over the stages, from component `first` on.

@@ -254,20 +254,17 @@ impl<S: Scalar> Motion<S> {
         let rod_sine = rise / length;
         let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
         let rod_rate = (rise_rate - length_rate * rod_sine) / (length * rod_cosine);
-        *self = Self {
-            angle,
-            angle_sin_cos: (sine, cosine),
-            pin,
-            rod_sin_cos: (rod_sine, rod_cosine),
-            rod_rate,
-            big_eye: [eye, eye_rate],
-            crosshead: eye.x + length * rod_cosine + small[0].x,
-            crosshead_rate: eye_rate.x - length * rod_sine * rod_rate
-                + length_rate * rod_cosine
-                + small[1].x,
-            stretch,
-            stretch_rate,
-        };
+        self.angle = angle;
+        self.angle_sin_cos = (sine, cosine);
+        self.pin = pin;
+        self.rod_sin_cos = (rod_sine, rod_cosine);
+        self.rod_rate = rod_rate;
+        self.big_eye = [eye, eye_rate];
+        self.crosshead = eye.x + length * rod_cosine + small[0].x;
+        self.crosshead_rate =
+            eye_rate.x - length * rod_sine * rod_rate + length_rate * rod_cosine + small[1].x;
+        self.stretch = stretch;
+        self.stretch_rate = stretch_rate;
     }
 
     /// Length of the rod over that without load, 1 + η.
@@ -317,31 +314,28 @@ impl<S: Scalar> Loads<S> {
             true => following_target(state),
             false => S::zero(),
         };
-        *self = Self {
-            rod_force: gravity * throw.rod.mass - big.force - small.force,
-            rod_moment: -moment(arms.big_force, big.force)
-                - moment(arms.small_force, small.force)
-                - throw.rod.inertia * motion.lengthening() * whirl,
-            crosshead_force: gravity * throw.crosshead.mass
-                + small.force
-                + joints.guide.force
-                + Vec2::new(gas.force + gas.effects, S::zero()),
-            crosshead_moment: moment(small.arm, small.force) + joints.guide.moment,
-            pin_force: big.force,
-            pin_moment: moment(motion.pin + big.arm, big.force),
-            pin_bias: -(motion.pin * (speed * speed)),
-            big_bias: across * (of_big * whirl) - arms.big * rate2,
-            small_bias: across * (of_small * whirl) - arms.small * rate2,
-            arms,
-            rod_inertia: arms.inertia(throw, motion),
-            big_target: target(&throw.big_end, big),
-            small_target: target(&throw.small_end, small),
-            stretch: spring.map(|spring| {
-                let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
-                motion.lengthening() * rate2
-                    + (pull + spring.pull(throw, motion)) / throw.rod.inertia
-            }),
-        };
+        self.rod_force = gravity * throw.rod.mass - big.force - small.force;
+        self.rod_moment = -moment(arms.big_force, big.force)
+            - moment(arms.small_force, small.force)
+            - throw.rod.inertia * motion.lengthening() * whirl;
+        self.crosshead_force = gravity * throw.crosshead.mass
+            + small.force
+            + joints.guide.force
+            + Vec2::new(gas.force + gas.effects, S::zero());
+        self.crosshead_moment = moment(small.arm, small.force) + joints.guide.moment;
+        self.pin_force = big.force;
+        self.pin_moment = moment(motion.pin + big.arm, big.force);
+        self.pin_bias = -(motion.pin * (speed * speed));
+        self.big_bias = across * (of_big * whirl) - arms.big * rate2;
+        self.small_bias = across * (of_small * whirl) - arms.small * rate2;
+        self.arms = arms;
+        self.rod_inertia = arms.inertia(throw, motion);
+        self.big_target = target(&throw.big_end, big);
+        self.small_target = target(&throw.small_end, small);
+        self.stretch = spring.map(|spring| {
+            let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
+            motion.lengthening() * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
+        });
     }
 
     /// What is left of the loads where an impulse takes the place of every force.
@@ -564,15 +558,13 @@ impl<S: Scalar> Accelerations<S> {
             big_eye += arms.along * (of_big * stretch);
             small_eye += arms.along * (of_small * stretch);
         }
-        *self = Self {
-            crosshead: crosshead.x,
-            big_end: pin - big_eye,
-            small_end: crosshead - small_eye,
-            guide: Vec2::new(crosshead.y, tilting / throw.crosshead.inertia),
-            big_force,
-            small_force,
-            rod,
-            stretch: stretch.unwrap_or(S::zero()),
-        };
+        self.crosshead = crosshead.x;
+        self.big_end = pin - big_eye;
+        self.small_end = crosshead - small_eye;
+        self.guide = Vec2::new(crosshead.y, tilting / throw.crosshead.inertia);
+        self.big_force = big_force;
+        self.small_force = small_force;
+        self.rod = rod;
+        self.stretch = stretch.unwrap_or(S::zero());
     }
 }

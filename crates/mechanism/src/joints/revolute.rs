@@ -215,21 +215,19 @@ impl<S: Scalar> Clearance<S> {
                     arm -= tangent * (uneven.change / uneven.steepness);
                 }
                 let friction_force = coefficient * normal_force;
-                *state = JointState {
-                    offset,
-                    rate,
-                    normal,
-                    penetration,
-                    penetration_rate,
-                    slip,
-                    normal_force,
-                    friction_force,
-                    force: -(normal * (normal_force - film_force)) - tangent * friction_force,
-                    sign,
-                    damping_power: (pressed - stored - film) * penetration_rate,
-                    arm,
-                    coefficient,
-                };
+                state.offset = offset;
+                state.rate = rate;
+                state.normal = normal;
+                state.penetration = penetration;
+                state.penetration_rate = penetration_rate;
+                state.slip = slip;
+                state.normal_force = normal_force;
+                state.friction_force = friction_force;
+                state.force = -(normal * (normal_force - film_force)) - tangent * friction_force;
+                state.sign = sign;
+                state.damping_power = (pressed - stored - film) * penetration_rate;
+                state.arm = arm;
+                state.coefficient = coefficient;
             },
         )
     }
