@@ -13,8 +13,9 @@ Example:
   crosshead sweep export-delta /scratch/faults
   python -c 'import deltalake; print(deltalake.DeltaTable(\"/scratch/faults/features\").count())'
 
-signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are, and
-whoever reads those sees no difference. Doing it again changes nothing.
+signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
+of Parquet see no difference, but for polars, which reads features/*.parquet and no longer the folder.
+Doing it again changes nothing.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {

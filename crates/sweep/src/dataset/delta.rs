@@ -54,7 +54,7 @@ pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Err
         exported.push(DeltaTable {
             folder,
             files: files.len(),
-            rows: files.iter().filter_map(|(_, file)| file.rows).sum(),
+            rows: rows(&files),
         });
     }
     Ok(exported)
@@ -75,6 +75,12 @@ fn files<'a>(manifest: &'a Manifest, folder: &str) -> Vec<(&'a str, &'a FileEntr
         name.ends_with(".parquet").then_some((name, file))
     };
     manifest.files.iter().filter_map(inside).collect()
+}
+
+/// Rows of all files; a manifest that somebody changed may have any number of them.
+fn rows(files: &[(&str, &FileEntry)]) -> u64 {
+    let rows = files.iter().filter_map(|(_, file)| file.rows);
+    rows.fold(0, u64::saturating_add)
 }
 
 /// Writes a log, or compares it with the one that is there.

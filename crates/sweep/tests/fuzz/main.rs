@@ -38,7 +38,7 @@ fn machine_files() {
         "machine",
         seeds("machine"),
         words,
-        executions(3000, 300),
+        executions(500, 300),
         readers::machine,
     );
 }
@@ -70,7 +70,7 @@ fn sweep_files() {
         "sweep",
         seeds("sweep"),
         words,
-        executions(3000, 250),
+        executions(500, 250),
         readers::sweep,
     );
 }
@@ -82,7 +82,7 @@ fn bundles() {
         "bundle",
         seeds("bundle"),
         words,
-        executions(3000, 250),
+        executions(500, 250),
         readers::bundle,
     );
 }
@@ -93,12 +93,12 @@ fn manifests() {
         "manifest",
         seeds("manifest"),
         Vec::new(),
-        executions(20000, 199),
+        executions(5000, 199),
         readers::manifest,
     );
 }
 
 #[test]
 fn records_of_a_dataset() {
-    records::records(executions(300, 1));
+    records::records(executions(100, 1));
 }

@@ -77,7 +77,12 @@ fn try_bundle(text: &str) -> Result<String, Error> {
         }
         if !tree.is_null() {
             let key = format!("runs.{i}");
-            let settings = input::run_settings(&run.section, &tree);
+            let mut section = run.section.clone();
+            if let Value::Object(section) = &mut section {
+                // Told by the recording where the file does not say it.
+                section.entry("speed_rpm").or_insert(500.into());
+            }
+            let settings = input::run_settings(&section, &tree);
             let mut tree = tree.clone();
             for (path, value) in settings.map_err(|e| bundle.locate(e.under(&key)))? {
                 paths::set(&mut tree, &path, value)?;
