@@ -7,6 +7,7 @@
 import collections
 import http.client
 import http.server
+import itertools
 import random
 import threading
 import time
@@ -28,15 +29,23 @@ class FaultyStore(http.server.ThreadingHTTPServer):
         self.behind = address.removeprefix("http://")
         self.address = f"http://127.0.0.1:{self.server_address[1]}"
         self.s3, self.bucket = s3, bucket
-        self.random = random.Random(2)
+        self.random, self.faults = random.Random(2), itertools.cycle(FAULTS)
         self.counts = collections.Counter()
         self.snapshots = collections.deque([(time.monotonic(), {})])
-        for target in [self.serve_forever, self.remember]:
-            threading.Thread(target=target, daemon=True).start()
+        self.open = True
+        self.memory = threading.Thread(target=self.remember, daemon=True)
+        self.memory.start()
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+    def close(self):
+        """Ends it."""
+        self.open = False
+        self.shutdown()
+        self.memory.join()
 
     def remember(self):
         """Keeps what there is, every half second."""
-        while True:
+        while self.open:
             found = {}
             for page in self.s3.get_paginator("list_objects_v2").paginate(Bucket=self.bucket):
                 found.update({item["Key"]: item for item in page.get("Contents", [])})
@@ -86,8 +95,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             prefix, delimiter = (query.get(name, [""])[0] for name in ["prefix", "delimiter"])
             return self.answer(200, {"Content-Type": "application/xml"}, self.server.listing(prefix, delimiter))
         fault = None
-        if self.command in ["PUT", "POST"] and self.server.random.random() < 0.2:
-            fault = self.server.random.choice(FAULTS)
+        if self.command in ["PUT", "POST"] and self.server.random.random() < 0.4:
+            fault = next(self.server.faults)
             self.server.counts[fault] += 1
         if fault == "refused":
             return self.refuse()

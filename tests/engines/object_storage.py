@@ -232,7 +232,7 @@ def faults(s3, folder, address):
         expect(store.counts[fault] > 0, f"no fault of the kind {fault}: {store.counts}")
     logs = s3.list_objects_v2(Bucket="data", Prefix="faults/_sweep/logs/")["KeyCount"]
     expect(logs >= 6, f"{logs} logs")
-    store.shutdown()
+    store.close()
     said = ", ".join(f"{count} {fault}" for fault, count in sorted(store.counts.items()))
     say(f"{said}; {calls} calls for 8 steps: the same bytes, each record written once")
 

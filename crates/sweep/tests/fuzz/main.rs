@@ -38,7 +38,7 @@ fn machine_files() {
         "machine",
         seeds("machine"),
         words,
-        executions(500, 300),
+        executions(500, 200),
         readers::machine,
     );
 }
@@ -70,7 +70,7 @@ fn sweep_files() {
         "sweep",
         seeds("sweep"),
         words,
-        executions(500, 250),
+        executions(500, 200),
         readers::sweep,
     );
 }
@@ -82,7 +82,7 @@ fn bundles() {
         "bundle",
         seeds("bundle"),
         words,
-        executions(500, 250),
+        executions(500, 200),
         readers::bundle,
     );
 }
@@ -93,7 +93,7 @@ fn manifests() {
         "manifest",
         seeds("manifest"),
         Vec::new(),
-        executions(5000, 199),
+        executions(5000, 399),
         readers::manifest,
     );
 }
