@@ -91,7 +91,7 @@ pub fn trial(
         }
         Ok((pool, slowest))
     });
-    watch(&worker, &done, kind, &path);
+    watch(&worker, &done, executions, kind, &path);
     match worker.join().expect("a trial") {
         Err(execution) => panic!(
             "{kind}: panicked at file {execution}, which is {}",
@@ -111,14 +111,25 @@ pub fn trial(
     }
 }
 
-/// Waits for the end, and panics where a file takes too long.
-fn watch<T>(worker: &std::thread::JoinHandle<T>, done: &AtomicU64, kind: &str, path: &Path) {
+/// Waits for the end, tells every minute how far it is, and panics where a file takes too long.
+fn watch<T>(
+    worker: &std::thread::JoinHandle<T>,
+    done: &AtomicU64,
+    executions: u64,
+    kind: &str,
+    path: &Path,
+) {
     let mut last = (done.load(Relaxed), Instant::now());
+    let mut told = Instant::now();
     while !worker.is_finished() {
         std::thread::sleep(Duration::from_millis(20));
         let now = done.load(Relaxed);
         if now != last.0 {
             last = (now, Instant::now());
+        }
+        if told.elapsed() > Duration::from_secs(60) {
+            eprintln!("{kind}: {now} of {executions} files");
+            told = Instant::now();
         }
         assert!(
             last.1.elapsed() < LIMIT,
