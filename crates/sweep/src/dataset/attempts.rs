@@ -6,6 +6,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::json;
@@ -38,9 +39,13 @@ impl<'a> Attempts<'a> {
 
     /// Begins one at `what`: a shard, or a case of one (`K.CASE`).
     pub(super) fn begin(&self, what: &str) -> Result<(), Error> {
+        // No two attempts have the same record.
+        static BEGUN: AtomicU64 = AtomicU64::new(0);
+        let number = BEGUN.fetch_add(1, Ordering::Relaxed);
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         let since = since.map_or(0, |time| time.as_secs());
-        let record = text(&json!({"process": process(), "unix_time_s": since}))?;
+        let record = json!({"process": process(), "number": number, "unix_time_s": since});
+        let record = text(&record)?;
         for attempt in 1_u64.. {
             let path = format!("{FOLDER}/{what}.{attempt}");
             let before = self.output.store.create_only(&path, &record)?;
