@@ -40,6 +40,7 @@ def copy_shards(out):
     first = json.loads((out / "_sweep/commits/0.json").read_text())
     plan = json.loads((out / "_sweep/plan.json").read_text())
     shards, cases = plan["shards"], plan["cases"]
+    (fault,) = first["rows"]["train"]
     for shard in range(1, shards):
         files = []
         for file in first["files"]:
@@ -47,7 +48,8 @@ def copy_shards(out):
             os.link(out / file["path"], out / path)
             files.append({**file, "path": path})
         end = min((shard + 1) * 256, cases)
-        record = {**first, "shard": shard, "cases": [shard * 256, end], "files": files}
+        rows = {"train": {fault: end - shard * 256}}
+        record = {**first, "shard": shard, "cases": [shard * 256, end], "files": files, "rows": rows}
         (out / f"_sweep/commits/{shard}.json").write_text(json.dumps(record, indent=2) + "\n")
 
 

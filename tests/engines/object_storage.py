@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A dataset in object storage: a server process that speaks S3 on this machine, and the same bytes.
 
-Needs the packages of requirements-object-storage.txt.
+Needs the packages of requirements-object-storage.txt. `object_storage.py race` and the like run some of it.
 """
 
 import hashlib
@@ -20,6 +20,7 @@ import boto3
 import botocore
 
 from common import CROSSHEAD, PROJECT, checksums, crosshead, expect, expect_same, say, wait_until, write_sweep
+from faulty_store import FAULTS, FaultyStore
 
 ROUNDS, RACERS = 30, 16
 
@@ -164,6 +165,26 @@ class Nuisance(threading.Thread):
                 pass
 
 
+def until_done(command, environment):
+    """Calls a command again while it fails, as a user or a scheduler would; how often that was."""
+    calls = 1
+    while True:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        if done.returncode == 0:
+            return calls
+        expect(done.returncode == 1, f"{command}: {done.returncode}\n{done.stderr}")
+        calls += 1
+        expect(calls < 20, f"it never came to an end: {done.stderr}")
+
+
+def written_once(s3, prefix):
+    """The record of each part was written once, and no part of an object is to be seen."""
+    for shard in range(6):
+        name = f"{shard}.json" if shard < 5 else "bifurcation-clearance.json"
+        written = versions(s3, f"{prefix}/_sweep/commits/{name}")
+        expect(written == 1, f"{name} was written {written} times")
+
+
 def nuisance(s3, folder, address):
     """Connections break off and come late: nothing is lost, nothing doubled."""
     sweep = write_sweep(folder, cases=20, shard_size=4)
@@ -173,17 +194,47 @@ def nuisance(s3, folder, address):
     url = "s3://data/nuisance"
     command = [CROSSHEAD, "gen-dataset", sweep, "--out", url, "--resume"]
     # An upload that breaks off too often ends the program, which goes on when it is called again.
-    calls = 1
-    while subprocess.run(command, env=environment, capture_output=True).returncode != 0:
-        calls += 1
-        expect(calls < 10, "it never came to an end")
+    calls = until_done(command, environment)
     expect_same(objects(s3, "nuisance"), checksums(folder / "whole"))
-    for shard in range(6):
-        name = f"{shard}.json" if shard < 5 else "bifurcation-clearance.json"
-        written = versions(s3, f"nuisance/_sweep/commits/{name}")
-        expect(written == 1, f"{name} was written {written} times")
+    written_once(s3, "nuisance")
     expect(proxy.broken > 0, "nothing broke")
     say(f"{proxy.broken} connections broken, {calls} calls: the same bytes, each record written once")
+
+
+def faults(s3, folder, address):
+    """Puts fail, come late and are done twice, and listings are old: nothing is lost, nothing doubled."""
+    kept = folder / "calibration"
+    kept.mkdir()
+    for number in range(3):
+        (kept / f"{number}.json").write_text(f"{number}\n")
+    sweep = folder / "faults.yaml"
+    sweep.write_text(write_sweep(folder, cases=20, shard_size=4).read_text() + "calibrated: calibration\n")
+    whole = folder / "whole-faults"
+    crosshead("gen-dataset", sweep, "--out", whole)
+    store = FaultyStore(address, s3, "data")
+    environment = {**os.environ, "AWS_ENDPOINT_URL": store.address}
+    url = "s3://data/faults"
+    calls = until_done([CROSSHEAD, "sweep", "plan", sweep, "--out", url], environment)
+    for index in range(6):
+        shard = [CROSSHEAD, "sweep", "shard", url, "--index", str(index), "--threads", "1"]
+        # Begun and stopped three times: a listing still has those attempts when the shard is made.
+        for _ in range(3 if index == 0 else 0):
+            stopped = subprocess.Popen(shard, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(0.3)
+            stopped.send_signal(signal.SIGINT)
+            stopped.wait()
+        calls += until_done(shard, environment)
+    calls += until_done([CROSSHEAD, "sweep", "finalize", url], environment)
+    crosshead("sweep", "finalize", url, "--verify")
+    expect_same(objects(s3, "faults"), checksums(whole))
+    written_once(s3, "faults")
+    for fault in [*FAULTS, "stale listings"]:
+        expect(store.counts[fault] > 0, f"no fault of the kind {fault}: {store.counts}")
+    logs = s3.list_objects_v2(Bucket="data", Prefix="faults/_sweep/logs/")["KeyCount"]
+    expect(logs >= 6, f"{logs} logs")
+    store.close()
+    said = ", ".join(f"{count} {fault}" for fault, count in sorted(store.counts.items()))
+    say(f"{said}; {calls} calls for 8 steps: the same bytes, each record written once")
 
 
 def kill(s3, folder):
@@ -211,6 +262,8 @@ def main():
         AWS_DEFAULT_REGION="us-east-1",
         AWS_ALLOW_HTTP="true",
     )
+    # A few of them by name, or all.
+    asked = sys.argv[1:] or ["race", "nuisance", "faults", "kill"]
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         with open(folder / "server.log", "w") as log:
@@ -230,9 +283,13 @@ def main():
             versioning = {"Status": "Enabled"}
             s3.put_bucket_versioning(Bucket="data", VersioningConfiguration=versioning)
             same_bytes(s3, folder)
-            race(s3, folder)
-            nuisance(s3, folder, address)
-            kill(s3, folder)
+            for name in asked:
+                {
+                    "race": lambda: race(s3, folder),
+                    "nuisance": lambda: nuisance(s3, folder, address),
+                    "faults": lambda: faults(s3, folder, address),
+                    "kill": lambda: kill(s3, folder),
+                }[name]()
         finally:
             server.terminate()
             server.wait()

@@ -49,8 +49,8 @@ KillWait=2
 MinJobAge=600
 MaxArraySize=1001
 SlurmdParameters=config_overrides
-NodeName=n1 NodeHostname={host} NodeAddr={first} Port=16818 CPUs=2 RealMemory=2000 State=UNKNOWN
-NodeName=n2 NodeHostname={host} NodeAddr={second} Port=16819 CPUs=2 RealMemory=2000 State=UNKNOWN
+NodeName=n1 NodeHostname={host} NodeAddr={first} Port=16818 CPUs={processors} RealMemory=2000 State=UNKNOWN
+NodeName=n2 NodeHostname={host} NodeAddr={second} Port=16819 CPUs={processors} RealMemory=2000 State=UNKNOWN
 PartitionName=sweep Nodes=n1,n2 Default=YES MaxTime=INFINITE State=UP
 """
 
@@ -67,11 +67,11 @@ def install():
 
 
 class Cluster:
-    """Two nodes, n1 and n2, of two processors each."""
+    """Two nodes, n1 and n2, of two processors each unless another number is given."""
 
-    def __init__(self, folder, network=False):
+    def __init__(self, folder, network=False, processors=2):
         self.folder = pathlib.Path(folder).resolve()
-        self.network = network
+        self.network, self.processors = network, processors
         self.spaces = {"n1": "sweep0", "n2": "sweep1"} if network else {}
 
     def __enter__(self):
@@ -84,7 +84,12 @@ class Cluster:
         configuration = self.folder / "slurm.conf"
         configuration.write_text(
             CONFIGURATION.format(
-                host=host, controller=first, folder=self.folder, first=first, second=second
+                host=host,
+                controller=first,
+                folder=self.folder,
+                first=first,
+                second=second,
+                processors=self.processors,
             )
         )
         self.environment = {**os.environ, "SLURM_CONF": str(configuration)}

@@ -2,8 +2,9 @@
 
     python read_dataset.py DIR [--expected FILE.json]
 
-Reads every table with pyarrow, pandas, polars and Hugging Face datasets, every MCAP file with mcap
-and mcap-ros2-support, and runs the Python code of the data card. What is expected comes from
+Reads every table with pyarrow, pandas, polars, duckdb and Hugging Face datasets, and with deltalake and
+polars where it was exported as a Delta table, every MCAP file with mcap and mcap-ros2-support, and runs
+the Python code of the data card. What is expected comes from
 manifest.json and from the files themselves, which must agree with each other: checksums, counts,
 splits, labels and units. With --expected also every value is compared with those of the file:
 
@@ -27,6 +28,8 @@ CACHE = tempfile.TemporaryDirectory()
 os.environ.update(HF_HOME=CACHE.name, HF_HUB_OFFLINE="1", HF_DATASETS_OFFLINE="1")
 
 import datasets  # noqa: E402  (reads the environment when imported)
+import deltalake  # noqa: E402
+import duckdb  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 import polars as pl  # noqa: E402
@@ -38,6 +41,8 @@ from mcap.reader import make_reader  # noqa: E402
 from mcap_ros2.decoder import DecoderFactory  # noqa: E402
 
 SUBSETS = ("signals", "features")
+# Folder of the log that makes a folder of Parquet files a Delta table.
+DELTA = "_delta_log"
 # A column whose name ends like this has a unit.
 UNIT_SUFFIX = re.compile(r"_(m|s|hz|pa|n|rpm|rad|deg|kg|k|w|j|m_s|m_s2|rad_s|rad_s2|n_m|per_s)$")
 
@@ -141,7 +146,7 @@ def together(columns, more):
 def read_subset(folder, subset, expected):
     """All files of a subset: its columns by split. Also as one dataset of pyarrow and polars."""
     splits = {}
-    for path in sorted((folder / subset).iterdir()):
+    for path in sorted(p for p in (folder / subset).iterdir() if p.name != DELTA):
         name = re.fullmatch(r"([a-z]+)-(\d{5})-of-(\d{5})\.parquet", path.name)
         if not name:
             raise Difference(f"{path} is no SPLIT-NNNNN-of-NNNNN.parquet")
@@ -164,17 +169,53 @@ def read_subset(folder, subset, expected):
     same(pd.read_parquet(folder / subset).attrs.get("units"), units, f"{subset} as a whole: units in pandas")
     table = pl.scan_parquet(folder / subset / "*.parquet").collect()
     equal_columns({s.name: plain(s) for s in table}, every, f"{subset} scanned by polars")
+    read_whole(folder / subset, every)
     return splits
+
+
+def read_whole(table, every):
+    """A folder of Parquet files by duckdb, and by the readers of Delta tables where it is one."""
+    names = ", ".join(f'"{name}"' for name in every)
+    query = f"SELECT {names} FROM read_parquet('{table}/*.parquet', filename=true) ORDER BY filename, file_row_number"
+    query = query.replace("filename=true", "filename=true, file_row_number=true")
+    found = duckdb.sql(query).to_arrow_table()
+    equal_columns({name: of_arrow(found[name]) for name in every}, every, f"{table} in duckdb")
+    if not (table / DELTA).is_dir():
+        return
+    delta = deltalake.DeltaTable(str(table))
+    listed = sorted(pathlib_name(uri) for uri in delta.file_uris())
+    same(listed, sorted(p.name for p in table.glob("*.parquet")), f"files of the Delta table {table}")
+    same(delta.count(), len(next(iter(every.values()))), f"rows that the log of {table} states")
+    for reader, found in [
+        ("deltalake", delta.to_pyarrow_table()),
+        ("polars", pl.read_delta(str(table)).to_arrow(compat_level=pl.CompatLevel.oldest())),
+    ]:
+        columns = {name: of_arrow(found[name].combine_chunks()) for name in found.column_names}
+        equal_columns(in_order(columns), in_order(every), f"the Delta table {table} in {reader}")
+
+
+def pathlib_name(uri):
+    return uri.rsplit("/", 1)[-1]
+
+
+def in_order(columns):
+    """The rows in the order of their content: a Delta table has none."""
+    keys = [name for name in ("bifurcation", "case_id", "window", "value", "direction") if name in columns]
+    rows = range(len(columns[keys[0]]))
+    order = sorted(rows, key=lambda row: [repr(columns[name][row]) for name in keys])
+    return {name: [values[row] for row in order] for name, values in columns.items()}
 
 
 def read_diagrams(folder):
     """The bifurcation diagrams, which have no splits: to datasets all of them are split train."""
     every = None
-    for path in sorted((folder / "bifurcations").glob("*")):
+    for path in sorted(p for p in (folder / "bifurcations").glob("*") if p.name != DELTA):
         same(path.suffix, ".parquet", f"{path}: kind of file")
         columns, _ = read_table(path)
         same(set(columns["bifurcation"]), {path.stem}, f"{path}: names of diagrams")
         every = together(every, columns)
+    if every:
+        read_whole(folder / "bifurcations", every)
     return {"bifurcations": {"train": every}} if every else {}
 
 
@@ -278,6 +319,7 @@ def check_manifest(folder):
     # The pages are made from the dataset afterwards: nobody has to list them.
     pages = {"report.html", "chaos.html", "features.html"}
     present = {p for p in present if p not in pages and not p.startswith("figures/")}
+    present = {p for p in present if DELTA not in p}
     same(sorted(p for p in present if not p.startswith("_")), sorted(listed), "files of the folder")
     same(manifest["counts"]["failed"], len(manifest["failed"]), "failed cases")
     return manifest
@@ -340,9 +382,9 @@ def main():
 
     for subset, splits in tables.items():
         counts = ", ".join(f"{len(c['case_id'])} {split}" for split, c in splits.items())
-        print(f"{subset}: {counts} rows, alike in pyarrow, pandas, polars and datasets")
+        print(f"{subset}: {counts} rows, alike in pyarrow, pandas, polars, duckdb and datasets")
     for splits in diagrams.values():
-        print(f"bifurcations: {len(splits['train']['value'])} rows, alike in all four")
+        print(f"bifurcations: {len(splits['train']['value'])} rows, alike in all")
     print(f"{len(cases)} MCAP files, {blocks} pieces of code of the data card")
 
 

@@ -119,8 +119,7 @@ fn shards_made_twice_at_once_give_the_bytes_of_gen_dataset() {
     // Whoever reads it does not meet what a crash left.
     let left = parts.join("_sweep/tmp/features-train-00000-of-00003.parquet.host-1-2-3.part");
     std::fs::write(left, "half").unwrap();
-    let script = venv::readers().join("read_dataset.py");
-    venv::run(Command::new(venv::python()).arg(script).arg(&parts));
+    read_dataset(&parts);
 
     let status = run(&mut crosshead(&["sweep", "status", out, "--json"]));
     let status: serde_json::Value = serde_json::from_slice(&status.stdout).unwrap();
@@ -245,6 +244,10 @@ fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
         // SIGKILL.
         child.kill().unwrap();
         done += u64::from(!child.wait().unwrap().success());
+        if !broken.exists() {
+            // It did not even come to begin.
+            continue;
+        }
         // What was finished before was not made again.
         let after = commits(&broken);
         assert!(before.iter().all(|(name, time)| after[name] == *time));
@@ -264,38 +267,192 @@ fn a_sweep_that_is_killed_again_and_again_gives_the_same_bytes() {
     eprintln!("{done} kills over {} datasets", rounds + 1);
 }
 
+/// The fourth case asks for more memory than there is: its process aborts.
+const POISON: &str = "
+name: poison
+machine: MACHINE
+run: {revolutions: 1, transient: 1, sample_rate: 1 kHz, tolerance: 1e-6, chaos: false}
+shard_size: 8
+splits: {train: 100 %}
+cases:
+  - zip: {speed: [500 rpm, 501 rpm, 502 rpm, 1e-6 rpm, 503 rpm, 504 rpm, 505 rpm, 506 rpm]}
+";
+
 #[test]
 fn a_case_that_its_processes_die_of_is_found() {
+    use std::os::unix::process::ExitStatusExt;
+    let (folder, sweep) = begin(POISON);
+    let out = folder.path().join("out");
+    run(crosshead(&["sweep", "plan"])
+        .arg(&sweep)
+        .arg("--out")
+        .arg(&out));
+    // Memory has an end here whatever the system promises.
+    let shard = || {
+        let limited = "ulimit -v 8000000; exec \"$0\" sweep shard \"$1\" --index 0 --threads 1";
+        let mut command = Command::new("sh");
+        command.args(["-c", limited, env!("CARGO_BIN_EXE_crosshead")]);
+        command.arg(&out).output().unwrap()
+    };
+    // Three processes die of the shard, and three more of the case when each runs by itself.
+    for attempt in 0..6 {
+        let output = shard();
+        assert!(output.status.signal().is_some(), "{attempt}: {output:?}");
+        assert!(!out.join("_sweep/commits/0.json").exists());
+    }
+    let status = run(crosshead(&["sweep", "status"]).arg(&out));
+    assert!(
+        text(&status.stdout).contains("shard 0: 6 processes"),
+        "{status:?}"
+    );
+    let made = shard();
+    assert!(made.status.success(), "{made:?}");
+
+    let finalized = run(crosshead(&["sweep", "finalize"]).arg(&out));
+    let said = text(&finalized.stdout);
+    let again = format!(
+        "again: crosshead simulate {} --case case-000003",
+        out.join("sweep.yaml").display()
+    );
+    for part in [
+        "1 of 8 cases failed",
+        "case-000003: the process ended without a word, three times",
+        &again,
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let manifest = std::fs::read_to_string(out.join("manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    assert_eq!(manifest["counts"]["failed"], 1);
+    assert_eq!(manifest["counts"]["rows"]["train"]["none"], 7);
+    // Each process has a log; the last one has the case with its command.
+    let logs = logs(&out);
+    assert_eq!(logs.len(), 7, "{logs:?}");
+    let found: Vec<&String> = logs.iter().filter(|log| log.contains(&again)).collect();
+    assert_eq!(found.len(), 1, "{logs:?}");
+    assert!(found[0].contains("shard 0 begun case by case"), "{found:?}");
+    assert!(found[0].contains("shard 0 made; 8 of 8 cases"), "{found:?}");
+    // The command does what it says.
+    let alone = Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -v 8000000; exec \"$0\" simulate \"$1\" --case case-000003",
+        ])
+        .arg(env!("CARGO_BIN_EXE_crosshead"))
+        .arg(out.join("sweep.yaml"))
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(alone.status.signal().is_some(), "{alone:?}");
+}
+
+/// The logs of a dataset.
+fn logs(root: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(root.join("_sweep/logs")).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    paths
+        .map(|path| std::fs::read_to_string(path).unwrap())
+        .collect()
+}
+
+/// Shards that take a while, of 8 cases with one row each.
+const SLOW: &str = "
+name: slow
+machine: MACHINE
+run: {revolutions: 30, transient: 30, sample_rate: 5 kHz, tolerance: 1e-9, chaos: false}
+shard_size: 8
+splits: {train: 60 %, test: 40 %}
+cases:
+  - random: {count: 32, axes: {joints: [[big_end, small_end]], clearance: {uniform: [0.1 mm, 0.2 mm]}}}
+";
+
+#[test]
+fn readers_count_right_beside_what_a_crash_left() {
+    let (folder, sweep) = begin(SLOW);
+    let out = folder.path().join("out");
+    let place = out.to_str().unwrap();
+    run(crosshead(&["sweep", "plan"])
+        .arg(&sweep)
+        .args(["--out", place]));
+    let shard = |index: &str| crosshead(&["sweep", "shard", place, "--index", index]);
+    run(&mut shard("0"));
+    // One is killed once its files are begun, before they are whole.
+    let left = || {
+        let entries = std::fs::read_dir(out.join("_sweep/tmp")).unwrap();
+        let parts = entries.filter(|entry| {
+            let name = entry.as_ref().unwrap().file_name();
+            name.to_string_lossy().contains(".parquet.")
+        });
+        parts.count()
+    };
+    let mut killed = shard("2").stdout(Stdio::null()).spawn().unwrap();
+    while left() < 4 {
+        assert!(killed.try_wait().unwrap().is_none(), "it was too fast");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    assert!(commits(&out).keys().eq(["0.json"]) && left() == 4);
+    count_rows(&out, 8);
+
+    for index in ["1", "2", "3"] {
+        run(&mut shard(index));
+    }
+    run(&mut crosshead(&["sweep", "finalize", place]));
+    assert_eq!(left(), 4, "what was left is not there any more");
+    count_rows(&out, 32);
+    read_dataset(&out);
+
+    // As Delta tables, with the same bytes a second time.
+    let export = || run(&mut crosshead(&["sweep", "export-delta", place]));
+    let said = export();
+    let expected = format!("{place}/features: 8 files, 32 rows");
+    assert!(text(&said.stdout).contains(&expected), "{said:?}");
+    let once = bytes(&out);
+    assert_eq!(export().stdout, said.stdout);
+    assert!(once == bytes(&out));
+    read_dataset(&out);
+    run(&mut crosshead(&["sweep", "finalize", place, "--verify"]));
+    let log = out.join("features/_delta_log/00000000000000000000.json");
+    std::fs::write(log, "{}\n").unwrap();
+    let other = crosshead(&["sweep", "export-delta", place])
+        .output()
+        .unwrap();
+    assert_eq!(other.status.code(), Some(2));
+    assert!(
+        text(&other.stderr).contains("another Delta table"),
+        "{other:?}"
+    );
+}
+
+#[test]
+fn what_is_not_finished_is_no_delta_table() {
     let (folder, sweep) = begin(TINY);
     let out = folder.path().join("out");
     run(crosshead(&["sweep", "plan"])
         .arg(&sweep)
         .arg("--out")
         .arg(&out));
-    // What six processes leave that end in the fourth case of the first shard.
-    let attempts = out.join("_sweep/attempts");
-    for attempt in 1..=3 {
-        std::fs::write(attempts.join(format!("0.{attempt}")), "").unwrap();
-        std::fs::write(attempts.join(format!("0.case-000003.{attempt}")), "").unwrap();
-    }
-    run(crosshead(&["sweep", "shard"])
+    let refused = crosshead(&["sweep", "export-delta"])
         .arg(&out)
-        .args(["--index", "0"]));
-    let commit = std::fs::read_to_string(out.join("_sweep/commits/0.json")).unwrap();
-    let commit: serde_json::Value = serde_json::from_str(&commit).unwrap();
-    assert_eq!(commit["failed"].as_array().unwrap().len(), 1);
-    assert_eq!(commit["failed"][0]["case_id"], "case-000003");
-    assert_eq!(
-        commit["failed"][0]["reason"],
-        "the process ended without a word, three times"
+        .output()
+        .unwrap();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(
+        text(&refused.stderr).contains("is not complete"),
+        "{refused:?}"
     );
-    assert_eq!(
-        commit["rows"]["train"]
-            .as_object()
-            .unwrap()
-            .values()
-            .filter_map(|n| n.as_u64())
-            .sum::<u64>(),
-        7
-    );
+}
+
+/// Every reader finds so many rows, and no case twice.
+fn count_rows(dataset: &Path, rows: u64) {
+    let script = venv::readers().join("count_rows.py");
+    let mut command = Command::new(venv::python());
+    venv::run(command.arg(script).arg(dataset).arg(rows.to_string()));
+}
+
+/// Every reader finds what the manifest says, and the same.
+fn read_dataset(dataset: &Path) {
+    let script = venv::readers().join("read_dataset.py");
+    venv::run(Command::new(venv::python()).arg(script).arg(dataset));
 }

@@ -127,10 +127,14 @@ impl Bundle {
         } else {
             (path, path.join(FILE))
         };
-        Self::of(folder, Document::open(&file)?)
+        Self::new(folder, Document::open(&file)?)
     }
 
-    fn of(folder: &Path, document: Document) -> Result<Self, Error> {
+    /// The bundle in `folder` whose `recordings.yaml` has the content `document`.
+    ///
+    /// # Errors
+    /// The first mistake, with its line.
+    pub fn new(folder: &Path, document: Document) -> Result<Self, Error> {
         let runs = runs(&document.tree).map_err(|error| document.locate(error))?;
         Ok(Self {
             folder: folder.to_owned(),

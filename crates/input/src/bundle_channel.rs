@@ -105,11 +105,12 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
     let Some((column, _, kind)) = found else {
         let all = known.iter().flat_map(|(_, names, _)| names.first());
         let all: Vec<&str> = all.map(String::as_str).collect();
-        let slips = |known: &&str| strsim::damerau_levenshtein(&spoken[0], known);
-        return match all
-            .iter()
-            .any(|known| spoken[0].len() > 3 && slips(known) <= SLIPS)
-        {
+        // As many slips as the lengths differ by are needed at least: a name may be as long as a file.
+        let near = |known: &str| {
+            known.len().abs_diff(spoken[0].len()) <= SLIPS * char::MAX.len_utf8()
+                && strsim::damerau_levenshtein(&spoken[0], known) <= SLIPS
+        };
+        return match spoken[0].len() > 3 && all.iter().any(|known| near(known)) {
             true => Err(Error::unknown_name("name", &channel.name, &all)),
             false => Ok(Meaning::Other),
         };

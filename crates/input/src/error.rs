@@ -236,8 +236,11 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     // One letter can be anything.
     let letters = name.chars().count();
     let allowed = (letters / 3).max(usize::from(letters > 1));
+    // As many slips as the lengths differ by are needed at least: a name may be as long as a file.
+    let near = |c: &&str| c.chars().count().abs_diff(letters) <= allowed;
     candidates
         .into_iter()
+        .filter(near)
         .map(|c| (slips(c), c))
         .filter(|((distance, _), _)| *distance <= allowed)
         .min_by_key(|(distance, _)| *distance)

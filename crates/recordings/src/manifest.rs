@@ -57,6 +57,19 @@ pub struct FailedCase {
     pub command: String,
 }
 
+impl FailedCase {
+    /// The command that runs this case alone, from anywhere, of the dataset in `folder`; of one in
+    /// object storage, from where its `sweep.yaml` has been copied to.
+    pub fn command_in(&self, folder: &Path) -> String {
+        if folder.starts_with("s3:") {
+            return self.command.clone();
+        }
+        let sweep = folder.join("sweep.yaml");
+        self.command
+            .replacen("sweep.yaml", &sweep.display().to_string(), 1)
+    }
+}
+
 impl Manifest {
     /// The manifest as it is written: indented, with a newline at the end.
     ///
@@ -73,7 +86,15 @@ impl Manifest {
     /// When the file is not there or is not a manifest.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
-        serde_json::from_str(&text).map_err(|error| Error::Damaged {
+        Self::from_json(&text, path)
+    }
+
+    /// The manifest that is written as `text`; messages call its file `path`.
+    ///
+    /// # Errors
+    /// When it is not a manifest.
+    pub fn from_json(text: &str, path: &Path) -> Result<Self, Error> {
+        serde_json::from_str(text).map_err(|error| Error::Damaged {
             format: "a manifest",
             path: path.to_owned(),
             reason: error.to_string(),

@@ -58,8 +58,15 @@ impl Sweep {
     /// # Errors
     /// A file that cannot be read, or a mistake in it, with its line.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let document = Document::open(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::new(Document::open(path)?, folder)
+    }
+
+    /// The sweep file with the content `document` in `folder`.
+    ///
+    /// # Errors
+    /// A mistake in it, with its line.
+    pub fn new(document: Document, folder: &Path) -> Result<Self, Error> {
         let file: SweepFile = document.read()?;
         if let Some(calibrate) = &file.calibrate {
             let checked = calibrate.settings.check();
@@ -67,7 +74,7 @@ impl Sweep {
         }
         Ok(Self {
             document,
-            folder,
+            folder: folder.to_owned(),
             file,
         })
     }

@@ -40,6 +40,18 @@ pub enum Error {
         .0.display(), .0.display()
     )]
     NotPlanned(PathBuf),
+    /// A dataset that has no manifest yet.
+    #[error(
+        "`{}` is not complete: `crosshead sweep finalize` makes it so, or says what is missing",
+        .0.display()
+    )]
+    NotFinalized(PathBuf),
+    /// The log of a Delta table that is not that of the dataset.
+    #[error(
+        "`{}` is the log of another Delta table: remove its folder, or leave the table as it is",
+        .0.display()
+    )]
+    OtherDeltaTable(PathBuf),
     /// A number beyond the shards of the sweep.
     #[error("there is no shard {index}: this sweep has shards 0 to {}", shards - 1)]
     NoShard {
@@ -199,6 +211,8 @@ impl Error {
                 | Error::NotOurs(_)
                 | Error::OtherPlan { .. }
                 | Error::NotPlanned(_)
+                | Error::NotFinalized(_)
+                | Error::OtherDeltaTable(_)
                 | Error::NoOverwrite(_)
                 | Error::NoCalibration(_)
                 | Error::NoObjectStorage(_)

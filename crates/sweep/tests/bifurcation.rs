@@ -71,7 +71,7 @@ fn files(root: &Path) -> BTreeMap<String, Vec<u8>> {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                folders.push(path);
+                folders.extend((!path.ends_with("_sweep/logs")).then_some(path));
             } else {
                 let name = path.strip_prefix(root).unwrap().display().to_string();
                 found.insert(name, fs::read(path).unwrap());

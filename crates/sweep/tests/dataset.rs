@@ -101,7 +101,7 @@ fn run(plan: &Plan, root: &Path, existing: Existing, threads: usize) -> Result<M
     )
 }
 
-/// Every file below `root`, by path.
+/// Every file below `root` but for the logs, by path.
 fn files(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![root.to_owned()];
@@ -109,7 +109,7 @@ fn files(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
-                folders.push(path);
+                folders.extend((!path.ends_with("_sweep/logs")).then_some(path));
             } else {
                 let name = path.strip_prefix(root).unwrap().to_owned();
                 found.insert(name, fs::read(path).unwrap());

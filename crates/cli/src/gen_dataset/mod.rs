@@ -5,7 +5,7 @@ mod calibrated;
 use crate::Failure;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use recordings::Manifest;
+use recordings::{FailedCase, Manifest};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,6 +18,8 @@ use sweep::{Plan, Sweep, simulate_cases};
 /// it, and few where the motion of each is judged, which takes much longer.
 const SAMPLE_CASES: u64 = 32;
 const JUDGED_CASES: u64 = 3;
+/// Failed cases that are shown.
+const SHOWN_FAILURES: usize = 5;
 
 /// Arguments of `gen-dataset`.
 #[derive(Args, Debug)]
@@ -99,7 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|error| failure(arguments, error))?;
     bar.finish();
     summarise(&manifest, &out, started.elapsed().as_secs_f64());
-    failures(&manifest).map_or(Ok(()), |text| Err(Failure::work(text)))
+    let failed = failures(&manifest.failed, manifest.counts.cases, &out);
+    failed.map_or(Ok(()), |text| Err(Failure::work(text)))
 }
 
 /// Locks the place of the dataset, and calibrates the machine where the sweep asks for it; else its
@@ -283,13 +286,22 @@ pub(crate) fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
     );
 }
 
-/// What is to be said of the cases that failed, if any did.
-pub(crate) fn failures(manifest: &Manifest) -> Option<String> {
-    let first = manifest.failed.first()?;
-    Some(format!(
-        "{} of {} cases failed; the manifest has all of them. The first: {}: {}\n  again: {}",
-        manifest.counts.failed, manifest.counts.cases, first.case_id, first.reason, first.command
-    ))
+/// What is to be said of the cases that failed, if any did: the first few, each with the command that
+/// runs it again.
+pub(crate) fn failures(failed: &[FailedCase], cases: u64, out: &Path) -> Option<String> {
+    if failed.is_empty() {
+        return None;
+    }
+    let mut text = format!("{} of {cases} cases failed:", failed.len());
+    for case in failed.iter().take(SHOWN_FAILURES) {
+        let (id, reason, again) = (&case.case_id, &case.reason, case.command_in(out));
+        text += &format!("\n  {id}: {reason}\n    again: {again}");
+    }
+    if failed.len() > SHOWN_FAILURES {
+        let more = failed.len() - SHOWN_FAILURES;
+        text += &format!("\n  and {more} more, in `failed` of manifest.json and in _sweep/logs");
+    }
+    Some(text)
 }
 
 /// Says how large the dataset will be and how long it will take, from a few simulated cases.

@@ -56,7 +56,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let seconds = started.elapsed().as_secs_f64();
     gen_dataset::summarise(&manifest, &arguments.url, seconds);
-    if let Some(text) = gen_dataset::failures(&manifest) {
+    if let Some(text) =
+        gen_dataset::failures(&manifest.failed, manifest.counts.cases, &arguments.url)
+    {
         println!("{text}");
     }
     Ok(())

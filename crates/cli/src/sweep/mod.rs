@@ -2,6 +2,7 @@
 //! planned once, its shards are made anywhere and in any order, and the dataset is finalized.
 
 mod cancel;
+mod export_delta;
 mod finalize;
 mod index;
 mod plan;
@@ -41,6 +42,8 @@ enum Step {
     Submit(submit::Arguments),
     /// Take back what was submitted
     Cancel(cancel::Arguments),
+    /// Make a finished dataset Delta tables, too
+    ExportDelta(export_delta::Arguments),
 }
 
 /// Takes a step.
@@ -55,5 +58,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Step::Status(arguments) => status::run(arguments),
         Step::Submit(arguments) => submit::run(arguments),
         Step::Cancel(arguments) => cancel::run(arguments),
+        Step::ExportDelta(arguments) => export_delta::run(arguments),
     }
 }

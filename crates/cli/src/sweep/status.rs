@@ -43,7 +43,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "missing": ranges(&found.missing),
             "cases": plan.cases(),
             "cases_made": found.cases,
-            "cases_failed": found.failed,
+            "cases_failed": found.failed.len(),
+            "failed": found.failed,
             "attempts": attempts.collect::<Vec<_>>(),
             "jobs": jobs,
         });
@@ -60,8 +61,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         "cases: {} of {}, {} failed",
         found.cases,
         plan.cases(),
-        found.failed
+        found.failed.len()
     );
+    if let Some(text) = gen_dataset::failures(&found.failed, plan.cases(), &arguments.url) {
+        println!("{text}");
+    }
     if !found.missing.is_empty() {
         println!("missing: {}", ranges(&found.missing));
     }

@@ -6,6 +6,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::json;
@@ -38,12 +39,18 @@ impl<'a> Attempts<'a> {
 
     /// Begins one at `what`: a shard, or a case of one (`K.CASE`).
     pub(super) fn begin(&self, what: &str) -> Result<(), Error> {
+        // No two attempts have the same record.
+        static BEGUN: AtomicU64 = AtomicU64::new(0);
+        let number = BEGUN.fetch_add(1, Ordering::Relaxed);
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         let since = since.map_or(0, |time| time.as_secs());
-        let record = text(&json!({"process": process(), "unix_time_s": since}))?;
+        let record = json!({"process": process(), "number": number, "unix_time_s": since});
+        let record = text(&record)?;
         for attempt in 1_u64.. {
             let path = format!("{FOLDER}/{what}.{attempt}");
-            if self.output.store.create_only(&path, &record)?.is_none() {
+            let before = self.output.store.create_only(&path, &record)?;
+            // One that is there already may be this one, whose put was done twice.
+            if before.is_none_or(|before| before == record) {
                 self.under_way.borrow_mut().insert(what.to_owned(), path);
                 break;
             }
@@ -75,13 +82,29 @@ impl Drop for Attempts<'_> {
 /// How many attempts each shard and each marked case (`K.CASE`) has had that are under way or
 /// ended without a word.
 pub(super) fn counts(output: &Output) -> Result<BTreeMap<String, u64>, Error> {
-    let mut counts = BTreeMap::new();
+    let mut markers: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for name in output.store.names(FOLDER)? {
         if let Some((what, _)) = name.rsplit_once('.') {
-            *counts.entry(what.to_owned()).or_default() += 1;
+            let what = what.to_owned();
+            markers.entry(what).or_default().push(name);
         }
     }
-    Ok(counts)
+    let count = |(what, names): (String, Vec<String>)| {
+        let count = match are_too_many(Some(&(names.len() as u64))) {
+            true => standing(output, &names)?,
+            false => names.len() as u64,
+        };
+        Ok((what, count))
+    };
+    markers.into_iter().map(count).collect()
+}
+
+/// How many of the markers `names` still stand: a bucket may list for a while what was removed, and
+/// nobody is to be blamed for that.
+fn standing(output: &Output, names: &[String]) -> Result<u64, Error> {
+    let stands = |name: &String| output.store.length(&format!("{FOLDER}/{name}"));
+    let lengths = names.iter().map(stands).collect::<Result<Vec<_>, _>>()?;
+    Ok(lengths.iter().flatten().count() as u64)
 }
 
 /// Whether `count` attempts are too many to go on as before.

@@ -67,12 +67,32 @@ impl Commit {
         let Some(commit) = commit else {
             return Ok(None);
         };
+        if !commit.is_of(plan, shard) {
+            return Err(Error::Damaged {
+                path: output.path(&name(shard)),
+                reason: "its cases, rows or failures are not those of the shard".into(),
+            });
+        }
         for file in &commit.files {
             if !is_whole(output, file)? {
                 return Ok(None);
             }
         }
         Ok(Some(commit))
+    }
+
+    /// Whether its numbers can be those of shard `shard`: every case has its rows or has failed.
+    fn is_of(&self, plan: &Plan, shard: u64) -> bool {
+        let cases = plan.shard(shard);
+        let windows = plan.windows.map_or(1, |windows| windows.count.get());
+        let counts = self.rows.values().flat_map(|faults| faults.values());
+        let rows = counts.map(|&count| u128::from(count)).sum::<u128>();
+        let failed = self.failed.len() as u128;
+        let whole = (rows / u128::from(windows), rows % u128::from(windows));
+        let count = u128::from(cases.end - cases.start);
+        self.shard == shard
+            && self.cases == [cases.start, cases.end]
+            && (whole.0 + failed, whole.1) == (count, 0)
     }
 }
 

@@ -68,6 +68,10 @@ pub(super) fn compute(
         .collect();
     let unfinished: u64 = chunks.iter().map(|(_, chunk)| chunk.len() as u64).sum();
     progress.diagrams_begin(values, values - unfinished);
+    let (id, count) = (&plan.id[..12], pending.len());
+    output.say(format_args!(
+        "plan {id}: {unfinished} values of {count} bifurcation diagrams"
+    ));
     let table = DiagramTable::new(plan)?;
     let mut rows = Vec::new();
     in_order(
@@ -83,6 +87,7 @@ pub(super) fn compute(
             rows.extend(walked);
             if rows.len() == diagram.count() * diagram.directions.len() {
                 table.write(plan, output, diagram, std::mem::take(&mut rows))?;
+                output.say(format_args!("bifurcation diagram {} made", diagram.name));
                 done += 1;
             }
             Ok(())

@@ -5,9 +5,13 @@ use std::path::Path;
 
 use recordings::{FileEntry, FileRecord};
 
+use super::commit::text;
 use super::output::{CALIBRATION, Output};
 use super::store::failed;
 use crate::Error;
+
+/// What was copied to a bucket, which may list it late.
+const COPIED: &str = "_sweep/calibration.json";
 
 impl Output {
     /// Copies the calibration in the folder `from`; nothing where there is none.
@@ -15,6 +19,7 @@ impl Output {
         if !from.is_dir() {
             return Ok(());
         }
+        let mut entries = Vec::new();
         for name in names(from, "")? {
             let content = read(&from.join(&name))?;
             let path = format!("{CALIBRATION}/{name}");
@@ -23,13 +28,28 @@ impl Output {
             {
                 fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
             }
-            self.store.write(&path, &content)?;
+            let FileRecord { bytes, sha256 } = self.store.write(&path, &content)?;
+            entries.push(FileEntry {
+                path,
+                bytes,
+                sha256,
+                rows: None,
+            });
+        }
+        if self.store.folder().is_none() {
+            self.store.create_only(COPIED, &text(&entries)?)?;
         }
         Ok(())
     }
 
     /// The files of the calibration as the manifest has them.
     pub(super) fn calibration_entries(&self) -> Result<Vec<FileEntry>, Error> {
+        if let Some(copied) = self.store.read(COPIED)? {
+            return serde_json::from_str(&copied).map_err(|error| Error::Damaged {
+                path: self.path(COPIED),
+                reason: error.to_string(),
+            });
+        }
         let mut entries = Vec::new();
         let mut folders = vec![CALIBRATION.to_owned()];
         while let Some(folder) = folders.pop() {

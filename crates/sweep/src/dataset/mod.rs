@@ -3,10 +3,12 @@
 mod attempts;
 mod case_rows;
 mod commit;
+mod delta;
 mod diagrams;
 mod finalize;
 mod judged;
 mod kept;
+mod log;
 mod output;
 mod parts;
 mod shard;
@@ -15,6 +17,7 @@ mod store;
 mod tables;
 
 pub use commit::Commit;
+pub use delta::{DeltaTable, export_delta};
 pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::{finalize, verify};
 pub use output::{CALIBRATION, Claim, Existing, Output};
@@ -36,6 +39,7 @@ use crate::plan::MOST_CASES;
 use crate::{Case, Error, Plan};
 use attempts::Attempts;
 use case_rows::{failed, run_cases};
+use log::Pace;
 use parts::scan;
 use shard::ShardWriter;
 
@@ -125,9 +129,11 @@ pub fn generate_in(
     })?;
     let unfinished = cases_of(plan, &pending);
     progress.begins(plan.cases(), plan.cases() - unfinished);
-    run_shards(plan, &output, &pending, options, runner, progress)?;
-    run_diagrams(plan, &output, options, progress)?;
-    finalize(&output, plan)
+    output.logged("gen-dataset", || {
+        run_shards(plan, &output, &pending, options, runner, progress)?;
+        run_diagrams(plan, &output, options, progress)?;
+        finalize(&output, plan)
+    })
 }
 
 /// Runs the shards `pending` of a sweep. Those that several processes ended in come first, case by
@@ -152,7 +158,15 @@ pub fn run_shards(
         tables: Tables::new(plan)?,
         sweep_yaml: input::yaml::to_string(plan.sweep())?,
         done: plan.shards() - pending.len() as u64,
+        pace: Pace::new(cases_of(plan, pending)),
     };
+    if !pending.is_empty() {
+        let (id, threads) = (&plan.id[..12], options.threads);
+        let (cases, shards) = (shards.pace.cases(), pending.len());
+        output.say(format_args!(
+            "plan {id}: {cases} cases in {shards} shards, on {threads} threads"
+        ));
+    }
     let counts = attempts::counts(output)?;
     let in_vain = |shard: &u64| attempts::are_too_many(counts.get(&shard.to_string()));
     let (slow, fast): (Vec<u64>, Vec<u64>) = pending.iter().partition(|shard| in_vain(shard));
@@ -173,6 +187,7 @@ struct Shards<'a> {
     sweep_yaml: String,
     /// Finished shards.
     done: u64,
+    pace: Pace,
 }
 
 impl Shards<'_> {
@@ -191,6 +206,7 @@ impl Shards<'_> {
             tables,
             sweep_yaml,
             done,
+            pace,
         } = self;
         let (plan, output, options) = (*plan, *output, *options);
         let (threads, cancel) = (options.threads, options.cancel);
@@ -198,6 +214,7 @@ impl Shards<'_> {
         let attempts = Attempts::new(output);
         let inputs = pending.iter().flat_map(|&shard| {
             let begun = attempts.begin(&shard.to_string()).err().map(Err);
+            output.say(format_args!("shard {shard} begun"));
             let pieces = pieces(plan.shard(shard), together);
             begun
                 .into_iter()
@@ -222,6 +239,7 @@ impl Shards<'_> {
                 let end = cases.end;
                 for (case, rows) in cases.zip(rows) {
                     progress.case_done(case, rows.is_err());
+                    pace.add();
                     open.write(rows)?;
                 }
                 if end < plan.shard(shard).end {
@@ -229,6 +247,7 @@ impl Shards<'_> {
                     return Ok(());
                 }
                 open.commit(plan)?;
+                output.say(format_args!("shard {shard} made; {pace}"));
                 *done += 1;
                 attempts.end(&shard.to_string());
                 Ok::<(), Error>(())
@@ -246,6 +265,9 @@ impl Shards<'_> {
         let plan = self.plan;
         let attempts = Attempts::new(self.output);
         attempts.begin(&shard.to_string())?;
+        self.output.say(format_args!(
+            "shard {shard} begun case by case, because processes ended in it without a word"
+        ));
         let mut open = ShardWriter::new(self.output, plan, &self.tables, shard)?;
         for case in plan.shard(shard) {
             self.check_cancelled()?;
@@ -260,10 +282,13 @@ impl Shards<'_> {
             };
             for rows in rows {
                 self.progress.case_done(case, rows.is_err());
+                self.pace.add();
                 open.write(rows)?;
             }
         }
         open.commit(plan)?;
+        self.output
+            .say(format_args!("shard {shard} made; {}", self.pace));
         self.done += 1;
         attempts.end(&shard.to_string());
         Ok(())

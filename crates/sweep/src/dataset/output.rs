@@ -2,8 +2,8 @@
 //!
 //! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
 //! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
-//! shard K is finished, `attempts/` who is at work on which shard, `tmp/` holds files that are being
-//! written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
+//! shard K is finished, `attempts/` who is at work on which shard, `logs/` what each process did and
+//! when, `tmp/` holds files that are being written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
 //! or by any number that make a shard each. The operating system unlocks it when a process ends,
 //! however it ends.
 //!
@@ -20,6 +20,7 @@ use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
 use super::commit::text;
+use super::log::{self, Log};
 use super::store::Store;
 use crate::{Error, Plan};
 
@@ -48,7 +49,8 @@ pub struct Claim {
 #[derive(Debug)]
 pub struct Output {
     pub(super) store: Store,
-    root: PathBuf,
+    pub(super) root: PathBuf,
+    pub(super) log: Log,
     lock: Option<Lock>,
 }
 
@@ -79,7 +81,12 @@ const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 /// What a dataset has at its top, apart from `_sweep`.
 const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
 const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
-const WORK: [&str; 3] = ["_sweep/commits", "_sweep/attempts", "_sweep/tmp"];
+const WORK: [&str; 4] = [
+    "_sweep/commits",
+    "_sweep/attempts",
+    log::FOLDER,
+    "_sweep/tmp",
+];
 /// The folder of the calibration that a dataset begins with.
 pub const CALIBRATION: &str = "calibration";
 /// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
@@ -109,6 +116,7 @@ impl Claim {
         }
         let output = Output {
             store,
+            log: Log::default(),
             lock: Some(lock(root)?),
             root: root.to_owned(),
         };
@@ -137,6 +145,7 @@ impl Claim {
             output: Output {
                 store,
                 root,
+                log: Log::default(),
                 lock: None,
             },
             existing,
@@ -241,6 +250,7 @@ impl Output {
         let output = Self {
             store: Store::at(root)?,
             root: root.to_owned(),
+            log: Log::default(),
             lock: None,
         };
         let not_planned = || Error::NotPlanned(root.to_owned());

@@ -96,13 +96,17 @@ pub fn run_part(
                 return Ok(false);
             }
             progress.begins(plan.shard(shard).count() as u64, 0);
-            run_shards(plan, output, &[shard], options, runner, progress)?;
+            output.logged(&format!("shard-{shard}"), || {
+                run_shards(plan, output, &[shard], options, runner, progress)
+            })?;
         }
         Part::Diagram(diagram) => {
             if DiagramCommit::read(output, plan, &diagram.name)?.is_some() {
                 return Ok(false);
             }
-            compute(plan, output, &[diagram], options, progress)?;
+            output.logged(&format!("shard-{index}"), || {
+                compute(plan, output, &[diagram], options, progress)
+            })?;
         }
     }
     Ok(true)

@@ -76,6 +76,11 @@ impl<'a> ShardWriter<'a> {
         let case = match case {
             Ok(case) => case,
             Err(failed) => {
+                let (command, reason) = (failed.command_in(&self.output.root), &failed.reason);
+                self.output.say(format_args!(
+                    "{} failed: {reason}; again: {command}",
+                    failed.case_id
+                ));
                 self.commit.failed.push(failed);
                 return Ok(());
             }

@@ -1,5 +1,7 @@
 //! How far a sweep has got.
 
+use recordings::FailedCase;
+
 use super::attempts;
 use super::output::Output;
 use super::parts::{Made, scan};
@@ -16,7 +18,7 @@ pub struct Status {
     /// Cases in finished shards.
     pub cases: u64,
     /// Those of them that failed.
-    pub failed: u64,
+    pub failed: Vec<FailedCase>,
     /// Whether the dataset has its manifest, and so is complete.
     pub complete: bool,
 }
@@ -30,7 +32,7 @@ pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
         missing: Vec::new(),
         attempts: Vec::new(),
         cases: 0,
-        failed: 0,
+        failed: Vec::new(),
         complete: output.store.length("manifest.json")?.is_some(),
     };
     let attempts = attempts::counts(output)?;
@@ -39,7 +41,7 @@ pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
             Some(Made::Shard(commit)) => {
                 let [start, end] = commit.cases;
                 status.cases += end - start;
-                status.failed += commit.failed.len() as u64;
+                status.failed.extend(commit.failed);
             }
             Some(Made::Diagram(_)) => {}
             None => {

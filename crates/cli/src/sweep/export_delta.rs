@@ -1,0 +1,41 @@
+//! `sweep export-delta`: a finished dataset as Delta tables.
+
+use crate::Failure;
+use crate::gen_dataset;
+use clap::Args;
+use std::path::PathBuf;
+use sweep::dataset::{Output, export_delta};
+
+/// Arguments of `sweep export-delta`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Example:
+  crosshead sweep export-delta /scratch/faults
+  python -c 'import deltalake; print(deltalake.DeltaTable(\"/scratch/faults/features\").count())'
+
+signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
+of Parquet see no difference, but for polars, which reads features/*.parquet and no longer the folder.
+Doing it again changes nothing.
+
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// The finished dataset
+    url: PathBuf,
+}
+
+/// Writes the logs.
+///
+/// # Errors
+/// A dataset that is not complete, or an output that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    for table in export_delta(&output, &plan).map_err(gen_dataset::failed)? {
+        println!(
+            "{}: {} files, {} rows",
+            arguments.url.join(table.folder).display(),
+            table.files,
+            table.rows
+        );
+    }
+    Ok(())
+}
