@@ -103,6 +103,25 @@ fn the_bytes_do_not_depend_on_threads_and_the_resolved_sweep_gives_them_again() 
 }
 
 #[test]
+fn the_bytes_do_not_depend_on_how_many_lanes_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let run = |lanes: &str| {
+        let out = folder.path().join(lanes);
+        let status = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
+            .args([&sweep, Path::new("--out"), &out])
+            .env("CROSSHEAD_LANES", lanes)
+            .status();
+        assert!(status.unwrap().success());
+        bytes(&out)
+    };
+    let widest = run("8");
+    for narrower in ["4", "2"] {
+        assert!(run(narrower) == widest, "{narrower} lanes");
+    }
+}
+
+#[test]
 fn a_dry_run_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = write_sweep(folder.path());
