@@ -86,7 +86,6 @@ fn derivatives_count_for_what_they_cost() {
         likelihood.jacobian(&at);
         let cost = (problem.meter.steps() - plain) as f64 / plain as f64;
         let counted = derivatives(parameters) as f64;
-        println!("{parameters} parameters: {cost:.2} plain evaluations, counted as {counted}");
         assert!(
             (0.75..1.33).contains(&(cost / counted)),
             "{parameters} parameters cost {cost:.2} evaluations and count for {counted}"

@@ -125,7 +125,6 @@ fn a_night_of_hidden_effects_reaches_its_figures() {
     let text = fs::read_to_string(out.join("matrix.json")).unwrap();
     let matrix: Value = serde_json::from_str(&text).unwrap();
     let page = fs::read_to_string(out.join("matrix.md")).unwrap();
-    println!("{page}");
     let share = |of: &Value| {
         let [so, of] = ["so", "of"].map(|key| of[key].as_f64().unwrap());
         assert!(of > 0.0, "{page}");
