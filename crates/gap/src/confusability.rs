@@ -317,7 +317,7 @@ mod tests {
         let same = DVector::from_vec(vec![-1.0, 0.0, 0.0]);
         let y = DVector::from_vec(vec![5.0, 0.1, 0.0]);
         assert_eq!(correlation(&vector, &[]), 0.0);
-        assert!((correlation(&vector, &[x.clone()]) - 3.0 / 13.0).abs() < 1e-12);
+        assert!((correlation(&vector, std::slice::from_ref(&x)) - 3.0 / 13.0).abs() < 1e-12);
         let all = [x, same, y];
         assert!((correlation(&vector, &all) - 5.0 / 13.0).abs() < 1e-12);
         let itself = [-2.0 * &vector];
