@@ -124,8 +124,9 @@ impl<'a, 'w> Search<'a, 'w> {
             || self.minima.iter().filter(same).count() >= AGREE
     }
 
-    /// From `start` each throw by itself, as far as that takes it. Where it ends; a parameter that
-    /// several throws share is then in the middle of what they ask for.
+    /// From `start` each throw by itself, as far as that takes it, with an equal share of the
+    /// evaluations for each and for all together: one in which something is missing would take all.
+    /// Where it ends; a parameter that several throws share is then in the middle of what they ask for.
     fn throw_by_throw(
         &mut self,
         throws: &[ThrowAlone],
@@ -133,12 +134,12 @@ impl<'a, 'w> Search<'a, 'w> {
         seed: u64,
     ) -> Result<Vec<f64>, Error> {
         let mut found = vec![Vec::new(); start.len()];
-        for throw in throws {
+        for (i, throw) in throws.iter().enumerate() {
             if self.stopped || self.left() == 0 {
                 break;
             }
             let own: Vec<f64> = throw.parameters.iter().map(|i| start[*i]).collect();
-            let left = self.left();
+            let left = self.left() / (throws.len() - i + 1) as u64;
             let alone = {
                 let told = &mut self.told(false);
                 let mut alone = Search::new(&throw.problem, &own, left, NEAR, told);

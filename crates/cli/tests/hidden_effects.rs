@@ -113,6 +113,36 @@ fn what_is_hidden_is_named_and_where_nothing_is_nothing_is() {
     );
 }
 
+/// The figures that the whole must reach, on a bench that takes a night.
+#[test]
+#[ignore = "takes a night: cargo test -p cli --test hidden_effects -- --ignored"]
+fn a_night_of_hidden_effects_reaches_its_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("proof");
+    let settings = project("pipelines/hidden-effects-nightly.yaml");
+    let done = hidden_effects(&settings, &out, &[]);
+    assert!(done.status.success(), "{}", said(&done));
+    let text = fs::read_to_string(out.join("matrix.json")).unwrap();
+    let matrix: Value = serde_json::from_str(&text).unwrap();
+    let page = fs::read_to_string(out.join("matrix.md")).unwrap();
+    let share = |of: &Value| {
+        let [so, of] = ["so", "of"].map(|key| of[key].as_f64().unwrap());
+        assert!(of > 0.0, "{page}");
+        so / of
+    };
+    let clear = &matrix["recall"]["3 and more"];
+    assert_eq!(matrix["failed"], 0, "{page}");
+    assert!(share(&clear["named_first"]) >= 0.9, "{page}");
+    assert!(share(&clear["among_rivals"]) >= 0.98, "{page}");
+    assert!(share(&matrix["false_discoveries"]) <= 0.05, "{page}");
+    assert!(share(&matrix["pairs_found"]) >= 0.8, "{page}");
+    assert!(share(&matrix["mistaken"]) == 0.0, "{page}");
+    assert!(
+        matrix["held_out_gap_closed"]["median"].as_f64().unwrap() >= 0.8,
+        "{page}"
+    );
+}
+
 /// A bundle has the nominal machine and a run, and its encoder counts down.
 fn the_workflow_sees_recordings_alone(bundle: &Path) {
     let mut names: Vec<String> = fs::read_dir(bundle)

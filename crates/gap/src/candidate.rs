@@ -3,7 +3,7 @@
 use crate::empirical_force;
 use crate::error::Error;
 use crate::model::Model;
-use crate::pressures::shows_pressure;
+use crate::pressures::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
 use input::MachineFile;
 use input::effects::{CATALOGUE, Entry, Parameter};
@@ -39,9 +39,11 @@ const HELD: &str = "suction_unloading";
 const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
 /// The effect that an encoder shows.
 const UNEVEN: &str = "speed_fluctuation";
-/// Found by its frequency, not by its orders; the zero of the crank angle is fitted to begin with; a
-/// law of no name comes last.
-const ELSEWHERE: [&str; 3] = ["mains_hum", "crank_angle_offset", "empirical_force"];
+/// Found by its frequency, not by its orders; a law of no name comes last.
+const ELSEWHERE: [&str; 2] = ["mains_hum", "empirical_force"];
+/// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
+/// clearance volume and exponents imitate it, so that it has to earn its place.
+const ZERO: &str = "crank_angle_offset";
 /// What the pressure of a cylinder shows whatever the joints do.
 const GAS: [&str; 5] = [
     "valve_loss",
@@ -66,7 +68,14 @@ impl Candidate {
         let known = shows_pressure(problem);
         let both_ends = has_crank_end(&problem.tree) && tells_ends_apart(problem);
         let mut all = Vec::new();
-        for entry in CATALOGUE.iter().filter(|e| !ELSEWHERE.contains(&e.name)) {
+        let zero = !problem
+            .parameters
+            .iter()
+            .any(calibrate::Parameter::is_crank_angle_offset)
+            && is_of_pressures(problem);
+        let looked_for =
+            |entry: &&Entry| !ELSEWHERE.contains(&entry.name) && (zero || entry.name != ZERO);
+        for entry in CATALOGUE.iter().filter(looked_for) {
             for place in places(entry, &throws, both_ends) {
                 if is_series(entry) && recorded(problem, &place) == Some(1) {
                     continue;
@@ -119,7 +128,7 @@ impl Candidate {
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
         let measures = |(_, word): &(&str, String)| word == PRESSURE;
-        GAS.contains(&self.entry.name) || self.place.iter().any(measures)
+        GAS.contains(&self.entry.name) || self.entry.name == ZERO || self.place.iter().any(measures)
     }
 
     /// Its joint, where it has one.

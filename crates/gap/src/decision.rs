@@ -20,7 +20,7 @@ const RIVAL_ABOVE_NOISE: f64 = 1.5;
 pub(crate) const EARNED: f64 = 0.3;
 /// The same where pressures are all that was recorded: the gas alone can explain them, and after one
 /// effect what others do is still in the way of the next.
-const EARNED_OF_GAS: f64 = 0.2;
+pub(crate) const EARNED_OF_GAS: f64 = 0.2;
 /// Share of the distance to the noise that must be gone, of fitted and of held-out runs, for effects
 /// to explain a part; and for a single one to be sure by itself.
 pub(crate) const PARTLY: f64 = 0.5;

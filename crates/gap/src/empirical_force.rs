@@ -293,7 +293,9 @@ impl Search<'_> {
                 candidate: law.candidate,
                 evidence: evidence(&start, &law.model, score),
                 by_run: law.model.misfits(),
+                model: Some(law.model.clone()),
                 pressure_rms: law.model.pressure_rms()?,
+                gap: Some(law.model.gap()),
                 rivals: Vec::new(),
             });
             (model, found) = (law.model, effects);

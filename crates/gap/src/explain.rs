@@ -1,7 +1,8 @@
 //! The workflow: effects are added one after another while they earn their place.
 
 use crate::candidate::Candidate;
-use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, rival, verdict};
+use crate::confusability::Likeness;
+use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, verdict};
 use crate::error::Error;
 use crate::journal::Finished;
 use crate::mains_hum::Hum;
@@ -10,7 +11,9 @@ use crate::missing_force::MissingForce;
 use crate::model::{Effort, FIRST_SEARCH, Model, SEARCH, Watch};
 use crate::pressures::{OfGas, pressures, shows_pressure};
 use crate::refit::few;
+use crate::replication::shows_in_each;
 use crate::screening::screen;
+use crate::steps::{Gap, Step, steps};
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use nalgebra::DMatrix;
@@ -38,6 +41,10 @@ pub struct Explanation {
     pub refused: Vec<Tried>,
     /// The machine as it was given.
     pub nominal: Model,
+    /// The gap as it shrank, the machine as it was given first.
+    pub steps: Vec<Step>,
+    /// What to measure to tell effects from their rivals, in a sentence.
+    pub next_recording: Option<String>,
     /// What the parameters of the explained model are known to.
     pub estimates: Vec<Estimate>,
     /// The force that is missing where the catalogue explains too little; empty elsewhere.
@@ -55,23 +62,34 @@ pub struct Found {
     pub values: Vec<f64>,
     /// On what it was decided.
     pub evidence: Evidence,
+    /// The model with which it was decided; none where its parameters are no model's.
+    pub model: Option<Model>,
     /// The misfit that it leaves in each run.
     pub by_run: Vec<(String, f64)>,
     /// Root mean square of simulated less recorded pressure that it leaves in each run, Pa.
     pub pressure_rms: Vec<(String, f64)>,
+    /// What the whole was left with once it had been added; none where that was not looked at by
+    /// itself.
+    pub gap: Option<Gap>,
     /// What else might have been.
     pub rivals: Vec<Tried>,
 }
 
-/// A candidate that was fitted.
+/// A candidate that was looked at.
 #[derive(Clone, Debug)]
 pub struct Tried {
     /// The effect.
     pub candidate: Candidate,
+    /// Its parameters, SI.
+    pub values: Vec<f64>,
     /// How well it did.
     pub evidence: Evidence,
     /// The misfit that it leaves in each of the runs that it was fitted to or held against.
     pub by_run: Vec<(String, f64)>,
+    /// How like that of the effect that was added its signature is, where it was compared.
+    pub likeness: Option<Likeness>,
+    /// The model with it; none where it was not fitted.
+    pub model: Option<Model>,
 }
 
 /// What is being done, for a progress bar.
@@ -140,6 +158,7 @@ pub fn explain(
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
     let mut baseline = baseline;
     let explains = |baseline: &Model, effects| verdict(baseline, &model, effects);
+    let calibrated = baseline.gap();
     if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)?
         && (offset.evidence.is_sure() || explains(&without, 1) != Verdict::Unexplained)
     {
@@ -151,8 +170,11 @@ pub fn explain(
         Verdict::Unexplained if !found.is_empty() => Verdict::PartlyExplained,
         verdict => verdict,
     };
+    let nominal = Model::at(problem.clone(), nothing, effort)?;
     Ok(Explanation {
-        nominal: Model::at(problem.clone(), nothing, effort)?,
+        steps: steps(&nominal, &baseline, &chain, calibrated, &found, &model),
+        next_recording: search.next_recording(&found)?,
+        nominal,
         chain,
         estimates,
         correlations,
@@ -209,6 +231,7 @@ impl Search<'_> {
         }
         (self.say)("calibrating", f64::NAN);
         let model = self.searched(&with_gas, None, CALIBRATION)?;
+        self.tell_gas(problem, &mut found, &model)?;
         let baseline = match found.is_empty() {
             true => model.clone(),
             false => {
@@ -229,6 +252,22 @@ impl Search<'_> {
         found.extend(of_throws);
         found.extend(others);
         Ok((baseline, model, found, refused))
+    }
+
+    /// What the whole is left with after each effect of the gas, the last of which leaves `model`.
+    fn tell_gas(&self, problem: &Problem, found: &mut [Found], model: &Model) -> Result<(), Error> {
+        let last = found.len().saturating_sub(1);
+        for i in 0..found.len() {
+            found[i].gap = if i == last {
+                Some(model.gap())
+            } else if self.effort.goes_on() {
+                (self.say)("calibrating with a part of the effects", model.fitted);
+                Some(self.with_only(problem, model, &found[..=i])?.gap())
+            } else {
+                None
+            };
+        }
+        Ok(())
     }
 
     /// The problem's machine, calibrated as well as it can be with so many evaluations.
@@ -296,6 +335,8 @@ impl Search<'_> {
                 i += 1;
             } else {
                 found.remove(i);
+                // What later ones were left with was with this one.
+                found[i..].iter_mut().for_each(|later| later.gap = None);
                 model = without;
             }
         }
@@ -316,14 +357,18 @@ impl Search<'_> {
             return Ok((model, found, refused));
         }
         let is_sure = |found: &Found| found.evidence.is_sure();
-        let (kept, others): (Vec<_>, Vec<_>) = found.into_iter().partition(is_sure);
+        let (mut kept, others): (Vec<_>, Vec<_>) = found.into_iter().partition(is_sure);
         if others.is_empty() {
             return Ok((model, kept, refused));
         }
+        kept.iter_mut().for_each(|kept| kept.gap = None);
         let others = others.into_iter().map(|found| Tried {
             candidate: found.candidate,
+            values: found.values,
             evidence: found.evidence,
             by_run: found.by_run,
+            likeness: None,
+            model: found.model,
         });
         let refused = others.chain(refused).collect();
         Ok((self.with_only(problem, baseline, &kept)?, kept, refused))
@@ -376,22 +421,37 @@ impl Search<'_> {
             let few = few(&model, self.effort);
             let candidates = candidates(&model.problem);
             let screened = screen(&few, candidates, self.effort, self.watch)?;
-            let mut tried = self.refit(&model, screened)?;
+            let mut tried = self.refit(&model, screened.clone())?;
             if tried.is_empty() {
                 break;
             }
-            let (best, after) = tried.remove(0);
+            // Those fitted to all runs come first.
+            let shows = |(tried, after): &(Tried, Model)| {
+                let whole = after.problem.runs.len() == model.problem.runs.len();
+                whole && shows_in_each(&tried.candidate, &model, after)
+            };
+            let (best, after) = tried.remove(tried.iter().position(shows).unwrap_or(0));
             let others = tried.into_iter().map(|(tried, _)| tried);
-            if !earns(&model, &after) {
+            if !(earns(&model, &after) && shows_in_each(&best.candidate, &model, &after)) {
                 let refused = std::iter::once(best).chain(others).collect();
                 return Ok((model, found, refused));
             }
-            let near = |tried: &Tried| tried.evidence.misfit[1] < rival(after.fitted);
+            let others = others.collect();
+            let few = Model::at(few.problem, few.x, self.effort)?;
             found.push(Found {
-                rivals: others.filter(near).collect(),
-                values: best.candidate.values(&after, effects(&model.problem)),
+                rivals: self.rivals(
+                    &few,
+                    &after,
+                    &best.candidate,
+                    &best.evidence,
+                    &screened,
+                    others,
+                )?,
+                values: best.values,
+                model: Some(after.clone()),
                 by_run: best.by_run,
                 pressure_rms: after.pressure_rms()?,
+                gap: Some(after.gap()),
                 candidate: best.candidate,
                 evidence: best.evidence,
             });

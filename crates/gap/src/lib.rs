@@ -9,6 +9,7 @@
 //! ```
 
 pub mod candidate;
+mod confusability;
 pub mod decision;
 pub mod empirical_force;
 pub mod error;
@@ -21,14 +22,18 @@ pub mod missing_force;
 pub mod model;
 mod next_recording;
 mod pressures;
+mod projector;
 mod refit;
+mod replication;
 pub mod residual_map;
 pub mod scaling;
 pub mod screening;
 mod stability_selection;
+pub mod steps;
 mod throw_by_throw;
 
 pub use candidate::Candidate;
+pub use confusability::Likeness;
 pub use decision::{Evidence, Verdict};
 pub use empirical_force::{Force, Law, empirical_force};
 pub use error::Error;
@@ -37,6 +42,6 @@ pub use journal::Journal;
 pub use mains_hum::{Hum, remove_hum};
 pub use missing_force::MissingForce;
 pub use model::{Effort, Model};
-pub use next_recording::next_recording;
 pub use residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 pub use scaling::{Scaling, scaling};
+pub use steps::{Gap, Step};

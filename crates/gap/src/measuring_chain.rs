@@ -82,6 +82,8 @@ fn found(
         evidence,
         by_run: Vec::new(),
         pressure_rms: Vec::new(),
+        gap: None,
+        model: None,
         rivals: Vec::new(),
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::journal::{Finished, Journal};
 use crate::pressures::{is_of_pressures, is_pressure};
+use crate::steps::Gap;
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
 use calibrate::observation::Observation;
@@ -167,6 +168,14 @@ impl Model {
         Self::at(problem, x, effort)
     }
 
+    /// What it leaves.
+    pub(crate) fn gap(&self) -> Gap {
+        Gap {
+            fitted: self.fitted,
+            held_out: self.held_out,
+        }
+    }
+
     /// The misfit of each run, by its name.
     pub(crate) fn misfits(&self) -> Vec<(String, f64)> {
         let runs = self.problem.runs.iter().map(|run| run.id.clone());
@@ -202,9 +211,13 @@ impl Model {
 
     /// Schwarz's criterion of `after`, which has the same runs, less that of this model.
     pub(crate) fn bic_to(&self, after: &Self) -> f64 {
-        let count = after.observations();
-        let extra = after.x.len() as f64 - self.x.len() as f64;
-        count * (after.fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
+        self.bic_with(after.fitted, after.x.len() as f64 - self.x.len() as f64)
+    }
+
+    /// The same of a model with so many more parameters, which leaves the misfit `fitted`.
+    pub(crate) fn bic_with(&self, fitted: f64, extra: f64) -> f64 {
+        let count = self.observations();
+        count * (fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
     }
 
     /// Schwarz's criterion with the variance of what is left taken from the residuals themselves,

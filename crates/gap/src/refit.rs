@@ -3,7 +3,7 @@
 use crate::candidate::Candidate;
 use crate::decision::{NOISE, RIVAL, evidence};
 use crate::error::Error;
-use crate::explain::{Search, Tried};
+use crate::explain::{Search, Tried, effects};
 use crate::model::{Effort, Model};
 use crate::screening::Screened;
 use rayon::prelude::*;
@@ -21,8 +21,8 @@ const DEEPER: usize = 3;
 const SEARCH: u64 = 300;
 /// Most evaluations of a first descent for a candidate; and for one that can be no more than a rival of
 /// another that has reached the noise.
-const FIRST: u64 = 80;
-const RIVALS: u64 = 40;
+const FIRST: u64 = 50;
+pub(crate) const RIVALS: u64 = 25;
 /// Runs that the first fits of candidates use.
 pub(crate) const FEW: usize = 3;
 
@@ -84,9 +84,12 @@ impl Search<'_> {
             let evidence = evidence(before, &after, score);
             tried.push((
                 Tried {
+                    values: candidate.values(&after, effects(&model.problem)),
                     candidate,
                     evidence,
                     by_run: after.misfits(),
+                    likeness: None,
+                    model: Some(after.clone()),
                 },
                 after,
             ));

@@ -40,7 +40,7 @@ impl Search<'_> {
             if explained.fitted <= NOISE || most == 0 {
                 break;
             }
-            let (throw, of_throw, _) = self.while_they_earn(throw, NOISE, most, own)?;
+            let (throw, mut of_throw, _) = self.while_they_earn(throw, NOISE, most, own)?;
             if of_throw.is_empty() {
                 continue;
             }
@@ -55,6 +55,11 @@ impl Search<'_> {
             x.resize(with.parameters.len(), 0.0);
             let after = Model::fit(with, &x, self.effort, self.watch)?;
             if earns(&explained, &after) {
+                // Each by itself was judged in this throw alone.
+                let last = of_throw.len() - 1;
+                for (i, found) in of_throw.iter_mut().enumerate() {
+                    found.gap = (i == last).then(|| after.gap());
+                }
                 explained = after;
                 found.extend(of_throw);
             }

@@ -45,6 +45,11 @@ pub struct HiddenEffects {
     /// out.
     #[serde(default)]
     pub pairs: Option<Count<0, 1000>>,
+    /// Cases of a round in which something is hidden that no catalogue has, of each kind in turn: the
+    /// contacts of another law, an acceleration behind a capacitor, and one that comes late; 0 where it
+    /// is left out.
+    #[serde(default)]
+    pub outside: Option<Count<0, 1000>>,
     /// Rounds; where it is left out as many as there are combinations of machine, noise and size, so
     /// that every effect meets each of them.
     #[serde(default)]

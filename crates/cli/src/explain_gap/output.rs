@@ -83,14 +83,15 @@ pub fn write(
                 "after": pressure_rms(&all, 1),
             },
         },
+        "steps": explanation.steps,
         "notes": words::notes(explanation, effort, gas),
         "parameters": parameters(explanation),
         "where": gap::places(&maps[0], PLACES),
         "scaling": gap::scaling(before, &maps[0]).map_err(Failure::work)?,
         "heldout_runs": effort.held_out,
-        "next_recording": gap::next_recording(&explanation.found),
+        "next_recording": explanation.next_recording,
         "missing_force": explanation.missing_force,
-        "refused": explanation.refused.iter().map(rival).collect::<Vec<_>>(),
+        "refused": explanation.refused.iter().map(|tried| rival(tried, None)).collect::<Vec<_>>(),
         "cost": effort.journal.spent(),
         "seconds": seconds,
         "runs": runs,
@@ -199,11 +200,12 @@ fn of_item(
         "expression": (entry.name == gap::empirical_force::NAME).then(|| gap::empirical_force::expression(terms)),
         "evidence": found.evidence,
         "pressure_rms_pa": by_name(&found.pressure_rms),
-        "rivals": found.rivals.iter().map(rival).collect::<Vec<_>>(),
+        "rivals": found.rivals.iter().map(|tried| rival(tried, Some(found))).collect::<Vec<_>>(),
     })
 }
 
-fn rival(tried: &Tried) -> Value {
+/// A candidate that was not added; a rival of the effect `found`, where it is one.
+fn rival(tried: &Tried, found: Option<&Found>) -> Value {
     let Candidate { entry, .. } = &tried.candidate;
     json!({
         "effect": entry.name,
@@ -212,6 +214,10 @@ fn rival(tried: &Tried) -> Value {
         "end": tried.candidate.end(),
         "label": tried.candidate.label(),
         "evidence": tried.evidence,
+        "correlation": tried.likeness.map(|likeness| likeness.correlation),
+        "leaves": tried.leaves(),
+        "explains_of_effect": found.map(|found| tried.explains(&found.evidence)),
+        "fitted": tried.model.is_some(),
     })
 }
 
@@ -230,9 +236,9 @@ pub fn summary(results: &Value) {
         }
         for rival in effect["rivals"].as_array().into_iter().flatten() {
             println!(
-                "  rival: {} {}",
+                "  rival: {}, {}",
                 word(&rival["label"]),
-                rival["evidence"]["misfit"]
+                words::rival(rival)
             );
         }
     }

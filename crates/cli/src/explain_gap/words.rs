@@ -4,6 +4,7 @@ use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
 use gap::{Candidate, Effort, Explanation};
+use serde_json::Value;
 use std::f64::consts::PI;
 
 /// Correlation from which two estimates are one.
@@ -72,6 +73,19 @@ fn correlated(explanation: &Explanation) -> Vec<String> {
         )
     });
     words.collect()
+}
+
+/// What is known of a rival, the content of `gap.json`: what it leaves, and how like the effect it is.
+pub fn rival(content: &Value) -> String {
+    let number = |key: &str| content[key].as_f64();
+    let leaves = number("leaves").unwrap_or(f64::NAN);
+    let mut words = format!("which would leave {leaves:.2}");
+    if let Some(correlation) = number("correlation") {
+        words.push_str(&format!(
+            " (correlation of what they change {correlation:.2})"
+        ));
+    }
+    words
 }
 
 /// At which crank angle a held suction valve closes, as a sentence, where `key` says how long it is

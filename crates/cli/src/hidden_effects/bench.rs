@@ -2,6 +2,7 @@
 
 use super::machine::Machine;
 use super::outcome::{Explained, Hidden, Outcome};
+use super::outside::Outside;
 use super::plan::Case;
 use super::recordings::{Clean, Recorder};
 use super::truth;
@@ -79,6 +80,7 @@ impl Bench<'_> {
                 .iter()
                 .map(|entry| Hidden::somewhere(entry.name))
                 .collect(),
+            outside: case.outside,
             other_contact_law: false,
             found: None,
             error: None,
@@ -129,7 +131,8 @@ impl Bench<'_> {
         let seed = u64::from(self.settings.seed.map_or(0, |seed| seed.get()));
         let mut random = stream(seed, case.number, Purpose::Variation);
         let share = self.settings.other_contact_law.as_ref();
-        let other_contact_law = random.random::<f64>() < share.map_or(0.0, |share| share.si());
+        let other_contact_law = random.random::<f64>() < share.map_or(0.0, |share| share.si())
+            || case.outside == Some(Outside::ContactLaw);
         let truth = truth::contacts(machine, other_contact_law, &mut random)?;
         let with = |effects: &[Value]| {
             let mut tree = truth.clone();
@@ -160,7 +163,12 @@ impl Bench<'_> {
                 .try_for_each(seen)
                 .and_then(|()| self.recorder.runs(machine, &with(&items)));
             match clean {
-                Ok(clean) => {
+                Ok(mut clean) => {
+                    if let Some(outside) = case.outside {
+                        clean
+                            .iter_mut()
+                            .for_each(|run| self.recorder.change(run, outside));
+                    }
                     let hidden = case.hidden.iter().zip(items).map(|(entry, item)| Hidden {
                         effect: entry.name.to_owned(),
                         section: item[entry.name].clone(),

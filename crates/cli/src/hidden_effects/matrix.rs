@@ -13,6 +13,9 @@ const CLASSES: [(&str, [f64; 2]); 4] = [
     ("10 and more", [10.0, f64::INFINITY]),
     ("3 and more", [3.0, f64::INFINITY]),
 ];
+/// The verdict of what is named with confidence, and the name of a law that is in no catalogue.
+const EXPLAINED: &str = "explained";
+const LAW: &str = "empirical_force";
 /// Share of the distance to the noise that counts as closed.
 const CLOSED: f64 = 0.8;
 
@@ -68,7 +71,8 @@ impl<'a> Matrix<'a> {
     /// Those in which so many effects are hidden and the workflow came to an end.
     fn ended(&self, hidden: usize) -> impl Iterator<Item = &'a Outcome> + use<'a> {
         let outcomes = self.outcomes.iter();
-        outcomes.filter(move |o| o.hidden.len() == hidden && o.found.is_some())
+        let within = outcomes.filter(|o| o.outside.is_none());
+        within.filter(move |o| o.hidden.len() == hidden && o.found.is_some())
     }
 
     /// Those of one hidden effect whose size over the noise is within `range`.
@@ -84,6 +88,19 @@ impl<'a> Matrix<'a> {
 
     fn false_discoveries(&self) -> Share {
         Share::count(self.ended(0), |o| named(o).next().is_some())
+    }
+
+    /// Those in which something is taken, with confidence, for an effect that it is not, where what is
+    /// hidden is in no catalogue.
+    fn mistaken(&self) -> Share {
+        let outside = self.outcomes.iter().filter(|o| o.outside.is_some());
+        Share::count(outside.filter(|o| o.found.is_some()), |o| {
+            let sure = o
+                .found
+                .as_ref()
+                .is_some_and(|found| found.verdict == EXPLAINED);
+            sure && named(o).any(|name| name != LAW)
+        })
     }
 
     fn pairs_found(&self) -> Share {
@@ -137,6 +154,7 @@ impl<'a> Matrix<'a> {
             "recall": recall,
             "false_discoveries": self.false_discoveries().json(),
             "pairs_found": self.pairs_found().json(),
+            "mistaken": self.mistaken().json(),
             "held_out_gap_closed": {
                 "median": median(&closed),
                 "least": closed.first(),
@@ -184,6 +202,10 @@ impl<'a> Matrix<'a> {
         let false_ones = self.false_discoveries().text();
         line(format!(
             "| something named where nothing is hidden | {false_ones} |"
+        ));
+        line(format!(
+            "| what is in no catalogue taken for an effect (`explained`) | {} |",
+            self.mistaken().text()
         ));
         line(format!(
             "| both of two effects named | {} |",
@@ -298,9 +320,10 @@ fn is_among_rivals(outcome: &Outcome) -> bool {
 
 fn label(outcome: &Outcome) -> String {
     let names: Vec<&str> = outcome.hidden.iter().map(|h| h.effect.as_str()).collect();
-    match names.is_empty() {
-        true => NOTHING.to_owned(),
-        false => names.join(" + "),
+    match (outcome.outside, names.is_empty()) {
+        (Some(outside), _) => outside.name().to_owned(),
+        (None, true) => NOTHING.to_owned(),
+        (None, false) => names.join(" + "),
     }
 }
 
@@ -317,6 +340,7 @@ fn number(value: Option<f64>) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::outcome::{Explained, Hidden, Named};
+    use super::super::outside::Outside;
     use super::*;
 
     /// A case that hides `hidden` and in which `named` is found, each with one rival after a slash;
@@ -344,6 +368,7 @@ mod tests {
                     ..Hidden::somewhere(effect)
                 })
                 .collect(),
+            outside: None,
             other_contact_law: false,
             found: Some(Explained {
                 verdict: "explained".into(),
@@ -359,6 +384,13 @@ mod tests {
             }),
             error: None,
             cpu_seconds: None,
+        }
+    }
+
+    fn strange(outcome: Outcome) -> Outcome {
+        Outcome {
+            outside: Some(Outside::TimeLag),
+            ..outcome
         }
     }
 
@@ -380,10 +412,13 @@ mod tests {
             outcome(&["x", "y"], &["y", "x"], [9.0, 1.0]),
             outcome(&["x", "y"], &["y/x"], [9.0, 3.0]),
             failed,
+            strange(outcome(&[], &["x"], [9.0, 1.0])),
+            strange(outcome(&[], &["empirical_force"], [9.0, 1.0])),
+            strange(outcome(&[], &[], [9.0, 9.0])),
         ];
         let found = Matrix::of(&outcomes).json();
         let share = |so: usize, of: usize| json!({"so": so, "of": of});
-        assert_eq!(found["cases"], 10);
+        assert_eq!(found["cases"], 13);
         assert_eq!(found["failed"], 1);
         let middle = &found["recall"]["3 to 10"];
         assert_eq!(middle["named_first"], share(1, 2));
@@ -394,6 +429,8 @@ mod tests {
         assert_eq!(found["recall"]["below 3"]["named_first"], share(0, 1));
         assert_eq!(found["false_discoveries"], share(1, 2));
         assert_eq!(found["pairs_found"], share(1, 2));
+        assert_eq!(found["mistaken"], share(1, 3));
+        assert_eq!(found["hidden_against_named"]["time_lag"]["x"], 1);
         // Named first are two: from 5 to 1, and from 11 to 4.
         assert_eq!(found["held_out_gap_closed"]["by_80_percent"], share(1, 2));
         assert_eq!(found["held_out_gap_closed"]["median"], 0.85);

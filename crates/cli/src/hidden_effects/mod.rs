@@ -7,6 +7,7 @@ mod bench;
 mod machine;
 mod matrix;
 mod outcome;
+mod outside;
 mod plan;
 mod recordings;
 mod truth;
@@ -20,6 +21,7 @@ use input::hidden_effects::HiddenEffects;
 use machine::Machine;
 use matrix::Matrix;
 use outcome::{Ledger, Outcome};
+use outside::Outside;
 use plan::{Case, NOTHING};
 use recordings::Recorder;
 use std::ops::RangeInclusive;
@@ -157,7 +159,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// The cases that are asked for.
 fn chosen(arguments: &Arguments, mut cases: Vec<Case>) -> Result<Vec<Case>, Failure> {
-    let names = || CATALOGUE.iter().map(|e| e.name).chain([NOTHING]);
+    let others = || Outside::ALL.map(Outside::name).into_iter().chain([NOTHING]);
+    let names = || CATALOGUE.iter().map(|e| e.name).chain(others());
     if let Some(unknown) = arguments
         .only
         .iter()

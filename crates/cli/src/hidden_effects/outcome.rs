@@ -1,5 +1,6 @@
 //! What became of a case, and the file that has a line for each.
 
+use super::outside::Outside;
 use crate::Failure;
 use crate::calibrate::output::write_file;
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,9 @@ pub struct Outcome {
     pub size: f64,
     /// What was hidden.
     pub hidden: Vec<Hidden>,
+    /// What was hidden that no catalogue has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<Outside>,
     /// Whether the joints followed another contact law.
     pub other_contact_law: bool,
     /// What the workflow found; none where it failed.

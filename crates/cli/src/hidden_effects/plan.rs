@@ -1,5 +1,6 @@
 //! The cases of a test bench, in rounds.
 
+use super::outside::Outside;
 use input::effects::Entry;
 use input::hidden_effects::HiddenEffects;
 use rand::seq::IndexedRandom;
@@ -21,15 +22,18 @@ pub struct Case {
     pub size: f64,
     /// The effects that are hidden: none, one or two.
     pub hidden: Vec<&'static Entry>,
+    /// What is hidden that no catalogue has.
+    pub outside: Option<Outside>,
 }
 
 impl Case {
     /// What is hidden, in a word.
     pub fn label(&self) -> String {
         let names: Vec<&str> = self.hidden.iter().map(|entry| entry.name).collect();
-        match names.is_empty() {
-            true => NOTHING.to_owned(),
-            false => names.join("+"),
+        match (self.outside, names.is_empty()) {
+            (Some(outside), _) => outside.name().to_owned(),
+            (None, true) => NOTHING.to_owned(),
+            (None, false) => names.join("+"),
         }
     }
 
@@ -40,14 +44,16 @@ impl Case {
 
     /// Whether `name` is hidden in it, or nothing is and `name` says so.
     pub fn hides(&self, name: &str) -> bool {
-        match self.hidden.is_empty() {
-            true => name == NOTHING,
-            false => self.hidden.iter().any(|entry| entry.name == name),
+        match (self.outside, self.hidden.is_empty()) {
+            (Some(outside), _) => name == outside.name(),
+            (None, true) => name == NOTHING,
+            (None, false) => self.hidden.iter().any(|entry| entry.name == name),
         }
     }
 }
 
-/// All cases. In each round every effect is hidden once, then nothing, then pairs. From one case of a
+/// All cases. In each round every effect is hidden once, then nothing, then pairs,
+/// then what is in no catalogue. From one case of a
 /// round to the next, and from one round to the next, the combination of machine, noise and size is
 /// another one, so that each round has all of them about equally often.
 pub fn cases(settings: &HiddenEffects) -> Vec<Case> {
@@ -55,6 +61,7 @@ pub fn cases(settings: &HiddenEffects) -> Vec<Case> {
     let seed = u64::from(settings.seed.map_or(0, |seed| seed.get()));
     let nothing = settings.nothing.map_or(1, |count| count.get()) as usize;
     let pairs = settings.pairs.map_or(0, |count| count.get()) as usize;
+    let outside = settings.outside.map_or(0, |count| count.get()) as usize;
     let [machines, noises, sizes] = [
         settings.machines.len(),
         settings.noises.len(),
@@ -64,14 +71,15 @@ pub fn cases(settings: &HiddenEffects) -> Vec<Case> {
     let rounds = settings
         .rounds
         .map_or(combinations, |rounds| rounds.get() as usize);
-    let slots = effects.len() + nothing + pairs;
+    let within = effects.len() + nothing + pairs;
+    let slots = within + outside;
     let of = |index: usize| {
         let [round, slot] = [index / slots, index % slots];
         let combination = (round + slot) % combinations;
         let number = index as u64 + 1;
         let hidden = match slot {
             single if single < effects.len() => vec![effects[single]],
-            empty if empty < effects.len() + nothing => Vec::new(),
+            empty if empty < effects.len() + nothing || empty >= within => Vec::new(),
             _ => {
                 let mut random = stream(seed, number, Purpose::Split);
                 effects.sample(&mut random, 2).copied().collect()
@@ -83,6 +91,10 @@ pub fn cases(settings: &HiddenEffects) -> Vec<Case> {
             noise: settings.noises[combination / machines % noises].si(),
             size: settings.sizes[combination / (machines * noises)].get(),
             hidden,
+            // One after another, over the rounds too.
+            outside: slot
+                .checked_sub(within)
+                .map(|i| Outside::ALL[(round * outside + i) % Outside::ALL.len()]),
         }
     };
     (0..rounds * slots).map(of).collect()
@@ -117,6 +129,18 @@ mod tests {
         assert_eq!(pairs.len(), 8);
         assert!(pairs.iter().all(|c| c.hidden[0].name != c.hidden[1].name));
         assert_eq!(cases[6].id(), "0007-valve_loss");
+    }
+
+    #[test]
+    fn what_no_catalogue_has_comes_last_and_in_turns() {
+        let text = "machines: [{name: a, bundle: a}]\nsizes: [1]\nnoises: [2 %]\n\
+                    effects: [valve_loss]\nnothing: 1\noutside: 2\nrounds: 2\n";
+        let cases = cases(&settings(text));
+        let labels: Vec<String> = cases.iter().map(Case::label).collect();
+        let expected = ["valve_loss", "nothing", "contact_law", "ac_coupling"];
+        assert_eq!(labels[..4], expected);
+        assert_eq!(labels[6..], ["time_lag", "contact_law"]);
+        assert!(cases[2].hides("contact_law") && !cases[2].hides(NOTHING));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Recordings that are made here: a bundle on the disk, as another program would leave it.
 
 use super::machine::{Machine, RunConditions};
+use super::outside::Outside;
 use crate::Failure;
 use crate::calibrate::output::write_file;
 use input::MachineFile;
@@ -45,6 +46,8 @@ pub struct Recorder {
 pub struct Clean {
     sensors: Vec<Sensor>,
     record: Record,
+    /// Speed of the crank, rad/s.
+    speed: f64,
 }
 
 impl Recorder {
@@ -93,8 +96,15 @@ impl Recorder {
         let record = simulate::simulate(&resolved.machine, &sensors, &self.settings, false);
         Ok(Clean {
             record: record.map_err(|e| e.to_string())?,
+            speed: resolved.speed.abs(),
             sensors,
         })
+    }
+
+    /// Changes a run to what no model has.
+    pub fn change(&self, run: &mut Clean, outside: Outside) {
+        let rate = self.settings.sample_rate;
+        outside.change(&mut run.record, &run.sensors, rate, run.speed);
     }
 
     /// All runs of a machine.

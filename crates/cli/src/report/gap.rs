@@ -3,7 +3,7 @@
 use super::calibration::{Results, bounded, machine_name, runs};
 use crate::Failure;
 use crate::explain_gap::output::{MACHINE, RESULTS};
-use ::report::gap_page::{CALIBRATED, Effect, Force, GapPage, Map, Parameter, Scaling, Step};
+use ::report::gap_page::{Effect, Force, GapPage, Map, Parameter, Rival, Scaling, Step};
 use input::effects::entry;
 use serde_json::Value;
 use std::path::Path;
@@ -30,47 +30,32 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
     };
     let effects = list(&content["effects"]);
     let gap = &content["gap"];
-    let mut steps = vec![
-        Step {
-            label: "nominal".to_owned(),
-            fitted: number(&gap["nominal"]),
-            held_out: gap["heldout_nominal"].as_f64(),
-        },
-        Step {
-            label: CALIBRATED.to_owned(),
-            fitted: results.number(gap, "gap.before", "before")?,
-            held_out: gap["heldout_before"].as_f64(),
-        },
-    ];
-    // Earlier effects were judged before the last calibration: only the last step is of all runs.
-    if let Some(labels) = effects
-        .iter()
-        .map(|e| text(&e["label"]))
-        .reduce(|a, b| format!("{a}, {b}"))
-    {
-        steps.push(Step {
-            label: format!("with {labels}"),
-            fitted: results.number(gap, "gap.after", "after")?,
-            held_out: gap["heldout_after"].as_f64(),
-        });
-    }
+    let step = |content: &Value| Step {
+        label: text(&content["label"]),
+        fitted: number(&content["fitted"]),
+        held_out: content["held_out"].as_f64(),
+    };
     let effect = |content: &Value| Effect {
         label: text(&content["label"]),
         sentence: text(&content["sentence"]),
         expression: text(&content["expression"]),
         parameters: parameters(content),
-        rivals: tried(&content["rivals"]),
+        rivals: list(&content["rivals"]).iter().map(rival).collect(),
     };
     Ok(GapPage {
         name: machine_name(machine.to_tree()),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         verdict: text(&content["verdict"]),
+        gap: [
+            results.number(gap, "gap.before", "before")?,
+            results.number(gap, "gap.after", "after")?,
+        ],
         pressure_rms_pa: {
             let rms = ["before", "after"].map(|key| gap["pressure_rms_pa"][key].as_f64());
             rms[0].zip(rms[1]).map(|(before, after)| [before, after])
         },
         notes: list(&content["notes"]).iter().map(text).collect(),
-        steps,
+        steps: list(&content["steps"]).iter().map(step).collect(),
         effects: effects.iter().map(effect).collect(),
         refused: tried(&content["refused"]),
         forces: list(&content["missing_force"]).iter().map(force).collect(),
@@ -80,6 +65,15 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         next_recording: text(&content["next_recording"]),
         seconds: number(&content["seconds"]),
     })
+}
+
+fn rival(content: &Value) -> Rival {
+    Rival {
+        label: text(&content["label"]),
+        leaves: number(&content["leaves"]),
+        explains: number(&content["explains_of_effect"]),
+        correlation: content["correlation"].as_f64(),
+    }
 }
 
 fn force(content: &Value) -> Force {

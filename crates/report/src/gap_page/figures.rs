@@ -1,6 +1,6 @@
 //! The pictures of an explanation.
 
-use super::{GapPage, Map};
+use super::{GapPage, Map, Step};
 use crate::calibration_page::{misfits, words};
 use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
@@ -15,41 +15,75 @@ const BLACK: f64 = 30.0;
 /// Excess up to which a cell is empty.
 const EMPTY: f64 = 1.3;
 
-/// The gap as it shrank.
+/// What is left when nothing is missing.
+const FLOOR: &str = "noise floor";
+
+/// The gap as it shrank: each step takes it from where the one before has left it, and the floor is
+/// what none goes below.
 pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
     let steps = &page.steps;
-    let top = steps.len().checked_sub(1)? as f64;
-    let names = steps.iter().rev().map(|step| step.label.clone()).collect();
-    let at = |of: &dyn Fn(usize) -> Option<f64>| -> Vec<[f64; 2]> {
-        let points = (0..steps.len()).filter_map(|i| Some([of(i)?, top - i as f64]));
-        points.collect()
+    let last = steps.last()?;
+    let top = steps.len() as f64;
+    let name = |(i, step): (usize, &Step)| match i {
+        0 | 1 => step.label.clone(),
+        _ => format!("+ {}", text::words(&step.label)),
     };
-    let fitted = at(&|i| Some(steps[i].fitted));
+    let mut names: Vec<String> = steps.iter().enumerate().map(name).collect();
+    names.push(FLOOR.to_owned());
+    names.reverse();
+    let row = |i: usize| top - i as f64;
+    let fall = |i: usize| {
+        let from = steps[i - 1].fitted;
+        [[from, row(i)], [steps[i].fitted, row(i)], [f64::NAN; 2]]
+    };
+    let falls = (1..steps.len()).flat_map(fall);
+    // Down from the step above, then along the row.
+    let drops = (1..steps.len()).flat_map(|i| {
+        let from = steps[i - 1].fitted;
+        [[from, row(i - 1)], [from, row(i)], [f64::NAN; 2]]
+    });
+    let left = [
+        [last.fitted, row(steps.len() - 1)],
+        [last.fitted, 0.0],
+        [1.0, 0.0],
+    ];
+    let at = |of: fn(&Step) -> Option<f64>| {
+        let points = steps.iter().enumerate();
+        points.filter_map(move |(i, step)| Some([of(step)?, row(i)]))
+    };
     let panel = Panel {
         x: Axis::log("gap (times the noise)"),
         y: Axis::named("", names),
         series: vec![
             Series::new(
-                "noise floor",
+                FLOOR,
                 Colour::Ink,
                 Mark::Line,
                 [[1.0, -1.0], [1.0, top + 1.0]],
             ),
-            Series::new("", misfits::AFTER, Mark::FaintLine, fitted.iter().copied()),
-            Series::new("runs fitted to", misfits::AFTER, Mark::Discs, fitted),
+            Series::new("", misfits::AFTER, Mark::FaintLine, drops),
+            Series::new("", misfits::AFTER, Mark::BoldLine, falls),
+            Series::new("", Colour::Ink, Mark::FaintLine, left),
+            Series::new(
+                "runs fitted to",
+                misfits::AFTER,
+                Mark::Discs,
+                at(|step| Some(step.fitted)),
+            ),
             Series::new(
                 "runs held out",
                 misfits::BEFORE,
                 Mark::Rings,
-                at(&|i| steps[i].held_out),
+                at(|step| step.held_out),
             ),
         ],
         ..Panel::default()
     };
     Some(Plate {
         heading: "The gap, step by step".to_owned(),
-        caption: "Root mean square of the difference between simulation and recording, order by order, over its noise. At 1 noise is \
-                  all that is left. Runs that were held out were never fitted to."
+        caption: "Root mean square of the difference between simulation and recording, order by order, over its noise. Each bar is \
+                  what one step takes of it: calibration first, then one effect after another. At 1 noise is all that is left. \
+                  Runs that were held out were never fitted to."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],
@@ -108,18 +142,23 @@ pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
     chosen.map(plate).collect()
 }
 
+/// The map of a channel, without the effects and with them; one where there are none.
 fn plate(map: &Map) -> Plate {
     let (channel, _) = words::column(&map.channel);
+    let panels = match map.before == map.after {
+        true => vec![panel("calibrated", &map.bands, &map.after)],
+        false => vec![
+            panel("without the effects", &map.bands, &map.before),
+            panel("with them", &map.bands, &map.after),
+        ],
+    };
     Plate {
         heading: format!("{}, {channel}", map.run),
         caption: "The residual over the noise, by crank angle and order: the darker, the further from the recording. White is noise \
                   alone; numbers are multiples of it."
             .to_owned(),
         svg: Figure {
-            rows: vec![vec![
-                panel("without the effects", &map.bands, &map.before),
-                panel("with them", &map.bands, &map.after),
-            ]],
+            rows: vec![panels],
             row_height: ROW * (map.bands.len() as f64 + 0.5),
             ..Figure::default()
         }

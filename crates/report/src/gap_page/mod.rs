@@ -6,9 +6,6 @@ mod page;
 
 use crate::calibration_page::Run;
 
-/// What the step is called in which the machine has been calibrated and no effect been added.
-pub const CALIBRATED: &str = "calibrated";
-
 /// All that the page tells. Numbers are SI; misfits are in units of the recordings' noise, so that 1
 /// is noise alone.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +16,8 @@ pub struct GapPage {
     pub version: String,
     /// `no-gap`, `explained`, `partly-explained` or `unexplained`.
     pub verdict: String,
+    /// Misfit of the runs that were fitted to, of the calibrated machine and with the effects.
+    pub gap: [f64; 2],
     /// Root mean square of simulated less recorded pressure, without the effects and with them, Pa;
     /// none where no pressure was recorded.
     pub pressure_rms_pa: Option<[f64; 2]>,
@@ -84,8 +83,21 @@ pub struct Effect {
     pub expression: String,
     /// Its parameters.
     pub parameters: Vec<Parameter>,
-    /// What else might have been, with the misfit that it leaves.
-    pub rivals: Vec<(String, f64)>,
+    /// What else might have been, the nearest first.
+    pub rivals: Vec<Rival>,
+}
+
+/// A candidate that the recordings do not tell from an effect.
+#[derive(Clone, Debug, Default)]
+pub struct Rival {
+    /// Its name, with its place.
+    pub label: String,
+    /// Misfit that it leaves in place of the effect.
+    pub leaves: f64,
+    /// Share of what the effect explains that it explains.
+    pub explains: f64,
+    /// Correlation of what the two change, 0 to 1; none where they were not compared.
+    pub correlation: Option<f64>,
 }
 
 /// A parameter of an effect.

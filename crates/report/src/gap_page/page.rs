@@ -1,6 +1,6 @@
 //! The page itself.
 
-use super::{Effect, GapPage, Parameter, Scaling, figures};
+use super::{Effect, GapPage, Parameter, Rival, Scaling, figures};
 use crate::calibration_page::{verdict::size, waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
@@ -48,21 +48,13 @@ impl GapPage {
 
 /// What the explanation comes to, in a sentence.
 fn verdict(page: &GapPage) -> String {
-    let (Some(first), Some(last)) = (
-        page.steps
-            .iter()
-            .find(|step| step.label == super::CALIBRATED),
-        page.steps.last(),
-    ) else {
-        return String::new();
-    };
     let named: Vec<String> = page.effects.iter().map(|e| text::words(&e.label)).collect();
     let named = match named.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
         _ => named.join(""),
     };
     let most = page.effects.first().map_or("", |e| e.sentence.as_str());
-    let [before, after] = [first, last].map(|step| size(step.fitted));
+    let [before, after] = page.gap.map(size);
     match page.verdict.as_str() {
         "no-gap" => format!(
             "The calibrated model agrees with the recordings within their noise ({before} times): nothing is missing."
@@ -148,6 +140,15 @@ impl View<'_> {
         let powers: Vec<String> = scaling.exponents.iter().map(power).collect();
         let (channel, _) = words::column(&scaling.channel);
         format!("{channel}: {}", powers.join(", "))
+    }
+
+    fn explains(rival: &Rival) -> String {
+        format!("{} %", text::decimal(100.0 * rival.explains, 0))
+    }
+
+    fn correlation(rival: &Rival) -> String {
+        let correlation = rival.correlation;
+        correlation.map_or_else(|| "–".to_owned(), |rho| text::decimal(rho, 2))
     }
 
     fn has_rivals(effect: &Effect) -> bool {

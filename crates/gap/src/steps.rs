@@ -1,0 +1,67 @@
+//! The gap as it shrank: a waterfall from the machine as it was given to the explained one.
+
+use crate::explain::Found;
+use crate::model::Model;
+use serde::Serialize;
+
+/// What a machine is called that was given, and one that was calibrated and has no effect.
+const NOMINAL: &str = "nominal";
+const CALIBRATED: &str = "calibrated";
+
+/// What a model leaves, in standard deviations of the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Gap {
+    /// Of the runs that it was fitted to.
+    pub fitted: f64,
+    /// Of those held out; none without one.
+    pub held_out: Option<f64>,
+}
+
+/// A model on the way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Step {
+    /// What was done last: the effects that it has and the one before has not.
+    pub label: String,
+    /// What it leaves.
+    #[serde(flatten)]
+    pub gap: Gap,
+}
+
+/// The steps to `explained`: the nominal machine, the calibrated one, what was wrong with the measuring
+/// (with which the machine leaves `set_right`), and one for each effect. Effects after which nobody
+/// looked at the whole share a step with the next.
+pub(crate) fn steps(
+    nominal: &Model,
+    baseline: &Model,
+    chain: &[Found],
+    set_right: Gap,
+    found: &[Found],
+    explained: &Model,
+) -> Vec<Step> {
+    let step = |label: &str, gap| Step {
+        label: label.to_owned(),
+        gap,
+    };
+    let mut steps = vec![
+        step(NOMINAL, nominal.gap()),
+        step(CALIBRATED, baseline.gap()),
+    ];
+    // A hum is taken off the recordings beforehand, and leaves no other gap.
+    let fitted = chain
+        .iter()
+        .find(|c| c.evidence.misfit[0] != c.evidence.misfit[1]);
+    steps.extend(fitted.map(|c| step(&c.candidate.label(), set_right)));
+    let mut waiting: Vec<String> = Vec::new();
+    for (i, found_one) in found.iter().enumerate() {
+        waiting.push(found_one.candidate.label());
+        let gap = match i + 1 == found.len() {
+            true => Some(explained.gap()),
+            false => found_one.gap,
+        };
+        if let Some(gap) = gap {
+            steps.push(step(&waiting.join(" and "), gap));
+            waiting.clear();
+        }
+    }
+    steps
+}
