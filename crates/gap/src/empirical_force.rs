@@ -142,7 +142,7 @@ pub fn empirical_force(
     let search = Search { effort, watch, say };
     let mut best: Option<(Candidate, Dense)> = None;
     for library in libraries(&model.problem) {
-        if best.is_some() && !effort.goes_on() {
+        if best.is_some() && !effort.goes_on_for_force() {
             break;
         }
         let Some(dense) = search.dense(&few(model, effort), &library)? else {
@@ -232,7 +232,7 @@ impl Search<'_> {
         if model.fitted > NOISE {
             model = model.better(from(&few.x)?);
         }
-        if model.fitted > NOISE && self.effort.goes_on() {
+        if model.fitted > NOISE && self.effort.goes_on_for_force() {
             (self.say)("estimating the force further", model.fitted);
             let start = Some(model.x.clone());
             let further = self.searched(&model.problem, start, FURTHER)?;
@@ -254,7 +254,7 @@ impl Search<'_> {
         let explained = verdict(baseline, &model, found.len());
         let settled = match explained {
             Verdict::NoGap | Verdict::Explained => true,
-            Verdict::PartlyExplained => !self.effort.goes_on(),
+            Verdict::PartlyExplained => !self.effort.goes_on_for_force(),
             Verdict::Unexplained => false,
         };
         // Pressures do not feel it, and without derivatives there is no regression.
@@ -269,7 +269,7 @@ impl Search<'_> {
         let (mut model, mut found) = (model, found);
         let mut missing = Vec::new();
         for (i, (start, mut effects)) in starts.into_iter().enumerate() {
-            if i > 0 && !self.effort.goes_on() {
+            if i > 0 && !self.effort.goes_on_for_force() {
                 break;
             }
             let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {

@@ -20,6 +20,9 @@ const FULL_OF_GAS: f64 = 1e-3;
 /// throw: a step of two joints takes some 20 µs. Then what a search from the nominal machine may cost,
 /// and one that goes on from another.
 const BUDGET: u64 = 24_000_000;
+/// And up to what a force of no name is looked for where the catalogue explains a part: it must have
+/// its chance, or whatever the catalogue has that comes nearest stands for it.
+const BUDGET_OF_FORCE: u64 = BUDGET + BUDGET / 2;
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
 pub(crate) const SEARCH: u64 = BUDGET / 4;
 /// Share of the range by which a descent starts within a bound.
@@ -104,6 +107,11 @@ impl Effort {
     /// Whether there is still something left of the budget.
     pub(crate) fn goes_on(&self) -> bool {
         self.journal.spent() < BUDGET
+    }
+
+    /// The same for the search of a force of no name.
+    pub(crate) fn goes_on_for_force(&self) -> bool {
+        self.journal.spent() < BUDGET_OF_FORCE
     }
 
     fn fits(&self, run: &str) -> bool {
