@@ -232,6 +232,17 @@ impl<S: Scalar> Dynamics<S> {
         &self.evaluation
     }
 
+    /// As [`evaluate`](Self::evaluate), but for what sensors on crosshead, frame and cylinder do not see.
+    pub fn evaluate_sensed(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
+        // Effects may shake the frame.
+        if self.machine.effects.is_empty() {
+            self.evaluate_rates(t, y);
+        } else {
+            self.evaluate(t, y);
+        }
+        &self.evaluation
+    }
+
     /// As [`evaluate`](Self::evaluate), but for what the state's derivative does not depend on.
     pub(crate) fn evaluate_rates(&mut self, t: S, y: &[S]) {
         if self.layout.ledger.is_some() {

@@ -74,7 +74,7 @@ impl<'a> Passenger<'a> {
     }
 }
 
-/// Cases that can share coach.
+/// Cases that can share a coach.
 struct Group<'a, 'b> {
     asked: &'b [Asked<'a>],
     alike: &'b [usize],

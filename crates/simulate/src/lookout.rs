@@ -68,7 +68,7 @@ impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
             let instants = L::from_array(std::array::from_fn(|lane| times[lane.min(last)]));
             let share = L::vectorised(|| (instants - step.start) / step.length);
             step.interpolate_lanes(share, &mut self.states);
-            let at = self.dynamics.evaluate(instants, &self.states);
+            let at = self.dynamics.evaluate_sensed(instants, &self.states);
             for (i, sensor) in sensors.iter().enumerate() {
                 let seen = L::vectorised(|| sensor.measured.unwrapped(at)).to_array();
                 let seen = seen.map(|x| sensor.measured.wrapped(x));
