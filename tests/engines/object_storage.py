@@ -21,6 +21,7 @@ import botocore
 
 from common import CROSSHEAD, PROJECT, checksums, crosshead, expect, expect_same, say, wait_until, write_sweep
 from faulty_store import FAULTS, FaultyStore
+from slurm_cluster import Cluster, install
 
 ROUNDS, RACERS = 30, 16
 
@@ -103,6 +104,30 @@ def same_bytes(s3, folder):
     crosshead("sweep", "plan", changed, "--out", url, status=2)
     say("a changed sweep is refused")
     return sweep
+
+
+def slurm(s3, folder):
+    """Jobs of a Slurm make a dataset in the bucket; their scripts and logs stand in a folder."""
+    install()
+    sweep, url, scripts = folder / "sweep.yaml", "s3://data/slurm", folder / "jobs"
+    crosshead("sweep", "plan", sweep, "--out", url)
+    refused = subprocess.run(
+        [CROSSHEAD, "sweep", "submit", url, "--engine", "slurm"], capture_output=True, text=True
+    )
+    expect(refused.returncode == 2 and "--scripts DIR" in refused.stderr, refused.stderr)
+    with Cluster(folder / "cluster") as cluster:
+        command = lambda step, *a: cluster.client(
+            CROSSHEAD, "sweep", step, url, "--scripts", str(scripts), *a
+        )
+        command("submit", "--engine", "slurm")
+        status = command("status")
+        expect("Slurm job" in status, status)
+        command("cancel")
+        wait_until(lambda: not cluster.client("squeue", "-h"), 60, "no job")
+        command("submit", "--engine", "slurm")
+        wait_until(lambda: "manifest.json" in objects(s3, "slurm"), 200, "a complete dataset")
+    expect_same(objects(s3, "slurm"), checksums(folder / "whole"))
+    say("by jobs of Slurm: the same")
 
 
 def race(s3, folder):
@@ -263,7 +288,7 @@ def main():
         AWS_ALLOW_HTTP="true",
     )
     # A few of them by name, or all.
-    asked = sys.argv[1:] or ["race", "nuisance", "faults", "kill"]
+    asked = sys.argv[1:] or ["slurm", "race", "nuisance", "faults", "kill"]
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         with open(folder / "server.log", "w") as log:
@@ -285,6 +310,7 @@ def main():
             same_bytes(s3, folder)
             for name in asked:
                 {
+                    "slurm": lambda: slurm(s3, folder),
                     "race": lambda: race(s3, folder),
                     "nuisance": lambda: nuisance(s3, folder, address),
                     "faults": lambda: faults(s3, folder, address),

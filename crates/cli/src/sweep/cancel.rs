@@ -1,6 +1,6 @@
 //! `sweep cancel`: what was submitted is taken back.
 
-use super::slurm;
+use super::slurm::Jobs;
 use crate::Failure;
 use clap::Args;
 use std::path::PathBuf;
@@ -13,8 +13,11 @@ Example:
 
 Shards that are made stay; `sweep submit` goes on from there.")]
 pub struct Arguments {
-    /// The folder of the dataset
+    /// The dataset
     url: PathBuf,
+    /// Folder of the jobs' scripts, as it was given to `sweep submit`
+    #[arg(long, value_name = "DIR")]
+    scripts: Option<PathBuf>,
 }
 
 /// Cancels the jobs.
@@ -22,5 +25,5 @@ pub struct Arguments {
 /// # Errors
 /// Nothing submitted, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    slurm::cancel(&arguments.url)
+    Jobs::of(&arguments.url, arguments.scripts.as_deref())?.cancel()
 }

@@ -1,6 +1,6 @@
 //! `sweep finalize`: the dataset is completed.
 
-use super::slurm;
+use super::slurm::Jobs;
 use crate::Failure;
 use crate::gen_dataset;
 use clap::Args;
@@ -30,6 +30,9 @@ pub struct Arguments {
     /// Submit what is missing again to Slurm, as the finalising job of `sweep submit` does
     #[arg(long, hide = true)]
     resubmit: bool,
+    /// Folder of the jobs' scripts
+    #[arg(long, hide = true, requires = "resubmit")]
+    scripts: Option<PathBuf>,
 }
 
 /// Completes the dataset.
@@ -44,7 +47,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Error::Incomplete { shards, missing }) => {
             println!("{}", ranges(&missing));
             if arguments.resubmit {
-                slurm::submit_again(&arguments.url, &missing)?;
+                let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref())?;
+                jobs.submit_again(&missing)?;
             }
             let text = format!("{} of {shards} shards are missing", missing.len());
             return Err(Failure::Incomplete(text));

@@ -11,13 +11,17 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use sweep::ranges::ranges;
 
+/// The files in the folder of the jobs' scripts.
+const SHARD: &str = "shard.sh";
+const FINALIZE: &str = "finalize.sh";
+const SUBMITTED: &str = "submitted.json";
 /// How often shards are submitted in all.
 const ROUNDS: u64 = 3;
 /// How often a task begins its shard: three times as usual, three times case by case, and once
 /// without the case that ended the six before.
 const BEGINNINGS: u64 = 7;
 
-/// What was submitted: `_sweep/slurm/submitted.json`.
+/// What was submitted: `submitted.json`.
 #[derive(Serialize, Deserialize)]
 struct Submitted {
     name: String,
@@ -28,121 +32,215 @@ struct Submitted {
     jobs: Vec<String>,
 }
 
-/// Submits the shards `missing` of the dataset called `name` in the folder `root`.
-///
-/// # Errors
-/// Jobs that are under way already, or an sbatch that refuses.
-pub(super) fn submit(
-    root: &Path,
-    name: &str,
-    missing: &[u64],
-    array_size: u64,
-    flags: &[String],
-) -> Result<(), Failure> {
-    if let Some(job) = jobs(root).first() {
-        return Err(Failure::input(format!(
-            "job {job} of this dataset is still there: `crosshead sweep cancel {}` takes it back",
-            root.display()
-        )));
+/// The jobs of a dataset.
+pub(super) struct Jobs {
+    /// The dataset, as the commands of the jobs name it.
+    url: PathBuf,
+    /// The folder of their scripts, logs and records.
+    scripts: PathBuf,
+}
+
+impl Jobs {
+    /// The jobs of the dataset at `url`, with their scripts in the folder that is given, or in the dataset's
+    /// own.
+    ///
+    /// # Errors
+    /// A bucket without such a folder: it can hold neither scripts nor logs.
+    pub fn of(url: &Path, scripts: Option<&Path>) -> Result<Self, Failure> {
+        let absolute = |path: &Path| std::path::absolute(path).map_err(Failure::work);
+        if url.starts_with("s3:") {
+            let Some(scripts) = scripts else {
+                return Err(Failure::input(format!(
+                    "{}: scripts and logs of the jobs need a folder that all machines see: give --scripts DIR",
+                    url.display()
+                )));
+            };
+            let (url, scripts) = (url.to_owned(), absolute(scripts)?);
+            return Ok(Self { url, scripts });
+        }
+        let url = absolute(url)?;
+        let scripts = match scripts {
+            Some(scripts) => absolute(scripts)?,
+            None => url.join("_sweep/slurm"),
+        };
+        Ok(Self { url, scripts })
     }
-    let folder = std::fs::canonicalize(root).map_err(|error| Failure::unwritten(root, error))?;
-    let slurm = folder.join("_sweep/slurm");
-    std::fs::create_dir_all(&slurm).map_err(|error| Failure::unwritten(&slurm, error))?;
-    let submitted = Submitted {
-        name: name.to_owned(),
-        program: std::env::current_exe().map_err(Failure::work)?,
-        array_size,
-        flags: flags.to_vec(),
-        round: 1,
-        jobs: Vec::new(),
-    };
-    write(&folder, "shard.sh", &shard_script(&submitted, &folder))?;
-    write(
-        &folder,
-        "finalize.sh",
-        &finalize_script(&submitted, &folder),
-    )?;
-    submit_round(submitted, &folder, missing)
-}
 
-/// Submits what is still missing, unless that has been done often enough.
-///
-/// # Errors
-/// Nothing submitted before, or an sbatch that refuses.
-pub(super) fn submit_again(root: &Path, missing: &[u64]) -> Result<(), Failure> {
-    let mut submitted = submitted(root)?;
-    if submitted.round >= ROUNDS {
-        let text = format!(
-            "submitted {ROUNDS} times, and no more; still missing: {}",
-            ranges(missing)
-        );
-        return Err(Failure::Incomplete(text));
+    /// Submits the shards `missing` of the dataset, which is called `name`.
+    ///
+    /// # Errors
+    /// Jobs that are under way already, or an sbatch that refuses.
+    pub fn submit(
+        &self,
+        name: &str,
+        missing: &[u64],
+        array_size: u64,
+        flags: &[String],
+    ) -> Result<(), Failure> {
+        if let Some(job) = self.under_way().first() {
+            return Err(Failure::input(format!(
+                "job {job} of this dataset is still there: `crosshead sweep cancel` takes it back"
+            )));
+        }
+        std::fs::create_dir_all(&self.scripts)
+            .map_err(|error| Failure::unwritten(&self.scripts, error))?;
+        let submitted = Submitted {
+            name: name.to_owned(),
+            program: std::env::current_exe().map_err(Failure::work)?,
+            array_size,
+            flags: flags.to_vec(),
+            round: 1,
+            jobs: Vec::new(),
+        };
+        self.write(SHARD, &self.shard_script(&submitted))?;
+        self.write(FINALIZE, &self.finalize_script(&submitted))?;
+        self.submit_round(submitted, missing)
     }
-    submitted.round += 1;
-    let folder = std::fs::canonicalize(root).map_err(|error| Failure::unwritten(root, error))?;
-    submit_round(submitted, &folder, missing)
-}
 
-/// The jobs that Slurm still has, with their states.
-pub(super) fn jobs(root: &Path) -> Vec<String> {
-    let Ok(submitted) = submitted(root) else {
-        return Vec::new();
-    };
-    // Slurm forgets jobs, and then says so of each; those are over.
-    let state = |job: &String| {
-        let arguments = [
-            "--noheader",
-            "--states=PD,R,CG,S,RQ",
-            "--format=%i %T %r",
-            "--jobs",
-        ];
-        let lines = run(
-            "squeue",
-            arguments.map(String::from).into_iter().chain([job.clone()]),
-        );
-        let lines = lines.unwrap_or_default();
-        lines.lines().map(str::to_owned).collect::<Vec<_>>()
-    };
-    submitted.jobs.iter().flat_map(state).collect()
-}
+    /// Submits what is still missing, unless that has been done often enough.
+    ///
+    /// # Errors
+    /// Nothing submitted before, or an sbatch that refuses.
+    pub fn submit_again(&self, missing: &[u64]) -> Result<(), Failure> {
+        let mut submitted = self.submitted()?;
+        if submitted.round >= ROUNDS {
+            let text = format!(
+                "submitted {ROUNDS} times, and no more; still missing: {}",
+                ranges(missing)
+            );
+            return Err(Failure::Incomplete(text));
+        }
+        submitted.round += 1;
+        self.submit_round(submitted, missing)
+    }
 
-/// Cancels all jobs.
-///
-/// # Errors
-/// Nothing submitted, or an scancel that refuses.
-pub(super) fn cancel(root: &Path) -> Result<(), Failure> {
-    let jobs = submitted(root)?.jobs;
-    // The last one is that which would submit again.
-    run("scancel", jobs.iter().rev().cloned())?;
-    println!("cancelled: {}", jobs.join(" "));
-    Ok(())
-}
+    /// The jobs that Slurm still has, with their states.
+    pub fn under_way(&self) -> Vec<String> {
+        let Ok(submitted) = self.submitted() else {
+            return Vec::new();
+        };
+        // Slurm forgets jobs, and then says so of each; those are over.
+        let state = |job: &String| {
+            let arguments = [
+                "--noheader",
+                "--states=PD,R,CG,S,RQ",
+                "--format=%i %T %r",
+                "--jobs",
+            ];
+            let lines = run(
+                "squeue",
+                arguments.map(String::from).into_iter().chain([job.clone()]),
+            );
+            let lines = lines.unwrap_or_default();
+            lines.lines().map(str::to_owned).collect::<Vec<_>>()
+        };
+        submitted.jobs.iter().flat_map(state).collect()
+    }
 
-fn submit_round(mut submitted: Submitted, folder: &Path, missing: &[u64]) -> Result<(), Failure> {
-    submitted.jobs.clear();
-    let array_size = submitted.array_size.max(1);
-    let script = |name: &str| folder.join("_sweep/slurm").join(name).display().to_string();
-    for shards in missing.chunk_by(|a, b| a / array_size == b / array_size) {
-        let offset = shards[0] / array_size * array_size;
-        let tasks: Vec<u64> = shards.iter().map(|shard| shard - offset).collect();
-        let array = [format!("--array={}", ranges(&tasks))];
-        let script = [script("shard.sh"), offset.to_string()];
-        let job = sbatch(&submitted, array.into_iter(), script)?;
+    /// Cancels all jobs.
+    ///
+    /// # Errors
+    /// Nothing submitted, or an scancel that refuses.
+    pub fn cancel(&self) -> Result<(), Failure> {
+        let jobs = self.submitted()?.jobs;
+        // The last one is that which would submit again.
+        run("scancel", jobs.iter().rev().cloned())?;
+        println!("cancelled: {}", jobs.join(" "));
+        Ok(())
+    }
+
+    fn submit_round(&self, mut submitted: Submitted, missing: &[u64]) -> Result<(), Failure> {
+        submitted.jobs.clear();
+        let array_size = submitted.array_size.max(1);
+        let script = |name: &str| self.scripts.join(name).display().to_string();
+        for shards in missing.chunk_by(|a, b| a / array_size == b / array_size) {
+            let offset = shards[0] / array_size * array_size;
+            let tasks: Vec<u64> = shards.iter().map(|shard| shard - offset).collect();
+            let array = [format!("--array={}", ranges(&tasks))];
+            let script = [script(SHARD), offset.to_string()];
+            let job = sbatch(&submitted, array.into_iter(), script)?;
+            submitted.jobs.push(job);
+            self.record(&submitted)?;
+        }
+        let after = (!submitted.jobs.is_empty()).then(|| submitted.jobs.join(":"));
+        let after = after.map(|jobs| format!("--dependency=afterany:{jobs}"));
+        let script = [script(FINALIZE), String::new()];
+        let job = sbatch(&submitted, after.into_iter(), script)?;
         submitted.jobs.push(job);
-        record(&submitted, folder)?;
+        self.record(&submitted)?;
+        println!(
+            "{} shards submitted: jobs {}",
+            missing.len(),
+            submitted.jobs.join(" ")
+        );
+        Ok(())
     }
-    let after = (!submitted.jobs.is_empty()).then(|| submitted.jobs.join(":"));
-    let after = after.map(|jobs| format!("--dependency=afterany:{jobs}"));
-    let script = [script("finalize.sh"), String::new()];
-    let job = sbatch(&submitted, after.into_iter(), script)?;
-    submitted.jobs.push(job);
-    record(&submitted, folder)?;
-    println!(
-        "{} shards submitted: jobs {}",
-        missing.len(),
-        submitted.jobs.join(" ")
-    );
-    Ok(())
+
+    fn shard_script(&self, submitted: &Submitted) -> String {
+        let beginnings: Vec<String> = (1..=BEGINNINGS).map(|n| n.to_string()).collect();
+        let (program, url) = (quoted(&submitted.program), quoted(&self.url));
+        format!(
+            "{}# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
+# one of its cases, that case is found and left out.
+for beginning in {}; do
+    {program} sweep shard {url} --offset \"$1\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
+    status=$?
+    [ $status -gt 128 ] || exit $status
+done
+exit $status
+",
+            self.header(submitted, "%A_%a.log"),
+            beginnings.join(" "),
+        )
+    }
+
+    fn finalize_script(&self, submitted: &Submitted) -> String {
+        let (program, url) = (quoted(&submitted.program), quoted(&self.url));
+        format!(
+            "{}# Completes the dataset, or submits what is missing.
+exec {program} sweep finalize {url} --resubmit --scripts {}
+",
+            self.header(submitted, "%j-finalize.log"),
+            quoted(&self.scripts),
+        )
+    }
+
+    /// How a batch script begins that logs to the file `log`.
+    fn header(&self, submitted: &Submitted, log: &str) -> String {
+        format!(
+            "#!/bin/sh
+#SBATCH --job-name={}
+#SBATCH --output=\"{}\"
+#SBATCH --open-mode=append
+#SBATCH --requeue
+",
+            job_name(submitted),
+            self.scripts.join(log).display(),
+        )
+    }
+
+    fn submitted(&self) -> Result<Submitted, Failure> {
+        let path = self.scripts.join(SUBMITTED);
+        let failed = |error: String| {
+            let path = path.display();
+            Failure::input(format!("nothing was submitted from here ({path}: {error})"))
+        };
+        let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
+        serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
+    }
+
+    fn record(&self, submitted: &Submitted) -> Result<(), Failure> {
+        let text = serde_json::to_string_pretty(submitted).map_err(Failure::work)?;
+        self.write(SUBMITTED, &text)
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
+        let under_way = format!("{name}.{}.part", std::process::id());
+        let mut file = WholeFile::create(&self.scripts.join(under_way), &self.scripts.join(name))
+            .map_err(Failure::work)?;
+        file.write_all(text.as_bytes()).map_err(Failure::work)?;
+        file.commit().map_err(Failure::work).map(|_| ())
+    }
 }
 
 fn sbatch(
@@ -169,50 +267,6 @@ fn run(program: &str, arguments: impl Iterator<Item = String>) -> Result<String,
     Err(Failure::work(format!("{program}: {}", message.trim())))
 }
 
-fn shard_script(submitted: &Submitted, folder: &Path) -> String {
-    let beginnings: Vec<String> = (1..=BEGINNINGS).map(|n| n.to_string()).collect();
-    let (program, root) = (quoted(&submitted.program), quoted(folder));
-    let logs = folder.join("_sweep/slurm/%A_%a.log");
-    format!(
-        "{}# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
-# one of its cases, that case is found and left out.
-for beginning in {}; do
-    {program} sweep shard {root} --offset \"$1\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
-    status=$?
-    [ $status -gt 128 ] || exit $status
-done
-exit $status
-",
-        header(submitted, &logs),
-        beginnings.join(" "),
-    )
-}
-
-fn finalize_script(submitted: &Submitted, folder: &Path) -> String {
-    let (program, root) = (quoted(&submitted.program), quoted(folder));
-    let logs = folder.join("_sweep/slurm/%j-finalize.log");
-    format!(
-        "{}# Completes the dataset, or submits what is missing.
-exec {program} sweep finalize {root} --resubmit
-",
-        header(submitted, &logs),
-    )
-}
-
-/// How a batch script begins that logs to `logs`.
-fn header(submitted: &Submitted, logs: &Path) -> String {
-    format!(
-        "#!/bin/sh
-#SBATCH --job-name={}
-#SBATCH --output=\"{}\"
-#SBATCH --open-mode=append
-#SBATCH --requeue
-",
-        job_name(submitted),
-        logs.display(),
-    )
-}
-
 fn job_name(submitted: &Submitted) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
     submitted.name.chars().map(plain).collect()
@@ -221,29 +275,4 @@ fn job_name(submitted: &Submitted) -> String {
 /// A path as a word of the shell.
 fn quoted(path: &Path) -> String {
     format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
-}
-
-fn submitted(root: &Path) -> Result<Submitted, Failure> {
-    let path = root.join("_sweep/slurm/submitted.json");
-    let failed = |error: String| {
-        let path = path.display();
-        Failure::input(format!("nothing was submitted from here ({path}: {error})"))
-    };
-    let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
-}
-
-fn record(submitted: &Submitted, folder: &Path) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(submitted).map_err(Failure::work)?;
-    write(folder, "submitted.json", &text)
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let path = folder.join("_sweep/slurm").join(name);
-    let under_way = folder
-        .join("_sweep/tmp")
-        .join(format!("slurm-{name}.{}.part", std::process::id()));
-    let mut file = WholeFile::create(&under_way, &path).map_err(Failure::work)?;
-    file.write_all(text.as_bytes()).map_err(Failure::work)?;
-    file.commit().map_err(Failure::work).map(|_| ())
 }

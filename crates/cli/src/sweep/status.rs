@@ -1,6 +1,6 @@
 //! `sweep status`: how far a dataset has got.
 
-use super::slurm;
+use super::slurm::Jobs;
 use crate::Failure;
 use crate::gen_dataset;
 use clap::Args;
@@ -17,6 +17,9 @@ Example:
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
+    /// Folder of the jobs' scripts, as it was given to `sweep submit`
+    #[arg(long, value_name = "DIR")]
+    scripts: Option<PathBuf>,
     /// As JSON, for programs
     #[arg(long)]
     json: bool,
@@ -29,7 +32,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
     let found = status(&output, &plan).map_err(gen_dataset::failed)?;
-    let jobs = slurm::jobs(&arguments.url);
+    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
+    let jobs = jobs.map_or_else(|_| Vec::new(), |jobs| jobs.under_way());
     let made = plan.parts() - found.missing.len() as u64;
     if arguments.json {
         let attempts = found.attempts.iter();

@@ -1,6 +1,6 @@
 //! `sweep submit`: an engine is handed the shards.
 
-use super::slurm;
+use super::slurm::Jobs;
 use crate::Failure;
 use crate::gen_dataset;
 use clap::{Args, ValueEnum};
@@ -10,21 +10,26 @@ use sweep::dataset::{Output, status};
 /// Arguments of `sweep submit`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Example:
+Examples:
   crosshead sweep submit /scratch/faults --engine slurm -- --partition=long --cpus-per-task=8
+  crosshead sweep submit s3://bucket/faults --engine slurm --scripts /scratch/jobs
 
-Writes batch scripts to URL/_sweep/slurm, submits the shards that are missing as job arrays, and a job
+Writes batch scripts, submits the shards that are missing as job arrays, and a job
 that completes the dataset when they have ended, however they ended. That job submits again what is
 still missing, up to three times in all. Each task simulates on as many threads as it has processors
-(--cpus-per-task, else one). The program must stand at the same place on all machines.
+(--cpus-per-task, else one). The jobs get the environment of this command, AWS_* for a bucket
+included. The program must stand at the same place on all machines.
 
 Exit status: 0 submitted; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
-    /// The folder of the dataset, as it was planned
+    /// The dataset, as it was planned
     url: PathBuf,
     /// What runs the shards
     #[arg(long, value_enum)]
     engine: Engine,
+    /// Folder of the jobs' scripts and logs, which all machines see [default: URL/_sweep/slurm where URL is a folder]
+    #[arg(long, value_name = "DIR")]
+    scripts: Option<PathBuf>,
     /// Most tasks of one array; MaxArraySize of the site is 1001 where nobody changed it
     #[arg(long, default_value_t = 1001, value_parser = clap::value_parser!(u64).range(1..), value_name = "TASKS")]
     array_size: u64,
@@ -44,23 +49,10 @@ enum Engine {
 /// # Errors
 /// Nothing planned, jobs that are under way already, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if arguments.url.starts_with("s3:") {
-        return Err(Failure::input(format!(
-            "{}: scripts and logs of the jobs need a folder; for object storage, submit \
-             `crosshead sweep shard {}` as an array",
-            arguments.url.display(),
-            arguments.url.display()
-        )));
-    }
+    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref())?;
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
     let missing = status(&output, &plan).map_err(gen_dataset::failed)?.missing;
     match arguments.engine {
-        Engine::Slurm => slurm::submit(
-            &arguments.url,
-            &plan.name,
-            &missing,
-            arguments.array_size,
-            &arguments.flags,
-        ),
+        Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
     }
 }
