@@ -7,6 +7,7 @@ use super::plan::Case;
 use super::recordings::{Clean, Recorder};
 use super::truth;
 use crate::Failure;
+use crate::calibrate::output::write_file;
 use crate::explain_gap::{self, Asked};
 use input::calibration::Calibration;
 use input::hidden_effects::HiddenEffects;
@@ -21,6 +22,8 @@ use std::sync::atomic::AtomicBool;
 const DRAWS: usize = 100;
 /// An effect that changes no channel by this share of its RMS is not there.
 const THERE: f64 = 1e-5;
+/// Name of the file of the true machine, where it is kept.
+const TRUTH: &str = "truth.yaml";
 
 /// Makes and explains cases.
 pub struct Bench<'a> {
@@ -39,6 +42,8 @@ pub struct Bench<'a> {
 /// A machine with what is true of it, and its runs.
 struct Made {
     hidden: Vec<Hidden>,
+    /// Its machine file.
+    truth: Value,
     other_contact_law: bool,
     clean: Vec<Clean>,
 }
@@ -99,6 +104,10 @@ impl Bench<'_> {
         let bundle = folder.join("bundle");
         self.recorder
             .write(machine, &made.clean, case.noise, case.number, &bundle)?;
+        if self.keep {
+            let text = input::yaml::to_string(&made.truth).map_err(Failure::work)?;
+            write_file(&folder.join(TRUTH), text.as_bytes())?;
+        }
         let start = cpu_seconds();
         let calibration = Calibration::of(vec![bundle.clone()]);
         let asked = Asked {
@@ -169,12 +178,13 @@ impl Bench<'_> {
                             .iter_mut()
                             .for_each(|run| self.recorder.change(run, outside));
                     }
-                    let hidden = case.hidden.iter().zip(items).map(|(entry, item)| Hidden {
+                    let hidden = case.hidden.iter().zip(&items).map(|(entry, item)| Hidden {
                         effect: entry.name.to_owned(),
                         section: item[entry.name].clone(),
                     });
                     return Ok(Ok(Made {
                         hidden: hidden.collect(),
+                        truth: with(&items),
                         other_contact_law,
                         clean,
                     }));

@@ -63,7 +63,7 @@ pub struct Arguments {
     /// Go on with a proof that was stopped
     #[arg(long)]
     resume: bool,
-    /// Keep the recordings, measured and simulated: some 10 MB a case
+    /// Keep the true machine and the recordings, measured and simulated: some 10 MB a case
     #[arg(long)]
     keep: bool,
     /// List the cases, and write nothing
