@@ -45,6 +45,8 @@ pub struct Law {
 pub struct Force {
     /// As a fit with all terms has it, in every run.
     pub missing: Vec<MissingForce>,
+    /// What that fit leaves in each of the few runs that it was made to.
+    pub leaves: Vec<(String, f64)>,
     /// Its law.
     pub law: Option<Law>,
 }
@@ -157,8 +159,13 @@ pub fn empirical_force(
         return Ok(None);
     };
     let missing = missing_force(&dense.model, &model.problem.runs)?;
+    let leaves = dense.model.misfits();
     let law = search.law(model, &library, dense)?;
-    Ok(Some(Force { missing, law }))
+    Ok(Some(Force {
+        missing,
+        leaves,
+        law,
+    }))
 }
 
 /// A few runs, fitted with all terms that they show.
@@ -166,6 +173,30 @@ struct Dense {
     model: Model,
     /// The values of the effect's parameters, SI.
     values: Vec<f64>,
+}
+
+impl Force {
+    /// Whether the force, as it was estimated, leaves less than `model` in most of its runs.
+    fn is_nearer_than(&self, model: &Model) -> bool {
+        let by_run = model.misfits();
+        let nearer = self.leaves.iter().filter(|(run, leaves)| {
+            let mut same = by_run.iter().filter(|(id, _)| id == run);
+            same.any(|(_, misfit)| leaves < misfit)
+        });
+        2 * nearer.count() > self.leaves.len()
+    }
+}
+
+/// What the search of a force made of an explanation.
+pub(crate) struct WithForce {
+    /// The model, with a law of the force where there is one.
+    pub model: Model,
+    /// Its effects.
+    pub found: Vec<Found>,
+    /// The force that is missing; empty where none was looked for.
+    pub missing: Vec<MissingForce>,
+    /// Whether a force of no name comes nearer to most recordings than the effects.
+    pub nearer: bool,
 }
 
 impl Search<'_> {
@@ -250,7 +281,7 @@ impl Search<'_> {
         baseline: &Model,
         model: Model,
         found: Vec<Found>,
-    ) -> Result<(Model, Vec<Found>, Vec<MissingForce>), Error> {
+    ) -> Result<WithForce, Error> {
         let explained = verdict(baseline, &model, found.len());
         let settled = match explained {
             Verdict::NoGap | Verdict::Explained => true,
@@ -259,7 +290,12 @@ impl Search<'_> {
         };
         // Pressures do not feel it, and without derivatives there is no regression.
         if settled || is_of_pressures(problem) || self.effort.chaotic {
-            return Ok((model, found, Vec::new()));
+            return Ok(WithForce {
+                model,
+                found,
+                missing: Vec::new(),
+                nearer: false,
+            });
         }
         let (start, kept) = self.gas_alone(problem, baseline, &model, &found)?;
         let mut starts = vec![(start, kept)];
@@ -267,7 +303,7 @@ impl Search<'_> {
             starts.push((model.clone(), found.clone()));
         }
         let (mut model, mut found) = (model, found);
-        let mut missing = Vec::new();
+        let (mut missing, mut nearer) = (Vec::new(), false);
         for (i, (start, mut effects)) in starts.into_iter().enumerate() {
             if i > 0 && !self.effort.goes_on_for_force() {
                 break;
@@ -275,6 +311,7 @@ impl Search<'_> {
             let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {
                 continue;
             };
+            nearer |= force.is_nearer_than(&model);
             missing = force.missing;
             let Some(law) = force.law else {
                 continue;
@@ -298,12 +335,17 @@ impl Search<'_> {
                 gap: Some(law.model.gap()),
                 rivals: Vec::new(),
             });
-            (model, found) = (law.model, effects);
+            (model, found, nearer) = (law.model, effects, false);
             if verdict == Verdict::Explained {
                 break;
             }
         }
-        Ok((model, found, missing))
+        Ok(WithForce {
+            model,
+            found,
+            missing,
+            nearer,
+        })
     }
 
     /// The model with those of its effects alone that the pressures show whatever acts on the

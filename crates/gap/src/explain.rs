@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::confusability::Likeness;
 use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, verdict};
+use crate::empirical_force::WithForce;
 use crate::error::Error;
 use crate::journal::Finished;
 use crate::mains_hum::Hum;
@@ -134,8 +135,9 @@ pub fn explain(
         gas => search.of_all(problem, gas.map_or_else(Vec::new, |gas| gas.found))?,
     };
     let (model, found) = search.pruned(problem, model, found)?;
-    let (model, found, missing_force) = search.with_force(problem, &baseline, model, found)?;
-    let (model, found, refused) = search.sure(problem, &baseline, model, found, refused)?;
+    let with_force = search.with_force(problem, &baseline, model, found)?;
+    let missing_force = with_force.missing.clone();
+    let (model, found, refused) = search.sure(problem, &baseline, with_force, refused)?;
     say("finding bounds", model.fitted);
     let Fit {
         mut estimates,
@@ -343,17 +345,27 @@ impl Search<'_> {
         Ok((model, found))
     }
 
-    /// Where the effects leave the whole unexplained, those alone that are sure by themselves; the
-    /// others are refused.
+    /// Where the effects leave the whole unexplained, or explain a part to which a force of no name
+    /// comes nearer, those alone that are sure by themselves; the others are refused.
     fn sure(
         &self,
         problem: &Problem,
         baseline: &Model,
-        model: Model,
-        found: Vec<Found>,
+        with_force: WithForce,
         refused: Vec<Tried>,
     ) -> Result<(Model, Vec<Found>, Vec<Tried>), Error> {
-        if verdict(baseline, &model, found.len()) != Verdict::Unexplained {
+        let WithForce {
+            model,
+            found,
+            nearer,
+            ..
+        } = with_force;
+        let is_believed = match verdict(baseline, &model, found.len()) {
+            Verdict::NoGap | Verdict::Explained => true,
+            Verdict::PartlyExplained => !nearer,
+            Verdict::Unexplained => false,
+        };
+        if is_believed {
             return Ok((model, found, refused));
         }
         let is_sure = |found: &Found| found.evidence.is_sure();
