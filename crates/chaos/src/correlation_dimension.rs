@@ -33,24 +33,22 @@ pub fn correlation_dimension(
             needed,
         });
     }
-    let mut squares: Vec<f64> = Vec::new();
-    for a in (0..count).step_by(count.div_ceil(REFERENCES)) {
-        squares.extend(
-            (0..count)
-                .filter(|b| a.abs_diff(*b) > theiler)
-                .map(|b| delays.squared_distance(a, b)),
-        );
+    let references = || (0..count).step_by(count.div_ceil(REFERENCES));
+    let pairs: usize = references()
+        .map(|a| count - (a + theiler + 1).min(count) + a.saturating_sub(theiler))
+        .sum();
+    let rank = |sum: f64| (sum * pairs as f64) as usize;
+    let mut nearest = Nearest::new(rank(HIGH) + 1);
+    for a in references() {
+        for b in (0..count).filter(|b| a.abs_diff(*b) > theiler) {
+            nearest.push(delays.squared_distance(a, b));
+        }
     }
-    squares.sort_by(f64::total_cmp);
+    let squares = nearest.sorted();
     // Points (ln r, ln C) at correlation sums in even ratios.
     let points: Vec<(f64, f64)> = (0..POINTS)
         .map(|i| LOW * (HIGH / LOW).powf(i as f64 / (POINTS - 1) as f64))
-        .map(|sum| {
-            (
-                0.5 * squares[(sum * squares.len() as f64) as usize].ln(),
-                sum.ln(),
-            )
-        })
+        .map(|sum| (0.5 * squares[rank(sum)].ln(), sum.ln()))
         .collect();
     let slopes: Vec<f64> = points
         .windows(2)
@@ -69,6 +67,35 @@ pub fn correlation_dimension(
         value,
         scatter: square.sqrt(),
     })
+}
+
+/// The least of many numbers: long signals have more pairs than fit into memory.
+struct Nearest {
+    most: usize,
+    kept: Vec<f64>,
+}
+
+impl Nearest {
+    fn new(most: usize) -> Self {
+        let kept = Vec::with_capacity(2 * most);
+        Self { most, kept }
+    }
+
+    fn push(&mut self, number: f64) {
+        if self.kept.len() == 2 * self.most {
+            self.kept
+                .select_nth_unstable_by(self.most - 1, f64::total_cmp);
+            self.kept.truncate(self.most);
+        }
+        self.kept.push(number);
+    }
+
+    /// The least `most` of them, or all.
+    fn sorted(mut self) -> Vec<f64> {
+        self.kept.sort_by(f64::total_cmp);
+        self.kept.truncate(self.most);
+        self.kept
+    }
 }
 
 #[cfg(test)]
@@ -99,6 +126,16 @@ mod tests {
                 "{expected} {found:?}"
             );
         }
+    }
+
+    #[test]
+    fn the_nearest_are_kept() {
+        let mut nearest = Nearest::new(5);
+        (0..1000).for_each(|i| nearest.push(f64::from(i * 617 % 1000)));
+        assert_eq!(nearest.sorted(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        let mut few = Nearest::new(5);
+        [2.0, 1.0].map(|number| few.push(number));
+        assert_eq!(few.sorted(), [1.0, 2.0]);
     }
 
     #[test]
