@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Lengths kept per thread. Windows of a sweep come in many lengths; past this number the plans
 /// are dropped, so that memory does not grow with the sweep.
-const KEPT: usize = 64;
+const KEPT: usize = 16;
 
 /// The plans of one direction by length.
 ///
