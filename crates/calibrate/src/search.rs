@@ -202,8 +202,8 @@ impl<'a, 'w> Search<'a, 'w> {
         Ok(())
     }
 
-    /// From the best point with one parameter moved, or with the joints of a throw exchanged; whether that has led to a better one. Descents
-    /// that fall back say nothing about other minima.
+    /// From the best point with one parameter moved, or with the joints of a throw exchanged; whether
+    /// that has led to a better one. Descents that fall back say nothing about other minima.
     fn kicked(&mut self) -> Result<bool, Error> {
         let loose = Likelihood::coarse(self.problem, LOOSE);
         let mut kicked = kicks(&self.best.x, &loose.bounds());

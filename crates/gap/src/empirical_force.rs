@@ -195,7 +195,7 @@ pub(crate) struct WithForce {
     pub found: Vec<Found>,
     /// The force that is missing; empty where none was looked for.
     pub missing: Vec<MissingForce>,
-    /// Whether a force of no name comes nearer to most recordings than the effects.
+    /// Whether a force of no name in the place of the effects comes nearer to most recordings.
     pub nearer: bool,
 }
 
@@ -311,7 +311,9 @@ impl Search<'_> {
             let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {
                 continue;
             };
-            nearer |= force.is_nearer_than(&model);
+            // On top of all effects it is always nearer.
+            let in_their_place = effects.len() < found.len();
+            nearer |= in_their_place && force.is_nearer_than(&model);
             missing = force.missing;
             let Some(law) = force.law else {
                 continue;
