@@ -165,6 +165,7 @@ impl<'a, 'w> Search<'a, 'w> {
     /// recordings only the ringing is wrong, and a kick may do; elsewhere they come first.
     fn locally(&mut self, start: &[f64]) -> Result<(), Error> {
         self.descend(None, start)?;
+        self.exchanged()?;
         if self.ended() {
             return Ok(());
         }
@@ -172,8 +173,28 @@ impl<'a, 'w> Search<'a, 'w> {
         let loose = Likelihood::coarse(self.problem, LOOSE);
         if misfit(&loose.residuals(&self.best.x)) > NOISE {
             self.continuation(start)?;
+            self.exchanged()?;
         }
         while !self.ended() && self.kicked()? {}
+        Ok(())
+    }
+
+    /// From the best point with the joints of a throw exchanged, one throw after another.
+    fn exchanged(&mut self) -> Result<(), Error> {
+        let bounds = Likelihood::new(self.problem).bounds();
+        let minima = self.minima.len();
+        let one = |i: usize, x: &[f64]| exchanged(self.problem, x, &bounds).into_iter().nth(i);
+        let mut throw = 0;
+        while !self.ended()
+            && let Some(start) = one(throw, &self.best.x)
+        {
+            throw += 1;
+            let near = self.descend(Some(LOOSE), &start)?;
+            if !self.ended() {
+                self.descend(None, &near)?;
+            }
+            self.minima.truncate(minima);
+        }
         Ok(())
     }
 
@@ -202,12 +223,11 @@ impl<'a, 'w> Search<'a, 'w> {
         Ok(())
     }
 
-    /// From the best point with one parameter moved, or with the joints of a throw exchanged; whether
-    /// that has led to a better one. Descents that fall back say nothing about other minima.
+    /// From the best point with one parameter moved; whether that has led to a better one. Descents
+    /// that fall back say nothing about other minima.
     fn kicked(&mut self) -> Result<bool, Error> {
         let loose = Likelihood::coarse(self.problem, LOOSE);
-        let mut kicked = kicks(&self.best.x, &loose.bounds());
-        kicked.extend(exchanged(self.problem, &self.best.x, &loose.bounds()));
+        let kicked = kicks(&self.best.x, &loose.bounds());
         let (before, minima) = (self.best.cost, self.minima.len());
         for start in self.promising(&loose, kicked, KICKS) {
             if self.ended() {
