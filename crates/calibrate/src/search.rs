@@ -11,12 +11,10 @@ use crate::envelopes::Envelopes;
 use crate::error::Error;
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
-use crate::parameter::Parameter;
-use crate::problem::{Problem, throw};
+use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_alone};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// A misfit below this is taken for noise, and no better fit is looked for.
@@ -165,7 +163,6 @@ impl<'a, 'w> Search<'a, 'w> {
     /// recordings only the ringing is wrong, and a kick may do; elsewhere they come first.
     fn locally(&mut self, start: &[f64]) -> Result<(), Error> {
         self.descend(None, start)?;
-        self.exchanged()?;
         if self.ended() {
             return Ok(());
         }
@@ -173,28 +170,8 @@ impl<'a, 'w> Search<'a, 'w> {
         let loose = Likelihood::coarse(self.problem, LOOSE);
         if misfit(&loose.residuals(&self.best.x)) > NOISE {
             self.continuation(start)?;
-            self.exchanged()?;
         }
         while !self.ended() && self.kicked()? {}
-        Ok(())
-    }
-
-    /// From the best point with the joints of a throw exchanged, one throw after another.
-    fn exchanged(&mut self) -> Result<(), Error> {
-        let bounds = Likelihood::new(self.problem).bounds();
-        let minima = self.minima.len();
-        let one = |i: usize, x: &[f64]| exchanged(self.problem, x, &bounds).into_iter().nth(i);
-        let mut throw = 0;
-        while !self.ended()
-            && let Some(start) = one(throw, &self.best.x)
-        {
-            throw += 1;
-            let near = self.descend(Some(LOOSE), &start)?;
-            if !self.ended() {
-                self.descend(None, &near)?;
-            }
-            self.minima.truncate(minima);
-        }
         Ok(())
     }
 
@@ -365,30 +342,6 @@ fn kicks(x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The point with what was found of the big end given to the small end of the same throw, and the other
-/// way round, for each throw that has both: blows in the two hardly differ in what a crosshead makes of
-/// them, so that a descent may find each in the other's place.
-fn exchanged(problem: &Problem, x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
-    let mut of_throws: BTreeMap<Option<&str>, Vec<(usize, usize)>> = BTreeMap::new();
-    for (i, parameter) in problem.parameters.iter().enumerate() {
-        let other = parameter.path.replace("big_end", "small_end");
-        let same = |p: &Parameter| p.path == other && other != parameter.path;
-        if let Some(j) = problem.parameters.iter().position(same) {
-            let throw = throw(&parameter.path);
-            of_throws.entry(throw).or_default().push((i, j));
-        }
-    }
-    let exchanged = |pairs: &Vec<(usize, usize)>| {
-        let mut exchanged = x.to_vec();
-        for (i, j) in pairs {
-            exchanged[*i] = x[*j].clamp(bounds[*i][0], bounds[*i][1]);
-            exchanged[*j] = x[*i].clamp(bounds[*j][0], bounds[*j][1]);
-        }
-        exchanged
-    };
-    of_throws.values().map(exchanged).collect()
-}
-
 /// Points around `start`, spread evenly over a quarter of the bounds to either side of it: a Latin
 /// hypercube (McKay, Beckman and Conover 1979).
 fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
@@ -412,34 +365,6 @@ fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crank_motion::CrankMotion;
-    use crate::meter::Meter;
-    use std::path::Path;
-
-    #[test]
-    fn the_joints_of_each_throw_are_exchanged() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/two-stage.yaml");
-        let tree = input::machine_file::read(&path).unwrap().to_tree().clone();
-        let paths = [
-            "throws.0.joints.small_end.contact.stiffness",
-            "throws.0.rod.mass",
-            "throws.0.joints.big_end.contact.stiffness",
-            "throws.1.joints.big_end.contact.stiffness",
-        ];
-        let named = |path| Parameter::within(&tree, path, [0.1, 1e12]).unwrap();
-        let problem = Problem {
-            parameters: paths.map(named).to_vec(),
-            tree,
-            runs: Vec::new(),
-            crank: CrankMotion::Driven,
-            meter: Meter::default(),
-        };
-        let mut bounds = [[-1.0, 1.0]; 4];
-        let x = [0.1, 0.2, 0.3, 0.4];
-        assert_eq!(exchanged(&problem, &x, &bounds), [[0.3, 0.2, 0.1, 0.4]]);
-        bounds[0][1] = 0.2;
-        assert_eq!(exchanged(&problem, &x, &bounds), [[0.2, 0.2, 0.1, 0.4]]);
-    }
 
     #[test]
     fn points_are_spread_evenly_within_the_bounds() {
