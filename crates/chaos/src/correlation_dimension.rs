@@ -134,7 +134,7 @@ mod tests {
         (0..1000).for_each(|i| nearest.push(f64::from(i * 617 % 1000)));
         assert_eq!(nearest.sorted(), [0.0, 1.0, 2.0, 3.0, 4.0]);
         let mut few = Nearest::new(5);
-        [2.0, 1.0].map(|number| few.push(number));
+        [2.0, 1.0].into_iter().for_each(|number| few.push(number));
         assert_eq!(few.sorted(), [1.0, 2.0]);
     }
 

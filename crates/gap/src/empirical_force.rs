@@ -283,11 +283,9 @@ impl Search<'_> {
         found: Vec<Found>,
     ) -> Result<WithForce, Error> {
         let explained = verdict(baseline, &model, found.len());
-        let settled = match explained {
-            Verdict::NoGap | Verdict::Explained => true,
-            Verdict::PartlyExplained => !self.effort.goes_on_for_force(),
-            Verdict::Unexplained => false,
-        };
+        // Where a part is left the force must have its chance whatever was spent before, or whatever of
+        // the catalogue comes nearest stands for it.
+        let settled = matches!(explained, Verdict::NoGap | Verdict::Explained);
         // Pressures do not feel it, and without derivatives there is no regression.
         if settled || is_of_pressures(problem) || self.effort.chaotic {
             return Ok(WithForce {
