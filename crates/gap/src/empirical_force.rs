@@ -176,11 +176,11 @@ struct Dense {
 }
 
 impl Force {
-    /// Whether the force, as it was estimated, leaves less than `model` in most of its runs.
-    fn is_nearer_than(&self, model: &Model) -> bool {
-        let by_run = model.misfits();
+    /// Whether the force, as it was estimated, leaves less than a model that leaves `misfits` in these
+    /// runs, in most of its own.
+    fn is_nearer_than(&self, misfits: &[(String, f64)]) -> bool {
         let nearer = self.leaves.iter().filter(|(run, leaves)| {
-            let mut same = by_run.iter().filter(|(id, _)| id == run);
+            let mut same = misfits.iter().filter(|(id, _)| id == run);
             same.any(|(_, misfit)| leaves < misfit)
         });
         2 * nearer.count() > self.leaves.len()
@@ -311,7 +311,7 @@ impl Search<'_> {
             };
             // On top of all effects it is always nearer.
             let in_their_place = effects.len() < found.len();
-            nearer |= in_their_place && force.is_nearer_than(&model);
+            nearer |= in_their_place && force.is_nearer_than(&model.misfits());
             missing = force.missing;
             let Some(law) = force.law else {
                 continue;
@@ -386,6 +386,25 @@ mod tests {
             "-0.2500 N (v/(1 m/s))³"
         );
         assert_eq!(expression([]), "");
+    }
+
+    #[test]
+    fn a_force_is_nearer_where_it_leaves_less_in_most_of_its_runs() {
+        let runs = |misfits: &[(&str, f64)]| -> Vec<(String, f64)> {
+            let named = misfits
+                .iter()
+                .map(|(run, misfit)| ((*run).to_owned(), *misfit));
+            named.collect()
+        };
+        let force = Force {
+            missing: Vec::new(),
+            leaves: runs(&[("a", 15.8), ("b", 3.0), ("c", 2.6)]),
+            law: None,
+        };
+        let model = [("a", 6.7), ("x", 1.0), ("b", 5.5), ("c", 5.3)];
+        assert!(force.is_nearer_than(&runs(&model)));
+        assert!(!force.is_nearer_than(&runs(&model[..3])));
+        assert!(!force.is_nearer_than(&runs(&[("b", 2.9), ("c", 5.3)])));
     }
 
     #[test]
