@@ -87,7 +87,7 @@ impl<S: Scalar> Step<S> {
         let n = self.dimension();
         let (from, length) = (&self.from, self.length);
         let scratch = &mut self.scratch;
-        S::vectorised(
+        let t = S::vectorised(
             #[inline(always)]
             || {
                 combine(
@@ -99,9 +99,9 @@ impl<S: Scalar> Step<S> {
                         scratch[j] = from[j] + length * slope;
                     },
                 );
+                self.start + length * NODES[stage]
             },
         );
-        let t = self.start + self.length * NODES[stage];
         let (_, rest) = self.stages.split_at_mut(stage * n);
         system.derivative(t, &self.scratch, &mut rest[..n]);
     }
@@ -260,18 +260,16 @@ fn combine_blocks<S: Scalar, const R: usize, const B: usize>(
     take: &mut impl FnMut(usize, [S; R]),
 ) -> usize {
     while first + B <= dimension {
-        let sums = rows.map(
-            #[inline(always)]
-            |row| weighted::<S, B>(row, stages, dimension, first),
-        );
-        for i in 0..B {
-            take(
-                first + i,
-                sums.map(
-                    #[inline(always)]
-                    |sum| sum[i],
-                ),
-            );
+        // Loops, as `map` of an array may be compiled without the instructions of lanes.
+        let mut sums = [[S::zero(); R]; B];
+        for (r, row) in rows.into_iter().enumerate() {
+            let of_row = weighted::<S, B>(row, stages, dimension, first);
+            for i in 0..B {
+                sums[i][r] = of_row[i];
+            }
+        }
+        for (i, sums) in sums.into_iter().enumerate() {
+            take(first + i, sums);
         }
         first += B;
     }

@@ -12,8 +12,13 @@ const NEARBY: f64 = 1e-3;
 /// Looks at ever smaller shares before a guard counts as overdue: the last is at 4^−13.
 const EARLY_LOOKS: usize = 12;
 
-/// Share of the step to which a crossing is found, and looks that this may take.
-const RESOLUTION: f64 = 1e-13;
+/// Halvings of the interval between two looks for the first guess of a root.
+const BISECTIONS: usize = 10;
+
+/// Share of the step to which a crossing is found, over the tolerance of the step; its bounds; and looks
+/// that this may take.
+const RESOLUTION: f64 = 1e-3;
+const RESOLUTIONS: [f64; 2] = [1e-13, 1e-6];
 const MOST_TRIES: usize = 100;
 
 /// A guard that crossed zero, and where in the step.
@@ -24,9 +29,31 @@ pub(crate) struct Crossing {
     pub share: f64,
 }
 
+/// Two shares between which a guard crosses zero, its values there, and where it may do so.
+struct Bracket {
+    shares: [f64; 2],
+    values: [f64; 2],
+    guess: f64,
+}
+
+impl Bracket {
+    /// With the secant's crossing as the guess.
+    fn new(shares: [f64; 2], values: [f64; 2]) -> Self {
+        let [near, far] = shares;
+        let guess = far + (near - far) * values[1] / (values[1] - values[0]);
+        Self {
+            shares,
+            values,
+            guess,
+        }
+    }
+}
+
 /// Scratch for looking into steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Finder<S> {
+    /// Share of the step to which a crossing is found.
+    resolution: f64,
     state: Vec<S>,
     guards: Vec<S>,
     /// Guards at each of `LOOKS`.
@@ -34,8 +61,11 @@ pub(crate) struct Finder<S> {
 }
 
 impl<S: Real> Finder<S> {
-    pub fn new(dimension: usize, guards: usize) -> Self {
+    /// Room for looking into steps of this tolerance.
+    pub fn new(dimension: usize, guards: usize, tolerance: f64) -> Self {
+        let [least, most] = RESOLUTIONS;
         Self {
+            resolution: (RESOLUTION * tolerance).clamp(least, most),
             state: vec![S::zero(); dimension],
             guards: vec![S::zero(); guards],
             looks: vec![vec![0.0; guards]; LOOKS.len()],
@@ -95,7 +125,11 @@ impl<S: Real> Finder<S> {
         for i in 0..LOOKS.len() - 1 {
             let (a, b) = (seen[i], seen[i + 1]);
             if a > 0.0 && b <= 0.0 {
-                return Some(self.root(system, step, guard, [LOOKS[i], LOOKS[i + 1]], [a, b]));
+                let bracket = Bracket {
+                    guess: first_guess(&seen, i),
+                    ..Bracket::new([LOOKS[i], LOOKS[i + 1]], [a, b])
+                };
+                return Some(self.root(system, step, guard, bracket));
             }
             if a <= 0.0 || i == 0 {
                 continue;
@@ -111,7 +145,8 @@ impl<S: Real> Finder<S> {
                     } else {
                         (LOOKS[i], a)
                     };
-                    return Some(self.root(system, step, guard, [low, share], [high, value]));
+                    let bracket = Bracket::new([low, share], [high, value]);
+                    return Some(self.root(system, step, guard, bracket));
                 }
             }
         }
@@ -133,7 +168,8 @@ impl<S: Real> Finder<S> {
             let share = later / 4.0;
             let value = self.look(system, step, share)[guard].value();
             if value > 0.0 {
-                return self.root(system, step, guard, [share, later], [value, beyond]);
+                let bracket = Bracket::new([share, later], [value, beyond]);
+                return self.root(system, step, guard, bracket);
             }
             (later, beyond) = (share, value);
         }
@@ -143,6 +179,9 @@ impl<S: Real> Finder<S> {
     /// How the time of the crossing at the step's end varies with what dual numbers vary: as the
     /// guard stays zero there, by −δg/ġ. A number of value 0.
     pub fn delay(&mut self, system: &mut impl System<S>, step: &Step<S>, guard: usize) -> S {
+        if !S::DERIVATIVES {
+            return S::zero();
+        }
         let at = self.look(system, step, 1.0)[guard];
         if !at.varies() {
             return S::zero();
@@ -165,26 +204,29 @@ impl<S: Real> Finder<S> {
         &self.guards
     }
 
-    /// The root of `guard` between two shares of opposite sign, by inverse quadratic interpolation where
-    /// that is safe and bisection elsewhere (Chandrupatla 1997); never on the near side.
+    /// The root of `guard` in a bracket, by inverse quadratic interpolation where that is safe and bisection
+    /// elsewhere (Chandrupatla 1997); never on the near side.
     fn root(
         &mut self,
         system: &mut impl System<S>,
         step: &Step<S>,
         guard: usize,
-        [near, far]: [f64; 2],
-        values: [f64; 2],
+        bracket: Bracket,
     ) -> f64 {
+        let Bracket {
+            shares: [near, far],
+            values,
+            guess,
+        } = bracket;
         // The newest share, the one on the other side of the root, and the one before.
         let ([mut x1, mut x2], [mut f1, mut f2]) = ([far, near], [values[1], values[0]]);
-        // The first try is where the secant crosses.
-        let mut way = f1 / (f1 - f2);
+        let mut way = (guess - far) / (near - far);
         for _ in 0..MOST_TRIES {
             let width = (x2 - x1).abs();
-            if width <= RESOLUTION || f1 == 0.0 {
+            if width <= self.resolution || f1 == 0.0 {
                 break;
             }
-            let least = (0.5 * RESOLUTION / width).min(0.5);
+            let least = (0.5 * self.resolution / width).min(0.5);
             let x = x1 + way.clamp(least, 1.0 - least) * (x2 - x1);
             let f = self.look(system, step, x)[guard].value();
             let (x3, f3);
@@ -207,6 +249,34 @@ impl<S: Real> Finder<S> {
         }
         if f1 > 0.0 { x2 } else { x1 }
     }
+}
+
+/// Where the polynomial through all looks crosses zero between looks `i` and `i + 1`, to some thousandth.
+fn first_guess(seen: &[f64; LOOKS.len()], i: usize) -> f64 {
+    // Newton's divided differences, the looks being equally far apart.
+    let mut differences = *seen;
+    for order in 1..LOOKS.len() {
+        for j in (order..LOOKS.len()).rev() {
+            differences[j] = (differences[j] - differences[j - 1]) / order as f64;
+        }
+    }
+    let value = |share: f64| {
+        let place = share * (LOOKS.len() - 1) as f64;
+        let terms = differences.iter().enumerate().rev();
+        terms.fold(0.0, |sum, (j, difference)| {
+            sum * (place - j as f64) + difference
+        })
+    };
+    let [mut near, mut far] = [LOOKS[i], LOOKS[i + 1]];
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (near + far);
+        if value(middle) > 0.0 {
+            near = middle;
+        } else {
+            far = middle;
+        }
+    }
+    0.5 * (near + far)
 }
 
 /// Place and value of the lowest point of the parabola through looks `i - 1`, `i` and `i + 1`,

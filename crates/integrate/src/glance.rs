@@ -76,10 +76,8 @@ impl<S: Scalar> Glances<S> {
                 || {
                     let mut quiet = S::Plain::constant(0.0).lt(S::Plain::constant(1.0));
                     for guard in 0..self.room.len() {
-                        let seen = [0, 1, 2, 3, 4].map(
-                            #[inline(always)]
-                            |i: usize| self.seen[i][guard],
-                        );
+                        let [a, b, c, d, e] = &self.seen;
+                        let seen = [a[guard], b[guard], c[guard], d[guard], e[guard]];
                         quiet = quiet.and(clear_of_zero(&seen));
                     }
                     quiet

@@ -90,6 +90,8 @@ pub struct Integrator<S: Scalar> {
     pub(crate) glances: Glances<S>,
     /// Length to try next, s.
     length: f64,
+    /// What the last error means for the length after next: error^(3/64), 1 where none is known.
+    steadiness: f64,
     pub(crate) tolerance: f64,
     longest: f64,
     budget: f64,
@@ -102,6 +104,10 @@ pub struct Integrator<S: Scalar> {
 /// integration gives up.
 const CALM: u32 = 3;
 const CHATTER: u32 = 50;
+/// Share of the length that the error allows which is tried.
+const SAFETY: f64 = 0.9;
+/// The steadiness after an error of 1e-4; a smaller one counts as this.
+const LEAST_STEADINESS: f64 = 0.65;
 /// Steps, accepted or not, that one longest step's time may take on average, beside as many to
 /// begin with. A run at 1e-12 needs some hundred.
 const BUDGET: f64 = 50_000.0;
@@ -116,9 +122,10 @@ impl<S: Real> Integrator<S> {
         let mut glances = Glances::new(system.guard_count());
         glances.begin(system, &mut step);
         let mut integrator = Self {
-            finder: Finder::new(y.len(), system.guard_count()),
+            finder: Finder::new(y.len(), system.guard_count(), tolerance),
             glances,
             length: longest,
+            steadiness: 1.0,
             step,
             tolerance,
             longest,
@@ -259,7 +266,7 @@ impl<S: Real> Integrator<S> {
     ) -> Result<(), Error> {
         let switching = match quiet {
             true => None,
-            false => match self.locate(system)? {
+            false => match self.locate(system, observe.is_some())? {
                 Some(switching) => switching,
                 None => return Ok(()),
             },
@@ -320,36 +327,50 @@ impl<S: Real> Integrator<S> {
     }
 
     /// Whether a step of these squared errors of order 5 and 3, summed over so many components, keeps
-    /// the tolerance. Sets the length to try next.
+    /// the tolerance. Sets the length to try next, as the errors of this step and of the one before call
+    /// for (Gustafsson 1991): a step's error swings, and one that happens to be small promises nothing.
     pub(crate) fn judge(&mut self, trial: Trial, squares: [f64; 2], counted: usize) -> bool {
         let error = weighted_error(trial.length, squares, counted);
-        // error^(1/8) by square roots, which round the same on every machine.
-        let root = error.sqrt().sqrt().sqrt();
-        let factor = (0.9 / root).clamp(1.0 / 3.0, 6.0);
+        // Powers by square roots, which round the same on every machine.
+        let eighth = error.sqrt().sqrt().sqrt();
         let Trial { length, limited } = trial;
         if error <= 1.0 {
-            // A step that was cut short tells little about how long the next may be.
-            let next = length * factor;
-            self.length = if limited { next.max(self.length) } else { next };
+            let sixteenth = eighth.sqrt();
+            let thirty_second = sixteenth.sqrt();
+            let factor = SAFETY * self.steadiness / (sixteenth * thirty_second);
+            let next = length * factor.clamp(1.0 / 3.0, 6.0);
+            if limited {
+                // A step that was cut short tells little about how long the next may be.
+                self.length = next.max(self.length);
+            } else {
+                self.length = next;
+                self.steadiness = (thirty_second * thirty_second.sqrt()).max(LEAST_STEADINESS);
+            }
             return true;
         }
         let shorter = match error.is_finite() {
-            true => factor.min(1.0),
+            true => (SAFETY / eighth).clamp(1.0 / 3.0, 1.0),
             false => 0.1,
         };
         self.length = length * shorter;
+        self.steadiness = 1.0;
         self.work.rejected += 1;
         false
     }
 
     /// Ends the step at the first switch in it, and tells which guard that is. `None` where the
     /// shortened step does not keep the tolerance: what lies before the switch can be too short for
-    /// the stages of the whole step to have seen it.
+    /// the stages of the whole step to have seen it. Only of a step that is `observed` the extension is
+    /// needed any more.
     #[expect(
         clippy::option_option,
         reason = "no step, a step, a step that ends in a switch"
     )]
-    fn locate(&mut self, system: &mut impl System<S>) -> Result<Option<Option<usize>>, Error> {
+    fn locate(
+        &mut self,
+        system: &mut impl System<S>,
+        observed: bool,
+    ) -> Result<Option<Option<usize>>, Error> {
         let (last, when, count) = self.last_switch;
         let now = self.time();
         let ignored = (when == now && count >= CALM).then_some(last);
@@ -370,7 +391,7 @@ impl<S: Real> Integrator<S> {
             }
             self.last_switch = (crossing.guard, now, repeats);
         } else {
-            let next = self.length;
+            let next = (self.length, self.steadiness);
             let trial = Trial {
                 length,
                 limited: true,
@@ -378,8 +399,10 @@ impl<S: Real> Integrator<S> {
             if !self.attempt(system, trial)? {
                 return Ok(None);
             }
-            self.length = next;
-            self.step.extend(system);
+            (self.length, self.steadiness) = next;
+            if observed || S::DERIVATIVES {
+                self.step.extend(system);
+            }
             let later = self.finder.delay(system, &self.step, crossing.guard);
             if later.varies() {
                 self.step.take(system, self.step.length + later, |_, _| ());

@@ -8,17 +8,21 @@ pub trait Real: Scalar<Mask = bool, Plain = f64> {
     fn value(self) -> f64 {
         self.plain()
     }
+    /// Whether numbers of this kind can carry derivatives.
+    const DERIVATIVES: bool;
     /// True where the number carries a derivative other than 0.
     fn varies(self) -> bool;
 }
 
 impl Real for f64 {
+    const DERIVATIVES: bool = false;
     fn varies(self) -> bool {
         false
     }
 }
 
 impl<const N: usize> Real for Dual<f64, N> {
+    const DERIVATIVES: bool = true;
     fn varies(self) -> bool {
         self.tangent.iter().any(|t| *t != 0.0)
     }

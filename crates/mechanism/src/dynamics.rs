@@ -7,7 +7,7 @@ use crate::evaluation::{
     Evaluation, Standing, ThrowEvaluation, along_x, direction, find_joint, pair,
 };
 use crate::joints::revolute::{JointModel, JointState, Revolute};
-use crate::machine::Machine;
+use crate::machine::{Machine, Throw};
 use crate::mode::{ChamberMode, ContactMode, Mode, ThrowMode};
 use crate::plane::{Vec2, moment, origin, turned};
 use crate::shaft::{Shaft, ShaftMotion, Turning};
@@ -27,6 +27,13 @@ pub struct Dynamics<S> {
     evaluation: Evaluation<S>,
     /// The throws' eliminated joints.
     responses: Vec<Response<S>>,
+    /// Whether the machine is plain.
+    plain: bool,
+    /// Whether a force at an end of a rod follows from accelerations.
+    rigid: bool,
+    /// Whether the crank pins' accelerations are more than their bias: not at constant speed in an ideal
+    /// main bearing.
+    pins_give: bool,
 }
 
 impl<S: Scalar> Dynamics<S> {
@@ -69,6 +76,9 @@ impl<S: Scalar> Dynamics<S> {
         let mut dynamics = Self {
             scales: system::scales(&machine, &layout),
             watches: system::watches(&machine),
+            plain: machine.is_plain(),
+            rigid: machine.throws.iter().any(Throw::has_rigid_end),
+            pins_give: !machine.drive.is_constant() || machine.main.clear().is_some(),
             machine,
             layout,
             mode,
@@ -252,8 +262,10 @@ impl<S: Scalar> Dynamics<S> {
         // A frame feels the main bearing's force.
         let framed = self.machine.frame.is_some();
         self.evaluate_forces(t, y);
-        self.respond();
-        if framed || self.pins_give() {
+        if self.rigid {
+            self.respond();
+        }
+        if framed || self.pins_give {
             self.turn_shaft(t);
         }
         self.follow();
@@ -267,49 +279,60 @@ impl<S: Scalar> Dynamics<S> {
     pub(crate) fn evaluate_forces(&mut self, t: S, y: &[S]) {
         S::vectorised(
             #[inline(always)]
-            || {
-                let (angle, speed) = self.crank(t, y);
-                let on_shaft = Acting::on_shaft(&self.machine.effects);
-                self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
-                let gravity = self.gravity();
-                let evaluation = &mut self.evaluation;
-                evaluation.angle = angle;
-                evaluation.speed = speed;
-                find_joint(
-                    &mut evaluation.main,
-                    &self.machine.main,
-                    pair(y, self.layout.main),
-                    [speed, S::zero()],
-                    &self.mode.main,
-                    || AtJoint {
-                        acting: on_shaft,
-                        joint: Joint::Main,
-                        axes: [along_x(), direction(angle)],
-                    },
-                );
-                for (i, found) in evaluation.throws.iter_mut().enumerate() {
-                    let throw = &self.machine.throws[i];
-                    let (layout, mode) = (&self.layout.throws[i], &self.mode.throws[i]);
-                    let [place, rate] = pair(y, self.layout.main);
-                    let shaft = [throw.local(place), throw.local(rate)];
-                    let gravity = throw.local(gravity);
-                    let angle = throw.local_angle(angle);
-                    found.find(
-                        throw,
-                        Acting::on_throw(&self.machine.effects, i),
-                        Standing {
-                            layout,
-                            mode,
-                            shaft,
-                            angle,
-                            speed,
-                            gravity,
-                        },
-                        y,
-                    );
-                }
+            || match self.plain {
+                true => self.forces::<true>(t, y),
+                false => self.forces::<false>(t, y),
             },
         )
+    }
+
+    /// As [`evaluate_forces`](Self::evaluate_forces) of a machine that is plain or not.
+    #[inline(always)]
+    fn forces<const PLAIN: bool>(&mut self, t: S, y: &[S]) {
+        let effects: &[_] = match PLAIN {
+            true => &[],
+            false => &self.machine.effects,
+        };
+        let (angle, speed) = self.crank(t, y);
+        let on_shaft = Acting::on_shaft(effects);
+        self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
+        let gravity = self.gravity();
+        let evaluation = &mut self.evaluation;
+        evaluation.angle = angle;
+        evaluation.speed = speed;
+        find_joint::<S, PLAIN>(
+            &mut evaluation.main,
+            &self.machine.main,
+            pair(y, self.layout.main),
+            [speed, S::zero()],
+            &self.mode.main,
+            || AtJoint {
+                acting: on_shaft,
+                joint: Joint::Main,
+                axes: [along_x(), direction(angle)],
+            },
+        );
+        for (i, found) in evaluation.throws.iter_mut().enumerate() {
+            let throw = &self.machine.throws[i];
+            let (layout, mode) = (&self.layout.throws[i], &self.mode.throws[i]);
+            let [place, rate] = pair(y, self.layout.main);
+            let shaft = [throw.local(place), throw.local(rate)];
+            let gravity = throw.local(gravity);
+            let angle = throw.local_angle(angle);
+            found.find::<PLAIN>(
+                throw,
+                Acting::on_throw(effects, i),
+                Standing {
+                    layout,
+                    mode,
+                    shaft,
+                    angle,
+                    speed,
+                    gravity,
+                },
+                y,
+            );
+        }
     }
 
     /// Gravity, as a frame that is shaken feels it.
@@ -346,13 +369,6 @@ impl<S: Scalar> Dynamics<S> {
                 self.turn(shaft, turning, target);
             },
         )
-    }
-
-    /// Whether the crank pins' accelerations are more than their bias: not at constant speed in an
-    /// ideal main bearing.
-    #[inline(always)]
-    fn pins_give(&self) -> bool {
-        !self.machine.drive.is_constant() || self.machine.main.clear().is_some()
     }
 
     /// Eliminates the throws' rigid joints from the loads stored in the evaluation.
@@ -409,7 +425,7 @@ impl<S: Scalar> Dynamics<S> {
         S::vectorised(
             #[inline(always)]
             || {
-                let give = self.pins_give();
+                let give = self.pins_give;
                 let Evaluation { shaft, throws, .. } = &mut self.evaluation;
                 let throws = self.machine.throws.iter().zip(throws);
                 for ((throw, at), response) in throws.zip(&self.responses) {

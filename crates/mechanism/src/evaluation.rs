@@ -3,7 +3,7 @@
 use crate::effects::{Acting, AtJoint, Joint};
 use crate::gas::{CylinderAt, Gas};
 use crate::joints::guide::{Guide, GuideState};
-use crate::joints::revolute::{JointState, Revolute};
+use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::{Direction, Throw};
 use crate::mode::{ContactMode, ThrowMode};
 use crate::plane::{Vec2, origin};
@@ -89,20 +89,25 @@ impl<S: Scalar> ThrowEvaluation<S> {
         }
     }
 
-    /// Finds poses, rates and loads, in place: there is too much of it to be moved about.
+    /// Finds poses, rates and loads, in place: there is too much of it to be moved about. For `PLAIN` see
+    /// [`Machine::is_plain`](crate::Machine::is_plain).
     #[inline(always)]
-    pub(crate) fn find(
+    pub(crate) fn find<const PLAIN: bool>(
         &mut self,
         throw: &Throw<S>,
         effects: Acting<'_, S>,
         at: Standing<'_, S>,
         y: &[S],
     ) {
-        let big = pair(y, at.layout.big_end);
-        let small = pair(y, at.layout.small_end);
-        let guide = pair(y, at.layout.guide);
+        let layout = match PLAIN {
+            true => at.layout.plain(),
+            false => *at.layout,
+        };
+        let big = pair(y, layout.big_end);
+        let small = pair(y, layout.small_end);
+        let guide = pair(y, layout.guide);
         let two = |i: usize| [y[i], y[i + 1]];
-        let stretch = at.layout.rod.map_or([S::zero(); 2], two);
+        let stretch = layout.rod.map_or([S::zero(); 2], two);
         self.motion.find(
             throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
         );
@@ -115,9 +120,9 @@ impl<S: Scalar> ThrowEvaluation<S> {
             axes: [motion.along_rod(), journal],
         };
         let pin = motion.angle_sin_cos;
-        let crosshead = at.layout.guide.map_or(along_x(), |_| direction(guide[0].y));
+        let crosshead = layout.guide.map_or(along_x(), |_| direction(guide[0].y));
         let joints = &mut self.joints;
-        find_joint(
+        find_joint::<S, PLAIN>(
             &mut joints.big_end,
             &throw.big_end,
             big,
@@ -125,7 +130,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             &at.mode.big_end,
             || at_joint(Joint::BigEnd, Vec2::new(pin.1, pin.0)),
         );
-        find_joint(
+        find_joint::<S, PLAIN>(
             &mut joints.small_end,
             &throw.small_end,
             small,
@@ -136,6 +141,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
         match &throw.guide {
             // What an ideal guide must bear is found last.
             Guide::Ideal => joints.guide.release(),
+            Guide::Clear(_) if PLAIN => {}
             Guide::Clear(clear) => {
                 joints.guide =
                     clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide);
@@ -148,11 +154,11 @@ impl<S: Scalar> ThrowEvaluation<S> {
             speed: at.speed,
             offsets: [big[0], small[0]],
             mode: at.mode,
-            drift: at.layout.gas.map(two),
+            drift: layout.gas.map(two),
         };
-        self.gas = cylinder.gas();
+        self.gas = cylinder.gas::<PLAIN>();
         let spring = effects.rod();
-        self.loads.find(
+        self.loads.find::<PLAIN>(
             throw,
             spring.as_ref(),
             at.gravity,
@@ -216,7 +222,7 @@ pub(crate) fn direction<S: Scalar>(angle: S) -> Vec2<S> {
 
 /// Finds the state of a joint with clearance; that of an ideal one never changes.
 #[inline(always)]
-pub(crate) fn find_joint<'a, S: Scalar>(
+pub(crate) fn find_joint<'a, S: Scalar, const PLAIN: bool>(
     state: &mut JointState<S>,
     joint: &Revolute<S>,
     offset: [Vec2<S>; 2],
@@ -224,7 +230,12 @@ pub(crate) fn find_joint<'a, S: Scalar>(
     mode: &ContactMode<S>,
     effects: impl FnOnce() -> AtJoint<'a, S>,
 ) {
-    if let Revolute::Clear(clear) = joint {
-        clear.find(state, offset, spins, mode, &effects());
+    match joint {
+        Revolute::Ideal => {}
+        Revolute::Clear(clear) if PLAIN => {
+            let model = JointModel::ThreeMode;
+            clear.find_as(model, state, offset, spins, mode, &effects());
+        }
+        Revolute::Clear(clear) => clear.find(state, offset, spins, mode, &effects()),
     }
 }

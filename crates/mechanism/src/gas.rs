@@ -223,20 +223,20 @@ pub(crate) struct CylinderAt<'a, S> {
 impl<S: Scalar> CylinderAt<'_, S> {
     /// The gas of the throw (MODEL.md, sections 3 and 6), and the effects on the piston.
     #[inline(always)]
-    pub fn gas(&self) -> Gas<S> {
+    pub fn gas<const PLAIN: bool>(&self) -> Gas<S> {
         let (throw, motion) = (self.throw, self.motion);
         let cylinder = &throw.cylinder;
         let face = area(cylinder.piston_radius);
         let reach = throw.crank_radius + throw.rod.length;
         let to_head = cylinder.head_clearance + reach - motion.crosshead;
-        let (head_end, head) = self.chamber(End::Head, cylinder.head_clearance, to_head);
+        let (head_end, head) = self.chamber::<PLAIN>(End::Head, cylinder.head_clearance, to_head);
         let mut crank = None;
         let (crank_end, force) = match &cylinder.crank_end {
             None => (GasState::none(), (cylinder.back - head_end.pressure) * face),
             Some(end) => {
                 let to_cover =
                     end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
-                let (gas, seen) = self.chamber(End::Crank, end.clearance, to_cover);
+                let (gas, seen) = self.chamber::<PLAIN>(End::Crank, end.clearance, to_cover);
                 crank = seen;
                 let rod = area(end.rod_radius);
                 let force =
@@ -280,39 +280,55 @@ impl<S: Scalar> CylinderAt<'_, S> {
 
     /// The chamber at one end with its piston `distance` from the cover, `dead` at the dead centre;
     /// and as effects see it, where there are any.
+    #[inline(always)]
+    fn chamber<const PLAIN: bool>(
+        &self,
+        end: End,
+        dead: S,
+        distance: S,
+    ) -> (GasState<S>, Option<ChamberAt<S>>) {
+        match PLAIN {
+            true => self.chamber_here(end, dead, distance),
+            false => self.chamber_apart(end, dead, distance),
+        }
+    }
+
     #[inline(never)]
-    fn chamber(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
+    fn chamber_apart(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
         S::vectorised(
             #[inline(always)]
-            || {
-                let (throw, cylinder) = (self.throw, &self.throw.cylinder);
-                let (expanding, mode) = match end {
-                    End::Head => (self.mode.outward, &self.mode.head_end),
-                    End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
-                };
-                let lines = [cylinder.suction, cylinder.discharge];
-                let mut chamber = Chamber {
-                    dead,
-                    filled: throw.crank_radius * 2.0 + dead,
-                    lines,
-                    exponents: [cylinder.exponent, cylinder.expansion_exponent],
-                };
-                if !self.effects.any() {
-                    return (chamber.state(distance, expanding, lines, None, mode), None);
-                }
-                let mut seen = self.seen(end, distance, expanding, mode);
-                chamber.filled -= self.retreat(end);
-                chamber.lines = self.lines_at_centres(end, seen);
-                let drift = self.drift.map(|drift| drift[end as usize]);
-                let open = self.lines(end, &seen);
-                let state = chamber.state(distance, expanding, open, drift, mode);
-                seen.pressure = state.pressure;
-                if drift.is_some() {
-                    seen.warmth = chamber.warmth(state.pressure, distance, expanding);
-                }
-                (state, Some(seen))
-            },
+            || self.chamber_here(end, dead, distance),
         )
+    }
+
+    #[inline(always)]
+    fn chamber_here(&self, end: End, dead: S, distance: S) -> (GasState<S>, Option<ChamberAt<S>>) {
+        let (throw, cylinder) = (self.throw, &self.throw.cylinder);
+        let (expanding, mode) = match end {
+            End::Head => (self.mode.outward, &self.mode.head_end),
+            End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
+        };
+        let lines = [cylinder.suction, cylinder.discharge];
+        let mut chamber = Chamber {
+            dead,
+            filled: throw.crank_radius * 2.0 + dead,
+            lines,
+            exponents: [cylinder.exponent, cylinder.expansion_exponent],
+        };
+        if !self.effects.any() {
+            return (chamber.state(distance, expanding, lines, None, mode), None);
+        }
+        let mut seen = self.seen(end, distance, expanding, mode);
+        chamber.filled -= self.retreat(end);
+        chamber.lines = self.lines_at_centres(end, seen);
+        let drift = self.drift.map(|drift| drift[end as usize]);
+        let open = self.lines(end, &seen);
+        let state = chamber.state(distance, expanding, open, drift, mode);
+        seen.pressure = state.pressure;
+        if drift.is_some() {
+            seen.warmth = chamber.warmth(state.pressure, distance, expanding);
+        }
+        (state, Some(seen))
     }
 
     /// The chamber as effects see it, before its pressure is known.

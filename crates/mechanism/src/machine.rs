@@ -8,7 +8,7 @@ use crate::effects::Effect;
 use crate::frame::Frame;
 use crate::gas::Cylinder;
 use crate::joints::guide::Guide;
-use crate::joints::revolute::Revolute;
+use crate::joints::revolute::{JointModel, Revolute};
 use crate::lift::parameters;
 
 parameters! {
@@ -105,5 +105,23 @@ parameters! {
         pub mass: S,
         /// Moment of inertia about the pin, kg m²; felt only where the guide has clearance.
         pub inertia: S,
+    }
+}
+
+impl<S> Machine<S> {
+    /// Whether this is the model of MODEL.md without any addition that costs time where it is not there:
+    /// no effects, ideal guides, compliant contact in every joint with clearance. Most machines are.
+    pub(crate) fn is_plain(&self) -> bool {
+        let compliant = |joint: &Revolute<S>| {
+            joint
+                .clear()
+                .is_none_or(|clear| clear.model == JointModel::ThreeMode)
+        };
+        let plain = |throw: &Throw<S>| {
+            throw.guide.clear().is_none()
+                && compliant(&throw.big_end)
+                && compliant(&throw.small_end)
+        };
+        self.effects.is_empty() && compliant(&self.main) && self.throws.iter().all(plain)
     }
 }

@@ -125,11 +125,12 @@ impl<S: Scalar> Mul for Mat2<S> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let Self(columns) = other.transpose();
-        Self(
-            self.0
-                .map(|row| Vec2::new(row.dot(&columns[0]), row.dot(&columns[1]))),
-        )
+        let Self([first, second]) = other.transpose();
+        let Self([a, b]) = self;
+        Self([
+            Vec2::new(a.dot(&first), a.dot(&second)),
+            Vec2::new(b.dot(&first), b.dot(&second)),
+        ])
     }
 }
 

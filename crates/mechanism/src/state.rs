@@ -45,6 +45,19 @@ pub struct ThrowLayout {
     pub gas: Option<usize>,
 }
 
+impl ThrowLayout {
+    /// That of a throw of a plain machine ([`Machine::is_plain`]), so that the compiler knows it.
+    #[inline(always)]
+    pub(crate) fn plain(&self) -> Self {
+        Self {
+            guide: None,
+            rod: None,
+            gas: None,
+            ..*self
+        }
+    }
+}
+
 impl Layout {
     /// The layout of `machine`, with the energy ledger or without.
     pub fn new<S: Scalar>(machine: &Machine<S>, ledger: bool) -> Self {

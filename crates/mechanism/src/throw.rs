@@ -294,7 +294,7 @@ pub struct Joints<S> {
 impl<S: Scalar> Loads<S> {
     /// Finds the loads, with the rod as the spring that it is.
     #[inline(always)]
-    pub fn find(
+    pub fn find<const PLAIN: bool>(
         &mut self,
         throw: &Throw<S>,
         spring: Option<&RodSpring<S>>,
@@ -310,7 +310,7 @@ impl<S: Scalar> Loads<S> {
         let rate2 = motion.rod_rate * motion.rod_rate;
         let across = turned(arms.along);
         let [of_big, of_small] = arms.shares;
-        let target = |joint: &Revolute<S>, state| match joint.is_following() {
+        let target = |joint: &Revolute<S>, state| match !PLAIN && joint.is_following() {
             true => following_target(state),
             false => S::zero(),
         };
@@ -351,9 +351,12 @@ impl<S: Scalar> Loads<S> {
     /// Acceleration of the rod's centre of mass, and its angular one, without rigid joints' forces.
     #[inline(always)]
     fn free_rod(&self, throw: &Throw<S>) -> (Vec2<S>, S) {
+        // One division for both: they take long.
+        let (mass, inertia) = (throw.rod.mass, self.rod_inertia);
+        let both = S::one() / (mass * inertia);
         (
-            self.rod_force / throw.rod.mass,
-            self.rod_moment / self.rod_inertia,
+            self.rod_force * (both * inertia),
+            self.rod_moment * (both * mass),
         )
     }
 
@@ -396,7 +399,8 @@ impl<S: Scalar> Arms<S> {
             -throw.rod.centre_of_mass,
             throw.rod.length - throw.rod.centre_of_mass,
         ];
-        let [big, small] = shares.map(|share| along * (share * motion.lengthening()));
+        let big = along * (shares[0] * motion.lengthening());
+        let small = along * (shares[1] * motion.lengthening());
         Self {
             along,
             shares,
@@ -561,7 +565,10 @@ impl<S: Scalar> Accelerations<S> {
         self.crosshead = crosshead.x;
         self.big_end = pin - big_eye;
         self.small_end = crosshead - small_eye;
-        self.guide = Vec2::new(crosshead.y, tilting / throw.crosshead.inertia);
+        self.guide = match throw.guide.clear() {
+            None => origin(),
+            Some(_) => Vec2::new(crosshead.y, tilting / throw.crosshead.inertia),
+        };
         self.big_force = big_force;
         self.small_force = small_force;
         self.rod = rod;

@@ -32,7 +32,8 @@ impl System<f64> for Drop {
     fn guards(&mut self, _t: f64, y: &[f64], guards: &mut [f64]) {
         guards.fill(1.0);
         if !self.over {
-            let sign = self.law.force(y[0], y[1], &self.mode).sign;
+            let [above, below] = self.law.force(y[0], y[1], &self.mode).excess;
+            let sign = above / below + 1.0;
             guards[0] = y[0];
             guards[1] = if self.mode.pressed > 0.0 { sign } else { -sign };
             if let Some(depth) = self.law.kink() {

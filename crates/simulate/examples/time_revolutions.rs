@@ -121,6 +121,8 @@ struct Lane {
 /// Samples under way, up to so many.
 struct Samples {
     count: usize,
+    /// How many have been asked for.
+    asked: usize,
     lookout: Box<dyn Lookout>,
     mode: Mode,
     times: Vec<f64>,
@@ -136,6 +138,7 @@ impl Lane {
             integrator: Integrator::new(&mut dynamics, 0.0, &state, task.tolerance, longest),
             samples: Samples {
                 count,
+                asked: 0,
                 lookout: lookout::at(machine, false),
                 mode: Mode::clone(dynamics.mode()),
                 times: Vec::new(),
@@ -149,19 +152,33 @@ impl Lane {
 impl Samples {
     fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
         let stop = step.start + step.length;
-        let instants = (self.seen.len()..self.count).map(|i| i as f64 / RATE);
+        let instants = (self.asked..self.count).map(|i| i as f64 / RATE);
         self.times.clear();
         self.times.extend(instants.take_while(|time| *time <= stop));
         if self.times.is_empty() {
             return;
         }
+        self.asked += self.times.len();
         if *dynamics.mode() != self.mode {
+            self.finish();
             self.mode.clone_from(dynamics.mode());
             self.lookout.set_mode(&self.mode);
         }
         let seen = &mut self.seen;
         let mut show = |_, values: &[f64]| seen.extend(values);
         self.lookout.look(step, &self.times, &[sensor()], &mut show);
+    }
+
+    fn finish(&mut self) {
+        let seen = &mut self.seen;
+        let mut show = |_, values: &[f64]| seen.extend(values);
+        self.lookout.finish(&[sensor()], &mut show);
+    }
+
+    /// All of them.
+    fn end(mut self) -> Vec<f64> {
+        self.finish();
+        self.seen
     }
 }
 
@@ -184,7 +201,7 @@ fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
     integrator.advance(&mut dynamics, task.end(machine), |dynamics, step| {
         samples.observe(dynamics, step);
     })?;
-    Ok(samples.seen)
+    Ok(samples.end())
 }
 
 /// The machine in the first of several lanes; in the others the same with wider and wider joints.
@@ -258,7 +275,7 @@ fn travel<L: Lanes<W>, const W: usize>(
         }
     }
     let first = lanes.into_iter().next().ok_or("no lanes")?;
-    Ok(first.samples.seen)
+    Ok(first.samples.end())
 }
 
 /// CPU time of one run of `work`, ms, and what it found: one run to warm the caches up, then as many

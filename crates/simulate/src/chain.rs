@@ -245,6 +245,7 @@ impl Measured {
     }
 
     /// The quantity, an angle since the start.
+    #[inline(always)]
     pub(crate) fn unwrapped<S: Scalar>(&self, at: &Evaluation<S>) -> S {
         match *self {
             Measured::CrossheadAcceleration { throw } => {

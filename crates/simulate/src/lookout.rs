@@ -6,13 +6,14 @@ use mechanism::mode::Mode;
 use mechanism::{Dynamics, Machine, lift};
 use scalar::{InLanes, Lanes, in_lanes};
 
-/// Looks at a machine at as many instants at once as the processor has lanes.
+/// Looks at a machine at as many instants at once as the processor has lanes. Instants wait until they
+/// are so many.
 pub trait Lookout: Send {
-    /// Puts the machine into a mode.
+    /// Puts the machine into a mode. No instant may be waiting.
     fn set_mode(&mut self, mode: &Mode);
 
     /// Looks at the instants `times`, s, all of them within the step, and shows `show` what each sensor
-    /// sees at some of them, in their order.
+    /// sees at those that need not wait, in their order.
     fn look(
         &mut self,
         step: &Step<f64>,
@@ -20,6 +21,9 @@ pub trait Lookout: Send {
         sensors: &[Sensor],
         show: &mut dyn FnMut(usize, &[f64]),
     );
+
+    /// Shows `show` what each sensor sees at the instants that wait.
+    fn finish(&mut self, sensors: &[Sensor], show: &mut dyn FnMut(usize, &[f64]));
 }
 
 /// A lookout at a machine; with `ledger` its state holds the works too.
@@ -37,9 +41,13 @@ impl InLanes for Opening<'_> {
 
     fn run<L: Lanes<W>, const W: usize>(self) -> Self::Output {
         let dynamics = Dynamics::<L>::new(lift::constants(self.machine), self.ledger);
+        let dimension = dynamics.layout().dimension;
         Box::new(Wide::<L, W> {
-            states: vec![L::zero(); dynamics.layout().dimension],
             dynamics,
+            waiting: 0,
+            instants: L::zero(),
+            states: vec![L::zero(); dimension],
+            found: vec![L::zero(); dimension],
         })
     }
 }
@@ -47,33 +55,72 @@ impl InLanes for Opening<'_> {
 /// The machine in all lanes, each at an instant of its own.
 struct Wide<L, const W: usize> {
     dynamics: Dynamics<L>,
+    /// How many instants wait, in the first lanes.
+    waiting: usize,
+    instants: L,
     states: Vec<L>,
+    /// Scratch: states at instants of one step.
+    found: Vec<L>,
+}
+
+impl<L: Lanes<W>, const W: usize> Wide<L, W> {
+    /// Lets these instants wait, for which there is room.
+    fn wait(&mut self, step: &Step<f64>, times: &[f64]) {
+        let places = self.waiting..self.waiting + times.len();
+        let place = |lane: usize| lane.clamp(places.start, places.end - 1) - places.start;
+        let instants = L::from_array(std::array::from_fn(|lane| times[place(lane)]));
+        let new = L::mask(std::array::from_fn(|lane| places.contains(&lane)));
+        L::vectorised(
+            #[inline(always)]
+            || {
+                let share = (instants - step.start) / step.length;
+                step.interpolate_lanes(share, &mut self.found);
+                self.instants = L::select(new, instants, self.instants);
+                for (state, found) in self.states.iter_mut().zip(&self.found) {
+                    *state = L::select(new, *found, *state);
+                }
+            },
+        );
+        self.waiting = places.end;
+    }
 }
 
 impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
     fn set_mode(&mut self, mode: &Mode) {
+        debug_assert_eq!(self.waiting, 0, "instants wait in another mode");
         self.dynamics.set_mode(mode);
     }
 
     fn look(
         &mut self,
         step: &Step<f64>,
-        times: &[f64],
+        mut times: &[f64],
         sensors: &[Sensor],
         show: &mut dyn FnMut(usize, &[f64]),
     ) {
-        for times in times.chunks(W) {
-            // Lanes without an instant of their own look at the last one.
-            let last = times.len() - 1;
-            let instants = L::from_array(std::array::from_fn(|lane| times[lane.min(last)]));
-            let share = L::vectorised(|| (instants - step.start) / step.length);
-            step.interpolate_lanes(share, &mut self.states);
-            let at = self.dynamics.evaluate_sensed(instants, &self.states);
-            for (i, sensor) in sensors.iter().enumerate() {
-                let seen = L::vectorised(|| sensor.measured.unwrapped(at)).to_array();
-                let seen = seen.map(|x| sensor.measured.wrapped(x));
-                show(i, &seen[..times.len()]);
+        while !times.is_empty() {
+            let (now, later) = times.split_at(times.len().min(W - self.waiting));
+            self.wait(step, now);
+            if self.waiting == W {
+                self.finish(sensors, show);
             }
+            times = later;
+        }
+    }
+
+    fn finish(&mut self, sensors: &[Sensor], show: &mut dyn FnMut(usize, &[f64])) {
+        let count = std::mem::take(&mut self.waiting);
+        if count == 0 {
+            return;
+        }
+        let at = self.dynamics.evaluate_sensed(self.instants, &self.states);
+        for (i, sensor) in sensors.iter().enumerate() {
+            let seen = L::vectorised(
+                #[inline(always)]
+                || sensor.measured.unwrapped(at),
+            );
+            let seen = seen.to_array().map(|x| sensor.measured.wrapped(x));
+            show(i, &seen[..count]);
         }
     }
 }

@@ -99,6 +99,7 @@ impl<'a> Sampler<'a> {
             return;
         }
         if *dynamics.mode() != self.mode {
+            self.finish();
             self.mode.clone_from(dynamics.mode());
             self.lookout.set_mode(&self.mode);
         }
@@ -112,9 +113,17 @@ impl<'a> Sampler<'a> {
         self.seen += within;
     }
 
+    /// Looks at the instants that wait.
+    fn finish(&mut self) {
+        let series = &mut self.series;
+        let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
+        self.lookout.finish(self.sensors, &mut show);
+    }
+
     /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond
     /// the last step.
     pub fn end_with(mut self, run: &mut Run<f64>, start: f64) -> (Vec<Vec<f64>>, Option<Trace>) {
+        self.finish();
         let last = run.evaluate();
         while self.seen < self.instants.count {
             self.look(last);

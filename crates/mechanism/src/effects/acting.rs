@@ -201,7 +201,8 @@ impl<'a, S: Scalar> Acting<'a, S> {
         self.effects.iter().filter(acting).map(|effect| &effect.law)
     }
 
-    /// Whether there are any on the whole machine.
+    /// Whether there are any on the whole machine. Where the compiler knows that there are none, nothing
+    /// is left of those who ask first.
     #[inline(always)]
     pub fn any(self) -> bool {
         !self.effects.is_empty()
@@ -216,12 +217,18 @@ impl<'a, S: Scalar> Acting<'a, S> {
     /// The spring that the throw's connecting rod is; none where it is rigid.
     #[inline(always)]
     pub fn rod(self) -> Option<RodSpring<S>> {
+        if !self.any() {
+            return None;
+        }
         self.all().find_map(|effect| effect.rod())
     }
 
     /// Acceleration of the frame, m/s²; none where it stands still.
     #[inline(always)]
     pub fn frame_acceleration(self, angle: S, speed: S) -> Option<Vec2<S>> {
+        if !self.any() {
+            return None;
+        }
         let moves = self
             .all()
             .filter_map(|effect| effect.frame_acceleration(angle, speed));
@@ -256,6 +263,9 @@ impl<S: Scalar> AtJoint<'_, S> {
     /// How far the joint is out of round in the direction `normal`; none where it is round.
     #[inline(always)]
     pub fn shape(&self, normal: Vec2<S>) -> Option<Shape<S>> {
+        if !self.acting.any() {
+            return None;
+        }
         let within = |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal));
         let [bearing, journal] = self.axes;
         let effects = self.acting.at_joint(self.joint);
@@ -269,6 +279,9 @@ impl<S: Scalar> AtJoint<'_, S> {
     /// Force of the film on the journal along the normal, N.
     #[inline(always)]
     pub fn film_force(&self, at: &JointAt<S>) -> S {
+        if !self.acting.any() {
+            return S::zero();
+        }
         let effects = self.acting.at_joint(self.joint);
         effects.fold(S::zero(), |sum, effect| sum + effect.film_force(at))
     }

@@ -105,7 +105,7 @@ pub struct CornerState<S> {
     pub normal_force: S,
     /// Slip speed along the guide, m/s.
     pub(crate) slip: S,
-    pub(crate) sign: S,
+    pub(crate) excess: [S; 2],
 }
 
 impl<S: Scalar> GuideState<S> {
@@ -118,7 +118,7 @@ impl<S: Scalar> GuideState<S> {
             penetration_rate: zero,
             normal_force: zero,
             slip: zero,
-            sign: zero,
+            excess: [zero, S::one()],
         };
         Self {
             position: origin(),
@@ -183,7 +183,7 @@ impl<S: Scalar> GuideClearance<S> {
                         penetration_rate,
                         normal_force,
                         slip,
-                        sign: law.sign,
+                        excess: law.excess,
                     };
                 }
                 guide
@@ -202,7 +202,7 @@ impl<S: Scalar> GuideClearance<S> {
             &self.contact,
             &self.friction,
             corner.penetration,
-            corner.sign,
+            corner.excess,
             corner.slip,
             mode,
         )

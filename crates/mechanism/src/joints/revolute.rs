@@ -1,6 +1,6 @@
 //! A pin in a bearing: ideal, or with radial clearance.
 
-use super::contact::{ContactLaw, NormalForce};
+use super::contact::{ContactLaw, NormalForce, pressing};
 use super::friction::FrictionLaw;
 use crate::effects::{AtJoint, JointAt, Shape};
 use crate::lift::{Lift, parameters};
@@ -112,8 +112,8 @@ pub struct JointState<S> {
     pub friction_force: S,
     /// Force on the journal, N.
     pub force: Vec2<S>,
-    /// Positive while the contact law pushes.
-    pub(crate) sign: S,
+    /// By how much the contact law pushes more than its spring ([`pressing`]).
+    pub(crate) excess: [S; 2],
     /// Power lost to damping, W.
     pub damping_power: S,
     /// Arm R_j n from the journal's centre to the point of contact, m.
@@ -154,7 +154,7 @@ impl<S: Scalar> JointState<S> {
             normal_force: zero,
             friction_force: zero,
             force: origin(),
-            sign: zero,
+            excess: [zero, S::one()],
             damping_power: zero,
             arm: origin(),
             coefficient: zero,
@@ -169,67 +169,81 @@ impl<S: Scalar> Clearance<S> {
     pub(crate) fn find(
         &self,
         state: &mut JointState<S>,
-        [offset, rate]: [Vec2<S>; 2],
+        offset: [Vec2<S>; 2],
         spins: [S; 2],
         mode: &ContactMode<S>,
         effects: &AtJoint<'_, S>,
     ) {
         S::vectorised(
             #[inline(always)]
-            || {
-                let surface = self.surface(offset, rate, spins, effects);
-                let Surface {
-                    normal,
-                    uneven,
-                    penetration,
-                    penetration_rate,
-                    slip,
-                } = surface;
-                let tangent = turned(normal);
-                let coefficient = match self.model {
-                    JointModel::MasslessLink => S::zero(),
-                    JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
-                };
-                let NormalForce { raw, elastic, sign } = match self.model {
-                    JointModel::ThreeMode => {
-                        self.contact.force(penetration, penetration_rate, mode)
-                    }
-                    JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
-                };
-                let pressed = flagged(mode.pressed, raw, S::zero());
-                let stored = flagged(mode.touching, elastic, S::zero());
-                let film = effects.film_force(&JointAt {
-                    penetration,
-                    rate: penetration_rate,
-                    clearance: self.clearance,
-                    journal_radius: self.journal_radius,
-                });
-                let mut arm = match self.model {
-                    JointModel::MasslessLink => origin(),
-                    JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
-                };
-                let (mut normal_force, mut film_force) = (pressed, film);
-                if let Some(uneven) = uneven {
-                    normal_force *= uneven.steepness;
-                    film_force *= uneven.steepness;
-                    arm -= tangent * (uneven.change / uneven.steepness);
-                }
-                let friction_force = coefficient * normal_force;
-                state.offset = offset;
-                state.rate = rate;
-                state.normal = normal;
-                state.penetration = penetration;
-                state.penetration_rate = penetration_rate;
-                state.slip = slip;
-                state.normal_force = normal_force;
-                state.friction_force = friction_force;
-                state.force = -(normal * (normal_force - film_force)) - tangent * friction_force;
-                state.sign = sign;
-                state.damping_power = (pressed - stored - film) * penetration_rate;
-                state.arm = arm;
-                state.coefficient = coefficient;
-            },
+            || self.find_as(self.model, state, offset, spins, mode, effects),
         )
+    }
+
+    /// As [`find`](Self::find), with the joint's model told by the caller, who may know it when compiled.
+    #[inline(always)]
+    pub(crate) fn find_as(
+        &self,
+        model: JointModel,
+        state: &mut JointState<S>,
+        [offset, rate]: [Vec2<S>; 2],
+        spins: [S; 2],
+        mode: &ContactMode<S>,
+        effects: &AtJoint<'_, S>,
+    ) {
+        let surface = self.surface(model, offset, rate, spins, effects);
+        let Surface {
+            normal,
+            uneven,
+            penetration,
+            penetration_rate,
+            slip,
+        } = surface;
+        let tangent = turned(normal);
+        let coefficient = match model {
+            JointModel::MasslessLink => S::zero(),
+            JointModel::ThreeMode | JointModel::TwoMode => self.friction.coefficient(slip),
+        };
+        let NormalForce {
+            raw,
+            elastic,
+            excess,
+        } = match model {
+            JointModel::ThreeMode => self.contact.force(penetration, penetration_rate, mode),
+            JointModel::TwoMode | JointModel::MasslessLink => NormalForce::none(),
+        };
+        let pressed = flagged(mode.pressed, raw, S::zero());
+        let stored = flagged(mode.touching, elastic, S::zero());
+        let film = effects.film_force(&JointAt {
+            penetration,
+            rate: penetration_rate,
+            clearance: self.clearance,
+            journal_radius: self.journal_radius,
+        });
+        let mut arm = match model {
+            JointModel::MasslessLink => origin(),
+            JointModel::ThreeMode | JointModel::TwoMode => normal * self.journal_radius,
+        };
+        let (mut normal_force, mut film_force) = (pressed, film);
+        if let Some(uneven) = uneven {
+            normal_force *= uneven.steepness;
+            film_force *= uneven.steepness;
+            arm -= tangent * (uneven.change / uneven.steepness);
+        }
+        let friction_force = coefficient * normal_force;
+        state.offset = offset;
+        state.rate = rate;
+        state.normal = normal;
+        state.penetration = penetration;
+        state.penetration_rate = penetration_rate;
+        state.slip = slip;
+        state.normal_force = normal_force;
+        state.friction_force = friction_force;
+        state.force = -(normal * (normal_force - film_force)) - tangent * friction_force;
+        state.excess = excess;
+        state.damping_power = (pressed - stored - film) * penetration_rate;
+        state.arm = arm;
+        state.coefficient = coefficient;
     }
 
     /// The surfaces at offset `e`, as the shapes of bearing and journal have them.
@@ -241,6 +255,7 @@ impl<S: Scalar> Clearance<S> {
     #[inline(always)]
     fn surface(
         &self,
+        model: JointModel,
         offset: Vec2<S>,
         rate: Vec2<S>,
         [journal, bearing]: [S; 2],
@@ -255,7 +270,7 @@ impl<S: Scalar> Clearance<S> {
             tangent.dot(&rate) + journal * self.journal_radius
                 - bearing * (self.journal_radius + distance)
         };
-        let shape = match self.model {
+        let shape = match model {
             JointModel::ThreeMode => effects.shape(normal),
             JointModel::TwoMode | JointModel::MasslessLink => None,
         };
@@ -298,7 +313,7 @@ impl<S: Scalar> Clearance<S> {
                 &self.contact,
                 &self.friction,
                 joint.penetration,
-                joint.sign,
+                joint.excess,
                 joint.slip,
                 mode,
             ),
@@ -321,13 +336,14 @@ pub(crate) fn contact_guards<S: Scalar>(
     contact: &ContactLaw<S>,
     friction: &FrictionLaw<S>,
     penetration: S,
-    sign: S,
+    excess: [S; 2],
     slip: S,
     mode: &ContactMode<S>,
 ) -> [S; CONTACT_GUARDS] {
     let one = S::one();
     let mut guards = [one; CONTACT_GUARDS];
     guards[0] = flagged(mode.touching, penetration, -penetration);
+    let sign = pressing(excess);
     guards[1] = flagged(mode.touching, flagged(mode.pressed, sign, -sign), one);
     if let Some(depth) = contact.kink() {
         guards[2] = flagged(mode.deep, penetration - depth, depth - penetration);

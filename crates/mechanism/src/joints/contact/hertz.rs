@@ -21,7 +21,7 @@ impl<S: Scalar> Hertz<S> {
         NormalForce {
             raw: elastic,
             elastic,
-            sign: S::one(),
+            excess: [S::zero(), S::one()],
         }
     }
 }

@@ -48,9 +48,16 @@ pub struct NormalForce<S> {
     pub raw: S,
     /// The elastic part, N.
     pub elastic: S,
-    /// `raw / elastic`, continued beyond the surface: positive while the surfaces press. Unlike
-    /// `raw` it does not vanish where the surfaces part, so that its sign change can be located.
-    pub sign: S,
+    /// `raw / elastic − 1`, continued beyond the surface, as numerator and denominator: only guards need
+    /// the quotient.
+    pub excess: [S; 2],
+}
+
+/// Positive while surfaces of this excess press. Unlike the force it does not vanish where they part, so
+/// that its sign change can be located.
+#[inline(always)]
+pub(crate) fn pressing<S: Scalar>([above, below]: [S; 2]) -> S {
+    above / below + 1.0
 }
 
 impl<S: Scalar> NormalForce<S> {
@@ -60,7 +67,7 @@ impl<S: Scalar> NormalForce<S> {
         Self {
             raw: S::zero(),
             elastic: S::zero(),
-            sign: S::one(),
+            excess: [S::zero(), S::one()],
         }
     }
 
@@ -70,7 +77,7 @@ impl<S: Scalar> NormalForce<S> {
         Self {
             raw: elastic + damping,
             elastic,
-            sign: damping / elastic.max(S::constant(1e-200)) + 1.0,
+            excess: [damping, elastic.max(S::constant(1e-200))],
         }
     }
 }

@@ -32,7 +32,7 @@ impl<S: Scalar> Restitution<S> {
         NormalForce {
             raw: elastic * sign,
             elastic,
-            sign,
+            excess: [factor * rate, v0],
         }
     }
 }
