@@ -11,7 +11,7 @@
 use crate::candidate::{Candidate, throws};
 use crate::decision::{NOISE, Verdict, earns, evidence, verdict};
 use crate::error::Error;
-use crate::explain::{Found, Search, Tried, effects};
+use crate::explain::{Found, Search, effects};
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
 use crate::model::{Effort, Model, Watch};
@@ -28,8 +28,6 @@ pub(crate) const MOST: usize = 3;
 const DENSE: u64 = 400;
 /// The same of a search out of the local minimum in which that has ended.
 const FURTHER: u64 = 1000;
-/// Share of the misfit that a force must leave at most for its machine to be worth a look.
-const HALF: f64 = 0.5;
 /// Rounds in which terms may still be exchanged.
 const ROUNDS: usize = 4;
 
@@ -47,12 +45,8 @@ pub struct Law {
 pub struct Force {
     /// As a fit with all terms has it, in every run.
     pub missing: Vec<MissingForce>,
-    /// What that fit leaves in the few runs that it was made to, and in each of them.
-    pub misfit: f64,
-    /// See [`misfit`](Self::misfit).
+    /// What that fit leaves in each of the few runs that it was made to.
     pub leaves: Vec<(String, f64)>,
-    /// Coordinates of the parameters that were free before, where the force is.
-    pub x: Vec<f64>,
     /// Its law.
     pub law: Option<Law>,
 }
@@ -165,16 +159,11 @@ pub fn empirical_force(
         return Ok(None);
     };
     let missing = missing_force(&dense.model, &model.problem.runs)?;
-    let (misfit, leaves) = (dense.model.fitted, dense.model.misfits());
-    let with_all = dense.model.x.clone();
+    let leaves = dense.model.misfits();
     let law = search.law(model, &library, dense)?;
-    let mut x = law.as_ref().map_or(with_all, |law| law.model.x.clone());
-    x.truncate(model.x.len());
     Ok(Some(Force {
         missing,
-        misfit,
         leaves,
-        x,
         law,
     }))
 }
@@ -324,47 +313,29 @@ impl Search<'_> {
             let in_their_place = effects.len() < found.len();
             nearer |= in_their_place && force.is_nearer_than(&model.misfits());
             missing = force.missing;
-            let of_law = |law: Law| {
-                let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
-                let tried = Tried {
-                    values: law
-                        .candidate
-                        .values(&law.model, self::effects(&start.problem)),
-                    candidate: law.candidate,
-                    evidence: evidence(&start, &law.model, score),
-                    by_run: law.model.misfits(),
-                    likeness: None,
-                    model: None,
-                };
-                (tried, law.model)
-            };
-            let explains = |after: &Model| verdict(baseline, after, effects.len() + 1);
-            // What the catalogue knows needs no law.
-            let named = match force.misfit < HALF * start.fitted {
-                true => self.named_instead(&start, &force.x)?,
-                false => None,
-            };
-            let named = named.filter(|(_, after)| explains(after) == Verdict::Explained);
-            let Some((tried, after)) = named.or(force.law.map(of_law)) else {
+            let Some(law) = force.law else {
                 continue;
             };
-            let verdict = explains(&after);
+            let verdict = verdict(baseline, &law.model, effects.len() + 1);
             let closes = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
-            let predicts = after.held_out.is_some() && earns(&start, &after);
-            if !(closes && predicts && earns(&model, &after)) {
+            let predicts = law.model.held_out.is_some() && earns(&start, &law.model);
+            if !(closes && predicts && earns(&model, &law.model)) {
                 continue;
             }
+            let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
             effects.push(Found {
-                values: tried.values,
-                candidate: tried.candidate,
-                evidence: tried.evidence,
-                by_run: tried.by_run,
-                model: Some(after.clone()),
-                pressure_rms: after.pressure_rms()?,
-                gap: Some(after.gap()),
+                values: law
+                    .candidate
+                    .values(&law.model, self::effects(&start.problem)),
+                candidate: law.candidate,
+                evidence: evidence(&start, &law.model, score),
+                by_run: law.model.misfits(),
+                model: Some(law.model.clone()),
+                pressure_rms: law.model.pressure_rms()?,
+                gap: Some(law.model.gap()),
                 rivals: Vec::new(),
             });
-            (model, found, nearer) = (after, effects, false);
+            (model, found, nearer) = (law.model, effects, false);
             if verdict == Verdict::Explained {
                 break;
             }
@@ -427,8 +398,6 @@ mod tests {
         };
         let force = Force {
             missing: Vec::new(),
-            misfit: 9.3,
-            x: Vec::new(),
             leaves: runs(&[("a", 15.8), ("b", 3.0), ("c", 2.6)]),
             law: None,
         };

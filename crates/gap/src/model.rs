@@ -17,13 +17,13 @@ const FULL: f64 = 1e-4;
 /// The same for pressures alone, whose descents have no minima on the way.
 const FULL_OF_GAS: f64 = 1e-3;
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
-/// throw: a step of two joints takes some 8 µs. Then what a search from the nominal machine may cost,
+/// throw: a step of two joints takes some 7 µs. Then what a search from the nominal machine may cost,
 /// and one that goes on from another.
-const BUDGET: u64 = 36_000_000;
+const BUDGET: u64 = 24_000_000;
 /// And up to what the search of a force of no name goes into its second and third attempts.
-const BUDGET_OF_FORCE: u64 = BUDGET + BUDGET / 3;
-pub(crate) const FIRST_SEARCH: u64 = BUDGET / 3;
-pub(crate) const SEARCH: u64 = BUDGET / 6;
+const BUDGET_OF_FORCE: u64 = BUDGET + BUDGET / 2;
+pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
+pub(crate) const SEARCH: u64 = BUDGET / 4;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 /// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
