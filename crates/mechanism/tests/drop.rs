@@ -2,7 +2,7 @@
 
 use integrate::{Integrator, System};
 use mechanism::joints::clearance_relation::Relation;
-use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
+use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution, pressing};
 use mechanism::joints::stiffness::{Material, conformal};
 use mechanism::mode::ContactMode;
 
@@ -32,8 +32,7 @@ impl System<f64> for Drop {
     fn guards(&mut self, _t: f64, y: &[f64], guards: &mut [f64]) {
         guards.fill(1.0);
         if !self.over {
-            let [above, below] = self.law.force(y[0], y[1], &self.mode).excess;
-            let sign = above / below + 1.0;
+            let sign = pressing(self.law.force(y[0], y[1], &self.mode).excess);
             guards[0] = y[0];
             guards[1] = if self.mode.pressed > 0.0 { sign } else { -sign };
             if let Some(depth) = self.law.kink() {

@@ -49,14 +49,14 @@ pub struct NormalForce<S> {
     /// The elastic part, N.
     pub elastic: S,
     /// `raw / elastic − 1`, continued beyond the surface, as numerator and denominator: only guards need
-    /// the quotient.
+    /// the quotient ([`pressing`]).
     pub excess: [S; 2],
 }
 
 /// Positive while surfaces of this excess press. Unlike the force it does not vanish where they part, so
 /// that its sign change can be located.
 #[inline(always)]
-pub(crate) fn pressing<S: Scalar>([above, below]: [S; 2]) -> S {
+pub fn pressing<S: Scalar>([above, below]: [S; 2]) -> S {
     above / below + 1.0
 }
 
