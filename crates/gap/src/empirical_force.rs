@@ -28,6 +28,8 @@ pub(crate) const MOST: usize = 3;
 const DENSE: u64 = 400;
 /// The same of a search out of the local minimum in which that has ended.
 const FURTHER: u64 = 1000;
+/// By how much more an effect with a name may leave than a law without one.
+const HARDLY_MORE: f64 = 1.1;
 /// Rounds in which terms may still be exchanged.
 const ROUNDS: usize = 4;
 
@@ -40,13 +42,32 @@ pub struct Law {
     pub model: Model,
 }
 
+impl Law {
+    /// It as an effect that was added to `start`, and the model with it.
+    fn found(self, start: &Model) -> Result<(Found, Model), Error> {
+        let Self { candidate, model } = self;
+        let score = 1.0 - (model.fitted / start.fitted).powi(2);
+        let found = Found {
+            values: candidate.values(&model, effects(&start.problem)),
+            candidate,
+            evidence: evidence(start, &model, score),
+            by_run: model.misfits(),
+            model: Some(model.clone()),
+            pressure_rms: model.pressure_rms()?,
+            gap: Some(model.gap()),
+            rivals: Vec::new(),
+        };
+        Ok((found, model))
+    }
+}
+
 /// A force that is missing.
 #[derive(Clone, Debug)]
 pub struct Force {
     /// As a fit with all terms has it, in every run.
     pub missing: Vec<MissingForce>,
-    /// What that fit leaves in each of the few runs that it was made to.
-    pub leaves: Vec<(String, f64)>,
+    /// That fit, to a few runs.
+    all: Model,
     /// Its law.
     pub law: Option<Law>,
 }
@@ -158,14 +179,10 @@ pub fn empirical_force(
     let Some((library, dense)) = best else {
         return Ok(None);
     };
-    let missing = missing_force(&dense.model, &model.problem.runs)?;
-    let leaves = dense.model.misfits();
+    let missing = missing_force(&dense.model.problem, &dense.model.x, &model.problem.runs)?;
+    let all = dense.model.clone();
     let law = search.law(model, &library, dense)?;
-    Ok(Some(Force {
-        missing,
-        leaves,
-        law,
-    }))
+    Ok(Some(Force { missing, all, law }))
 }
 
 /// A few runs, fitted with all terms that they show.
@@ -175,16 +192,20 @@ struct Dense {
     values: Vec<f64>,
 }
 
-impl Force {
-    /// Whether the force, as it was estimated, leaves less than a model that leaves `misfits` in these
-    /// runs, in most of its own.
-    fn is_nearer_than(&self, misfits: &[(String, f64)]) -> bool {
-        let nearer = self.leaves.iter().filter(|(run, leaves)| {
-            let mut same = misfits.iter().filter(|(id, _)| id == run);
-            same.any(|(_, misfit)| leaves < misfit)
-        });
-        2 * nearer.count() > self.leaves.len()
-    }
+/// Whether a model leaves hardly more than another, of fitted and of held-out runs.
+fn does_as_well(model: &Model, other: &Model) -> bool {
+    let held_out = model.held_out.zip(other.held_out);
+    model.fitted <= HARDLY_MORE * other.fitted
+        && held_out.is_none_or(|(model, other)| model <= HARDLY_MORE * other)
+}
+
+/// Whether what a force `leaves` in its runs is less than the `misfits` in most of these.
+fn is_nearer(leaves: &[(String, f64)], misfits: &[(String, f64)]) -> bool {
+    let nearer = leaves.iter().filter(|(run, leaves)| {
+        let mut same = misfits.iter().filter(|(id, _)| id == run);
+        same.any(|(_, misfit)| leaves < misfit)
+    });
+    2 * nearer.count() > leaves.len()
 }
 
 /// What the search of a force made of an explanation.
@@ -295,6 +316,7 @@ impl Search<'_> {
                 nearer: false,
             });
         }
+        let effort = &self.effort.having(found.len());
         let (start, kept) = self.gas_alone(problem, baseline, &model, &found)?;
         let mut starts = vec![(start, kept)];
         if starts[0].1.len() < found.len() {
@@ -303,39 +325,39 @@ impl Search<'_> {
         let (mut model, mut found) = (model, found);
         let (mut missing, mut nearer) = (Vec::new(), false);
         for (i, (start, mut effects)) in starts.into_iter().enumerate() {
-            if i > 0 && !self.effort.goes_on_for_force() {
+            if i > 0 && !effort.goes_on_for_force() {
                 break;
             }
-            let Some(force) = empirical_force(&start, self.effort, self.watch, self.say)? else {
+            let Some(force) = empirical_force(&start, effort, self.watch, self.say)? else {
                 continue;
             };
             // On top of all effects it is always nearer.
             let in_their_place = effects.len() < found.len();
-            nearer |= in_their_place && force.is_nearer_than(&model.misfits());
+            nearer |= in_their_place && is_nearer(&force.all.misfits(), &model.misfits());
             missing = force.missing;
-            let Some(law) = force.law else {
+            let explains = |after: &Model| verdict(baseline, after, effects.len() + 1);
+            let with_force = force.law.as_ref().map_or(&force.all, |law| &law.model);
+            let named = self.named_instead(&start, with_force, |after| {
+                let law = force.law.as_ref();
+                explains(after) == Verdict::Explained
+                    || law.is_some_and(|law| does_as_well(after, &law.model))
+            })?;
+            let Some((added, after)) = (match (named, force.law) {
+                // What the catalogue has a name for needs no law.
+                (Some(named), _) => Some(named),
+                (None, Some(law)) => Some(law.found(&start)?),
+                (None, None) => None,
+            }) else {
                 continue;
             };
-            let verdict = verdict(baseline, &law.model, effects.len() + 1);
+            let verdict = explains(&after);
             let closes = matches!(verdict, Verdict::Explained | Verdict::PartlyExplained);
-            let predicts = law.model.held_out.is_some() && earns(&start, &law.model);
-            if !(closes && predicts && earns(&model, &law.model)) {
+            let predicts = after.held_out.is_some() && earns(&start, &after);
+            if !(closes && predicts && earns(&model, &after)) {
                 continue;
             }
-            let score = 1.0 - (law.model.fitted / start.fitted).powi(2);
-            effects.push(Found {
-                values: law
-                    .candidate
-                    .values(&law.model, self::effects(&start.problem)),
-                candidate: law.candidate,
-                evidence: evidence(&start, &law.model, score),
-                by_run: law.model.misfits(),
-                model: Some(law.model.clone()),
-                pressure_rms: law.model.pressure_rms()?,
-                gap: Some(law.model.gap()),
-                rivals: Vec::new(),
-            });
-            (model, found, nearer) = (law.model, effects, false);
+            effects.push(added);
+            (model, found, nearer) = (after, effects, false);
             if verdict == Verdict::Explained {
                 break;
             }
@@ -396,15 +418,11 @@ mod tests {
                 .map(|(run, misfit)| ((*run).to_owned(), *misfit));
             named.collect()
         };
-        let force = Force {
-            missing: Vec::new(),
-            leaves: runs(&[("a", 15.8), ("b", 3.0), ("c", 2.6)]),
-            law: None,
-        };
-        let model = [("a", 6.7), ("x", 1.0), ("b", 5.5), ("c", 5.3)];
-        assert!(force.is_nearer_than(&runs(&model)));
-        assert!(!force.is_nearer_than(&runs(&model[..3])));
-        assert!(!force.is_nearer_than(&runs(&[("b", 2.9), ("c", 5.3)])));
+        let force = runs(&[("a", 15.8), ("b", 3.0), ("c", 2.6)]);
+        let model = runs(&[("a", 6.7), ("x", 1.0), ("b", 5.5), ("c", 5.3)]);
+        assert!(is_nearer(&force, &model));
+        assert!(!is_nearer(&force, &model[..3]));
+        assert!(!is_nearer(&force, &runs(&[("b", 2.9), ("c", 5.3)])));
     }
 
     #[test]

@@ -428,12 +428,17 @@ impl Search<'_> {
         candidates: impl Fn(&Problem) -> Vec<Candidate>,
     ) -> Result<(Model, Vec<Found>, Vec<Tried>), Error> {
         let mut found = Vec::new();
-        while model.fitted > noise && found.len() < most && self.effort.goes_on() {
+        while model.fitted > noise && found.len() < most {
+            let effort = &self.effort.having(found.len());
+            if !effort.goes_on() {
+                break;
+            }
+            let search = Search { effort, ..*self };
             (self.say)("screening", model.fitted);
-            let few = few(&model, self.effort);
+            let few = few(&model, effort);
             let candidates = candidates(&model.problem);
-            let screened = screen(&few, candidates, self.effort, self.watch)?;
-            let mut tried = self.refit(&model, screened.clone())?;
+            let screened = screen(&few, candidates, effort, self.watch)?;
+            let mut tried = search.refit(&model, screened.clone())?;
             if tried.is_empty() {
                 break;
             }
@@ -449,9 +454,9 @@ impl Search<'_> {
                 return Ok((model, found, refused));
             }
             let others = others.collect();
-            let few = Model::at(few.problem, few.x, self.effort)?;
+            let few = Model::at(few.problem, few.x, effort)?;
             found.push(Found {
-                rivals: self.rivals(
+                rivals: search.rivals(
                     &few,
                     &after,
                     &best.candidate,

@@ -20,6 +20,7 @@ pub mod mains_hum;
 mod measuring_chain;
 pub mod missing_force;
 pub mod model;
+mod named_instead;
 mod next_recording;
 mod pressures;
 mod projector;

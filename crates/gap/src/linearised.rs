@@ -135,7 +135,7 @@ fn load(problem: &Problem, x: &[f64], library: &Candidate) -> Result<f64, Error>
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use calibrate::observation::Observed;
     use calibrate::prediction::predict;
@@ -146,7 +146,7 @@ mod tests {
     use std::path::Path;
 
     /// The single-stage machine with a loose crosshead pin, and what it shows with a friction of 150 N.
-    fn problem() -> Problem {
+    pub(crate) fn problem() -> Problem {
         let path =
             Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
         let machine = input::machine_file::read(&path).unwrap();

@@ -5,7 +5,7 @@
 //! `empirical_force` tells the force with which it comes nearest to the recordings.
 
 use crate::error::Error;
-use crate::model::Model;
+use calibrate::Problem;
 use calibrate::observation::Observation;
 use serde::Serialize;
 use simulate::{Settings, ThrowTrace, Transient, simulate};
@@ -26,20 +26,21 @@ pub struct MissingForce {
     pub force: Vec<f64>,
 }
 
-/// The force of the effects of `fitted` over a revolution of each of these runs.
+/// The force of the effects of a problem's machine at the coordinates `x` over a revolution of each of these runs.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
 pub(crate) fn missing_force(
-    fitted: &Model,
+    problem: &Problem,
+    x: &[f64],
     runs: &[Observation],
 ) -> Result<Vec<MissingForce>, Error> {
-    let each = runs.iter().map(|run| of_run(fitted, run));
+    let each = runs.iter().map(|run| of_run(problem, x, run));
     Ok(each.collect::<Result<Vec<_>, Error>>()?.concat())
 }
 
-fn of_run(fitted: &Model, run: &Observation) -> Result<Vec<MissingForce>, Error> {
-    let machine = fitted.problem.machine(run, &fitted.x)?;
+fn of_run(problem: &Problem, x: &[f64], run: &Observation) -> Result<Vec<MissingForce>, Error> {
+    let machine = problem.machine(run, x)?;
     let settings = Settings {
         transient: Transient::Revolutions(10),
         revolutions: 1,

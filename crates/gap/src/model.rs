@@ -20,8 +20,10 @@ const FULL_OF_GAS: f64 = 1e-3;
 /// throw: a step of two joints takes some 7 µs. Then what a search from the nominal machine may cost,
 /// and one that goes on from another.
 const BUDGET: u64 = 24_000_000;
-/// And up to what the search of a force of no name goes into its second and third attempts.
-const BUDGET_OF_FORCE: u64 = BUDGET + BUDGET / 2;
+/// By how much more it may cost for each effect that was found, so that what is left has its chance too.
+const FOR_ANOTHER: u64 = BUDGET / 2;
+/// And by how much more before the search of a force of no name goes into its second and third attempts.
+const FOR_FORCE: u64 = BUDGET / 2;
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
 pub(crate) const SEARCH: u64 = BUDGET / 4;
 /// Share of the range by which a descent starts within a bound.
@@ -68,6 +70,8 @@ pub struct Effort {
     pub chaotic: bool,
     /// What was found before.
     pub journal: Journal,
+    /// Effects that were found in this explanation.
+    pub found: usize,
 }
 
 impl Effort {
@@ -100,17 +104,30 @@ impl Effort {
             evaluations,
             chaotic,
             journal,
+            found: 0,
         })
+    }
+
+    /// The same where so many effects were found.
+    pub(crate) fn having(&self, found: usize) -> Self {
+        Self {
+            found,
+            ..self.clone()
+        }
     }
 
     /// Whether there is still something left of the budget.
     pub(crate) fn goes_on(&self) -> bool {
-        self.journal.spent() < BUDGET
+        self.journal.spent() < self.budget()
     }
 
     /// The same for the search of a force of no name.
     pub(crate) fn goes_on_for_force(&self) -> bool {
-        self.journal.spent() < BUDGET_OF_FORCE
+        self.journal.spent() < self.budget() + FOR_FORCE
+    }
+
+    fn budget(&self) -> u64 {
+        BUDGET + self.found as u64 * FOR_ANOTHER
     }
 
     fn fits(&self, run: &str) -> bool {

@@ -23,8 +23,13 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
-/// A calibrated coordinate further than this from the nominal one may have gone astray.
+/// A calibrated coordinate further than this from the nominal one may have gone astray, where this misfit
+/// is left: with less, only what is small can be missing.
 const ASTRAY: f64 = 0.1;
+const LEFT: f64 = 3.0;
+/// The best of each point at which candidates are looked at come before all others: what they explain at
+/// one is not to be compared with what they do at another.
+const LEADING: usize = 2;
 
 /// A candidate and how much of the residual it may explain.
 #[derive(Clone, Debug)]
@@ -93,7 +98,8 @@ pub fn screen(
     let loose = loose(&model.problem);
     let likelihood = Likelihood::coarse(&model.problem, loose);
     let mut bases = vec![Base::at(&likelihood, &model.x)];
-    if !is_of_pressures(&model.problem) && model.x.iter().any(|x| x.abs() > ASTRAY) {
+    let may_be_astray = model.fitted > LEFT && model.x.iter().any(|x| x.abs() > ASTRAY);
+    if may_be_astray && !is_of_pressures(&model.problem) {
         bases.push(Base::at(&likelihood, &vec![0.0; model.x.len()]));
     }
     // The score and the values there; nothing for what cannot be simulated.
@@ -124,26 +130,70 @@ pub fn screen(
         })
     };
     let screened = candidates.into_par_iter().map(|candidate| {
-        let (mut best, mut starts) = (f64::NEG_INFINITY, Vec::new());
-        for base in &bases {
+        let (mut scores, mut starts) = (vec![f64::NEG_INFINITY; bases.len()], Vec::new());
+        for (base, best) in bases.iter().zip(&mut scores) {
             let input = ("screen", &model.problem, &base.x, candidate.label());
             let numbers = effort.journal.once(&input, || of(&candidate, base))?;
             if let Some((score, values)) = numbers.split_first() {
-                best = score.max(best);
+                *best = *score;
                 starts.push(Start {
                     x: base.x.clone(),
                     values: values.to_vec(),
                 });
             }
         }
-        Ok((!starts.is_empty()).then_some(Screened {
+        let screened = Screened {
             candidate,
-            score: best,
+            score: scores.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             starts,
-        }))
+        };
+        Ok((!screened.starts.is_empty()).then_some((screened, scores)))
     });
     let screened = screened.collect::<Result<Vec<_>, Error>>()?;
-    let mut screened: Vec<Screened> = screened.into_iter().flatten().collect();
-    screened.sort_by(|a, b| b.score.total_cmp(&a.score));
-    Ok(screened)
+    Ok(ordered(screened.into_iter().flatten().collect()))
+}
+
+/// The most promising first, by the scores that they have at each point.
+fn ordered<T>(mut scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
+    let greatest = |scores: &[f64]| scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    scored.sort_by(|(_, a), (_, b)| greatest(b).total_cmp(&greatest(a)));
+    let leads = |scores: &[f64]| {
+        scores.iter().enumerate().any(|(point, score)| {
+            let better = scored.iter().filter(|(_, other)| other[point] > *score);
+            better.count() < LEADING
+        })
+    };
+    let leading: Vec<bool> = scored.iter().map(|(_, scores)| leads(scores)).collect();
+    let (first, others): (Vec<_>, Vec<_>) =
+        (scored.into_iter().zip(leading)).partition(|(_, l)| *l);
+    first
+        .into_iter()
+        .chain(others)
+        .map(|((it, _), _)| it)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_of_each_point_come_first() {
+        let scored = vec![
+            ("only where it is calibrated", vec![0.09, 0.1]),
+            ("worth nothing there", vec![0.0, 0.5]),
+            ("nor this", vec![0.0, 0.4]),
+            ("nor that", vec![0.0, 0.3]),
+            ("a little", vec![0.01, f64::NEG_INFINITY]),
+        ];
+        let names = ordered(scored);
+        let expected = [
+            "worth nothing there",
+            "nor this",
+            "only where it is calibrated",
+            "a little",
+            "nor that",
+        ];
+        assert_eq!(names, expected);
+    }
 }

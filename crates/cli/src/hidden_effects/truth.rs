@@ -3,6 +3,7 @@
 use super::machine::Machine;
 use crate::Failure;
 use ::calibrate::{Parameter, Relation};
+use gap::empirical_force;
 use input::effects::{self, Entry};
 use input::paths;
 use rand::RngExt;
@@ -20,6 +21,8 @@ const RESTITUTION: [f64; 2] = [0.3, 0.7];
 /// Frequencies of mains, Hz, and the share by which a grid is off at most.
 const MAINS: [f64; 2] = [50.0, 60.0];
 const GRID: f64 = 0.002;
+/// Terms of a law: a force of many has none.
+const TERMS: usize = 2;
 /// What is recorded, of the words that `measure` may have.
 const MEASURED: [&str; 2] = ["crosshead_acceleration", "cylinder_pressure"];
 
@@ -88,8 +91,23 @@ pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) 
         }
         _ => value(parameter, size, random),
     };
-    let values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
+    let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
+    if entry.name == empirical_force::NAME {
+        as_law(entry, &mut values, random);
+    }
     entry.item(&place, &values)
+}
+
+/// Leaves the amplitudes of a few terms, and takes the others away.
+fn as_law(entry: &Entry, values: &mut [f64], random: &mut Stream) {
+    let parameters = entry.parameters.iter().enumerate();
+    let terms: Vec<(usize, f64)> = parameters
+        .filter_map(|(i, parameter)| Some((i, parameter.absent?)))
+        .collect();
+    let kept: Vec<usize> = terms.sample(random, TERMS).map(|(i, _)| *i).collect();
+    for (i, absent) in terms.iter().filter(|(i, _)| !kept.contains(i)) {
+        values[*i] = *absent;
+    }
 }
 
 /// A value of a parameter: anywhere for a phase or an order, around the usual one for the others.
@@ -142,5 +160,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_force_of_no_name_has_a_law_of_a_few_terms() {
+        let mut random = stream(1, 1, Purpose::Design);
+        let entry = effects::entry(empirical_force::NAME).unwrap();
+        let mut values = vec![7.0; entry.parameters.len()];
+        as_law(entry, &mut values, &mut random);
+        let kept = entry.parameters.iter().zip(&values);
+        let kept = kept.filter(|(p, value)| p.absent.is_some() && **value == 7.0);
+        assert_eq!(kept.count(), TERMS);
+        let others = entry.parameters.iter().zip(&values);
+        let mut others = others.filter(|(p, _)| p.absent.is_none());
+        assert!(others.all(|(_, value)| *value == 7.0));
     }
 }
