@@ -86,7 +86,8 @@ pub(crate) fn rival(least: f64) -> f64 {
     }
 }
 
-/// Whether the effect that `after` has and `before` has not earns its place.
+/// Whether the effect that `after` has and `before` has not earns its place: not where noise is all that is
+/// left without it.
 pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
     let share = match is_of_pressures(&after.problem) {
@@ -95,7 +96,9 @@ pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     };
     let takes = |before: f64, after: f64| excess(after) <= (1.0 - share) * excess(before);
     let held_out = before.held_out.zip(after.held_out);
-    takes(before.fitted, after.fitted)
+    let left = before.fitted.max(before.held_out.unwrap_or(0.0));
+    left > NOISE
+        && takes(before.fitted, after.fitted)
         && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))
 }
 
@@ -118,5 +121,38 @@ pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdic
         Verdict::PartlyExplained
     } else {
         Verdict::Unexplained
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use calibrate::{CrankMotion, Problem};
+
+    fn model(fitted: f64, held_out: f64) -> Model {
+        let problem = Problem {
+            tree: serde_json::Value::Null,
+            parameters: Vec::new(),
+            runs: Vec::new(),
+            crank: CrankMotion::Driven,
+            meter: calibrate::meter::Meter::default(),
+        };
+        Model {
+            problem,
+            x: Vec::new(),
+            fitted,
+            held_out: Some(held_out),
+            by_run: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn an_effect_earns_its_place_where_something_is_left_without_it() {
+        let good = model(0.9, 0.9);
+        assert!(earns(&model(5.0, 6.0), &good));
+        assert!(earns(&model(1.0, 6.0), &good));
+        assert!(!earns(&model(0.95, 0.9), &good));
+        assert!(!earns(&model(5.0, 6.0), &model(4.8, 6.0)));
+        assert!(!earns(&model(5.0, 6.0), &model(2.0, 7.0)));
     }
 }
