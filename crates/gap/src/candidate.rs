@@ -26,9 +26,9 @@ pub struct Candidate {
 }
 
 /// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
-/// acceleration, which is meant where it is left out; and this effect on that of the pressure too.
+/// acceleration, which is meant where it is left out; and these on that of the pressure too.
 const MEASURE: &str = "measure";
-const GAIN: &str = "sensor_gain";
+const OF_SENSORS: [&str; 2] = ["sensor_gain", "sensor_resonance"];
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
@@ -461,7 +461,7 @@ fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'stati
     for choice in entry
         .places
         .iter()
-        .filter(|c| c.key != MEASURE || entry.name == GAIN)
+        .filter(|c| c.key != MEASURE || OF_SENSORS.contains(&entry.name))
         .filter(|c| c.key != EITHER || both_ends)
     {
         let words: Vec<String> = match choice.key {
