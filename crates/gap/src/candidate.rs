@@ -4,10 +4,10 @@ use crate::empirical_force;
 use crate::error::Error;
 use crate::model::Model;
 use crate::pressures::{is_of_pressures, shows_pressure};
+use crate::recorded_values::recorded_values;
 use calibrate::Problem;
 use input::MachineFile;
 use input::effects::{CATALOGUE, Entry, Parameter};
-use nalgebra::Complex;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -37,20 +37,19 @@ const OWN_AT_EACH: [&str; 1] = ["suction_unloading"];
 /// The suction valve's throttling is told by the effect that holds it already, where there is one.
 const HELD: &str = "suction_unloading";
 const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
-/// The effect that an encoder shows.
-const UNEVEN: &str = "speed_fluctuation";
 /// Found by its frequency, not by its orders; a law of no name comes last.
 const ELSEWHERE: [&str; 2] = ["mains_hum", "empirical_force"];
 /// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
 /// clearance volume and exponents imitate it, so that it has to earn its place.
 const ZERO: &str = "crank_angle_offset";
 /// What the pressure of a cylinder shows whatever the joints do.
-const GAS: [&str; 5] = [
+const GAS: [&str; 6] = [
     "valve_loss",
     "suction_unloading",
     "ring_leakage",
     "heat_transfer",
     "gas_pulsation",
+    "valve_flutter",
 ];
 /// Amplitudes at which an effect is tried, over its usual one.
 const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
@@ -297,9 +296,7 @@ impl Candidate {
     pub fn probes(&self, problem: &Problem) -> Vec<Vec<f64>> {
         let items = self.ends.len().max(1);
         let mut probes = self.item_probes();
-        if self.entry.name == UNEVEN {
-            probes.extend(recorded_fluctuation(problem));
-        }
+        probes.extend(recorded_values(self.entry, problem));
         let probes = probes.into_iter();
         probes.map(|probe| probe.repeat(items)).collect()
     }
@@ -371,21 +368,6 @@ pub(crate) fn throws(tree: &Value) -> Vec<String> {
         .flatten()
         .filter_map(|t| t["name"].as_str());
     names.map(str::to_owned).collect()
-}
-
-/// The fluctuation of the speed that the encoders show, as values of the effect: amplitude and phase
-/// of the first and the second harmonic, as means over the runs.
-fn recorded_fluctuation(problem: &Problem) -> Option<Vec<f64>> {
-    let harmonic = |k: usize| {
-        let recorded = problem.runs.iter().filter_map(|run| {
-            let harmonic = run.crank.fluctuation.get(k)?;
-            Some(Complex::from_polar(harmonic.amplitude, harmonic.phase))
-        });
-        let recorded: Vec<Complex<f64>> = recorded.collect();
-        let mean = recorded.iter().sum::<Complex<f64>>() / recorded.len() as f64;
-        (!recorded.is_empty()).then(|| [mean.norm(), mean.arg()])
-    };
-    Some([harmonic(0)?, harmonic(1)?].concat())
 }
 
 /// Whether a cylinder of the machine has a second chamber.

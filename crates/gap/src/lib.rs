@@ -24,6 +24,7 @@ mod named_instead;
 mod next_recording;
 mod pressures;
 mod projector;
+mod recorded_values;
 mod refit;
 mod replication;
 pub mod residual_map;

@@ -318,8 +318,8 @@ impl<S: Scalar> CylinderAt<'_, S> {
         if !self.effects.any() {
             return (chamber.state(distance, expanding, lines, None, mode), None);
         }
-        let mut seen = self.seen(end, distance, expanding, mode);
         chamber.filled -= self.retreat(end);
+        let mut seen = self.seen(end, &chamber, distance, expanding, mode);
         chamber.lines = self.lines_at_centres(end, seen);
         let drift = self.drift.map(|drift| drift[end as usize]);
         let open = self.lines(end, &seen);
@@ -333,7 +333,14 @@ impl<S: Scalar> CylinderAt<'_, S> {
 
     /// The chamber as effects see it, before its pressure is known.
     #[inline(always)]
-    fn seen(&self, end: End, distance: S, expanding: S, mode: &ChamberMode<S>) -> ChamberAt<S> {
+    fn seen(
+        &self,
+        end: End,
+        chamber: &Chamber<S>,
+        distance: S,
+        expanding: S,
+        mode: &ChamberMode<S>,
+    ) -> ChamberAt<S> {
         let (throw, motion, cylinder) = (self.throw, self.motion, &self.throw.cylinder);
         let pin = throw.crank_radius * self.speed.abs();
         let outward = motion.crosshead_rate / pin;
@@ -342,10 +349,20 @@ impl<S: Scalar> CylinderAt<'_, S> {
             (End::Crank, None) => (outward, S::zero()),
             (End::Crank, Some(crank_end)) => (outward, area(crank_end.rod_radius)),
         };
+        let side = match end {
+            End::Head => S::one(),
+            End::Crank => -S::one(),
+        };
         ChamberAt {
             angle: motion.angle,
             growth,
             distance,
+            dead: chamber.dead,
+            filled: chamber.filled,
+            side,
+            crank_radius: throw.crank_radius,
+            rod_length: throw.rod.length,
+            speed: self.speed,
             area: area(cylinder.piston_radius) - rod,
             radius: cylinder.piston_radius,
             mean_speed: pin * (2.0 / PI),
@@ -353,6 +370,8 @@ impl<S: Scalar> CylinderAt<'_, S> {
             across: cylinder.back,
             warmth: S::one(),
             suction: cylinder.suction,
+            discharge: cylinder.discharge,
+            exponents: chamber.exponents,
             exponent: flagged(expanding, cylinder.expansion_exponent, cylinder.exponent),
             closed: S::one() - mode.suction - mode.discharge,
         }

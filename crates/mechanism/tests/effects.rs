@@ -6,7 +6,7 @@ use common::{REVOLUTION, Run, SPEED, single_stage, with_clearance};
 use mechanism::effects::{
     BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
     Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
-    Shaken, SqueezeFilm, SuctionUnloading, ValveLoss,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLoss,
 };
 use mechanism::frame::Frame;
 use mechanism::gas::CrankEnd;
@@ -296,6 +296,74 @@ fn pulsation_swings_with_its_order_and_the_strokes_start_from_it() {
         PD * (1.0 + 0.06 * (3.0 * angle(320.0) + 1.0).cos()),
         1e-12,
     );
+}
+
+#[test]
+fn valves_that_flutter_open_late_and_ring() {
+    let (frequency, damping, suction, discharge) = (TAU * 300.0, 0.05, 0.04, 0.06);
+    let mut machine = ideal(Law::ValveFlutter(ValveFlutter {
+        natural_frequency: frequency,
+        damping_ratio: damping,
+        suction,
+        discharge,
+    }));
+    machine.throws[0].cylinder.crank_end = Some(CrankEnd {
+        rod_radius: 0.02,
+        clearance: DEAD,
+    });
+    // The distance from the crank-end cover, and where in a stroke a distance is passed.
+    let to_cover = |angle: f64| 2.0 * DEAD + STROKE - distance(angle);
+    let passed = |distance: &dyn Fn(f64) -> f64, wanted: f64, stroke: f64| {
+        let (mut low, mut high) = (stroke, stroke + PI);
+        let growing = distance(high) > distance(low);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            match (distance(middle) < wanted) == growing {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        low
+    };
+    let ratio = (PD / PS).powf(1.0 / M);
+    let (expanded, compressed) = (DEAD * ratio, (STROKE + DEAD) / ratio);
+    let swing = |degrees: f64, opened: f64| {
+        let t = (degrees.to_radians() - opened) / SPEED;
+        (-damping * frequency * t).exp() * ((1.0 - damping * damping).sqrt() * frequency * t).sin()
+    };
+    let ends = |at: &Evaluation<f64>| {
+        let gas = &at.throws[0].gas;
+        [gas.head_end.pressure, gas.crank_end.pressure]
+    };
+    let [head, crank]: [&dyn Fn(f64) -> f64; 2] = [&distance, &to_cover];
+    let late = passed(head, compressed, PI).to_degrees() + 1.0;
+    let degrees = [100.0, 150.0, 240.0, late, 340.0];
+    let found = at_angles(machine, &degrees, ends);
+    near(
+        found[0][0],
+        PS * (1.0 - suction * swing(100.0, passed(head, expanded, 0.0))),
+        1e-9,
+    );
+    near(
+        found[4][0],
+        PD * (1.0 + discharge * swing(340.0, passed(head, compressed, PI))),
+        1e-9,
+    );
+    near(
+        found[1][1],
+        PD * (1.0 + discharge * swing(150.0, passed(crank, compressed, 0.0))),
+        1e-9,
+    );
+    near(
+        found[2][1],
+        PS * (1.0 - suction * swing(240.0, passed(crank, expanded, PI))),
+        1e-9,
+    );
+    // Until the plate lets go the gas goes on along its polytrope, from what the swing left at the dead centre.
+    let left = PS * (1.0 - suction * swing(180.0, passed(head, expanded, 0.0)));
+    let polytrope = left * ((STROKE + DEAD) / distance(late.to_radians())).powf(M);
+    near(found[3][0], polytrope, 1e-9);
+    assert!(polytrope > 1.01 * PD, "{polytrope}");
 }
 
 #[test]

@@ -203,6 +203,16 @@ mod tests {
     }
 
     #[test]
+    fn arc_tangent_agrees_with_the_platform_to_a_few_ulps_and_has_its_slope() {
+        assert!(worst(grid(-3.0, 3.0), Scalar::atan, f64::atan) < 4.0);
+        assert!(worst(grid(-1e6, 1e6), Scalar::atan, f64::atan) < 4.0);
+        for x in [-40.0, -1.0, -0.3, 0.0, 0.7, 5.0] {
+            let slope = crate::Dual::<f64, 1>::variable(x, 0).atan().tangent[0];
+            assert!((slope * (1.0 + x * x) - 1.0).abs() < 1e-13, "{x}: {slope}");
+        }
+    }
+
+    #[test]
     fn exact_values_are_exact() {
         assert_eq!(sin_cos(0.0), (0.0, 1.0));
         assert_eq!(exp(0.0), 1.0);

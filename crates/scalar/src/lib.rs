@@ -94,6 +94,31 @@ pub trait Scalar:
     fn powf(self, exponent: Self) -> Self {
         (self.ln() * exponent).exp()
     }
+    /// Arc tangent: the polynomial of Abramowitz and Stegun 1964, 4.4.49, and one step of Newton's method.
+    #[inline(always)]
+    fn atan(self) -> Self {
+        const COEFFICIENTS: [f64; 9] = [
+            1.0,
+            -0.333_331_452_8,
+            0.199_935_508_5,
+            -0.142_088_994_4,
+            0.106_562_639_3,
+            -0.075_289_640_0,
+            0.042_909_613_8,
+            -0.016_165_736_7,
+            0.002_866_225_7,
+        ];
+        let steep = Self::one().lt(self.abs());
+        let slope = Self::select(steep, -(Self::one() / self), self);
+        let square = slope * slope;
+        let sum = |sum: Self, c: &f64| sum * square + *c;
+        let angle = slope * COEFFICIENTS.iter().rev().fold(Self::zero(), sum);
+        let (sine, cosine) = angle.sin_cos();
+        let angle = angle + (slope * cosine - sine) / (cosine + slope * sine);
+        let quarter = Self::constant(std::f64::consts::FRAC_PI_2);
+        let quarter = Self::select(self.lt(Self::zero()), -quarter, quarter);
+        Self::select(steep, angle + quarter, angle)
+    }
     /// The larger of two, by value.
     #[inline(always)]
     fn max(self, other: Self) -> Self {

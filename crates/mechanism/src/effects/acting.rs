@@ -76,6 +76,16 @@ pub(crate) struct ChamberAt<S> {
     pub growth: S,
     /// Distance from piston to cover, m.
     pub distance: S,
+    /// The same at the chamber's own dead centre, and where the compression starts, m.
+    pub dead: S,
+    pub filled: S,
+    /// 1 at the head end, −1 at the crank end.
+    pub side: S,
+    /// Lengths of crank and rod, m.
+    pub crank_radius: S,
+    pub rod_length: S,
+    /// Speed of the crank, rad/s.
+    pub speed: S,
     /// Area of the piston on this side, m².
     pub area: S,
     /// Radius of the piston, m.
@@ -88,12 +98,47 @@ pub(crate) struct ChamberAt<S> {
     pub across: S,
     /// Temperature of the gas over that in the suction line.
     pub warmth: S,
-    /// Suction pressure, Pa.
+    /// Pressures of suction and discharge line, Pa.
     pub suction: S,
-    /// Polytropic exponent of the stroke.
+    pub discharge: S,
+    /// Polytropic exponents of compression and expansion, and that of the stroke.
+    pub exponents: [S; 2],
     pub exponent: S,
     /// 1 while both valves are closed.
     pub closed: S,
+}
+
+impl<S: Scalar> ChamberAt<S> {
+    /// Crank angle since suction and discharge valve opened, where the polytropes of a piston with ideal
+    /// joints meet the lines' pressures, rad: below 0 for half a turn before.
+    #[inline(always)]
+    pub fn since_opening(&self) -> [S; 2] {
+        let ratio = self.discharge / self.suction;
+        let [compression, expansion] = self.exponents.map(|m| S::one() / m);
+        let opened = [
+            (self.dead * ratio.powf(expansion), self.side),
+            (self.filled / ratio.powf(compression), -self.side),
+        ];
+        let (sine, cosine) = self.angle.sin_cos();
+        let turn = S::select(self.speed.lt(S::zero()), -S::one(), S::one());
+        opened.map(|(distance, side)| {
+            let (opened_sine, opened_cosine) = self.crank_at(distance, side * turn);
+            let ahead = turn * (sine * opened_cosine - cosine * opened_sine);
+            let along = cosine * opened_cosine + sine * opened_sine;
+            (ahead / (S::one() + along).max(S::constant(f64::MIN_POSITIVE))).atan() * 2.0
+        })
+    }
+
+    /// Sine, of this sign, and cosine of the crank angle at which the ideal piston stands at a distance from
+    /// the cover: the law of cosines in the triangle of crank, rod and line of stroke.
+    #[inline(always)]
+    fn crank_at(&self, distance: S, sign: S) -> (S, S) {
+        let (radius, length) = (self.crank_radius, self.rod_length);
+        let crosshead = length + self.side * (radius + self.dead - distance);
+        let sum = crosshead * crosshead + radius * radius - length * length;
+        let cosine = (sum / (crosshead * radius * 2.0)).clamp(-S::one(), S::one());
+        (sign * (S::one() - cosine * cosine).sqrt(), cosine)
+    }
 }
 
 /// Piston and crosshead at an instant, as effects see them.

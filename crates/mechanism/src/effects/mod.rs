@@ -69,6 +69,7 @@ catalogue! {
     ring_leakage::RingLeakage,
     heat_transfer::HeatTransfer,
     gas_pulsation::GasPulsation,
+    valve_flutter::ValveFlutter,
     rotating_unbalance::RotatingUnbalance,
     misalignment::Misalignment,
     rod_flexibility::RodFlexibility,

@@ -6,7 +6,7 @@ use mechanism::drive::{Drive, MotorLine};
 use mechanism::effects::{
     BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
     Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
-    Shaken, SqueezeFilm, SuctionUnloading, ValveLoss,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLoss,
 };
 use mechanism::gas::CrankEnd;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
@@ -231,6 +231,16 @@ pub fn catalogue() -> Vec<Effect> {
                 suction_phase: 0.4,
                 discharge: 0.05,
                 discharge_phase: 1.1,
+            }),
+            None,
+            None,
+        ),
+        at(
+            Law::ValveFlutter(ValveFlutter {
+                natural_frequency: 300.0,
+                damping_ratio: 0.1,
+                suction: 0.04,
+                discharge: 0.06,
             }),
             None,
             None,

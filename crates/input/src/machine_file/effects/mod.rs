@@ -62,6 +62,7 @@ catalogue! {
     ring_leakage::RingLeakage,
     heat_transfer::HeatTransfer,
     gas_pulsation::GasPulsation,
+    valve_flutter::ValveFlutter,
     ring_friction::RingFriction,
     squeeze_film::SqueezeFilm,
     guide_clearance::GuideClearance,
