@@ -51,8 +51,10 @@ const GAS: [&str; 6] = [
     "gas_pulsation",
     "valve_flutter",
 ];
-/// Amplitudes at which an effect is tried, over its usual one.
+/// Amplitudes at which an effect is tried, over its usual one; those between where it has no phases to be
+/// tried as well.
 const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
+const BETWEEN: [f64; 2] = [0.45, 2.2];
 /// Values at which a parameter is tried that is no amplitude and may lie anywhere in wide bounds.
 const VALUES: usize = 5;
 /// Bounds this far apart are wide.
@@ -318,6 +320,9 @@ impl Candidate {
                 .iter()
                 .any(|p| p.absent.is_some_and(|a| a > p.bounds[0]));
             probes = AMPLITUDES.map(amplitude).to_vec();
+            if !parameters.iter().any(|p| p.cyclic) {
+                probes.extend(BETWEEN.map(amplitude));
+            }
             if signed {
                 probes.extend(AMPLITUDES.map(|share| amplitude(-share)));
             }

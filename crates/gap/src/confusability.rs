@@ -200,7 +200,7 @@ impl Search<'_> {
 /// Whether the recordings do not tell a candidate from the effect for which `effect` speaks and whose
 /// model leaves `least`: hardly more is left with it, of which it explains most; or, where more than noise
 /// is left anyway, it does the same and leaves not much more.
-fn is_rival(tried: &Tried, effect: &Evidence, least: f64) -> bool {
+pub(crate) fn is_rival(tried: &Tried, effect: &Evidence, least: f64) -> bool {
     let alike = tried.likeness.is_some_and(|l| l.correlation > ALIKE);
     let near = tried.leaves() < rival(least) && tried.explains(effect) > AS_MUCH;
     near || (alike && least > NOISE && tried.leaves() < RIVAL * least)

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// A misfit below this is noise.
 pub const NOISE: f64 = 1.15;
-/// Pressures this near to the noise show no effect.
+/// Pressures this near to the noise show no effect by themselves.
 pub(crate) const GAS_NOISE: f64 = 2.0;
 /// A model this near to the noise explains what was missing.
 pub const EXPLAINED: f64 = 1.5;

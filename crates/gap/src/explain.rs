@@ -10,7 +10,7 @@ use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
 use crate::model::{Effort, FIRST_SEARCH, Model, SEARCH, Watch};
-use crate::pressures::{OfGas, pressures, shows_pressure};
+use crate::pressures::{OfGas, pressures};
 use crate::refit::few;
 use crate::replication::shows_in_each;
 use crate::screening::screen;
@@ -132,12 +132,13 @@ pub fn explain(
             gas.found,
             gas.refused,
         ),
-        gas => search.of_all(problem, gas.map_or_else(Vec::new, |gas| gas.found))?,
+        gas => search.of_all(problem, gas)?,
     };
     let (model, found) = search.pruned(problem, model, found)?;
     let with_force = search.with_force(problem, &baseline, model, found)?;
     let missing_force = with_force.missing.clone();
     let (model, found, refused) = search.sure(problem, &baseline, with_force, refused)?;
+    let found = search.with_last_rivals(problem, &model, found)?;
     say("finding bounds", model.fitted);
     let Fit {
         mut estimates,
@@ -225,8 +226,10 @@ impl Search<'_> {
     fn of_all(
         &self,
         problem: &Problem,
-        mut found: Vec<Found>,
+        gas: Option<OfGas>,
     ) -> Result<(Model, Model, Vec<Found>, Vec<Tried>), Error> {
+        let known = gas.as_ref().is_some_and(OfGas::is_told);
+        let mut found = gas.map_or_else(Vec::new, |gas| gas.found);
         let mut with_gas = problem.clone();
         for gas in &found {
             with_gas = gas.candidate.added(&with_gas, &gas.values)?;
@@ -242,7 +245,6 @@ impl Search<'_> {
                 Model::fit(problem.clone(), &nominal, self.effort, self.watch)?
             }
         };
-        let known = shows_pressure(problem);
         let candidates = |problem: &Problem| {
             let mut all = Candidate::all(problem);
             all.retain(|candidate| !known || !candidate.is_of_gas());

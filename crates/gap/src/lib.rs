@@ -15,6 +15,7 @@ pub mod empirical_force;
 pub mod error;
 pub mod explain;
 pub mod journal;
+mod last_rivals;
 mod linearised;
 pub mod mains_hum;
 mod measuring_chain;

@@ -8,7 +8,6 @@
 
 use crate::candidate::Candidate;
 use crate::decision::evidence;
-use crate::empirical_force::NAME;
 use crate::error::Error;
 use crate::explain::{Found, Search, Tried, effects};
 use crate::missing_force::missing_force;
@@ -55,7 +54,7 @@ impl Search<'_> {
         (self.say)("looking for a name of the force", with_force.fitted);
         let known = shows_pressure(&start.problem);
         let mut candidates = Candidate::all(&start.problem);
-        candidates.retain(|c| c.entry.name != NAME && !(known && c.is_of_gas()));
+        candidates.retain(|c| !(known && c.is_of_gas()));
         let mut tried = Vec::new();
         for matched in self.matched(start, with_force, &candidates)? {
             let mut x = with_force.x[..start.x.len()].to_vec();
@@ -106,10 +105,14 @@ impl Search<'_> {
         let runs = &few(start, self.effort).problem.runs;
         let without = force(&start.problem, x, runs)?;
         let with = force(&with_force.problem, &with_force.x, runs)?;
+        let size = squares(&with, &without).sqrt();
+        if size == 0.0 {
+            return Ok(Vec::new());
+        }
         let asked = Asked {
             runs,
             x,
-            size: squares(&with, &without).sqrt(),
+            size,
             without,
             with,
         };

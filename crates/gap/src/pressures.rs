@@ -1,5 +1,6 @@
 //! The gas by itself: pressures hardly depend on the joints.
 
+use crate::decision::{GAS_NOISE, NOISE};
 use crate::error::Error;
 use crate::explain::{Found, Tried};
 use crate::model::{Effort, Model};
@@ -63,6 +64,12 @@ impl OfGas {
     /// all that was recorded of it and the gas all that is fitted: nothing else is to be found.
     pub(crate) fn is_all(&self, problem: &Problem) -> bool {
         is_of_pressures(problem) && self.before.problem.parameters == problem.parameters
+    }
+
+    /// Whether the pressures have told what they can. What they leave between the noise and what shows an
+    /// effect by itself may be the joints or a small effect: the whole has to tell.
+    pub(crate) fn is_told(&self) -> bool {
+        !(NOISE..GAS_NOISE).contains(&self.after.fitted)
     }
 
     /// A model of the gas with the joints and the recordings of `problem`.

@@ -5,6 +5,7 @@ use calibrate::Problem;
 use calibrate::observation::{Observation, Observed};
 use input::effects::Entry;
 use nalgebra::Complex;
+use std::f64::consts::TAU;
 
 /// Lowest order, in cycles a revolution, that is no part of the stroke's own indicator diagram.
 const RIPPLE: usize = 12;
@@ -47,7 +48,7 @@ fn ripple(problem: &Problem) -> Option<f64> {
         let height = |k: usize| channel.lines.amplitude[k].norm() * k as f64;
         let strongest = orders.max_by(|a, b| height(*a).total_cmp(&height(*b)))?;
         let share = height(strongest) / channel.lines.amplitude[1].norm();
-        Some((share, strongest as f64 * run.speed_rpm / 60.0))
+        Some((share, strongest as f64 * run.crank.speed.abs() / TAU))
     };
     let channels = problem.runs.iter().flat_map(|run| {
         let pressures = run.channels.iter().filter(|channel| is_pressure(channel));

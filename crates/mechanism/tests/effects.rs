@@ -326,17 +326,20 @@ fn valves_that_flutter_open_late_and_ring() {
         low
     };
     let ratio = (PD / PS).powf(1.0 / M);
-    let (expanded, compressed) = (DEAD * ratio, (STROKE + DEAD) / ratio);
+    let expanded = DEAD * ratio / (1.0 - suction).powf(1.0 / M);
+    let compressed = (STROKE + DEAD) / ratio / (1.0 + discharge).powf(1.0 / M);
     let swing = |degrees: f64, opened: f64| {
         let t = (degrees.to_radians() - opened) / SPEED;
-        (-damping * frequency * t).exp() * ((1.0 - damping * damping).sqrt() * frequency * t).sin()
+        let slower = (1.0 - damping * damping).sqrt();
+        let (sine, cosine) = (slower * frequency * t).sin_cos();
+        (-damping * frequency * t).exp() * (cosine + damping / slower * sine)
     };
     let ends = |at: &Evaluation<f64>| {
         let gas = &at.throws[0].gas;
         [gas.head_end.pressure, gas.crank_end.pressure]
     };
     let [head, crank]: [&dyn Fn(f64) -> f64; 2] = [&distance, &to_cover];
-    let late = passed(head, compressed, PI).to_degrees() + 1.0;
+    let late = passed(head, compressed, PI).to_degrees() - 0.5;
     let degrees = [100.0, 150.0, 240.0, late, 340.0];
     let found = at_angles(machine, &degrees, ends);
     near(
@@ -363,7 +366,7 @@ fn valves_that_flutter_open_late_and_ring() {
     let left = PS * (1.0 - suction * swing(180.0, passed(head, expanded, 0.0)));
     let polytrope = left * ((STROKE + DEAD) / distance(late.to_radians())).powf(M);
     near(found[3][0], polytrope, 1e-9);
-    assert!(polytrope > 1.01 * PD, "{polytrope}");
+    assert!(polytrope > 1.03 * PD, "{polytrope}");
 }
 
 #[test]

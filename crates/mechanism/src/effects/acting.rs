@@ -3,6 +3,7 @@
 use super::{Effect, End, Joint, Law, Place};
 use crate::plane::{Vec2, turned};
 use scalar::Scalar;
+use std::f64::consts::FRAC_PI_2;
 
 /// What a law does at each place where effects can act. A law implements the methods that it needs.
 pub(crate) trait Acts<S: Scalar> {
@@ -109,15 +110,19 @@ pub(crate) struct ChamberAt<S> {
 }
 
 impl<S: Scalar> ChamberAt<S> {
-    /// Crank angle since suction and discharge valve opened, where the polytropes of a piston with ideal
-    /// joints meet the lines' pressures, rad: below 0 for half a turn before.
+    /// Crank angle since suction and discharge valve opened where they do at these shares of the lines'
+    /// pressures, which the polytropes of a piston with ideal joints reach then, rad: from a quarter of a turn
+    /// before to three quarters after.
     #[inline(always)]
-    pub fn since_opening(&self) -> [S; 2] {
+    pub fn since_opening(&self, [suction, discharge]: [S; 2]) -> [S; 2] {
         let ratio = self.discharge / self.suction;
         let [compression, expansion] = self.exponents.map(|m| S::one() / m);
         let opened = [
-            (self.dead * ratio.powf(expansion), self.side),
-            (self.filled / ratio.powf(compression), -self.side),
+            (self.dead * (ratio / suction).powf(expansion), self.side),
+            (
+                self.filled / (ratio * discharge).powf(compression),
+                -self.side,
+            ),
         ];
         let (sine, cosine) = self.angle.sin_cos();
         let turn = S::select(self.speed.lt(S::zero()), -S::one(), S::one());
@@ -125,7 +130,9 @@ impl<S: Scalar> ChamberAt<S> {
             let (opened_sine, opened_cosine) = self.crank_at(distance, side * turn);
             let ahead = turn * (sine * opened_cosine - cosine * opened_sine);
             let along = cosine * opened_cosine + sine * opened_sine;
-            (ahead / (S::one() + along).max(S::constant(f64::MIN_POSITIVE))).atan() * 2.0
+            // Half of the angle since a quarter of a turn after the opening.
+            let half = -along / (S::one() + ahead).max(S::constant(f64::MIN_POSITIVE));
+            half.atan() * 2.0 + FRAC_PI_2
         })
     }
 

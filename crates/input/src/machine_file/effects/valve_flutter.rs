@@ -6,16 +6,16 @@ use mechanism::effects::{self, Law};
 use std::f64::consts::TAU;
 
 effect! {
-    /// A damped swing of the cylinder's pressure about the line's after each opening of a valve.
+    /// Valves that open late, and a damped swing of the cylinder's pressure about the line's after it.
     ValveFlutter at [throw, end]:
     "The valves open late and flutter: the pressure overshoots and then ripples, always at the same pitch, until the plate has come to rest." {
         /// Natural frequency of the plates; 100 Hz where it is left out.
         frequency: Positive<Frequency>, 20.0 to 2000.0, start 100.0;
         /// Damping, of the critical one; 5 % where it is left out.
         damping_ratio: Quantity<Ratio, FromZero>, 0.005 to 0.7, start 0.05;
-        /// Amplitude at the suction valve, of the line's pressure.
+        /// Overshoot at the suction valve, of the line's pressure.
         suction: Quantity<Ratio, FromZero>, 0.002 to 0.3, start 0.05, absent 0.0;
-        /// Amplitude at the discharge valve, of the line's pressure.
+        /// Overshoot at the discharge valve, of the line's pressure.
         discharge: Quantity<Ratio, FromZero>, 0.002 to 0.3, start 0.05, absent 0.0;
     }
 }
