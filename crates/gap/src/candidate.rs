@@ -132,6 +132,28 @@ impl Candidate {
         GAS.contains(&self.entry.name) || self.entry.name == ZERO || self.place.iter().any(measures)
     }
 
+    /// Whether it acts on gas whose pressure was recorded, so that the pressures tell it by themselves.
+    pub(crate) fn is_told_by_pressures(&self, problem: &Problem) -> bool {
+        self.is_of_gas() && recorded(problem, &self.place).is_some_and(|chambers| chambers > 0)
+    }
+
+    /// The same at the end of the cylinder alone whose pressure was recorded, where it acts at both and that
+    /// of the other was not.
+    pub(crate) fn at_recorded_end(&self, problem: &Problem) -> Option<Self> {
+        let choice = self.entry.places.iter().find(|c| c.key == EITHER)?;
+        if self.end().is_some() || !self.ends.is_empty() || !has_crank_end(&problem.tree) {
+            return None;
+        }
+        let at = |end: &&str| {
+            let mut alone = self.clone();
+            alone.place.push((EITHER, (*end).to_owned()));
+            alone
+        };
+        let each = choice.words.iter().map(at);
+        let mut told = each.filter(|alone| alone.is_told_by_pressures(problem));
+        told.next().filter(|_| told.next().is_none())
+    }
+
     /// Its joint, where it has one.
     pub fn joint(&self) -> Option<&str> {
         let place = self.place.iter().find(|(key, _)| *key == "joint");
@@ -382,12 +404,14 @@ fn has_crank_end(tree: &Value) -> bool {
     has(tree) || throws.into_iter().flatten().any(has)
 }
 
-/// Whether the recordings tell one end of a cylinder from the other: pressures do at the ends where
-/// they were recorded.
+/// Whether the recordings tell one end of a cylinder from the other: accelerations do, and pressures at the
+/// ends where they were recorded.
 fn tells_ends_apart(problem: &Problem) -> bool {
+    if !is_of_pressures(problem) {
+        return true;
+    }
     let columns = problem.runs.iter().flat_map(|run| &run.channels);
-    let columns = columns.map(|channel| channel.column.as_str());
-    let mut pressures = columns.filter(|column| column.contains("cylinder_pressure"));
+    let mut pressures = columns.map(|channel| channel.column.as_str());
     let Some(first) = pressures.next() else {
         return true;
     };

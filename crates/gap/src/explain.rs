@@ -11,7 +11,7 @@ use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
 use crate::model::{Effort, FIRST_SEARCH, Model, SEARCH, Watch};
 use crate::pressures::{OfGas, pressures};
-use crate::refit::few;
+use crate::refit::{RIVALS, few};
 use crate::replication::shows_in_each;
 use crate::screening::screen;
 use crate::steps::{Gap, Step, steps};
@@ -229,7 +229,8 @@ impl Search<'_> {
         gas: Option<OfGas>,
     ) -> Result<(Model, Model, Vec<Found>, Vec<Tried>), Error> {
         let known = gas.as_ref().is_some_and(OfGas::is_told);
-        let mut found = gas.map_or_else(Vec::new, |gas| gas.found);
+        let found = gas.map_or_else(Vec::new, |gas| gas.found);
+        let mut found = self.at_their_ends(problem, found)?;
         let mut with_gas = problem.clone();
         for gas in &found {
             with_gas = gas.candidate.added(&with_gas, &gas.values)?;
@@ -247,7 +248,7 @@ impl Search<'_> {
         };
         let candidates = |problem: &Problem| {
             let mut all = Candidate::all(problem);
-            all.retain(|candidate| !known || !candidate.is_of_gas());
+            all.retain(|candidate| !known || !candidate.is_told_by_pressures(problem));
             all
         };
         let (model, of_throws) = self.throw_by_throw(model, &candidates)?;
@@ -256,6 +257,46 @@ impl Search<'_> {
         found.extend(of_throws);
         found.extend(others);
         Ok((baseline, model, found, refused))
+    }
+
+    /// The effects of the gas, each at the one end of its cylinder alone whose pressure was recorded where
+    /// the whole is nearer to the recordings with that.
+    fn at_their_ends(&self, problem: &Problem, mut found: Vec<Found>) -> Result<Vec<Found>, Error> {
+        let fitted = |found: &[Found]| -> Result<f64, Error> {
+            let mut with = problem.clone();
+            for gas in found {
+                with = gas.candidate.added(&with, &gas.values)?;
+            }
+            let start = vec![0.0; with.parameters.len()];
+            Ok(self.rough(with, &start)?.fitted)
+        };
+        let mut least = None;
+        for i in 0..found.len() {
+            let Some(alone) = found[i].candidate.at_recorded_end(problem) else {
+                continue;
+            };
+            (self.say)("looking at one end of the cylinder", f64::NAN);
+            let before = match least {
+                Some(least) => least,
+                None => fitted(&found)?,
+            };
+            let both = std::mem::replace(&mut found[i].candidate, alone);
+            let after = fitted(&found)?;
+            if after >= before {
+                found[i].candidate = both;
+            }
+            least = Some(before.min(after));
+        }
+        Ok(found)
+    }
+
+    /// A model that is fitted with few evaluations.
+    fn rough(&self, problem: Problem, start: &[f64]) -> Result<Model, Error> {
+        let effort = Effort {
+            evaluations: RIVALS,
+            ..self.effort.clone()
+        };
+        Model::fit(problem, start, &effort, self.watch)
     }
 
     /// What the whole is left with after each effect of the gas, the last of which leaves `model`.
