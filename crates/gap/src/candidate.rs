@@ -508,3 +508,43 @@ fn orders(entry: &Entry) -> Vec<Vec<(usize, f64)>> {
     let [low, high] = entry.parameters[index].bounds.map(|x| x as u32);
     (low..=high).map(|k| vec![(index, f64::from(k))]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linearised::tests::problem;
+    use serde_json::json;
+
+    #[test]
+    fn pressures_tell_the_gas_at_the_ends_where_they_were_recorded() {
+        let mut problem = problem();
+        problem.tree["cylinder"]["crank_end"] =
+            json!({"rod_radius": "15 mm", "clearance": "30 mm"});
+        let losses = |problem: &Problem| {
+            let mut all = Candidate::all(problem);
+            all.retain(|c| c.entry.name == "valve_loss");
+            all
+        };
+        let told = |problem: &Problem| -> Vec<bool> {
+            let of = |c: &Candidate| c.is_told_by_pressures(problem);
+            losses(problem).iter().map(of).collect()
+        };
+        // Everywhere, at the head end, at the crank end.
+        assert_eq!(told(&problem), [false; 3]);
+        assert!(losses(&problem)[0].at_recorded_end(&problem).is_none());
+        for run in &mut problem.runs {
+            let mut pressure = run.channels[0].clone();
+            pressure.column = "cylinder_pressure_pa".into();
+            run.channels.push(pressure);
+        }
+        assert_eq!(told(&problem), [true, true, false]);
+        let alone = losses(&problem)[0].at_recorded_end(&problem).unwrap();
+        assert_eq!(alone.end(), Some("head"));
+        assert!(alone.at_recorded_end(&problem).is_none());
+        // Pressures of one end by themselves do not tell it from the other.
+        for run in &mut problem.runs {
+            run.channels.remove(0);
+        }
+        assert_eq!(told(&problem), [true]);
+    }
+}

@@ -24,9 +24,8 @@ use crate::decision::{Evidence, NOISE, RIVAL, evidence, rival};
 use crate::error::Error;
 use crate::explain::{Search, Tried, effects};
 use crate::journal::Finished;
-use crate::model::{Effort, Model};
+use crate::model::Model;
 use crate::projector::Projector;
-use crate::refit::RIVALS;
 use crate::screening::Screened;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
@@ -180,11 +179,7 @@ impl Search<'_> {
         let added = rival.candidate.added(&before.problem, &rival.values)?;
         let mut x = after.x[..before.x.len()].to_vec();
         x.resize(added.parameters.len(), 0.0);
-        let effort = Effort {
-            evaluations: RIVALS,
-            ..self.effort.clone()
-        };
-        let model = match Model::fit(added, &x, &effort, self.watch) {
+        let model = match self.rough(added, &x) {
             // A descent may end where the machine cannot be simulated.
             Err(Error::Fit(_)) => return Ok(()),
             model => model?,

@@ -11,7 +11,7 @@ use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
 use crate::model::{Effort, FIRST_SEARCH, Model, SEARCH, Watch};
 use crate::pressures::{OfGas, pressures};
-use crate::refit::{RIVALS, few};
+use crate::refit::few;
 use crate::replication::shows_in_each;
 use crate::screening::screen;
 use crate::steps::{Gap, Step, steps};
@@ -288,15 +288,6 @@ impl Search<'_> {
             least = Some(before.min(after));
         }
         Ok(found)
-    }
-
-    /// A model that is fitted with few evaluations.
-    fn rough(&self, problem: Problem, start: &[f64]) -> Result<Model, Error> {
-        let effort = Effort {
-            evaluations: RIVALS,
-            ..self.effort.clone()
-        };
-        Model::fit(problem, start, &effort, self.watch)
     }
 
     /// What the whole is left with after each effect of the gas, the last of which leaves `model`.

@@ -59,3 +59,35 @@ fn ripple(problem: &Problem) -> Option<f64> {
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, frequency)| frequency)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linearised::tests::problem;
+    use input::effects::entry;
+
+    #[test]
+    fn a_ripple_of_the_pressure_has_its_frequency() {
+        let flutter = entry("valve_flutter").unwrap();
+        let mut problem = problem();
+        assert_eq!(recorded_values(flutter, &problem), None);
+        let run = &mut problem.runs[0];
+        let mut pressure = run.channels[0].clone();
+        pressure.column = "cylinder_pressure_pa".into();
+        for (k, amplitude) in pressure.lines.amplitude.iter_mut().enumerate() {
+            let height = 1e5 / (1 + k * k) as f64;
+            *amplitude = Complex::new(if k == 30 { 2.0 * height } else { height }, 0.0);
+        }
+        for weak in [false, true] {
+            let mut pressure = pressure.clone();
+            if weak {
+                pressure.lines.amplitude[30] *= 10.0;
+            }
+            problem.runs[0].channels.push(pressure);
+        }
+        let values = recorded_values(flutter, &problem).unwrap();
+        let frequency = flutter.parameters.iter().position(|p| p.key == "frequency");
+        let found = values[frequency.unwrap()];
+        assert!((found - 30.0 * 400.0 / 60.0).abs() < 1e-9, "{found}");
+    }
+}

@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::explain::{Search, Tried, effects};
 use crate::model::{Effort, Model};
 use crate::screening::Screened;
+use calibrate::Problem;
 use rayon::prelude::*;
 
 /// Candidates that are fitted, of those that were screened: the linear score may be wrong.
@@ -22,11 +23,20 @@ const SEARCH: u64 = 300;
 /// Most evaluations of a first descent for a candidate; and for one that can be no more than a rival of
 /// another that has reached the noise.
 const FIRST: u64 = 50;
-pub(crate) const RIVALS: u64 = 25;
+const RIVALS: u64 = 25;
 /// Runs that the first fits of candidates use.
 pub(crate) const FEW: usize = 3;
 
 impl Search<'_> {
+    /// A model that is fitted with few evaluations.
+    pub(crate) fn rough(&self, problem: Problem, start: &[f64]) -> Result<Model, Error> {
+        let effort = Effort {
+            evaluations: RIVALS,
+            ..self.effort.clone()
+        };
+        Model::fit(problem, start, &effort, self.watch)
+    }
+
     /// The most promising candidates, fitted together with everything else, the best first.
     pub(crate) fn refit(
         &self,

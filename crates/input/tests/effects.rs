@@ -60,6 +60,7 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
         "ring_leakage",
         "heat_transfer",
         "gas_pulsation",
+        "valve_flutter",
         "suction_unloading",
         "ring_friction",
         "squeeze_film",

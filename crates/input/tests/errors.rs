@@ -106,7 +106,7 @@ messages! {
     law_is_no_text: "law: impact" => "law: 3",
         "m.yaml:21:20: joints.big_end.contact.law: found 3, expected a name, as text";
     misspelt_effect: "valve_loss" => "valve_los",
-        "m.yaml:26:5: effects.0: found 'valve_los', expected one of valve_loss, suction_unloading, ring_leakage, heat_transfer, gas_pulsation, ring_friction, squeeze_film, guide_clearance, extra_clearance, thermal_clearance, bearing_ovality, rod_flexibility, frame_compliance, rotating_unbalance, misalignment, speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum, empirical_force; did you mean 'valve_loss'?";
+        "m.yaml:26:5: effects.0: found 'valve_los', expected one of valve_loss, suction_unloading, ring_leakage, heat_transfer, gas_pulsation, valve_flutter, ring_friction, squeeze_film, guide_clearance, extra_clearance, thermal_clearance, bearing_ovality, rod_flexibility, frame_compliance, rotating_unbalance, misalignment, speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum, empirical_force; did you mean 'valve_loss'?";
     misspelt_sensor: "crosshead_acceleration" => "crosshead_aceleration",
         "m.yaml:24:15: sensors.0.measure: found 'crosshead_aceleration', expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle; did you mean 'crosshead_acceleration'?";
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
@@ -142,7 +142,7 @@ messages! {
     list_is_a_value: "effects:\n  - valve_loss: {suction: 0.18, discharge: 0.15}" => "effects: none",
         "m.yaml:25:10: effects: found 'none', expected a list";
     effect_is_no_section: "valve_loss: {suction: 0.18, discharge: 0.15}" => "3",
-        "m.yaml:26:5: effects.0: found 3, expected one of valve_loss, suction_unloading, ring_leakage, heat_transfer, gas_pulsation, ring_friction, squeeze_film, guide_clearance, extra_clearance, thermal_clearance, bearing_ovality, rod_flexibility, frame_compliance, rotating_unbalance, misalignment, speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum, empirical_force";
+        "m.yaml:26:5: effects.0: found 3, expected one of valve_loss, suction_unloading, ring_leakage, heat_transfer, gas_pulsation, valve_flutter, ring_friction, squeeze_film, guide_clearance, extra_clearance, thermal_clearance, bearing_ovality, rod_flexibility, frame_compliance, rotating_unbalance, misalignment, speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum, empirical_force";
     joint_is_another_word: "  big_end:" => "  main: idle\n  big_end:",
         "m.yaml:18:9: joints.main: found 'idle', expected 'ideal' or a section";
     bits_out_of_range: "bits: 16" => "bits: 64",
