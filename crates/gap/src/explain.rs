@@ -268,7 +268,10 @@ impl Search<'_> {
                 with = gas.candidate.added(&with, &gas.values)?;
             }
             let start = vec![0.0; with.parameters.len()];
-            Ok(self.rough(with, &start)?.fitted)
+            match self.rough(with, &start) {
+                Err(Error::Fit(_)) => Ok(f64::INFINITY),
+                model => Ok(model?.fitted),
+            }
         };
         let mut least = None;
         for i in 0..found.len() {

@@ -116,8 +116,11 @@ impl Search<'_> {
     /// is wrong.
     fn deeper(&self, model: Model) -> Result<Model, Error> {
         (self.say)("searching further", model.fitted);
-        let found = self.searched(&model.problem, Some(model.x.clone()), SEARCH)?;
-        Ok(model.better(found))
+        match self.searched(&model.problem, Some(model.x.clone()), SEARCH) {
+            // Where the search starts, the machine may be one that cannot be simulated.
+            Err(Error::Fit(_)) => Ok(model),
+            found => Ok(model.better(found?)),
+        }
     }
 
     /// A candidate fitted to `few` runs together with everything else. Where another one has reached
