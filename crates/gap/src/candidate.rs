@@ -51,10 +51,11 @@ const GAS: [&str; 6] = [
     "gas_pulsation",
     "valve_flutter",
 ];
-/// Amplitudes at which an effect is tried, over its usual one; those between where it has no phases to be
-/// tried as well.
+/// Amplitudes at which an effect is tried, over its usual one.
 const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
-const BETWEEN: [f64; 2] = [0.45, 2.2];
+/// Steps from the first to the last of them for a clearance: one that is a quarter off leaves more than
+/// one that is not there.
+const STEPS: usize = 12;
 /// Values at which a parameter is tried that is no amplitude and may lie anywhere in wide bounds.
 const VALUES: usize = 5;
 /// Bounds this far apart are wide.
@@ -325,6 +326,15 @@ impl Candidate {
         probes.map(|probe| probe.repeat(items)).collect()
     }
 
+    /// Whether what it changes is how much play there is, all around.
+    fn is_clearance(&self) -> bool {
+        let parameters = self.entry.parameters;
+        let mut amplitudes = parameters.iter().filter(|p| p.absent.is_some());
+        amplitudes.next().is_some_and(|p| p.unit == "m")
+            && amplitudes.next().is_none()
+            && !parameters.iter().any(|p| p.cyclic)
+    }
+
     fn item_probes(&self) -> Vec<Vec<f64>> {
         let parameters = self.entry.parameters;
         let usual: Vec<f64> = parameters.iter().map(|p| p.start).collect();
@@ -341,12 +351,17 @@ impl Candidate {
             let signed = parameters
                 .iter()
                 .any(|p| p.absent.is_some_and(|a| a > p.bounds[0]));
-            probes = AMPLITUDES.map(amplitude).to_vec();
-            if !parameters.iter().any(|p| p.cyclic) {
-                probes.extend(BETWEEN.map(amplitude));
-            }
+            let shares = match self.is_clearance() {
+                true => {
+                    let [first, .., last] = AMPLITUDES;
+                    let step = |k: usize| first * (last / first).powf(k as f64 / STEPS as f64);
+                    (0..=STEPS).map(step).collect()
+                }
+                false => AMPLITUDES.to_vec(),
+            };
+            probes = shares.iter().map(|share| amplitude(*share)).collect();
             if signed {
-                probes.extend(AMPLITUDES.map(|share| amplitude(-share)));
+                probes.extend(shares.iter().map(|share| amplitude(-share)));
             }
         }
         // What may lie anywhere is varied by itself.
@@ -546,5 +561,24 @@ mod tests {
             run.channels.remove(0);
         }
         assert_eq!(told(&problem), [true]);
+    }
+
+    #[test]
+    fn clearances_are_tried_in_small_steps() {
+        let all = Candidate::all(&problem());
+        let clearances: Vec<&str> = CATALOGUE
+            .iter()
+            .filter(|entry| all.iter().any(|c| c.entry == *entry && c.is_clearance()))
+            .map(|entry| entry.name)
+            .collect();
+        let expected = ["guide_clearance", "extra_clearance", "thermal_clearance"];
+        assert_eq!(clearances, expected);
+        let extra = all.iter().find(|c| c.entry.name == "extra_clearance");
+        let mut probes = extra.unwrap().probes(&problem());
+        probes.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for pair in probes.windows(2) {
+            assert!(pair[1][0] / pair[0][0] < 1.35, "{pair:?}");
+        }
+        assert!(probes[0][0] < 1.1e-5 && probes.last().unwrap()[0] > 2.4e-4);
     }
 }

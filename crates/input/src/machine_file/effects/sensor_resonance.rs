@@ -11,7 +11,7 @@ use simulate::{Resonance, Sensor};
 effect! {
     /// Resonance of a sensor on its mount; it takes the place of the sensor's own.
     SensorResonance at [throw, measure]:
-    "The sensor rings on its mount after every blow, always at the same pitch." {
+    "The sensor rings after every blow or sudden change of what it measures, always at the same pitch." {
         /// Natural frequency; 2 kHz where it is left out. The effect is gone far above the band of
         /// the recording.
         frequency: Positive<Frequency>, 100.0 to 20000.0, start 2000.0;
