@@ -121,6 +121,8 @@ bounds! {
     FromOne, "AtLeastOne", " of at least 1", |x| x >= 1.0, {"minimum": 1};
     /// A part of a whole: 0 to 1.
     Part, "Part", " from 0 to 100 %", |x| (0.0..=1.0).contains(&x), {"minimum": 0, "maximum": 1};
+    /// A part of a whole that is not all of it: from 0, below 1.
+    ProperPart, "ProperPart", " of at least 0, below 100 %", |x| (0.0..1.0).contains(&x), {"minimum": 0, "exclusiveMaximum": 1};
     /// A coefficient of restitution: above 0, to 1.
     Rebound, "Rebound", " greater than 0, up to 1", |x| x > 0.0 && x <= 1.0, {"exclusiveMinimum": 0, "maximum": 1};
     /// A Poisson's ratio: 0 to 0.5.

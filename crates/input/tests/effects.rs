@@ -391,6 +391,10 @@ fn messages() {
             "effects.0.suction_unloading.held: found '200 deg', expected an angle from 0 to 170 deg with its unit, e.g. '30 deg'",
         ),
         (
+            json!([{"valve_flutter": {"suction": "100 %"}}]),
+            "effects.0.valve_flutter.suction: found '100 %', expected a percentage of at least 0, below 100 % with its unit, e.g. '5 %'",
+        ),
+        (
             json!([{"bearing_ovality": {"joint": "small_end", "amplitude": "0.2 mm"}}]),
             "effects.0.bearing_ovality.amplitude: found '0.2 mm', expected a length below the clearance, 0.0002 m",
         ),
