@@ -55,7 +55,10 @@ impl Search<'_> {
         let mut x = model.x[..problem.parameters.len()].to_vec();
         x.resize(without.parameters.len(), 0.0);
         let before = Model::at(without.clone(), x.clone(), self.effort)?;
-        let with = rival.candidate.added(&without, &rival.values)?;
+        // What was found later itself is no rival beside the others.
+        let Ok(with) = rival.candidate.added(&without, &rival.values) else {
+            return Ok(None);
+        };
         x.resize(with.parameters.len(), 0.0);
         let after = match self.rough(with, &x) {
             // A descent may end where the machine cannot be simulated.
@@ -142,8 +145,8 @@ mod tests {
             rivals: vec![other, same],
             candidate: rings.clone(),
         };
-        let found = search.with_last_rivals(&problem, &model, vec![found]);
-        let rivals = found.unwrap().remove(0).rivals;
+        let judged = search.with_last_rivals(&problem, &model, vec![found.clone()]);
+        let rivals = judged.unwrap().remove(0).rivals;
         let [rival] = &rivals[..] else {
             panic!(
                 "{:?}",
@@ -152,5 +155,22 @@ mod tests {
         };
         assert_eq!(rival.candidate, rings);
         assert!(rival.leaves() < 0.3, "{}", rival.leaves());
+        // A rival that was found itself afterwards is none.
+        let force = candidate("misalignment");
+        let added = force.added(&model.problem, &[1.0, 0.0, 1.0, 0.0]).unwrap();
+        let both = Model {
+            x: [&model.x[..], &[0.0; 4]].concat(),
+            problem: added,
+            ..model.clone()
+        };
+        let of = |candidate: &Candidate, rivals| Found {
+            candidate: candidate.clone(),
+            rivals,
+            ..found.clone()
+        };
+        let later = stale(force.clone(), &[100.0, 0.0, 50.0, 0.0]);
+        let pair = vec![of(&rings, vec![later]), of(&force, Vec::new())];
+        let pair = search.with_last_rivals(&problem, &both, pair).unwrap();
+        assert!(pair.iter().all(|found| found.rivals.is_empty()));
     }
 }
