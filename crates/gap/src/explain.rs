@@ -358,17 +358,7 @@ impl Search<'_> {
         while found.len() > 1 && i < found.len() {
             let label = found[i].candidate.label();
             (self.say)(&format!("without {label}"), model.fitted);
-            let others = found.iter().enumerate().filter(|(j, _)| *j != i);
-            let mut without = problem.clone();
-            for (j, other) in others {
-                let values = other
-                    .candidate
-                    .values(&model, first_item(problem, &found, j));
-                without = other.candidate.added(&without, &values)?;
-            }
-            // The others stand at what they were found to be, which is their coordinates' 0.
-            let mut x = model.x[..problem.parameters.len()].to_vec();
-            x.resize(without.parameters.len(), 0.0);
+            let (without, x) = without(problem, &model, &found, i)?;
             let without = Model::fit(without, &x, self.effort, self.watch)?;
             if earns(&without, &model) {
                 i += 1;
@@ -519,6 +509,24 @@ impl Search<'_> {
 pub fn first_item(problem: &Problem, found: &[Found], which: usize) -> usize {
     let before = found[..which].iter();
     effects(problem) + before.map(|f| f.candidate.items().len()).sum::<usize>()
+}
+
+/// The machine of `problem` with the effects of `model` but `found[which]`, and its coordinates there: the
+/// others stand at what they were found to be, which is their coordinates' 0.
+pub(crate) fn without(
+    problem: &Problem,
+    model: &Model,
+    found: &[Found],
+    which: usize,
+) -> Result<(Problem, Vec<f64>), Error> {
+    let mut without = problem.clone();
+    for (i, other) in found.iter().enumerate().filter(|(i, _)| *i != which) {
+        let values = other.candidate.values(model, first_item(problem, found, i));
+        without = other.candidate.added(&without, &values)?;
+    }
+    let mut x = model.x[..problem.parameters.len()].to_vec();
+    x.resize(without.parameters.len(), 0.0);
+    Ok((without, x))
 }
 
 /// How many effects a problem's machine has.

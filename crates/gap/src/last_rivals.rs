@@ -6,7 +6,7 @@
 use crate::confusability::is_rival;
 use crate::decision::evidence;
 use crate::error::Error;
-use crate::explain::{Found, Search, Tried, effects, first_item};
+use crate::explain::{Found, Search, Tried, effects, without};
 use crate::model::Model;
 use calibrate::Problem;
 
@@ -45,15 +45,8 @@ impl Search<'_> {
             &format!("with {} instead", rival.candidate.label()),
             model.fitted,
         );
-        let mut without = problem.clone();
-        for (i, other) in found.iter().enumerate().filter(|(i, _)| *i != which) {
-            let values = other.candidate.values(model, first_item(problem, found, i));
-            without = other.candidate.added(&without, &values)?;
-        }
+        let (without, mut x) = without(problem, model, found, which)?;
         let index = effects(&without);
-        // The others stand at what they were found to be, which is their coordinates' 0.
-        let mut x = model.x[..problem.parameters.len()].to_vec();
-        x.resize(without.parameters.len(), 0.0);
         let before = Model::at(without.clone(), x.clone(), self.effort)?;
         // What was found later itself is no rival beside the others.
         let Ok(with) = rival.candidate.added(&without, &rival.values) else {
