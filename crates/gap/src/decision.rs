@@ -86,8 +86,8 @@ pub(crate) fn rival(least: f64) -> f64 {
     }
 }
 
-/// Whether the effect that `after` has and `before` has not earns its place: not where noise is all that is
-/// left without it.
+/// Whether the effect that `after` has and `before` has not earns its place: not where without it noise is all
+/// that fitted runs are left with and held-out ones are explained.
 pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
     let share = match is_of_pressures(&after.problem) {
@@ -96,8 +96,8 @@ pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     };
     let takes = |before: f64, after: f64| excess(after) <= (1.0 - share) * excess(before);
     let held_out = before.held_out.zip(after.held_out);
-    let left = before.fitted.max(before.held_out.unwrap_or(0.0));
-    left > NOISE
+    let is_left = before.fitted > NOISE || before.held_out.is_some_and(|held| held > EXPLAINED);
+    is_left
         && takes(before.fitted, after.fitted)
         && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))
 }
@@ -152,6 +152,7 @@ mod tests {
         assert!(earns(&model(5.0, 6.0), &good));
         assert!(earns(&model(1.0, 6.0), &good));
         assert!(!earns(&model(0.95, 0.9), &good));
+        assert!(!earns(&model(1.0, 1.4), &good));
         assert!(!earns(&model(5.0, 6.0), &model(4.8, 6.0)));
         assert!(!earns(&model(5.0, 6.0), &model(2.0, 7.0)));
     }
