@@ -218,15 +218,20 @@ impl<S: Scalar> Step<S> {
     /// [`extend`](Self::extend).
     pub fn interpolate(&self, share: S, out: &mut [S]) {
         let n = self.dimension();
-        let rest = S::one() - share;
-        for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
-            let mut sum = S::zero();
-            for i in (0..PIECES).rev() {
-                let factor = if i % 2 == 0 { share } else { rest };
-                sum = (sum + self.pieces[i * n + j]) * factor;
-            }
-            *out = *from + sum;
-        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let rest = S::one() - share;
+                for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
+                    let mut sum = S::zero();
+                    for i in (0..PIECES).rev() {
+                        let factor = if i % 2 == 0 { share } else { rest };
+                        sum = (sum + self.pieces[i * n + j]) * factor;
+                    }
+                    *out = *from + sum;
+                }
+            },
+        );
     }
 }
 

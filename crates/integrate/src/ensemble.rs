@@ -1,13 +1,13 @@
 //! Several integrations side by side: each in a lane, with its own time, step, mode and end.
 //!
-//! Only what all of them do at every step is done for all at once: the stages, the error, the look at
-//! the guards, the continuous extension. Step control is that of each lane's own [`Integrator`], and a
-//! step with a switch in it is finished there. So every lane makes the very steps that it would make
-//! alone, with the same bits.
+//! What all of them do at every step is done for all at once: the stages, the error, the look at the
+//! guards, the continuous extension, the look at a step that stands. Step control, the search for switches and
+//! the switches themselves are those of each lane's own [`Integrator`]. So every lane makes the very steps
+//! that it would make alone, with the same bits.
 
 use crate::dop853::Step;
 use crate::glance::Glances;
-use crate::integrator::{Course, Error, Integrator, Trial};
+use crate::integrator::{Course, Error, Integrator, Sight, Trial};
 use crate::system::System;
 use scalar::{Lanes, Scalar};
 
@@ -22,7 +22,7 @@ pub struct Ensemble<L: Scalar, const W: usize> {
 }
 
 /// What one lane is about.
-pub struct Traveller<'a, T, F> {
+pub struct Traveller<'a, T> {
     /// Its own integrator, whose time and step length are up to date; its state is where the course
     /// ends.
     pub integrator: &'a mut Integrator<f64>,
@@ -32,8 +32,6 @@ pub struct Traveller<'a, T, F> {
     pub course: &'a Course,
     /// The step that it wants to try.
     pub trial: Trial,
-    /// What is shown each of its steps, if anything is.
-    pub observe: Option<F>,
 }
 
 impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
@@ -59,11 +57,14 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
     }
 
     /// Tries one step in each lane in which somebody travels. `wide` are the systems of all lanes in
-    /// their modes. What became of each: where it fails, the lane's integrator is of no use any more.
-    pub fn advance<T: System<f64>, F: FnMut(&mut T, &Step<f64>)>(
+    /// their modes. Still in these modes `observe`, if there is one, is shown the steps with their continuous
+    /// extension, and in which lanes they stand. What became of each lane: where it fails, its integrator is of no
+    /// use any more.
+    pub fn advance<T: System<f64>, Wide: System<L>>(
         &mut self,
-        wide: &mut impl System<L>,
-        lanes: [Option<Traveller<T, F>>; W],
+        wide: &mut Wide,
+        mut lanes: [Option<Traveller<T>>; W],
+        observe: Option<impl FnOnce(&mut Wide, &Step<L>, [bool; W])>,
     ) -> [Result<(), Error>; W] {
         let mut lengths = L::zero();
         for (lane, traveller) in lanes.iter().enumerate() {
@@ -77,68 +78,70 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
         let squares = self.squared_errors(wide.scales());
         let quiet = self.glances.quiet().map_or([false; W], L::truths);
 
-        let (mut kept, mut shown) = ([false; W], [false; W]);
-        let mut lanes = lanes;
+        let (mut stands, mut looked_into) = ([false; W], [false; W]);
         for (lane, traveller) in lanes.iter_mut().enumerate() {
-            let Some(traveller) = traveller else {
+            let Some(Traveller {
+                integrator, trial, ..
+            }) = traveller
+            else {
                 continue;
             };
             let squares = squares.map(|s| s.get(lane));
-            if traveller
-                .integrator
-                .judge(traveller.trial, squares, self.counted)
-            {
-                shown[lane] = !quiet[lane] || traveller.observe.is_some();
-                kept[lane] = !shown[lane];
+            if integrator.judge(*trial, squares, self.counted) {
+                looked_into[lane] = integrator.looks_into(quiet[lane]);
+                stands[lane] = true;
             }
         }
-        if shown.contains(&true) {
+        if looked_into.contains(&true) || observe.is_some() && stands.contains(&true) {
             self.step.extend(wide);
         }
         let mut results = [const { Ok(()) }; W];
+        let mut switching = [None; W];
         for (lane, traveller) in lanes.iter_mut().enumerate() {
-            if let Some(traveller) = traveller
-                && shown[lane]
+            if let Some(Traveller {
+                integrator, system, ..
+            }) = traveller
+                && looked_into[lane]
             {
-                results[lane] = self.conclude(lane, traveller, quiet[lane]);
+                self.give(lane, true, integrator);
+                let sight = integrator.sight(*system);
+                stands[lane] = matches!(sight, Ok(Sight::Clear));
+                if let Ok(Sight::Here(guard)) = sight {
+                    switching[lane] = Some(guard);
+                }
+                results[lane] = sight.map(|_| ());
             }
         }
-        self.step.shift_where(L::mask(kept));
-        self.glances.shift_where(L::mask(kept));
+        if let Some(observe) = observe
+            && stands.contains(&true)
+        {
+            observe(wide, &self.step, stands);
+        }
+        self.step.shift_where(L::mask(stands));
+        self.glances.shift_where(L::mask(stands));
         for (lane, traveller) in lanes.into_iter().enumerate() {
-            if let Some(traveller) = traveller {
-                if kept[lane] {
-                    traveller
-                        .integrator
-                        .pass(lengths.get(lane), traveller.course);
-                }
-                // Whoever looks at an integrator at the end of its course finds its state.
-                if traveller.integrator.time() >= traveller.course.end() {
-                    self.give(lane, false, traveller.integrator);
-                }
+            let Some(Traveller {
+                integrator,
+                system,
+                course,
+                ..
+            }) = traveller
+            else {
+                continue;
+            };
+            if stands[lane] {
+                switching[lane] = integrator.pass(lengths.get(lane), course);
+            }
+            // Whoever looks at an integrator at the end of its course finds its state.
+            if switching[lane].is_some() || integrator.time() >= course.end() {
+                self.give(lane, false, integrator);
+            }
+            if let Some(guard) = switching[lane] {
+                integrator.switch(system, guard);
+                self.place(lane, integrator);
             }
         }
         results
-    }
-
-    /// Finishes a step in the lane's own integrator, and takes back where that leads.
-    fn conclude<T: System<f64>, F: FnMut(&mut T, &Step<f64>)>(
-        &mut self,
-        lane: usize,
-        traveller: &mut Traveller<T, F>,
-        quiet: bool,
-    ) -> Result<(), Error> {
-        let Traveller {
-            integrator,
-            system,
-            course,
-            observe,
-            ..
-        } = traveller;
-        self.give(lane, true, integrator);
-        let result = integrator.conclude(*system, course, quiet, observe);
-        self.place(lane, integrator);
-        result
     }
 
     /// Makes an integrator's state that of a lane; with its last step, if asked for.

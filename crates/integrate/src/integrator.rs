@@ -98,6 +98,29 @@ pub struct Integrator<S: Scalar> {
     work: Work,
     /// The guard that switched last, when, and how often in a row at that time.
     last_switch: (usize, f64, u32),
+    /// The switch that the next step leads to, if one is in sight.
+    aim: Option<Aim>,
+}
+
+/// A switch that was located ahead.
+#[derive(Clone, Copy, Debug)]
+struct Aim {
+    guard: usize,
+    /// How far away it is, s.
+    length: f64,
+    /// Length and steadiness of the step in which it was found, which go on after it.
+    next: (f64, f64),
+}
+
+/// What lies in a step that may have a switch in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sight {
+    /// Nothing: the step stands.
+    Clear,
+    /// A switch, which a step to be tried next leads to: this one does not stand.
+    Ahead,
+    /// A switch of this guard at its very beginning.
+    Here(usize),
 }
 
 /// Switches at one instant after which a guard is left alone for one step, and after which the
@@ -132,6 +155,7 @@ impl<S: Real> Integrator<S> {
             budget: BUDGET,
             work: Work::default(),
             last_switch: (usize::MAX, t, 0),
+            aim: None,
         };
         integrator.length = integrator.first_length(system);
         integrator
@@ -203,12 +227,17 @@ impl<S: Real> Integrator<S> {
                 continue;
             }
             let quiet = self.glances.quiet().unwrap_or(false);
-            if observe.is_some() || !quiet {
+            if observe.is_some() || self.looks_into(quiet) || S::DERIVATIVES && self.aim.is_some() {
                 self.step.extend(system);
             }
             self.conclude(system, &course, quiet, &mut observe)?;
         }
         Ok(())
+    }
+
+    /// Whether a step that was taken has to be looked into, as it is not `quiet`.
+    pub(crate) fn looks_into(&self, quiet: bool) -> bool {
+        !quiet && self.aim.is_none()
     }
 
     /// The way from here to `end`.
@@ -234,6 +263,12 @@ impl<S: Real> Integrator<S> {
         if steps as f64 > self.budget * (1.0 + span / self.longest) {
             return Err(Error::TooManySteps { time, steps, span });
         }
+        if let Some(Aim { length, .. }) = self.aim {
+            return Ok(Some(Trial {
+                length,
+                limited: true,
+            }));
+        }
         let remaining = end - time;
         let mut length = self.length.min(self.longest);
         // Never leave a last step too short to be told from none.
@@ -255,54 +290,77 @@ impl<S: Real> Integrator<S> {
         Ok(trial)
     }
 
-    /// Ends an accepted step at the first switch in it, shows it, and goes on to its end. Where it is
-    /// not `quiet` or is observed, its continuous extension must be there.
-    pub(crate) fn conclude<T: System<S>>(
+    /// Makes an accepted step stand, and shows it, unless a switch is found in it. Where it is looked into or
+    /// observed, its continuous extension must be there.
+    fn conclude<T: System<S>>(
         &mut self,
         system: &mut T,
         course: &Course,
         quiet: bool,
         observe: &mut Option<impl FnMut(&mut T, &Step<S>)>,
     ) -> Result<(), Error> {
-        let switching = match quiet {
-            true => None,
-            false => match self.locate(system, observe.is_some())? {
-                Some(switching) => switching,
-                None => return Ok(()),
-            },
-        };
-        if self.step.length.value() > 0.0 {
-            if let Some(observe) = observe {
-                observe(system, &self.step);
+        if self.looks_into(quiet) {
+            match self.sight(system)? {
+                Sight::Clear => {}
+                Sight::Ahead => return Ok(()),
+                Sight::Here(guard) => {
+                    self.switch(system, guard);
+                    return Ok(());
+                }
             }
-            self.step.shift();
-            self.glances.shift();
-            self.arrive(course);
         }
-        if let Some(guard) = switching {
-            let t = self.step.start;
-            let mut y = std::mem::take(&mut self.step.from);
-            system.switch(guard, t, &mut y);
-            self.step.from = y;
-            self.glances.begin(system, &mut self.step);
-            self.work.switches += 1;
+        if let Some(aim) = self.aim {
+            self.reach_for(system, aim.guard);
+        }
+        if let Some(observe) = observe {
+            observe(system, &self.step);
+        }
+        self.step.shift();
+        self.glances.shift();
+        if let Some(guard) = self.arrive(course) {
+            self.switch(system, guard);
         }
         Ok(())
     }
 
-    /// Lets a step's time pass that was taken elsewhere.
-    pub(crate) fn pass(&mut self, length: S, course: &Course) {
-        self.step.start += length;
-        self.arrive(course);
+    /// Lets the step end where the guard is zero, whatever dual numbers vary.
+    fn reach_for(&mut self, system: &mut impl System<S>, guard: usize) {
+        let later = self.finder.delay(system, &self.step, guard);
+        if later.varies() {
+            self.step.take(system, self.step.length + later, |_, _| ());
+            self.step.extend(system);
+        }
     }
 
-    /// Counts a step that has brought the time to where it is.
-    fn arrive(&mut self, course: &Course) {
+    /// Changes the mode as the guard demands.
+    pub(crate) fn switch(&mut self, system: &mut impl System<S>, guard: usize) {
+        let t = self.step.start;
+        let mut y = std::mem::take(&mut self.step.from);
+        system.switch(guard, t, &mut y);
+        self.step.from = y;
+        self.glances.begin(system, &mut self.step);
+        self.work.switches += 1;
+    }
+
+    /// Lets a step's time pass that was taken elsewhere; the guard that switches at its end, if one does.
+    pub(crate) fn pass(&mut self, length: S, course: &Course) -> Option<usize> {
+        self.step.start += length;
+        self.arrive(course)
+    }
+
+    /// Counts a step that has brought the time to where it is; the guard that switches there, if one does.
+    fn arrive(&mut self, course: &Course) -> Option<usize> {
+        let aim = self.aim.take();
+        if let Some(aim) = aim {
+            (self.length, self.steadiness) = aim.next;
+            self.last_switch = (aim.guard, self.time(), 1);
+        }
         self.work.accepted += 1;
         let end = course.end;
         if (end - self.time()).abs() <= 4.0 * f64::EPSILON * end.abs() {
             self.step.start = S::constant(end);
         }
+        aim.map(|aim| aim.guard)
     }
 
     /// Tries a step; false where its error is too large. Sets the length to try next.
@@ -355,63 +413,39 @@ impl<S: Real> Integrator<S> {
         self.length = length * shorter;
         self.steadiness = 1.0;
         self.work.rejected += 1;
+        // What lies before a switch can be too short for the stages of the whole step to have seen it.
+        self.aim = None;
         false
     }
 
-    /// Ends the step at the first switch in it, and tells which guard that is. `None` where the
-    /// shortened step does not keep the tolerance: what lies before the switch can be too short for
-    /// the stages of the whole step to have seen it. Only of a step that is `observed` the extension is
-    /// needed any more.
-    #[expect(
-        clippy::option_option,
-        reason = "no step, a step, a step that ends in a switch"
-    )]
-    fn locate(
-        &mut self,
-        system: &mut impl System<S>,
-        observed: bool,
-    ) -> Result<Option<Option<usize>>, Error> {
+    /// Looks into the step, whose continuous extension must be there, for the first switch in it.
+    pub(crate) fn sight(&mut self, system: &mut impl System<S>) -> Result<Sight, Error> {
         let (last, when, count) = self.last_switch;
         let now = self.time();
         let ignored = (when == now && count >= CALM).then_some(last);
         let ends = self.glances.ends();
         let Some(crossing) = self.finder.first(system, &self.step, ends, ignored) else {
-            return Ok(Some(None));
+            return Ok(Sight::Clear);
         };
         let length = self.step.length.value() * crossing.share;
         let minute = 4.0 * f64::EPSILON * now.abs();
-        if length <= minute {
-            self.step.length = S::zero();
-            let repeats = if when == now { count + 1 } else { 1 };
-            if repeats > CHATTER {
-                return Err(Error::Chatter {
-                    time: now,
-                    guard: crossing.guard,
-                });
-            }
-            self.last_switch = (crossing.guard, now, repeats);
-        } else {
-            let next = (self.length, self.steadiness);
-            let trial = Trial {
+        if length > minute {
+            self.aim = Some(Aim {
+                guard: crossing.guard,
                 length,
-                limited: true,
-            };
-            if !self.attempt(system, trial)? {
-                return Ok(None);
-            }
-            (self.length, self.steadiness) = next;
-            if observed || S::DERIVATIVES {
-                self.step.extend(system);
-            }
-            let later = self.finder.delay(system, &self.step, crossing.guard);
-            if later.varies() {
-                self.step.take(system, self.step.length + later, |_, _| ());
-                self.step.extend(system);
-            }
-            let reached = (self.step.start + self.step.length).value();
-            self.last_switch = (crossing.guard, reached, 1);
+                next: (self.length, self.steadiness),
+            });
+            return Ok(Sight::Ahead);
         }
-        Ok(Some(Some(crossing.guard)))
+        let repeats = if when == now { count + 1 } else { 1 };
+        if repeats > CHATTER {
+            return Err(Error::Chatter {
+                time: now,
+                guard: crossing.guard,
+            });
+        }
+        self.last_switch = (crossing.guard, now, repeats);
+        Ok(Sight::Here(crossing.guard))
     }
 
     /// A first step length, from the sizes of state and derivative (Hairer, Nørsett and Wanner

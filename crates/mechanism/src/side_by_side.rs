@@ -1,6 +1,7 @@
 //! Several machines of one build, each in a lane: what an ensemble integrates.
 
 use crate::dynamics::Dynamics;
+use crate::evaluation::Evaluation;
 use crate::lift;
 use crate::mode::Mode;
 use integrate::System;
@@ -34,6 +35,13 @@ impl<L> SideBySide<L> {
     {
         let put = |number: &mut L, of: f64| number.set(lane, of);
         self.0.mode_mut().each(mode, put);
+    }
+}
+
+impl<L: Scalar> SideBySide<L> {
+    /// As [`Dynamics::evaluate_sensed`].
+    pub fn evaluate_sensed(&mut self, t: L, y: &[L]) -> &Evaluation<L> {
+        self.0.evaluate_sensed(t, y)
     }
 }
 

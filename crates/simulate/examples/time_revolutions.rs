@@ -150,11 +150,15 @@ impl Lane {
 }
 
 impl Samples {
-    fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
-        let stop = step.start + step.length;
+    /// Asks for the instants up to `stop`.
+    fn ask(&mut self, stop: f64) {
         let instants = (self.asked..self.count).map(|i| i as f64 / RATE);
         self.times.clear();
         self.times.extend(instants.take_while(|time| *time <= stop));
+    }
+
+    fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
+        self.ask(step.start + step.length);
         if self.times.is_empty() {
             return;
         }
@@ -251,21 +255,21 @@ fn travel<L: Lanes<W>, const W: usize>(
         if trials.iter().all(Option::is_none) {
             break;
         }
-        let mut travellers = trials.iter().zip(&mut lanes).zip(&courses);
-        let travellers = [(); W].map(|()| {
-            let ((trial, lane), course) = travellers.next()?;
-            let samples = &mut lane.samples;
-            trial.map(|trial| Traveller {
+        let mut travellers = [const { None }; W];
+        let mut samples = Vec::with_capacity(W);
+        for (i, lane) in lanes.iter_mut().enumerate() {
+            samples.push(&mut lane.samples);
+            travellers[i] = trials[i].map(|trial| Traveller {
                 integrator: &mut lane.integrator,
                 system: &mut lane.dynamics,
-                course,
+                course: &courses[i],
                 trial,
-                observe: Some(|dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
-                    samples.observe(dynamics, step);
-                }),
-            })
-        });
-        for result in ensemble.advance(&mut wide, travellers) {
+            });
+        }
+        let observe = |wide: &mut _, step: &Step<L>, stands| {
+            observe_lanes(&mut samples, wide, step, stands);
+        };
+        for result in ensemble.advance(&mut wide, travellers, Some(observe)) {
             result?;
         }
         for (i, lane) in lanes.iter().enumerate() {
@@ -276,6 +280,42 @@ fn travel<L: Lanes<W>, const W: usize>(
     }
     let first = lanes.into_iter().next().ok_or("no lanes")?;
     Ok(first.samples.end())
+}
+
+/// Looks at the instants within the steps that stand, a lane's next one at a time.
+fn observe_lanes<L: Lanes<W>, const W: usize>(
+    samples: &mut [&mut Samples],
+    machines: &mut SideBySide<L>,
+    step: &Step<L>,
+    stands: [bool; W],
+) {
+    let stop = step.start + step.length;
+    for (lane, samples) in samples.iter_mut().enumerate() {
+        samples.times.clear();
+        if stands[lane] {
+            samples.ask(stop.get(lane));
+        }
+    }
+    let most = samples.iter().map(|s| s.times.len()).max().unwrap_or(0);
+    let mut state = vec![L::zero(); step.from.len()];
+    for i in 0..most {
+        let mut instants = step.start;
+        for (lane, samples) in samples.iter().enumerate() {
+            if let Some(time) = samples.times.get(i) {
+                instants.set(lane, *time);
+            }
+        }
+        step.interpolate((instants - step.start) / step.length, &mut state);
+        let seen = machines.evaluate_sensed(instants, &state).throws[0]
+            .accelerations
+            .crosshead;
+        for (lane, samples) in samples.iter_mut().enumerate() {
+            if i < samples.times.len() {
+                samples.seen.push(seen.get(lane));
+                samples.asked += 1;
+            }
+        }
+    }
 }
 
 /// CPU time of one run of `work`, ms, and what it found: one run to warm the caches up, then as many

@@ -2,6 +2,7 @@
 //! next.
 
 use crate::record::{Error, Record};
+use crate::sampler::observe_lanes;
 use crate::task::{Asked, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
@@ -25,11 +26,12 @@ fn start(asked: Asked) -> Result<Task, Error> {
     Task::start(asked, 0.0, false)
 }
 
-/// Which machines can share lanes: those that differ in numbers alone.
+/// Which machines can share lanes: those that differ in numbers alone, and of which the same is recorded.
 fn of_one_build(asked: &[Asked]) -> Vec<Vec<usize>> {
     let mut groups: Vec<(_, Vec<usize>)> = Vec::new();
     for (i, asked) in asked.iter().enumerate() {
-        let build = lift::build(asked.machine);
+        let measured = asked.sensors.iter().map(|sensor| sensor.measured.clone());
+        let build = (lift::build(asked.machine), measured.collect::<Vec<_>>());
         match groups.iter_mut().find(|(of, _)| *of == build) {
             Some((_, group)) => group.push(i),
             None => groups.push((build, vec![i])),
@@ -182,25 +184,27 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
     }
 
     /// One step of everybody. Who has arrived leaves.
-    fn step(&mut self, records: &mut Records) {
-        let travellers = self.passengers.each_mut().map(|passenger| {
-            passenger.as_mut().map(|Passenger { task, trial, .. }| {
+    fn step(&mut self, filed: &mut Records) {
+        let mut travellers = [const { None }; W];
+        let mut samplers = [const { None }; W];
+        for (lane, passenger) in self.passengers.iter_mut().enumerate() {
+            if let Some(Passenger { task, trial, .. }) = passenger {
                 let (run, course, sampler) = task.parts();
                 let (integrator, system) = run.both();
-                Traveller {
+                samplers[lane] = sampler;
+                travellers[lane] = Some(Traveller {
                     integrator,
                     system,
                     course,
                     trial: *trial,
-                    observe: sampler.map(|sampler| {
-                        |dynamics: &mut Dynamics<f64>, step: &Step<f64>| {
-                            sampler.observe(dynamics, step);
-                        }
-                    }),
-                }
-            })
+                });
+            }
+        }
+        let records = samplers.iter().any(Option::is_some);
+        let observe = records.then_some(|wide: &mut _, step: &Step<L>, stands| {
+            observe_lanes(&mut samplers, wide, step, stands);
         });
-        let results = self.ensemble.advance(&mut self.wide, travellers);
+        let results = self.ensemble.advance(&mut self.wide, travellers, observe);
         for (lane, (place, result)) in self.passengers.iter_mut().zip(results).enumerate() {
             let Some(passenger) = place else {
                 continue;
@@ -213,9 +217,9 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
             }
             match result.and_then(|()| passenger.task.propose()) {
                 Ok(Some(trial)) => passenger.trial = trial,
-                Ok(None) => *place = place.take().and_then(|p| p.go_on(records)),
+                Ok(None) => *place = place.take().and_then(|p| p.go_on(filed)),
                 Err(error) => {
-                    records[passenger.index] = Some(Err(error.into()));
+                    filed[passenger.index] = Some(Err(error.into()));
                     *place = None;
                 }
             }

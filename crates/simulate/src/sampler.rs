@@ -1,7 +1,7 @@
 //! What sensors see of a run: its motion at equally spaced instants.
 //!
 //! Instants are many, four to eight of them to a recorded sample, so that those within a step are
-//! evaluated side by side.
+//! evaluated side by side; or those within the steps of several runs, where these are in lanes.
 
 use crate::chain::UnderWay;
 use crate::lookout::{self, Lookout};
@@ -10,7 +10,8 @@ use crate::sensor::Sensor;
 use crate::trace::Trace;
 use integrate::Step;
 use mechanism::mode::Mode;
-use mechanism::{Dynamics, Evaluation};
+use mechanism::{Dynamics, Evaluation, SideBySide};
+use scalar::Lanes;
 use std::ops::Range;
 
 /// Series under way.
@@ -21,9 +22,8 @@ pub(crate) struct Sampler<'a> {
     series: Vec<UnderWay>,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
-    lookout: Box<dyn Lookout>,
-    /// The mode that the lookout's machine is in.
-    mode: Mode,
+    /// Where it looks at a run that is in no lane, and the mode that its machine is in.
+    lookout: Option<(Box<dyn Lookout>, Mode)>,
     /// Instants within a step.
     times: Vec<f64>,
     state: Vec<f64>,
@@ -38,11 +38,9 @@ impl<'a> Sampler<'a> {
         instants: Instants,
         trace: Option<(Trace, Range<usize>)>,
     ) -> Self {
-        let dynamics = run.dynamics();
         let dimension = run.state().len();
         let mut sampler = Self {
-            lookout: lookout::at(dynamics.machine(), dynamics.layout().ledger.is_some()),
-            mode: dynamics.mode().clone(),
+            lookout: None,
             times: Vec::new(),
             state: vec![0.0; dimension],
             series,
@@ -51,7 +49,6 @@ impl<'a> Sampler<'a> {
             seen: 0,
             trace,
         };
-        sampler.lookout.set_mode(&sampler.mode);
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
@@ -77,14 +74,19 @@ impl<'a> Sampler<'a> {
         self.seen += 1;
     }
 
-    /// Looks at the instants within a step.
-    pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
-        let stop = step.start + step.length;
+    /// How many instants come up to the time `stop`, s.
+    fn within(&self, stop: f64) -> usize {
         let left = self.instants.count - self.seen;
         let mut within = 0;
         while within < left && self.instants.at(self.seen + within) <= stop {
             within += 1;
         }
+        within
+    }
+
+    /// Looks at the instants within a step.
+    pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
+        let within = self.within(step.start + step.length);
         if self.trace.is_some() {
             for _ in 0..within {
                 let t = self.instants.at(self.seen);
@@ -98,18 +100,25 @@ impl<'a> Sampler<'a> {
         if within == 0 {
             return;
         }
-        if *dynamics.mode() != self.mode {
+        if (self.lookout.as_ref()).is_none_or(|(_, mode)| mode != dynamics.mode()) {
             self.finish();
-            self.mode.clone_from(dynamics.mode());
-            self.lookout.set_mode(&self.mode);
+            let (mut lookout, mut mode) = self.lookout.take().unwrap_or_else(|| {
+                let ledger = dynamics.layout().ledger.is_some();
+                let lookout = lookout::at(dynamics.machine(), ledger);
+                (lookout, dynamics.mode().clone())
+            });
+            mode.clone_from(dynamics.mode());
+            lookout.set_mode(&mode);
+            self.lookout = Some((lookout, mode));
         }
         let instants = self.seen..self.seen + within;
         self.times.clear();
         self.times.extend(instants.map(|i| self.instants.at(i)));
         let series = &mut self.series;
         let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
-        self.lookout
-            .look(step, &self.times, self.sensors, &mut show);
+        if let Some((lookout, _)) = &mut self.lookout {
+            lookout.look(step, &self.times, self.sensors, &mut show);
+        }
         self.seen += within;
     }
 
@@ -117,7 +126,9 @@ impl<'a> Sampler<'a> {
     fn finish(&mut self) {
         let series = &mut self.series;
         let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
-        self.lookout.finish(self.sensors, &mut show);
+        if let Some((lookout, _)) = &mut self.lookout {
+            lookout.finish(self.sensors, &mut show);
+        }
     }
 
     /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond
@@ -130,5 +141,67 @@ impl<'a> Sampler<'a> {
         }
         let series = self.series.into_iter().map(|series| series.end(start));
         (series.collect(), self.trace.map(|(trace, _)| trace))
+    }
+}
+
+/// Looks at the instants within the steps of the lanes that stand, whose samplers see the same quantities.
+pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
+    samplers: &mut [Option<&mut Sampler>; W],
+    machines: &mut SideBySide<L>,
+    step: &Step<L>,
+    stands: [bool; W],
+) {
+    let stop = step.start + step.length;
+    let mut within = [0; W];
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
+        if let Some(sampler) = sampler {
+            // Instants of a run that was by itself before come first.
+            sampler.finish();
+            if stands[lane] {
+                within[lane] = sampler.within(stop.get(lane));
+            }
+        }
+    }
+    let Some(sensors) = samplers.iter().flatten().map(|s| s.sensors).next() else {
+        return;
+    };
+    let most = within.into_iter().max().unwrap_or(0);
+    let mut state = vec![L::zero(); step.from.len()];
+    let mut found: Vec<L> = Vec::with_capacity(most * sensors.len());
+    for i in 0..most {
+        let mut instants = step.start;
+        for (lane, sampler) in samplers.iter().enumerate() {
+            if let Some(sampler) = sampler
+                && i < within[lane]
+            {
+                instants.set(lane, sampler.instants.at(sampler.seen + i));
+            }
+        }
+        let share = L::vectorised(
+            #[inline(always)]
+            || (instants - step.start) / step.length,
+        );
+        step.interpolate(share, &mut state);
+        let at = machines.evaluate_sensed(instants, &state);
+        for sensor in sensors {
+            found.push(L::vectorised(
+                #[inline(always)]
+                || sensor.measured.unwrapped(at),
+            ));
+        }
+    }
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
+        if let Some(sampler) = sampler {
+            let series = sampler.sensors.iter().zip(&mut sampler.series);
+            for (i, (sensor, series)) in series.enumerate() {
+                let seen = found
+                    .iter()
+                    .skip(i)
+                    .step_by(sensors.len())
+                    .take(within[lane]);
+                series.extend(seen.map(|x| sensor.measured.wrapped(x.get(lane))));
+            }
+            sampler.seen += within[lane];
+        }
     }
 }
