@@ -85,8 +85,9 @@ impl<S: Scalar> Step<S> {
     /// Evaluates stage number `stage` from those before it.
     fn stage(&mut self, system: &mut impl System<S>, stage: usize) {
         let n = self.dimension();
-        let (from, length) = (&self.from, self.length);
-        let scratch = &mut self.scratch;
+        // Slices of one length, so that no component is checked for being there.
+        let (from, length) = (&self.from[..n], self.length);
+        let scratch = &mut self.scratch[..n];
         let t = S::vectorised(
             #[inline(always)]
             || {
@@ -142,15 +143,18 @@ impl<S: Scalar> Step<S> {
         S::vectorised(
             #[inline(always)]
             || {
+                let [begin, end] = [0, 12].map(|i| &self.stages[i * n..][..n]);
+                let (from, to) = (&self.from[..n], &self.to[..n]);
+                let (zeroth, rest) = self.pieces.split_at_mut(n);
+                let (first, rest) = rest.split_at_mut(n);
+                let second = &mut rest[..n];
                 for j in 0..n {
-                    let difference = self.to[j] - self.from[j];
-                    let first = h * self.stages[j] - difference;
-                    self.pieces[j] = difference;
-                    self.pieces[n + j] = first;
-                    self.pieces[2 * n + j] = difference - h * self.stages[12 * n + j] - first;
+                    zeroth[j] = to[j] - from[j];
+                    first[j] = h * begin[j] - zeroth[j];
+                    second[j] = zeroth[j] - h * end[j] - first[j];
                 }
                 for (i, row) in DENSE.iter().enumerate() {
-                    let piece = &mut self.pieces[(3 + i) * n..];
+                    let piece = &mut self.pieces[(3 + i) * n..][..n];
                     combine(
                         n,
                         [*row],
@@ -222,11 +226,12 @@ impl<S: Scalar> Step<S> {
             #[inline(always)]
             || {
                 let rest = S::one() - share;
-                for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
+                let pieces: [&[S]; PIECES] = std::array::from_fn(|i| &self.pieces[i * n..][..n]);
+                for (j, (out, from)) in out[..n].iter_mut().zip(&self.from[..n]).enumerate() {
                     let mut sum = S::zero();
                     for i in (0..PIECES).rev() {
                         let factor = if i % 2 == 0 { share } else { rest };
-                        sum = (sum + self.pieces[i * n + j]) * factor;
+                        sum = (sum + pieces[i][j]) * factor;
                     }
                     *out = *from + sum;
                 }

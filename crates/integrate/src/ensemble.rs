@@ -152,10 +152,12 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
 
     fn squared_errors(&self, scales: &[L]) -> [L; 2] {
         let step = &self.step;
+        let n = scales.len();
+        let (from, to) = (&step.from[..n], &step.to[..n]);
         step.squared_errors(
             #[inline(always)]
             |j| {
-                let size = step.from[j].abs().max(step.to[j].abs()).max(scales[j]);
+                let size = from[j].abs().max(to[j].abs()).max(scales[j]);
                 self.tolerances * size
             },
         )

@@ -75,8 +75,9 @@ impl<S: Scalar> Glances<S> {
                 #[inline(always)]
                 || {
                     let mut quiet = S::Plain::constant(0.0).lt(S::Plain::constant(1.0));
-                    for guard in 0..self.room.len() {
-                        let [a, b, c, d, e] = &self.seen;
+                    let count = self.room.len();
+                    let [a, b, c, d, e] = self.seen.each_ref().map(|seen| &seen[..count]);
+                    for guard in 0..count {
                         let seen = [a[guard], b[guard], c[guard], d[guard], e[guard]];
                         quiet = quiet.and(clear_of_zero(&seen));
                     }

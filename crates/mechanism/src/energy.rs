@@ -10,7 +10,7 @@ use crate::joints::guide::Guide;
 use crate::joints::revolute::{JointState, Revolute};
 use crate::machine::{Machine, Throw};
 use crate::plane::{Vec2, turned};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// Energy of the machine's moving parts, J.
 #[derive(Clone, Copy, Debug)]
@@ -144,13 +144,16 @@ pub(crate) fn powers<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Pow
             powers.damping += spring.damping(throw) * rate * rate;
         }
         let (joints, motion) = (&part.joints, &part.motion);
-        let push = |joint: &Revolute<S>, state: &JointState<S>, force: Vec2<S>| {
-            if joint.is_rigid() {
-                state.friction_power(state.normal.dot(&force))
-            } else {
-                state.friction_power(S::zero())
-            }
-        };
+        let push = inlined(
+            #[inline(always)]
+            |joint: &Revolute<S>, state: &JointState<S>, force: Vec2<S>| {
+                if joint.is_rigid() {
+                    state.friction_power(state.normal.dot(&force))
+                } else {
+                    state.friction_power(S::zero())
+                }
+            },
+        );
         let accelerations = &part.accelerations;
         powers.gas += part.gas.force * motion.crosshead_rate;
         powers.friction += push(&throw.big_end, &joints.big_end, accelerations.big_force)

@@ -10,7 +10,7 @@ use crate::plane::{Vec2, origin};
 use crate::shaft::ShaftMotion;
 use crate::state::ThrowLayout;
 use crate::throw::{Accelerations, Joints, Loads, Motion};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// Everything that one evaluation of the equations of motion finds.
 #[derive(Clone, Debug)]
@@ -106,7 +106,10 @@ impl<S: Scalar> ThrowEvaluation<S> {
         let big = pair(y, layout.big_end);
         let small = pair(y, layout.small_end);
         let guide = pair(y, layout.guide);
-        let two = |i: usize| [y[i], y[i + 1]];
+        let two = inlined(
+            #[inline(always)]
+            |i: usize| [y[i], y[i + 1]],
+        );
         let stretch = layout.rod.map_or([S::zero(); 2], two);
         self.motion.find(
             throw, at.shaft, at.angle, at.speed, big, small, guide, stretch,
@@ -114,11 +117,14 @@ impl<S: Scalar> ThrowEvaluation<S> {
         let motion = &self.motion;
         let spin = motion.rod_rate;
         // Both ends' bearings are in the rod.
-        let at_joint = |joint, journal| AtJoint {
-            acting: effects,
-            joint,
-            axes: [motion.along_rod(), journal],
-        };
+        let at_joint = inlined(
+            #[inline(always)]
+            |joint, journal| AtJoint {
+                acting: effects,
+                joint,
+                axes: [motion.along_rod(), journal],
+            },
+        );
         let pin = motion.angle_sin_cos;
         let crosshead = layout.guide.map_or(along_x(), |_| direction(guide[0].y));
         let joints = &mut self.joints;

@@ -13,7 +13,7 @@
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Machine;
 use crate::plane::{Mat2, Vec2, diagonal, moment, origin, outer, turned};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// The shaft's equations of motion as `matrix × (θ̈, Ö) = right`, throws included.
 #[derive(Clone, Copy, Debug)]
@@ -112,10 +112,13 @@ impl<S: Scalar> Shaft<S> {
             Turning::Torque(torque) => (one / self.inertia, torque, zero),
             Turning::Acceleration(angular) => (zero, zero, angular),
         };
-        let torque_for = |angular: S, moment: S| match turning {
-            Turning::Torque(torque) => torque,
-            Turning::Acceleration(_) => self.inertia * angular - moment,
-        };
+        let torque_for = inlined(
+            #[inline(always)]
+            |angular: S, moment: S| match turning {
+                Turning::Torque(torque) => torque,
+                Turning::Acceleration(_) => self.inertia * angular - moment,
+            },
+        );
         let clear = match main {
             Revolute::Ideal => {
                 let angular = given + give * (self.moment + drive);
@@ -134,11 +137,14 @@ impl<S: Scalar> Shaft<S> {
         // Eliminate θ̈ = given + give (moment + drive − coupling·Ö + ...).
         let condensed = self.mass - outer(self.coupling[1], self.coupling[0]) * give;
         let answer = condensed.inverse();
-        let centre_for = |force: Vec2<S>, moment: S| {
-            answer
-                * (self.force + force
-                    - self.coupling[1] * (given + give * (self.moment + drive + moment)))
-        };
+        let centre_for = inlined(
+            #[inline(always)]
+            |force: Vec2<S>, moment: S| {
+                answer
+                    * (self.force + force
+                        - self.coupling[1] * (given + give * (self.moment + drive + moment)))
+            },
+        );
         let mut force = joint.force;
         let mut moment_of = contact_moment;
         let mut centre = centre_for(force, moment_of);

@@ -10,7 +10,7 @@ use crate::mode::{ContactMode, flagged};
 use crate::plane::Vec2;
 use crate::state::Layout;
 use integrate::{Real, System};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// Rate scale over offset scale, 1/s: contact rings at some hundred Hz.
 const RATE: f64 = 1e3;
@@ -178,12 +178,15 @@ impl<S: Scalar> Dynamics<S> {
             || {
                 let (machine, at, mode) = (self.machine(), self.evaluation(), self.mode());
                 let mut rest = guards.iter_mut();
-                let mut put = |values: &[S]| {
-                    // The values first, so that the one after the last is not taken off the guards.
-                    for (value, guard) in values.iter().zip(rest.by_ref()) {
-                        *guard = *value;
-                    }
-                };
+                let mut put = inlined(
+                    #[inline(always)]
+                    |values: &[S]| {
+                        // The values first, so that the one after the last is not taken off the guards.
+                        for (value, guard) in values.iter().zip(rest.by_ref()) {
+                            *guard = *value;
+                        }
+                    },
+                );
                 if let Revolute::Clear(clear) = &machine.main {
                     put(&clear.guards(&at.main, &mode.main, at.shaft.push));
                 }

@@ -14,7 +14,7 @@ use crate::joints::guide::GuideState;
 use crate::joints::revolute::{JointModel, JointState, Revolute};
 use crate::machine::Throw;
 use crate::plane::{Mat2, Vec2, diagonal, moment, origin, outer, turned};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// Rate, 1/s, at which a following journal is drawn back onto its surface should rounding have
 /// moved it off (Baumgarte 1972).
@@ -114,11 +114,14 @@ enum Constraint<S> {
 impl<S: Scalar> Constraint<S> {
     #[inline(always)]
     fn new(joint: &Revolute<S>, state: &JointState<S>, touching: S) -> Self {
-        let following = |active| Constraint::Following {
-            normal: state.normal,
-            force: state.normal + turned(state.normal) * state.coefficient,
-            active,
-        };
+        let following = inlined(
+            #[inline(always)]
+            |active| Constraint::Following {
+                normal: state.normal,
+                force: state.normal + turned(state.normal) * state.coefficient,
+                active,
+            },
+        );
         match joint {
             Revolute::Ideal => Constraint::Pinned,
             Revolute::Clear(clear) => match clear.model {
@@ -310,10 +313,13 @@ impl<S: Scalar> Loads<S> {
         let rate2 = motion.rod_rate * motion.rod_rate;
         let across = turned(arms.along);
         let [of_big, of_small] = arms.shares;
-        let target = |joint: &Revolute<S>, state| match !PLAIN && joint.is_following() {
-            true => following_target(state),
-            false => S::zero(),
-        };
+        let target = inlined(
+            #[inline(always)]
+            |joint: &Revolute<S>, state| match !PLAIN && joint.is_following() {
+                true => following_target(state),
+                false => S::zero(),
+            },
+        );
         self.rod_force = gravity * throw.rod.mass - big.force - small.force;
         self.rod_moment = -moment(arms.big_force, big.force)
             - moment(arms.small_force, small.force)
@@ -332,10 +338,14 @@ impl<S: Scalar> Loads<S> {
         self.rod_inertia = arms.inertia(throw, motion);
         self.big_target = target(&throw.big_end, big);
         self.small_target = target(&throw.small_end, small);
-        self.stretch = spring.map(|spring| {
-            let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
-            motion.lengthening() * rate2 + (pull + spring.pull(throw, motion)) / throw.rod.inertia
-        });
+        self.stretch = spring.map(
+            #[inline(always)]
+            |spring| {
+                let pull = -(big.force * of_big + small.force * of_small).dot(&arms.along);
+                motion.lengthening() * rate2
+                    + (pull + spring.pull(throw, motion)) / throw.rod.inertia
+            },
+        );
     }
 
     /// What is left of the loads where an impulse takes the place of every force.
@@ -459,31 +469,39 @@ impl<S: Scalar> Response<S> {
         let (mass, inertia) = (throw.rod.mass, loads.rod_inertia);
         // Acceleration of an eye for a unit force: W = 1/m + (turned arm of the eye)(turned arm
         // of the force)ᵀ / I; an elastic rod gives along its axis too.
-        let answer = |[eye, force]: [Vec2<S>; 2], shares: [S; 2]| {
-            let light = S::one() / mass;
-            let rigid =
-                diagonal(light, light) + outer(turned(eye), turned(force)) * (S::one() / inertia);
-            match loads.stretch {
-                None => rigid,
-                Some(_) => {
-                    let give = shares[0] * shares[1] / throw.rod.inertia;
-                    rigid + outer(arms.along, arms.along) * give
+        let answer = inlined(
+            #[inline(always)]
+            |[eye, force]: [Vec2<S>; 2], shares: [S; 2]| {
+                let light = S::one() / mass;
+                let rigid = diagonal(light, light)
+                    + outer(turned(eye), turned(force)) * (S::one() / inertia);
+                match loads.stretch {
+                    None => rigid,
+                    Some(_) => {
+                        let give = shares[0] * shares[1] / throw.rod.inertia;
+                        rigid + outer(arms.along, arms.along) * give
+                    }
                 }
-            }
-        };
+            },
+        );
         let free = loads.free_rod(throw);
-        let free_at = |eye: Vec2<S>, share: S, bias: Vec2<S>| {
-            let rigid = free.0 + turned(eye) * free.1 + bias;
-            match loads.stretch {
-                None => rigid,
-                Some(stretch) => rigid + arms.along * (share * stretch),
-            }
-        };
+        let free_at = inlined(
+            #[inline(always)]
+            |eye: Vec2<S>, share: S, bias: Vec2<S>| {
+                let rigid = free.0 + turned(eye) * free.1 + bias;
+                match loads.stretch {
+                    None => rigid,
+                    Some(stretch) => rigid + arms.along * (share * stretch),
+                }
+            },
+        );
 
         let mut response = Self::none();
         let small = Constraint::new(&throw.small_end, &joints.small_end, touching[1]);
-        let small_answer =
-            || answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give(throw);
+        let small_answer = inlined(
+            #[inline(always)]
+            || answer([arms.small, arms.small_force], [of_small; 2]) + crosshead_give(throw),
+        );
         if let Some(stiff) = small.stiffen(small_answer) {
             let missing = loads.free_crosshead(throw)
                 - free_at(arms.small, of_small, loads.small_bias)
@@ -492,9 +510,14 @@ impl<S: Scalar> Response<S> {
             response.small_slope = stiff * answer([arms.small, arms.big_force], [of_small, of_big]);
         }
         let big = Constraint::new(&throw.big_end, &joints.big_end, touching[0]);
-        let through = || answer([arms.big, arms.small_force], [of_big, of_small]);
-        let big_answer =
-            || answer([arms.big, arms.big_force], [of_big; 2]) - through() * response.small_slope;
+        let through = inlined(
+            #[inline(always)]
+            || answer([arms.big, arms.small_force], [of_big, of_small]),
+        );
+        let big_answer = inlined(
+            #[inline(always)]
+            || answer([arms.big, arms.big_force], [of_big; 2]) - through() * response.small_slope,
+        );
         if let Some(stiff) = big.stiffen(big_answer) {
             let free_eye =
                 free_at(arms.big, of_big, loads.big_bias) + through() * response.small_offset;

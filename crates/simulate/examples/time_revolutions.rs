@@ -9,8 +9,8 @@
 //! The line printed is the CPU time of one revolution (ms) without reading the machine. The file
 //! holds the crosshead's acceleration at 10 kHz from the centred start, as plain samples without a
 //! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself,
-//! `--width 8` eight of them side by side, where the processor has as many lanes (`CROSSHEAD_LANES=4`
-//! holds them down); the time is then that of one. The run is repeated for
+//! `--width 8` several side by side in registers of so many numbers, where the processor has them
+//! (`CROSSHEAD_LANES=4` holds them down); the time is then that of one. The run is repeated for
 //! `--seconds 0.2`.
 
 use input::{MachineFile, Resolved};
@@ -52,18 +52,25 @@ fn main() -> Result<(), Box<dyn Error>> {
         width => {
             let has = lanes::width();
             return Err(
-                format!("this processor has {has} lanes; {width} is neither that nor 0").into(),
+                format!("the registers hold {has} numbers; {width} is neither that nor 0").into(),
             );
         }
     };
-    let (milliseconds, samples) = measure(task.seconds, || run(&machine, &task))?;
+    let (milliseconds, Done { samples, machines }) =
+        measure(task.seconds, || run(&machine, &task))?;
     if let Some(path) = &task.out {
         let bytes: Vec<u8> = samples.iter().flat_map(|x| x.to_le_bytes()).collect();
         std::fs::write(path, bytes)?;
     }
-    let each = milliseconds / f64::from(task.revolutions) / task.width.max(1) as f64;
+    let each = milliseconds / f64::from(task.revolutions) / machines as f64;
     writeln!(std::io::stdout(), "{each:.6}")?;
     Ok(())
+}
+
+/// What was run: the samples of the first machine, and how many machines there were.
+struct Done {
+    samples: Vec<f64>,
+    machines: usize,
 }
 
 impl Task {
@@ -196,7 +203,7 @@ fn sensor() -> Sensor {
 }
 
 /// One machine by itself, step by step.
-fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
+fn alone(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
     let Lane {
         mut dynamics,
         mut integrator,
@@ -205,11 +212,14 @@ fn alone(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
     integrator.advance(&mut dynamics, task.end(machine), |dynamics, step| {
         samples.observe(dynamics, step);
     })?;
-    Ok(samples.end())
+    Ok(Done {
+        samples: samples.end(),
+        machines: 1,
+    })
 }
 
 /// The machine in the first of several lanes; in the others the same with wider and wider joints.
-fn together(machine: &Machine, task: &Task) -> Result<Vec<f64>, Box<dyn Error>> {
+fn together(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
     in_lanes(Together { machine, task })
 }
 
@@ -219,7 +229,7 @@ struct Together<'a> {
 }
 
 impl InLanes for Together<'_> {
-    type Output = Result<Vec<f64>, Box<dyn Error>>;
+    type Output = Result<Done, Box<dyn Error>>;
     fn run<L: Lanes<W>, const W: usize>(self) -> Self::Output {
         travel::<L, W>(self.machine, self.task)
     }
@@ -228,7 +238,7 @@ impl InLanes for Together<'_> {
 fn travel<L: Lanes<W>, const W: usize>(
     machine: &Machine,
     task: &Task,
-) -> Result<Vec<f64>, Box<dyn Error>> {
+) -> Result<Done, Box<dyn Error>> {
     let mut lanes: [Lane; W] = std::array::from_fn(|lane| {
         let mut machine = machine.clone();
         let throw = &mut machine.throws[0];
@@ -279,7 +289,10 @@ fn travel<L: Lanes<W>, const W: usize>(
         }
     }
     let first = lanes.into_iter().next().ok_or("no lanes")?;
-    Ok(first.samples.end())
+    Ok(Done {
+        samples: first.samples.end(),
+        machines: W,
+    })
 }
 
 /// Looks at the instants within the steps that stand, a lane's next one at a time.

@@ -2,7 +2,7 @@
 
 use super::{Effect, End, Joint, Law, Place};
 use crate::plane::{Vec2, turned};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 use std::f64::consts::FRAC_PI_2;
 
 /// What a law does at each place where effects can act. A law implements the methods that it needs.
@@ -126,14 +126,17 @@ impl<S: Scalar> ChamberAt<S> {
         ];
         let (sine, cosine) = self.angle.sin_cos();
         let turn = S::select(self.speed.lt(S::zero()), -S::one(), S::one());
-        opened.map(|(distance, side)| {
+        // A loop, as `map` of an array may be compiled without the instructions of lanes.
+        let mut since = [S::zero(); 2];
+        for (since, (distance, side)) in since.iter_mut().zip(opened) {
             let (opened_sine, opened_cosine) = self.crank_at(distance, side * turn);
             let ahead = turn * (sine * opened_cosine - cosine * opened_sine);
             let along = cosine * opened_cosine + sine * opened_sine;
             // Half of the angle since a quarter of a turn after the opening.
             let half = -along / (S::one() + ahead).max(S::constant(f64::MIN_POSITIVE));
-            half.atan() * 2.0 + FRAC_PI_2
-        })
+            *since = half.atan() * 2.0 + FRAC_PI_2;
+        }
+        since
     }
 
     /// Sine, of this sign, and cosine of the crank angle at which the ideal piston stands at a distance from
@@ -318,14 +321,20 @@ impl<S: Scalar> AtJoint<'_, S> {
         if !self.acting.any() {
             return None;
         }
-        let within = |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal));
+        let within = inlined(
+            #[inline(always)]
+            |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal)),
+        );
         let [bearing, journal] = self.axes;
         let effects = self.acting.at_joint(self.joint);
         let shapes = effects.filter_map(|effect| effect.shape(within(bearing), within(journal)));
-        shapes.reduce(|a, b| Shape {
-            wider: a.wider + b.wider,
-            change: [a.change[0] + b.change[0], a.change[1] + b.change[1]],
-        })
+        shapes.reduce(
+            #[inline(always)]
+            |a, b| Shape {
+                wider: a.wider + b.wider,
+                change: [a.change[0] + b.change[0], a.change[1] + b.change[1]],
+            },
+        )
     }
 
     /// Force of the film on the journal along the normal, N.

@@ -10,7 +10,7 @@
 
 use super::{Acts, ChamberAt};
 use crate::lift::parameters;
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 parameters! {
     /// One harmonic of the pressures in the lines.
@@ -31,10 +31,10 @@ parameters! {
 impl<S: Scalar> Acts<S> for GasPulsation<S> {
     #[inline(always)]
     fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
-        let swing = |amplitude: S, phase: S| {
+        let swing = inlined(#[inline(always)] |amplitude: S, phase: S| {
             let (_, cosine) = (self.order * at.angle + phase).sin_cos();
             S::one() + amplitude * cosine
-        };
+        });
         [
             suction * swing(self.suction, self.suction_phase),
             discharge * swing(self.discharge, self.discharge_phase),

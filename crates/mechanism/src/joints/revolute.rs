@@ -6,7 +6,7 @@ use crate::effects::{AtJoint, JointAt, Shape};
 use crate::lift::{Lift, parameters};
 use crate::mode::{ContactMode, flagged};
 use crate::plane::{Vec2, origin, turned};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// A revolute joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -266,10 +266,13 @@ impl<S: Scalar> Clearance<S> {
         let least = S::constant(1e-300);
         let x = S::select(distance.lt(least), least, offset.x);
         let normal = Vec2::new(x, offset.y) / distance.max(least);
-        let slip = |tangent: Vec2<S>, distance: S| {
-            tangent.dot(&rate) + journal * self.journal_radius
-                - bearing * (self.journal_radius + distance)
-        };
+        let slip = inlined(
+            #[inline(always)]
+            |tangent: Vec2<S>, distance: S| {
+                tangent.dot(&rate) + journal * self.journal_radius
+                    - bearing * (self.journal_radius + distance)
+            },
+        );
         let shape = match model {
             JointModel::ThreeMode => effects.shape(normal),
             JointModel::TwoMode | JointModel::MasslessLink => None,

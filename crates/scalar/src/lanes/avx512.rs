@@ -119,6 +119,10 @@ fn less(a: F64x8, b: F64x8) -> Truths {
     Truths(unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0) })
 }
 #[inline(always)]
+fn equal(a: F64x8, b: F64x8) -> bool {
+    unsafe { _mm512_cmp_pd_mask::<_CMP_EQ_OQ>(a.0, b.0) == 0xff }
+}
+#[inline(always)]
 fn choose(mask: Truths, yes: F64x8, no: F64x8) -> F64x8 {
     F64x8(unsafe { _mm512_mask_blend_pd(mask.0, no.0, yes.0) })
 }

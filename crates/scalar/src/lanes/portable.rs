@@ -91,6 +91,10 @@ fn less(a: F64x2, b: F64x2) -> Truths {
     Truths([a.0[0] < b.0[0], a.0[1] < b.0[1]])
 }
 #[inline(always)]
+fn equal(a: F64x2, b: F64x2) -> bool {
+    a.0 == b.0
+}
+#[inline(always)]
 fn choose(mask: Truths, yes: F64x2, no: F64x2) -> F64x2 {
     let of = |lane: usize| {
         if mask.0[lane] {
