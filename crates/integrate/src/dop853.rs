@@ -26,6 +26,8 @@ pub struct Step<S> {
     stages: Vec<S>,
     pieces: Vec<S>,
     scratch: Vec<S>,
+    /// Whether the pieces are those of this step.
+    extended: bool,
 }
 
 impl<S: Scalar> Step<S> {
@@ -40,6 +42,7 @@ impl<S: Scalar> Step<S> {
             stages: zeros(EXTENDED * dimension),
             pieces: zeros(PIECES * dimension),
             scratch: zeros(dimension),
+            extended: false,
         }
     }
 
@@ -66,6 +69,15 @@ impl<S: Scalar> Step<S> {
         self.stages.copy_within(12 * n..13 * n, 0);
     }
 
+    /// Lets the beginning be later by a number of value 0, of which only the derivatives count: the state goes on
+    /// by its own slope.
+    pub fn delay(&mut self, later: S) {
+        self.start += later;
+        for (from, slope) in self.from.iter_mut().zip(&self.stages) {
+            *from += *slope * later;
+        }
+    }
+
     /// Steps over `length` from the beginning, whose derivative must be there, to `self.to`. After
     /// each stage `look` is shown its number and the system.
     pub fn take<T: System<S>>(
@@ -75,6 +87,7 @@ impl<S: Scalar> Step<S> {
         mut look: impl FnMut(usize, &mut T),
     ) {
         self.length = length;
+        self.extended = false;
         for stage in 1..STAGES {
             self.stage(system, stage);
             look(stage, system);
@@ -133,8 +146,11 @@ impl<S: Scalar> Step<S> {
         )
     }
 
-    /// Computes the continuous extension: three more derivatives.
+    /// Computes the continuous extension, unless it is there: three more derivatives.
     pub fn extend(&mut self, system: &mut impl System<S>) {
+        if std::mem::replace(&mut self.extended, true) {
+            return;
+        }
         let n = self.dimension();
         for stage in STAGES..EXTENDED {
             self.stage(system, stage);
@@ -182,6 +198,7 @@ impl<S: Scalar> Step<S> {
         copy(&mut other.stages[..n], &self.stages);
         if stages {
             other.length = self.length.get(lane);
+            other.extended = self.extended;
             copy(&mut other.to, &self.to);
             copy(&mut other.stages[12 * n..13 * n], &self.stages[12 * n..]);
             copy(&mut other.pieces, &self.pieces);

@@ -57,14 +57,14 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
     }
 
     /// Tries one step in each lane in which somebody travels. `wide` are the systems of all lanes in
-    /// their modes. Still in these modes `observe`, if there is one, is shown the steps with their continuous
-    /// extension, and in which lanes they stand. What became of each lane: where it fails, its integrator is of no
+    /// their modes. Still in these modes `observe`, if there is one, is shown the steps, which it may
+    /// extend, and in which lanes they stand. What became of each lane: where it fails, its integrator is of no
     /// use any more.
     pub fn advance<T: System<f64>, Wide: System<L>>(
         &mut self,
         wide: &mut Wide,
         mut lanes: [Option<Traveller<T>>; W],
-        observe: Option<impl FnOnce(&mut Wide, &Step<L>, [bool; W])>,
+        observe: Option<impl FnOnce(&mut Wide, &mut Step<L>, [bool; W])>,
     ) -> [Result<(), Error>; W] {
         let mut lengths = L::zero();
         for (lane, traveller) in lanes.iter().enumerate() {
@@ -92,7 +92,7 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
                 stands[lane] = true;
             }
         }
-        if looked_into.contains(&true) || observe.is_some() && stands.contains(&true) {
+        if looked_into.contains(&true) {
             self.step.extend(wide);
         }
         let mut results = [const { Ok(()) }; W];
@@ -115,7 +115,7 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
         if let Some(observe) = observe
             && stands.contains(&true)
         {
-            observe(wide, &self.step, stands);
+            observe(wide, &mut self.step, stands);
         }
         self.step.shift_where(L::mask(stands));
         self.glances.shift_where(L::mask(stands));

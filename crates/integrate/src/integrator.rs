@@ -198,7 +198,7 @@ impl<S: Real> Integrator<S> {
     /// # Errors
     /// Where the tolerance cannot be met, or a switch has no end.
     pub fn reach(&mut self, system: &mut impl System<S>, end: f64) -> Result<(), Error> {
-        self.go(system, end, None::<fn(&mut _, &Step<S>)>)
+        self.go(system, end, None::<fn(&mut _, &mut Step<S>)>)
     }
 
     /// Goes on to `end`. After each step, still in the mode of that step, `observe` is shown the
@@ -210,7 +210,23 @@ impl<S: Real> Integrator<S> {
         &mut self,
         system: &mut T,
         end: f64,
-        observe: impl FnMut(&mut T, &Step<S>),
+        mut observe: impl FnMut(&mut T, &Step<S>),
+    ) -> Result<(), Error> {
+        self.watch(system, end, |system, step| {
+            step.extend(system);
+            observe(system, step);
+        })
+    }
+
+    /// The same for an observer that looks into few steps: it extends those itself.
+    ///
+    /// # Errors
+    /// Where the tolerance cannot be met, or a switch has no end.
+    pub fn watch<T: System<S>>(
+        &mut self,
+        system: &mut T,
+        end: f64,
+        observe: impl FnMut(&mut T, &mut Step<S>),
     ) -> Result<(), Error> {
         self.go(system, end, Some(observe))
     }
@@ -219,7 +235,7 @@ impl<S: Real> Integrator<S> {
         &mut self,
         system: &mut T,
         end: f64,
-        mut observe: Option<impl FnMut(&mut T, &Step<S>)>,
+        mut observe: Option<impl FnMut(&mut T, &mut Step<S>)>,
     ) -> Result<(), Error> {
         let course = self.course(end);
         while let Some(trial) = self.propose(&course)? {
@@ -227,7 +243,7 @@ impl<S: Real> Integrator<S> {
                 continue;
             }
             let quiet = self.glances.quiet().unwrap_or(false);
-            if observe.is_some() || self.looks_into(quiet) || S::DERIVATIVES && self.aim.is_some() {
+            if self.looks_into(quiet) || S::DERIVATIVES && self.aim.is_some() {
                 self.step.extend(system);
             }
             self.conclude(system, &course, quiet, &mut observe)?;
@@ -290,14 +306,14 @@ impl<S: Real> Integrator<S> {
         Ok(trial)
     }
 
-    /// Makes an accepted step stand, and shows it, unless a switch is found in it. Where it is looked into or
-    /// observed, its continuous extension must be there.
+    /// Makes an accepted step stand, and shows it, unless a switch is found in it. Where it is looked
+    /// into, its continuous extension must be there.
     fn conclude<T: System<S>>(
         &mut self,
         system: &mut T,
         course: &Course,
         quiet: bool,
-        observe: &mut Option<impl FnMut(&mut T, &Step<S>)>,
+        observe: &mut Option<impl FnMut(&mut T, &mut Step<S>)>,
     ) -> Result<(), Error> {
         if self.looks_into(quiet) {
             match self.sight(system)? {
@@ -309,27 +325,22 @@ impl<S: Real> Integrator<S> {
                 }
             }
         }
-        if let Some(aim) = self.aim {
-            self.reach_for(system, aim.guard);
-        }
+        let later = match self.aim {
+            Some(aim) => self.finder.delay(system, &self.step, aim.guard),
+            None => S::zero(),
+        };
         if let Some(observe) = observe {
-            observe(system, &self.step);
+            observe(system, &mut self.step);
         }
         self.step.shift();
+        if later.varies() {
+            self.step.delay(later);
+        }
         self.glances.shift();
         if let Some(guard) = self.arrive(course) {
             self.switch(system, guard);
         }
         Ok(())
-    }
-
-    /// Lets the step end where the guard is zero, whatever dual numbers vary.
-    fn reach_for(&mut self, system: &mut impl System<S>, guard: usize) {
-        let later = self.finder.delay(system, &self.step, guard);
-        if later.varies() {
-            self.step.take(system, self.step.length + later, |_, _| ());
-            self.step.extend(system);
-        }
     }
 
     /// Changes the mode as the guard demands.

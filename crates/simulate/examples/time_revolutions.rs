@@ -10,8 +10,9 @@
 //! holds the crosshead's acceleration at 10 kHz from the centred start, as plain samples without a
 //! measuring chain: little-endian f64, m/s². `--width 0`, or none, runs one machine by itself,
 //! `--width 8` several side by side in registers of so many numbers, where the processor has them
-//! (`CROSSHEAD_LANES=4` holds them down); the time is then that of one. The run is repeated for
-//! `--seconds 0.2`.
+//! (`CROSSHEAD_LANES=4` holds them down); the time is then that of one. `--of motion` is one machine without
+//! samples, `--of exponent` the same with the tangent of its largest Lyapunov exponent. The run is repeated
+//! for `--seconds 0.2`.
 
 use input::{MachineFile, Resolved};
 use integrate::{Ensemble, Integrator, Step, Traveller};
@@ -20,7 +21,7 @@ use mechanism::mode::Mode;
 use mechanism::{Dynamics, Machine, SideBySide};
 use scalar::lanes::{self, InLanes, Lanes, in_lanes};
 use simulate::lookout::{self, Lookout};
-use simulate::{Chain, Flow, Measured, Sensor};
+use simulate::{Chain, ExponentSettings, Flow, Measured, Sensor};
 use std::error::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -40,6 +41,7 @@ struct Task {
     revolutions: u32,
     width: usize,
     seconds: f64,
+    of: String,
     out: Option<PathBuf>,
 }
 
@@ -47,7 +49,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let task = Task::read(std::env::args().skip(1))?;
     let machine = machine()?.machine;
     let run = match task.width {
-        0 => alone,
+        0 => match task.of.as_str() {
+            "samples" => alone,
+            "motion" => motion,
+            "exponent" => exponent,
+            of => return Err(format!("--of {of} is not samples, motion or exponent").into()),
+        },
         width if width == lanes::width() => together,
         width => {
             let has = lanes::width();
@@ -85,6 +92,7 @@ impl Task {
             revolutions: 20,
             width: 0,
             seconds: SECONDS,
+            of: "samples".into(),
             out: None,
         };
         while let Some(flag) = words.next() {
@@ -94,6 +102,7 @@ impl Task {
                 "--revolutions" => task.revolutions = value.parse()?,
                 "--width" => task.width = value.parse()?,
                 "--seconds" => task.seconds = value.parse()?,
+                "--of" => task.of = value,
                 "--out" => task.out = Some(value.into()),
                 _ => return Err(format!("{flag} is not known").into()),
             }
@@ -218,6 +227,34 @@ fn alone(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
     })
 }
 
+/// One machine by itself, at which nobody looks.
+fn motion(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
+    let Lane {
+        mut dynamics,
+        mut integrator,
+        ..
+    } = Lane::start(machine, task);
+    integrator.reach(&mut dynamics, task.end(machine))?;
+    Ok(Done {
+        samples: integrator.state().to_vec(),
+        machines: 1,
+    })
+}
+
+/// Its largest Lyapunov exponent, 1/s.
+fn exponent(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
+    let settings = ExponentSettings {
+        transient: 0,
+        revolutions: task.revolutions,
+        tolerance: task.tolerance,
+    };
+    let found = simulate::exponents(machine, &settings, 1)?;
+    Ok(Done {
+        samples: found.iter().map(|e| e.per_second).collect(),
+        machines: 1,
+    })
+}
+
 /// The machine in the first of several lanes; in the others the same with wider and wider joints.
 fn together(machine: &Machine, task: &Task) -> Result<Done, Box<dyn Error>> {
     in_lanes(Together { machine, task })
@@ -276,7 +313,7 @@ fn travel<L: Lanes<W>, const W: usize>(
                 trial,
             });
         }
-        let observe = |wide: &mut _, step: &Step<L>, stands| {
+        let observe = |wide: &mut _, step: &mut Step<L>, stands| {
             observe_lanes(&mut samples, wide, step, stands);
         };
         for result in ensemble.advance(&mut wide, travellers, Some(observe)) {
@@ -299,7 +336,7 @@ fn travel<L: Lanes<W>, const W: usize>(
 fn observe_lanes<L: Lanes<W>, const W: usize>(
     samples: &mut [&mut Samples],
     machines: &mut SideBySide<L>,
-    step: &Step<L>,
+    step: &mut Step<L>,
     stands: [bool; W],
 ) {
     let stop = step.start + step.length;
@@ -310,6 +347,9 @@ fn observe_lanes<L: Lanes<W>, const W: usize>(
         }
     }
     let most = samples.iter().map(|s| s.times.len()).max().unwrap_or(0);
+    if most > 0 {
+        step.extend(machines);
+    }
     let mut state = vec![L::zero(); step.from.len()];
     for i in 0..most {
         let mut instants = step.start;

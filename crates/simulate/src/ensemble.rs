@@ -201,7 +201,7 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
             }
         }
         let records = samplers.iter().any(Option::is_some);
-        let observe = records.then_some(|wide: &mut _, step: &Step<L>, stands| {
+        let observe = records.then_some(|wide: &mut _, step: &mut Step<L>, stands| {
             observe_lanes(&mut samplers, wide, step, stands);
         });
         let results = self.ensemble.advance(&mut self.wide, travellers, observe);

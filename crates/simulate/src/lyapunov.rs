@@ -99,7 +99,7 @@ impl<F: Flow, const N: usize> Followed<F, N> {
         };
         let revolution = tangents.cycle().length();
         let mut growth = Vec::with_capacity(settings.revolutions as usize);
-        tangents.advance(OFFSET * revolution, |_| ())?;
+        tangents.advance(OFFSET * revolution, |_, _| ())?;
         tangents.spread();
         for number in 0..settings.transient + settings.revolutions {
             if number == settings.transient / 2 {
@@ -109,7 +109,7 @@ impl<F: Flow, const N: usize> Followed<F, N> {
             for stretch in 1..=stretches {
                 let share = f64::from(stretch) / f64::from(stretches);
                 let end = (OFFSET + f64::from(number) + share) * revolution;
-                tangents.advance(end, |step| strobes.watch(step))?;
+                tangents.advance(end, |system, step| strobes.watch(system, step))?;
                 let parts = tangents.orthonormalise()?;
                 grown.iter_mut().zip(parts).for_each(|(sum, g)| *sum += g);
             }

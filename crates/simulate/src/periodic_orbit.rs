@@ -74,7 +74,7 @@ pub(crate) fn shoot<F: Flow, const N: usize>(
     let mut period = f64::from(revolutions) * cycle.length();
     for _ in 0..STEPS {
         let mut tangents = start.everywhere(&point);
-        tangents.advance(start.time() + period, |_| ())?;
+        tangents.advance(start.time() + period, |_, _| ())?;
         let (end, monodromy) = (tangents.point(), tangents.matrix());
         if end.len() != point.len() || !monodromy.iter().all(|x| x.is_finite()) {
             return Ok(None);

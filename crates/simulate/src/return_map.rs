@@ -85,12 +85,13 @@ impl ReturnMap {
                 return Err(Error::Stalled { time });
             }
             let end = time + STRETCH * period;
-            let observe = |watched: &mut Watched, step: &Step<f64>| {
+            let observe = |watched: &mut Watched, step: &mut Step<f64>| {
                 if peaks {
+                    step.extend(watched);
                     watched.look_for_peaks(step);
                 }
             };
-            self.integrator.advance(&mut self.watched, end, observe)?;
+            self.integrator.watch(&mut self.watched, end, observe)?;
             if !self.integrator.state().iter().all(|y| y.is_finite()) {
                 return Err(Error::NotFinite { time: end });
             }

@@ -276,8 +276,11 @@ impl<S: Real> Run<S> {
         }
         let end = instants.at(count.saturating_sub(1));
         let state = &mut self.state;
-        let observe = |dynamics: &mut Dynamics<S>, step: &Step<S>| {
+        let observe = |dynamics: &mut Dynamics<S>, step: &mut Step<S>| {
             let stop = step.start.value() + step.length.value();
+            if seen < count && instants.at(seen) <= stop {
+                step.extend(dynamics);
+            }
             while seen < count && instants.at(seen) <= stop {
                 let t = S::constant(instants.at(seen));
                 step.interpolate((t - step.start) / step.length, state);
@@ -285,7 +288,7 @@ impl<S: Real> Run<S> {
                 seen += 1;
             }
         };
-        self.integrator.advance(&mut self.dynamics, end, observe)?;
+        self.integrator.watch(&mut self.dynamics, end, observe)?;
         // Rounding may leave the very last instant beyond the last step.
         let last = self
             .dynamics
@@ -329,13 +332,13 @@ impl Run<f64> {
         self.dynamics.evaluate(now, self.integrator.state())
     }
 
-    /// Goes on to the end of a time, s, and shows each step.
+    /// Goes on to the end of a time, s, and shows each step, which may be extended.
     pub(crate) fn watch(
         &mut self,
         end: f64,
-        observe: impl FnMut(&mut Dynamics<f64>, &Step<f64>),
+        observe: impl FnMut(&mut Dynamics<f64>, &mut Step<f64>),
     ) -> Result<(), Error> {
-        self.integrator.advance(&mut self.dynamics, end, observe)?;
+        self.integrator.watch(&mut self.dynamics, end, observe)?;
         self.check(end)
     }
 

@@ -85,8 +85,12 @@ impl<'a> Sampler<'a> {
     }
 
     /// Looks at the instants within a step.
-    pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &Step<f64>) {
+    pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
         let within = self.within(step.start + step.length);
+        if within == 0 {
+            return;
+        }
+        step.extend(dynamics);
         if self.trace.is_some() {
             for _ in 0..within {
                 let t = self.instants.at(self.seen);
@@ -95,9 +99,6 @@ impl<'a> Sampler<'a> {
                 self.look(dynamics.evaluate(t, &state));
                 self.state = state;
             }
-            return;
-        }
-        if within == 0 {
             return;
         }
         if (self.lookout.as_ref()).is_none_or(|(_, mode)| mode != dynamics.mode()) {
@@ -148,7 +149,7 @@ impl<'a> Sampler<'a> {
 pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
     samplers: &mut [Option<&mut Sampler>; W],
     machines: &mut SideBySide<L>,
-    step: &Step<L>,
+    step: &mut Step<L>,
     stands: [bool; W],
 ) {
     let stop = step.start + step.length;
@@ -166,6 +167,10 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
         return;
     };
     let most = within.into_iter().max().unwrap_or(0);
+    if most == 0 {
+        return;
+    }
+    step.extend(machines);
     let mut state = vec![L::zero(); step.from.len()];
     let mut found: Vec<L> = Vec::with_capacity(most * sensors.len());
     for i in 0..most {

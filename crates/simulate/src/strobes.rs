@@ -2,7 +2,7 @@
 
 use crate::flow::{Cycle, Flow};
 use crate::tangents::Tangents;
-use integrate::{Real, Step};
+use integrate::{Real, Step, System};
 use std::collections::VecDeque;
 
 /// Longest period that is looked for, revolutions.
@@ -32,13 +32,14 @@ impl Strobes {
     }
 
     /// Keeps the state in `step` at which the cycle's angle passes the phase.
-    pub fn watch<S: Real>(&mut self, step: &Step<S>) {
+    pub fn watch<S: Real>(&mut self, system: &mut impl System<S>, step: &mut Step<S>) {
         let (start, length) = (step.start.value(), step.length.value());
         let turns = |share: f64, y: &[S]| self.cycle.turns(start + share * length, y) - PHASE;
         let (before, after) = (turns(0.0, &step.from), turns(1.0, &step.to));
         if before.floor() == after.floor() {
             return;
         }
+        step.extend(system);
         let mut share = 0.0;
         let mut state = step.from.clone();
         for _ in 0..SEARCH {

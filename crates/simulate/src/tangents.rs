@@ -99,17 +99,17 @@ impl<F: Flow, const N: usize> Tangents<F, N> {
         self.cycle
     }
 
-    /// Goes on to `end`; `observe` is shown every step.
+    /// Goes on to `end`; `observe` is shown every step, which it may extend.
     pub fn advance(
         &mut self,
         end: f64,
-        mut observe: impl FnMut(&Step<Dual<f64, N>>),
+        mut observe: impl FnMut(&mut F::System<Dual<f64, N>>, &mut Step<Dual<f64, N>>),
     ) -> Result<(), Error> {
         for (i, chunk) in self.chunks.iter_mut().enumerate() {
             let (system, integrator) = (&mut chunk.system, &mut chunk.integrator);
-            integrator.advance(system, end, |_, step| {
+            integrator.watch(system, end, |system, step| {
                 if i == 0 {
-                    observe(step);
+                    observe(system, step);
                 }
             })?;
         }
