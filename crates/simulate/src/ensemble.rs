@@ -30,7 +30,7 @@ fn start(asked: Asked) -> Result<Task, Error> {
 fn of_one_build(asked: &[Asked]) -> Vec<Vec<usize>> {
     let mut groups: Vec<(_, Vec<usize>)> = Vec::new();
     for (i, asked) in asked.iter().enumerate() {
-        let measured = asked.sensors.iter().map(|sensor| sensor.measured.clone());
+        let measured = asked.sensors.iter().map(|sensor| sensor.measured);
         let build = (lift::build(asked.machine), measured.collect::<Vec<_>>());
         match groups.iter_mut().find(|(of, _)| *of == build) {
             Some((_, group)) => group.push(i),
