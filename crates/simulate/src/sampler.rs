@@ -154,13 +154,11 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
 ) {
     let stop = step.start + step.length;
     let mut within = [0; W];
-    for (lane, sampler) in samplers.iter_mut().enumerate() {
-        if let Some(sampler) = sampler {
-            // Instants of a run that was by itself before come first.
-            sampler.finish();
-            if stands[lane] {
-                within[lane] = sampler.within(stop.get(lane));
-            }
+    for (lane, sampler) in samplers.iter().enumerate() {
+        if let Some(sampler) = sampler
+            && stands[lane]
+        {
+            within[lane] = sampler.within(stop.get(lane));
         }
     }
     let Some(sensors) = samplers.iter().flatten().map(|s| s.sensors).next() else {
