@@ -24,6 +24,7 @@ pub mod model;
 mod named_instead;
 mod next_recording;
 mod pressures;
+mod probes;
 mod projector;
 mod recorded_values;
 mod refit;
