@@ -40,8 +40,9 @@ def pip(*packages):
     """Installs packages into the virtual environment, if they are not there."""
     if not PYTHON.exists():
         call(sys.executable, "-m", "venv", VENV, reason="no virtual environment")
-    shown = subprocess.run([PYTHON, "-m", "pip", "show", "--quiet", *packages], capture_output=True)
-    if shown.returncode:
+    # One by one: of several, one that is there is enough for pip.
+    show = [PYTHON, "-m", "pip", "show", "--quiet"]
+    if any(subprocess.run([*show, package], capture_output=True).returncode for package in packages):
         call(PYTHON, "-m", "pip", "install", "--quiet", "--constraint",
              INTEGRATORS / "requirements.txt", *packages, reason="pip")
 
