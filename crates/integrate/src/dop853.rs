@@ -5,7 +5,7 @@
 
 use crate::system::System;
 use crate::tableau::{DENSE, ERROR_3, ERROR_5, EXTENDED, NODES, Row, STAGE, STAGES};
-use scalar::{Lanes, Scalar};
+use scalar::{Lanes, Scalar, inlined};
 
 /// Coefficients of the continuous extension, per component.
 const PIECES: usize = 7;
@@ -58,7 +58,7 @@ impl<S: Scalar> Step<S> {
     /// Evaluates the derivative at the beginning, `(self.start, self.from)`.
     pub fn begin(&mut self, system: &mut impl System<S>) {
         let n = self.dimension();
-        system.derivative(self.start, &self.from, &mut self.stages[..n]);
+        derivative(system, self.start, &self.from, &mut self.stages[..n]);
     }
 
     /// Makes the end of this step the beginning of the next. The derivative there is kept.
@@ -88,36 +88,39 @@ impl<S: Scalar> Step<S> {
     ) {
         self.length = length;
         self.extended = false;
-        for stage in 1..STAGES {
-            self.stage(system, stage);
-            look(stage, system);
-        }
-        self.to.copy_from_slice(&self.scratch);
-    }
-
-    /// Evaluates stage number `stage` from those before it.
-    fn stage(&mut self, system: &mut impl System<S>, stage: usize) {
-        let n = self.dimension();
-        // Slices of one length, so that no component is checked for being there.
-        let (from, length) = (&self.from[..n], self.length);
-        let scratch = &mut self.scratch[..n];
-        let t = S::vectorised(
+        S::vectorised(
             #[inline(always)]
             || {
-                combine(
-                    n,
-                    [STAGE[stage]],
-                    &self.stages,
-                    #[inline(always)]
-                    |j, [slope]| {
-                        scratch[j] = from[j] + length * slope;
-                    },
-                );
-                self.start + length * NODES[stage]
+                for stage in 1..STAGES {
+                    let (t, y, slope) = self.stage(stage);
+                    system.derivative(t, y, slope);
+                    look(stage, system);
+                }
+                self.to.copy_from_slice(&self.scratch);
             },
         );
-        let (_, rest) = self.stages.split_at_mut(stage * n);
-        system.derivative(t, &self.scratch, &mut rest[..n]);
+    }
+
+    /// Time and state of stage number `stage`, from those before it, and where its derivative belongs.
+    #[inline(always)]
+    fn stage(&mut self, stage: usize) -> (S, &[S], &mut [S]) {
+        let n = self.dimension();
+        let length = self.length;
+        combine(
+            n,
+            [STAGE[stage]],
+            &self.stages,
+            #[inline(always)]
+            |first, slopes| {
+                let to = self.scratch[first..][..slopes.len()].iter_mut();
+                let from = &self.from[first..][..slopes.len()];
+                for ((to, from), slope) in to.zip(from).zip(slopes) {
+                    *to = slope.mul_add(length, *from);
+                }
+            },
+        );
+        let t = length.mul_add(S::constant(NODES[stage]), self.start);
+        (t, &self.scratch, &mut self.stages[stage * n..][..n])
     }
 
     /// Squares of the estimated errors of order 5 and 3, summed over the components, each over its
@@ -133,11 +136,15 @@ impl<S: Scalar> Step<S> {
                     rows,
                     &self.stages,
                     #[inline(always)]
-                    |j, errors| {
-                        let scale = S::one() / scale(j);
-                        for (sum, error) in sums.iter_mut().zip(errors) {
-                            let error = error * scale;
-                            *sum += error * error;
+                    |first, errors| {
+                        let count = errors.len() / 2;
+                        for j in 0..count {
+                            let scale = S::one() / scale(first + j);
+                            for (sum, error) in sums.iter_mut().zip([errors[j], errors[count + j]])
+                            {
+                                let error = error * scale;
+                                *sum = error.mul_add(error, *sum);
+                            }
                         }
                     },
                 );
@@ -152,13 +159,14 @@ impl<S: Scalar> Step<S> {
             return;
         }
         let n = self.dimension();
-        for stage in STAGES..EXTENDED {
-            self.stage(system, stage);
-        }
         let h = self.length;
         S::vectorised(
             #[inline(always)]
             || {
+                for stage in STAGES..EXTENDED {
+                    let (t, y, slope) = self.stage(stage);
+                    derivative(system, t, y, slope);
+                }
                 let [begin, end] = [0, 12].map(|i| &self.stages[i * n..][..n]);
                 let (from, to) = (&self.from[..n], &self.to[..n]);
                 let (zeroth, rest) = self.pieces.split_at_mut(n);
@@ -166,8 +174,8 @@ impl<S: Scalar> Step<S> {
                 let second = &mut rest[..n];
                 for j in 0..n {
                     zeroth[j] = to[j] - from[j];
-                    first[j] = h * begin[j] - zeroth[j];
-                    second[j] = zeroth[j] - h * end[j] - first[j];
+                    first[j] = h.mul_add(begin[j], -zeroth[j]);
+                    second[j] = zeroth[j] - h.mul_add(end[j], first[j]);
                 }
                 for (i, row) in DENSE.iter().enumerate() {
                     let piece = &mut self.pieces[(3 + i) * n..][..n];
@@ -176,7 +184,11 @@ impl<S: Scalar> Step<S> {
                         [*row],
                         &self.stages,
                         #[inline(always)]
-                        |j, [sum]| piece[j] = h * sum,
+                        |first, sums| {
+                            for (piece, sum) in piece[first..].iter_mut().zip(sums) {
+                                *piece = h * *sum;
+                            }
+                        },
                     );
                 }
             },
@@ -245,19 +257,36 @@ impl<S: Scalar> Step<S> {
                 let rest = S::one() - share;
                 let pieces: [&[S]; PIECES] = std::array::from_fn(|i| &self.pieces[i * n..][..n]);
                 for (j, (out, from)) in out[..n].iter_mut().zip(&self.from[..n]).enumerate() {
-                    let mut sum = S::zero();
-                    for i in (0..PIECES).rev() {
-                        let factor = if i % 2 == 0 { share } else { rest };
-                        sum = (sum + pieces[i][j]) * factor;
-                    }
-                    *out = *from + sum;
+                    *out = continued(*from, share, rest, |i| pieces[i][j]);
                 }
             },
         );
     }
 }
 
-/// Hands the sums of weight × derivative over the stages of each row to `take`, component by component.
+/// The derivative where it is seldom needed: what is inlined into the stages would take much room here.
+#[inline(never)]
+fn derivative<S: Scalar>(system: &mut impl System<S>, t: S, y: &[S], dy: &mut [S]) {
+    S::vectorised(
+        #[inline(always)]
+        || system.derivative(t, y, dy),
+    );
+}
+
+/// The continuous extension of one component at `share` of the step, of which `rest` is left, from the
+/// component at the beginning and its pieces.
+#[inline(always)]
+fn continued<S: Scalar>(from: S, share: S, rest: S, piece: impl Fn(usize) -> S) -> S {
+    let mut sum = piece(PIECES - 1);
+    for i in (0..PIECES - 1).rev() {
+        let factor = if i % 2 == 0 { rest } else { share };
+        sum = sum.mul_add(factor, piece(i));
+    }
+    sum.mul_add(share, from)
+}
+
+/// Hands the sums of weight × derivative over the stages to `take`, some components at a time: the number of the
+/// first, and their sums by each row after the other.
 ///
 /// Small numbers are summed several components at a time: each weight is fetched once for all of them.
 #[inline(always)]
@@ -265,7 +294,7 @@ fn combine<S: Scalar, const R: usize>(
     dimension: usize,
     rows: [Row; R],
     stages: &[S],
-    mut take: impl FnMut(usize, [S; R]),
+    mut take: impl FnMut(usize, &[S]),
 ) {
     const LARGEST: usize = 8 * size_of::<f64>();
     let mut done = 0;
@@ -284,20 +313,17 @@ fn combine_blocks<S: Scalar, const R: usize, const B: usize>(
     dimension: usize,
     rows: [Row; R],
     stages: &[S],
-    take: &mut impl FnMut(usize, [S; R]),
+    take: &mut impl FnMut(usize, &[S]),
 ) -> usize {
     while first + B <= dimension {
-        // Loops, as `map` of an array may be compiled without the instructions of lanes.
-        let mut sums = [[S::zero(); R]; B];
-        for (r, row) in rows.into_iter().enumerate() {
-            let of_row = weighted::<S, B>(row, stages, dimension, first);
-            for i in 0..B {
-                sums[i][r] = of_row[i];
-            }
+        // A loop, as `map` of an array may be compiled without the instructions of lanes.
+        let mut sums = [[S::zero(); B]; R];
+        let mut i = 0;
+        while i < R {
+            sums[i] = weighted::<S, B>(rows[i], stages, dimension, first);
+            i += 1;
         }
-        for (i, sums) in sums.into_iter().enumerate() {
-            take(first + i, sums);
-        }
+        take(first, sums.as_flattened());
         first += B;
     }
     first
@@ -313,9 +339,10 @@ fn weighted<S: Scalar, const B: usize>(
 ) -> [S; B] {
     let mut sums = [S::zero(); B];
     for &(stage, weight) in row {
+        let weight = S::constant(weight);
         let slopes = &stages[stage * dimension + first..][..B];
         for (sum, slope) in sums.iter_mut().zip(slopes) {
-            *sum += *slope * weight;
+            *sum = slope.mul_add(weight, *sum);
         }
     }
     sums
@@ -330,12 +357,11 @@ impl Step<f64> {
             || {
                 let rest = L::one() - share;
                 for (j, (out, from)) in out.iter_mut().zip(&self.from).enumerate() {
-                    let mut sum = L::zero();
-                    for i in (0..PIECES).rev() {
-                        let factor = if i % 2 == 0 { share } else { rest };
-                        sum = (sum + self.pieces[i * n + j]) * factor;
-                    }
-                    *out = L::constant(*from) + sum;
+                    let piece = inlined(
+                        #[inline(always)]
+                        |i| L::constant(self.pieces[i * n + j]),
+                    );
+                    *out = continued(L::constant(*from), share, rest, piece);
                 }
             },
         );

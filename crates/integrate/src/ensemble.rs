@@ -9,7 +9,7 @@ use crate::dop853::Step;
 use crate::glance::Glances;
 use crate::integrator::{Course, Error, Integrator, Sight, Trial};
 use crate::system::System;
-use scalar::{Lanes, Scalar};
+use scalar::{Lanes, Scalar, inlined};
 
 /// The lanes' steps.
 #[derive(Clone, Debug)]
@@ -73,7 +73,10 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
                 lengths.set(lane, traveller.trial.length);
             }
         }
-        let look = |stage, system: &mut _| self.glances.stage(stage, system);
+        let look = inlined(
+            #[inline(always)]
+            |stage, system: &mut _| self.glances.stage(stage, system),
+        );
         self.step.take(wide, lengths, look);
         let squares = self.squared_errors(wide.scales());
         let quiet = self.glances.quiet().map_or([false; W], L::truths);
@@ -86,7 +89,7 @@ impl<L: Lanes<W>, const W: usize> Ensemble<L, W> {
             else {
                 continue;
             };
-            let squares = squares.map(|s| s.get(lane));
+            let squares = [squares[0].get(lane), squares[1].get(lane)];
             if integrator.judge(*trial, squares, self.counted) {
                 looked_into[lane] = integrator.looks_into(quiet[lane]);
                 stands[lane] = true;

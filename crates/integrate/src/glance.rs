@@ -50,6 +50,7 @@ impl<S: Scalar> Glances<S> {
     }
 
     /// Looks at the guards after the derivative of a stage.
+    #[inline(always)]
     pub fn stage(&mut self, stage: usize, system: &mut impl System<S>) {
         if let Some(i) = STAGES.iter().position(|s| *s == stage) {
             self.see(i + 1, system);
@@ -76,7 +77,14 @@ impl<S: Scalar> Glances<S> {
                 || {
                     let mut quiet = S::Plain::constant(0.0).lt(S::Plain::constant(1.0));
                     let count = self.room.len();
-                    let [a, b, c, d, e] = self.seen.each_ref().map(|seen| &seen[..count]);
+                    let [a, b, c, d, e] = &self.seen;
+                    let [a, b, c, d, e] = [
+                        &a[..count],
+                        &b[..count],
+                        &c[..count],
+                        &d[..count],
+                        &e[..count],
+                    ];
                     for guard in 0..count {
                         let seen = [a[guard], b[guard], c[guard], d[guard], e[guard]];
                         quiet = quiet.and(clear_of_zero(&seen));

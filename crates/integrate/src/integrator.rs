@@ -4,7 +4,7 @@ use crate::dop853::Step;
 use crate::events::Finder;
 use crate::glance::Glances;
 use crate::system::{Real, System};
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 /// Why an integration stopped.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -378,7 +378,10 @@ impl<S: Real> Integrator<S> {
     fn attempt(&mut self, system: &mut impl System<S>, trial: Trial) -> Result<bool, Error> {
         // After a switch whose time varies, the step brings the time back to a plain number.
         let back = S::constant(self.time()) - self.step.start;
-        let look = |stage, system: &mut _| self.glances.stage(stage, system);
+        let look = inlined(
+            #[inline(always)]
+            |stage, system: &mut _| self.glances.stage(stage, system),
+        );
         self.step.take(system, back + trial.length, look);
         let scales = system.scales();
         let squares = self.step.squared_errors(

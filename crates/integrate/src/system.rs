@@ -33,7 +33,8 @@ pub trait System<S> {
     /// Length of `y`.
     fn dimension(&self) -> usize;
 
-    /// Writes `f(t, y)` in the present mode into `dy`.
+    /// Writes `f(t, y)` in the present mode into `dy`. The integrator calls it within
+    /// [`Scalar::vectorised`], so that what is inlined into it gains by the processor's instructions.
     fn derivative(&mut self, t: S, y: &[S], dy: &mut [S]);
 
     /// Size of each component that counts as 1 for the tolerance; infinite for components whose

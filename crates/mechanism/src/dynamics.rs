@@ -237,7 +237,7 @@ impl<S: Scalar> Dynamics<S> {
         self.evaluate_forces(t, y);
         self.respond();
         self.turn_shaft(t);
-        self.follow();
+        self.follow_apart();
         self.shake_frame(y);
         &self.evaluation
     }
@@ -253,15 +253,39 @@ impl<S: Scalar> Dynamics<S> {
         &self.evaluation
     }
 
+    /// Writes the derivative of the state `y` at `t` into `dy`. To be called within [`Scalar::vectorised`].
+    #[inline(always)]
+    pub(crate) fn rates(&mut self, t: S, y: &[S], dy: &mut [S]) {
+        // With derivatives there would be too much of it to compile.
+        let small = size_of::<S>() == size_of::<S::Plain>();
+        if small && self.plain && self.layout.ledger.is_none() {
+            self.forces::<true>(t, y);
+            self.turn_and_follow(t, y);
+        } else {
+            self.evaluate_rates(t, y);
+        }
+        self.write_derivative(y, dy);
+    }
+
     /// As [`evaluate`](Self::evaluate), but for what the state's derivative does not depend on.
-    pub(crate) fn evaluate_rates(&mut self, t: S, y: &[S]) {
+    #[inline(never)]
+    fn evaluate_rates(&mut self, t: S, y: &[S]) {
         if self.layout.ledger.is_some() {
             self.evaluate(t, y);
             return;
         }
+        self.evaluate_forces(t, y);
+        S::vectorised(
+            #[inline(always)]
+            || self.turn_and_follow(t, y),
+        );
+    }
+
+    /// Finds the accelerations under the forces, as far as the state's derivative depends on them.
+    #[inline(always)]
+    fn turn_and_follow(&mut self, t: S, y: &[S]) {
         // A frame feels the main bearing's force.
         let framed = self.machine.frame.is_some();
-        self.evaluate_forces(t, y);
         if self.rigid {
             self.respond();
         }
@@ -420,32 +444,35 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     /// Finds the throws' accelerations under their loads and the shaft's motion.
+    #[inline(always)]
+    fn follow(&mut self) {
+        let give = self.pins_give;
+        let Evaluation { shaft, throws, .. } = &mut self.evaluation;
+        let throws = self.machine.throws.iter().zip(throws);
+        for ((throw, at), response) in throws.zip(&self.responses) {
+            let mut pin = at.loads.pin_bias;
+            if give {
+                pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
+            }
+            let forces = throw.has_rigid_end().then(|| response.forces(pin));
+            at.accelerations
+                .find(throw, &at.loads, &at.joints, pin, forces);
+            if throw.guide.clear().is_none() {
+                // What an ideal guide must bear, so that the crosshead stays on its line.
+                let small = at.accelerations.small_force;
+                at.joints.guide.force = Vec2::new(S::zero(), small.y - at.loads.crosshead_force.y);
+                at.joints.guide.moment =
+                    moment(at.joints.small_end.arm, small) - at.loads.crosshead_moment;
+            }
+        }
+    }
+
+    /// As [`follow`](Self::follow), with the processor's instructions.
     #[inline(never)]
-    pub(crate) fn follow(&mut self) {
+    pub(crate) fn follow_apart(&mut self) {
         S::vectorised(
             #[inline(always)]
-            || {
-                let give = self.pins_give;
-                let Evaluation { shaft, throws, .. } = &mut self.evaluation;
-                let throws = self.machine.throws.iter().zip(throws);
-                for ((throw, at), response) in throws.zip(&self.responses) {
-                    let mut pin = at.loads.pin_bias;
-                    if give {
-                        pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
-                    }
-                    let forces = throw.has_rigid_end().then(|| response.forces(pin));
-                    at.accelerations
-                        .find(throw, &at.loads, &at.joints, pin, forces);
-                    if throw.guide.clear().is_none() {
-                        // What an ideal guide must bear, so that the crosshead stays on its line.
-                        let small = at.accelerations.small_force;
-                        at.joints.guide.force =
-                            Vec2::new(S::zero(), small.y - at.loads.crosshead_force.y);
-                        at.joints.guide.moment =
-                            moment(at.joints.small_end.arm, small) - at.loads.crosshead_moment;
-                    }
-                }
-            },
+            || self.follow(),
         )
     }
 

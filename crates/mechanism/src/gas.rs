@@ -239,8 +239,9 @@ impl<S: Scalar> CylinderAt<'_, S> {
                 let (gas, seen) = self.chamber::<PLAIN>(End::Crank, end.clearance, to_cover);
                 crank = seen;
                 let rod = area(end.rod_radius);
-                let force =
-                    gas.pressure * (face - rod) + cylinder.back * rod - head_end.pressure * face;
+                let force = gas
+                    .pressure
+                    .mul_add(face - rod, cylinder.back * rod - head_end.pressure * face);
                 (gas, force)
             }
         };

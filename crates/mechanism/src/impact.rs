@@ -38,7 +38,7 @@ impl<S: Scalar> Dynamics<S> {
         };
         self.respond();
         self.turn(shaft, turning, main_target);
-        self.follow();
+        self.follow_apart();
         self.add_jumps(y);
 
         self.evaluate_forces(t, y);

@@ -25,7 +25,13 @@ impl<S: Scalar> Vec2<S> {
     /// The scalar product.
     #[inline(always)]
     pub fn dot(&self, other: &Self) -> S {
-        self.x * other.x + self.y * other.y
+        self.x.mul_add(other.x, self.y * other.y)
+    }
+
+    /// `self * by + plus`, each component rounded once.
+    #[inline(always)]
+    pub fn mul_add(self, by: S, plus: Self) -> Self {
+        Self::new(self.x.mul_add(by, plus.x), self.y.mul_add(by, plus.y))
     }
 
     /// The length.
@@ -105,7 +111,7 @@ impl<S: Scalar> Mat2<S> {
     #[inline(always)]
     pub fn inverse(&self) -> Self {
         let Self([a, b]) = *self;
-        let scale = S::one() / (a.x * b.y - a.y * b.x);
+        let scale = S::one() / moment(a, b);
         Self([
             Vec2::new(b.y * scale, -a.y * scale),
             Vec2::new(-b.x * scale, a.x * scale),
@@ -167,7 +173,7 @@ pub fn turned<S: Scalar>(r: Vec2<S>) -> Vec2<S> {
 /// Moment of a force about the origin of its arm, r × F.
 #[inline(always)]
 pub fn moment<S: Scalar>(arm: Vec2<S>, force: Vec2<S>) -> S {
-    arm.x * force.y - arm.y * force.x
+    arm.x.mul_add(force.y, -(arm.y * force.x))
 }
 
 /// The zero vector.

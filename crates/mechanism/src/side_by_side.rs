@@ -50,9 +50,9 @@ impl<L: Scalar> System<L> for SideBySide<L> {
         self.0.layout().dimension
     }
 
+    #[inline(always)]
     fn derivative(&mut self, t: L, y: &[L], dy: &mut [L]) {
-        self.0.evaluate_rates(t, y);
-        self.0.write_derivative(y, dy);
+        self.0.rates(t, y, dy);
     }
 
     fn scales(&self) -> &[L] {

@@ -119,39 +119,46 @@ fn write<S: Scalar>(index: Option<usize>, second: Vec2<S>, y: &[S], dy: &mut [S]
 
 impl<S: Scalar> Dynamics<S> {
     /// Writes the derivative of the state that belongs to the last evaluation.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn write_derivative(&self, y: &[S], dy: &mut [S]) {
-        S::vectorised(
+        let (layout, at) = (self.layout(), self.evaluation());
+        write(layout.main, at.shaft.centre, y, dy);
+        for (layout, throw) in layout.throws.iter().zip(&at.throws) {
+            write(layout.big_end, throw.accelerations.big_end, y, dy);
+            write(layout.small_end, throw.accelerations.small_end, y, dy);
+            write(layout.guide, throw.accelerations.guide, y, dy);
+            if let Some(i) = layout.rod {
+                dy[i] = y[i + 1];
+                dy[i + 1] = throw.accelerations.stretch;
+            }
+            if let Some(i) = layout.gas {
+                dy[i..i + 2].copy_from_slice(&throw.gas.drift);
+            }
+        }
+        write(layout.frame, at.frame, y, dy);
+        if let Some(i) = layout.crank {
+            dy[i] = y[i + 1];
+            dy[i + 1] = at.shaft.angular;
+        }
+        if layout.ledger.is_some() {
+            self.write_powers(dy);
+        }
+    }
+
+    /// Writes the derivative of the works.
+    #[inline(never)]
+    fn write_powers(&self, dy: &mut [S]) {
+        let Some(i) = self.layout().ledger else {
+            return;
+        };
+        let powers = S::vectorised(
             #[inline(always)]
-            || {
-                let (layout, at) = (self.layout(), self.evaluation());
-                write(layout.main, at.shaft.centre, y, dy);
-                for (layout, throw) in layout.throws.iter().zip(&at.throws) {
-                    write(layout.big_end, throw.accelerations.big_end, y, dy);
-                    write(layout.small_end, throw.accelerations.small_end, y, dy);
-                    write(layout.guide, throw.accelerations.guide, y, dy);
-                    if let Some(i) = layout.rod {
-                        dy[i] = y[i + 1];
-                        dy[i + 1] = throw.accelerations.stretch;
-                    }
-                    if let Some(i) = layout.gas {
-                        dy[i..i + 2].copy_from_slice(&throw.gas.drift);
-                    }
-                }
-                write(layout.frame, at.frame, y, dy);
-                if let Some(i) = layout.crank {
-                    dy[i] = y[i + 1];
-                    dy[i + 1] = at.shaft.angular;
-                }
-                if let Some(i) = layout.ledger {
-                    let powers = energy::powers(self.machine(), at);
-                    dy[i] = powers.gas;
-                    dy[i + 1] = powers.drive;
-                    dy[i + 2] = powers.friction;
-                    dy[i + 3] = powers.damping;
-                }
-            },
-        )
+            || energy::powers(self.machine(), self.evaluation()),
+        );
+        dy[i] = powers.gas;
+        dy[i + 1] = powers.drive;
+        dy[i + 2] = powers.friction;
+        dy[i + 3] = powers.damping;
     }
 
     /// True where a joint's guard needs the forces of rigid joints.
@@ -227,9 +234,9 @@ impl<S: Real> System<S> for Dynamics<S> {
         self.layout().dimension
     }
 
+    #[inline(always)]
     fn derivative(&mut self, t: S, y: &[S], dy: &mut [S]) {
-        self.evaluate_rates(t, y);
-        self.write_derivative(y, dy);
+        self.rates(t, y, dy);
     }
 
     fn scales(&self) -> &[S] {

@@ -248,24 +248,24 @@ impl<S: Scalar> Motion<S> {
         let (sine, cosine) = angle.sin_cos();
         let pin = Vec2::new(cosine, sine) * throw.crank_radius;
         let eye = shaft[0] + pin - big[0];
-        let eye_rate = shaft[1] + turned(pin) * speed - big[1];
+        let eye_rate = turned(pin).mul_add(speed, shaft[1] - big[1]);
         // The small-end eye's height follows from the crosshead's, and gives the rod's angle.
         let rise = guide[0].x - small[0].y - eye.y;
         let rise_rate = guide[1].x - small[1].y - eye_rate.y;
         let length = throw.rod.length * (stretch + 1.0);
         let length_rate = throw.rod.length * stretch_rate;
         let rod_sine = rise / length;
-        let rod_cosine = (S::one() - rod_sine * rod_sine).sqrt();
-        let rod_rate = (rise_rate - length_rate * rod_sine) / (length * rod_cosine);
+        let rod_cosine = (-rod_sine).mul_add(rod_sine, S::one()).sqrt();
+        let rod_rate = (-length_rate).mul_add(rod_sine, rise_rate) / (length * rod_cosine);
         self.angle = angle;
         self.angle_sin_cos = (sine, cosine);
         self.pin = pin;
         self.rod_sin_cos = (rod_sine, rod_cosine);
         self.rod_rate = rod_rate;
         self.big_eye = [eye, eye_rate];
-        self.crosshead = eye.x + length * rod_cosine + small[0].x;
-        self.crosshead_rate =
-            eye_rate.x - length * rod_sine * rod_rate + length_rate * rod_cosine + small[1].x;
+        self.crosshead = length.mul_add(rod_cosine, eye.x + small[0].x);
+        let rate = length_rate.mul_add(rod_cosine, eye_rate.x + small[1].x);
+        self.crosshead_rate = (-rise).mul_add(rod_rate, rate);
         self.stretch = stretch;
         self.stretch_rate = stretch_rate;
     }
@@ -320,20 +320,18 @@ impl<S: Scalar> Loads<S> {
                 false => S::zero(),
             },
         );
-        self.rod_force = gravity * throw.rod.mass - big.force - small.force;
-        self.rod_moment = -moment(arms.big_force, big.force)
-            - moment(arms.small_force, small.force)
-            - throw.rod.inertia * motion.lengthening() * whirl;
-        self.crosshead_force = gravity * throw.crosshead.mass
-            + small.force
-            + joints.guide.force
-            + Vec2::new(gas.force + gas.effects, S::zero());
+        self.rod_force = gravity.mul_add(throw.rod.mass, -(big.force + small.force));
+        let moments = moment(arms.big_force, big.force) + moment(arms.small_force, small.force);
+        self.rod_moment = (throw.rod.inertia * motion.lengthening()).mul_add(-whirl, -moments);
+        let pushes =
+            small.force + joints.guide.force + Vec2::new(gas.force + gas.effects, S::zero());
+        self.crosshead_force = gravity.mul_add(throw.crosshead.mass, pushes);
         self.crosshead_moment = moment(small.arm, small.force) + joints.guide.moment;
         self.pin_force = big.force;
         self.pin_moment = moment(motion.pin + big.arm, big.force);
         self.pin_bias = -(motion.pin * (speed * speed));
-        self.big_bias = across * (of_big * whirl) - arms.big * rate2;
-        self.small_bias = across * (of_small * whirl) - arms.small * rate2;
+        self.big_bias = across.mul_add(of_big * whirl, -(arms.big * rate2));
+        self.small_bias = across.mul_add(of_small * whirl, -(arms.small * rate2));
         self.arms = arms;
         self.rod_inertia = arms.inertia(throw, motion);
         self.big_target = target(&throw.big_end, big);
@@ -579,8 +577,8 @@ impl<S: Scalar> Accelerations<S> {
             let pull = (big_force * of_big + small_force * of_small).dot(&arms.along);
             stretch = stretch.map(|stretch| stretch + pull / throw.rod.inertia);
         }
-        let mut big_eye = centre + turned(arms.big) * rod + loads.big_bias;
-        let mut small_eye = centre + turned(arms.small) * rod + loads.small_bias;
+        let mut big_eye = turned(arms.big).mul_add(rod, centre + loads.big_bias);
+        let mut small_eye = turned(arms.small).mul_add(rod, centre + loads.small_bias);
         if let Some(stretch) = stretch {
             big_eye += arms.along * (of_big * stretch);
             small_eye += arms.along * (of_small * stretch);

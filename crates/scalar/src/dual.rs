@@ -27,6 +27,7 @@ impl<S: Scalar, const N: usize> Dual<S, N> {
     }
 
     /// `value` with each tangent as `f` makes it.
+    #[inline]
     fn each(mut self, value: S, f: impl Fn(S) -> S) -> Self {
         for d in &mut self.tangent {
             *d = f(*d);
@@ -77,21 +78,22 @@ impl<S: Scalar, const N: usize> Sub for Dual<S, N> {
 
 impl<S: Scalar, const N: usize> Mul for Dual<S, N> {
     type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the product rule")]
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.value, other.value);
-        self.zip(other, a * b, |da, db| da * b + a * db)
+        self.zip(other, a * b, |da, db| da.mul_add(b, a * db))
     }
 }
 
 impl<S: Scalar, const N: usize> Div for Dual<S, N> {
     type Output = Self;
-    #[expect(clippy::suspicious_arithmetic_impl, reason = "the quotient rule")]
     #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = self.value / other.value;
-        self.zip(other, quotient, |da, db| (da - quotient * db) / other.value)
+        let slope = S::one() / other.value;
+        self.zip(other, quotient, |da, db| {
+            (-quotient).mul_add(db, da) * slope
+        })
     }
 }
 
@@ -129,7 +131,8 @@ impl<S: Scalar, const N: usize> Div<f64> for Dual<S, N> {
     type Output = Self;
     #[inline]
     fn div(self, other: f64) -> Self {
-        self.each(self.value / other, |d| d / other)
+        let slope = 1.0 / other;
+        self.each(self.value / other, |d| d * slope)
     }
 }
 
@@ -203,6 +206,20 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     fn select(mask: S::Mask, yes: Self, no: Self) -> Self {
         let value = S::select(mask, yes.value, no.value);
         yes.zip(no, value, |a, b| S::select(mask, a, b))
+    }
+    #[inline]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        let (a, b) = (self.value, factor.value);
+        let mut sum = term;
+        sum.value = a.mul_add(b, term.value);
+        for (d, (da, db)) in sum
+            .tangent
+            .iter_mut()
+            .zip(self.tangent.iter().zip(factor.tangent))
+        {
+            *d = da.mul_add(b, a.mul_add(db, *d));
+        }
+        sum
     }
     #[inline]
     fn sqrt(self) -> Self {

@@ -11,6 +11,7 @@
 
 pub mod dual;
 pub mod elementary;
+mod fused;
 pub mod lanes;
 pub mod random;
 
@@ -80,6 +81,8 @@ pub trait Scalar:
     fn lt(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is true, `no` elsewhere.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `self * factor + term`, rounded once.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
     /// Square root; the derivative at 0 is taken as 0.
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians.
@@ -189,6 +192,10 @@ impl Scalar for f64 {
         if mask { yes } else { no }
     }
     #[inline(always)]
+    fn mul_add(self, factor: Self, term: Self) -> Self {
+        f64::mul_add(self, factor, term)
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
@@ -203,5 +210,9 @@ impl Scalar for f64 {
     #[inline(always)]
     fn ln(self) -> Self {
         elementary::ln(self)
+    }
+    #[inline(always)]
+    fn vectorised<T>(work: impl FnOnce() -> T) -> T {
+        fused::vectorised(work)
     }
 }

@@ -239,7 +239,7 @@ impl<S: Scalar> Clearance<S> {
         state.slip = slip;
         state.normal_force = normal_force;
         state.friction_force = friction_force;
-        state.force = -(normal * (normal_force - film_force)) - tangent * friction_force;
+        state.force = normal.mul_add(film_force - normal_force, -(tangent * friction_force));
         state.excess = excess;
         state.damping_power = (pressed - stored - film) * penetration_rate;
         state.arm = arm;
@@ -269,8 +269,8 @@ impl<S: Scalar> Clearance<S> {
         let slip = inlined(
             #[inline(always)]
             |tangent: Vec2<S>, distance: S| {
-                tangent.dot(&rate) + journal * self.journal_radius
-                    - bearing * (self.journal_radius + distance)
+                let sliding = journal.mul_add(self.journal_radius, tangent.dot(&rate));
+                (-bearing).mul_add(self.journal_radius + distance, sliding)
             },
         );
         let shape = match model {

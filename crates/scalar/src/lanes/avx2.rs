@@ -34,12 +34,12 @@ macro_rules! both {
 
 /// Whether this processor has the instructions.
 pub(super) fn is_present() -> bool {
-    is_x86_feature_detected!("avx2")
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
 }
 
 #[inline(always)]
 fn vectorised<T>(work: impl FnOnce() -> T) -> T {
-    #[target_feature(enable = "avx2")]
+    #[target_feature(enable = "avx2,fma")]
     fn with_instructions<T>(work: impl FnOnce() -> T) -> T {
         work()
     }
@@ -113,6 +113,10 @@ fn multiply(a: F64x8, b: F64x8) -> F64x8 {
 #[inline(always)]
 fn divide(a: F64x8, b: F64x8) -> F64x8 {
     F64x8(unsafe { both!(_mm256_div_pd, a, b) })
+}
+#[inline(always)]
+fn multiply_add(a: F64x8, b: F64x8, c: F64x8) -> F64x8 {
+    F64x8(unsafe { both!(_mm256_fmadd_pd, a, b, c) })
 }
 #[inline(always)]
 fn negate(a: F64x8) -> F64x8 {

@@ -107,6 +107,10 @@ fn divide(a: F64x8, b: F64x8) -> F64x8 {
     F64x8(unsafe { _mm512_div_pd(a.0, b.0) })
 }
 #[inline(always)]
+fn multiply_add(a: F64x8, b: F64x8, c: F64x8) -> F64x8 {
+    F64x8(unsafe { _mm512_fmadd_pd(a.0, b.0, c.0) })
+}
+#[inline(always)]
 fn negate(a: F64x8) -> F64x8 {
     F64x8(unsafe { _mm512_xor_pd(a.0, _mm512_set1_pd(-0.0)) })
 }

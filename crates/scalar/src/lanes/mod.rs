@@ -116,7 +116,7 @@ macro_rules! operators {
 }
 
 /// Makes a type of lanes from the functions of the module that it stands in: `splat`, `add`,
-/// `subtract`, `multiply`, `divide`, `negate`, `square_root`, `less`, `choose`, `bit`, `two_to_the`,
+/// `subtract`, `multiply`, `divide`, `multiply_add`, `negate`, `square_root`, `less`, `choose`, `bit`, `two_to_the`,
 /// `split`, `equal` and `vectorised`, on values of the type; `Truths` is its mask.
 macro_rules! lanes {
     ($name:ident, $width:literal) => {
@@ -185,6 +185,10 @@ macro_rules! lanes {
             #[inline(always)]
             fn select(mask: Truths, yes: Self, no: Self) -> Self {
                 choose(mask, yes, no)
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, term: Self) -> Self {
+                multiply_add(self, factor, term)
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
@@ -265,7 +269,8 @@ mod tests {
         let apart = x.lt(y).and(y.lt(S::constant(2.0)).not()).or(c.lt(s));
         let chosen = S::select(apart, far.0, -far.1);
         let sums = (x.exp() * s - c / (y + 2.0)).abs().sqrt();
-        sums + (x + y).ln() * x.powf(y).max(y) - 1.5 + chosen * (x.ln().min(-x) - 3.0).exp()
+        sums.mul_add(y, sums) + (x + y).ln() * x.powf(y).max(y) - 1.5
+            + chosen * (x.ln().min(-x) - 3.0).exp()
     }
 
     const X: [f64; 8] = [0.1, 0.7, 2.5, 40.0, 1e-3, 3.3, 0.9, 11.0];

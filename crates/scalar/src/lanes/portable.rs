@@ -79,6 +79,11 @@ fn divide(a: F64x2, b: F64x2) -> F64x2 {
     both(a, b, |a, b| a / b)
 }
 #[inline(always)]
+fn multiply_add(a: F64x2, b: F64x2, c: F64x2) -> F64x2 {
+    let of = |lane: usize| a.0[lane].mul_add(b.0[lane], c.0[lane]);
+    F64x2([of(0), of(1)])
+}
+#[inline(always)]
 fn negate(a: F64x2) -> F64x2 {
     F64x2(a.0.map(|a| -a))
 }
@@ -120,5 +125,5 @@ fn split(a: F64x2) -> (F64x2, F64x2) {
 }
 #[inline(always)]
 fn vectorised<T>(work: impl FnOnce() -> T) -> T {
-    work()
+    crate::fused::vectorised(work)
 }

@@ -33,7 +33,7 @@ impl<S: Scalar> Impact<S> {
         let elastic = self.stiffness * power(penetration, self.exponent);
         // Which side of the kink at u = 1 counts is the mode's to say.
         let u = flagged(deep, S::one(), (penetration / self.depth).max(S::zero()));
-        let damping = self.damping * u * u * (S::constant(3.0) - u - u);
+        let damping = self.damping * u * u * u.mul_add(S::constant(-2.0), S::constant(3.0));
         NormalForce::damped(elastic, damping * rate)
     }
 }

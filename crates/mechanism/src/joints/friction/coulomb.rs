@@ -16,6 +16,6 @@ parameters! {
 impl<S: Scalar> Coulomb<S> {
     #[inline(always)]
     pub(super) fn coefficient(&self, slip: S) -> S {
-        self.coefficient * slip / (slip * slip + self.slip_speed * self.slip_speed).sqrt()
+        self.coefficient * slip / slip.mul_add(slip, self.slip_speed * self.slip_speed).sqrt()
     }
 }
