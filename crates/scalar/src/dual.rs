@@ -259,7 +259,9 @@ mod tests {
     /// A function that uses every operation.
     fn f<S: Scalar>(x: S, y: S) -> S {
         let (s, c) = (x * y).sin_cos();
-        (x.exp() * s - c / (y + 2.0)).abs().sqrt() + (x + y).ln() * x.powf(y).max(y) - 1.5
+        let sum =
+            (x.exp() * s - c / (y + 2.0)).abs().sqrt() + (x + y).ln() * x.powf(y).max(y) - 1.5;
+        sum.mul_add(x, y.mul_add(s, c)) / 3.0
     }
 
     #[test]
