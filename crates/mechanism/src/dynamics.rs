@@ -110,8 +110,7 @@ impl<S: Scalar> Dynamics<S> {
         self.set_outward(t, y);
         self.evaluate(t, y);
         for (mode, throw) in self.mode.throws.iter_mut().zip(&self.evaluation.throws) {
-            mode.head_end = throw.gas.head_end.mode();
-            mode.crank_end = throw.gas.crank_end.mode();
+            [mode.head_end, mode.crank_end] = throw.gas.modes(mode.outward);
         }
     }
 

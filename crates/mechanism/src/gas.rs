@@ -10,6 +10,12 @@ use crate::throw::Motion;
 use scalar::Scalar;
 use std::f64::consts::PI;
 
+/// Rate, per radian of the crank, at which a valve that has opened again brings a chamber back to the
+/// line: within a third of a degree.
+const REFILL: f64 = 200.0;
+/// A pressure this near to a line's, as a share, differs from it by rounding.
+const AT_LINE: f64 = 1e-9;
+
 parameters! {
     /// Cylinder, piston and gas of one throw.
     pub struct Cylinder<S> {
@@ -110,13 +116,17 @@ impl<S: Scalar> GasState<S> {
         ]
     }
 
-    /// The mode that the pressures call for.
+    /// The mode that the pressures call for, where the closed chamber drifts at `rate`: one that is at
+    /// the line and drifts beyond it leaves the valve open.
     #[inline(always)]
-    pub(crate) fn mode(&self) -> ChamberMode<S> {
+    pub(crate) fn mode(&self, expanding: S, rate: S) -> ChamberMode<S> {
         let flag = |mask| S::select(mask, S::one(), S::zero());
+        let [suction, discharge] = self.open;
+        let falls = flag(rate.lt(S::zero())) * (S::one() - expanding);
+        let rises = flag(S::zero().lt(rate)) * expanding;
         ChamberMode {
-            suction: flag(self.closed.lt(self.open[0])),
-            discharge: flag(self.open[1].lt(self.closed)),
+            suction: flag(self.closed.lt(suction * (falls * AT_LINE + 1.0))),
+            discharge: flag((discharge * (S::one() - rises * AT_LINE)).lt(self.closed)),
         }
     }
 }
@@ -200,6 +210,17 @@ impl<S: Scalar> Gas<S> {
             drift: [S::zero(); 2],
         }
     }
+
+    /// The modes of head end and crank end that the pressures call for; `outward` is 1 while the piston moves
+    /// away from the head.
+    #[inline(always)]
+    pub(crate) fn modes(&self, outward: S) -> [ChamberMode<S>; 2] {
+        let [head, crank] = self.drift;
+        [
+            self.head_end.mode(outward, head),
+            self.crank_end.mode(S::one() - outward, crank),
+        ]
+    }
 }
 
 /// One throw's cylinder at an instant: what both of its chambers share.
@@ -275,7 +296,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
             crank_end,
             force,
             effects,
-            drift: self.drifts(&[head, crank]),
+            drift: self.drifts([(&head_end, head), (&crank_end, crank)]),
         }
     }
 
@@ -425,21 +446,46 @@ impl<S: Scalar> CylinderAt<'_, S> {
         }
     }
 
-    /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none.
+    /// Rates of the drifts of both chambers, 1/s; while a valve is open there is none, unless it is one that
+    /// the drift has opened again.
     #[inline(always)]
-    fn drifts(&self, chambers: &[Option<ChamberAt<S>>; 2]) -> [S; 2] {
+    fn drifts(&self, chambers: [(&GasState<S>, Option<ChamberAt<S>>); 2]) -> [S; 2] {
         if self.drift.is_none() {
             return [S::zero(); 2];
         }
-        let pressures = [0, 1].map(|end: usize| chambers[end].map(|chamber| chamber.pressure));
         [End::Head, End::Crank].map(|end| {
-            let Some(mut chamber) = chambers[end as usize] else {
+            let (state, Some(mut chamber)) = chambers[end as usize] else {
                 return S::zero();
             };
-            chamber.across = pressures[1 - end as usize].unwrap_or(chamber.across);
+            let other = chambers[1 - end as usize].1.map(|other| other.pressure);
+            chamber.across = other.unwrap_or(chamber.across);
             let effects = self.effects.at_end(end);
-            chamber.closed * effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber))
+            let rate = effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber));
+            let (reopened, refill) = self.reopened(end, state);
+            chamber.closed * rate + reopened * (rate + refill)
         })
+    }
+
+    /// 1 where a valve stands open in the stroke that closed it, and what flows through it then, as a rate of
+    /// the closed chamber's logarithm, 1/s. Near a dead centre gas that leaks is faster than the piston: the
+    /// pressure falls back to the line's, and stays there until the piston is the faster one.
+    #[inline(always)]
+    fn reopened(&self, end: End, state: &GasState<S>) -> (S, S) {
+        let (expanding, mode) = match end {
+            End::Head => (self.mode.outward, &self.mode.head_end),
+            End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
+        };
+        // One that is held has not closed yet.
+        let held = self.effects.at_end(end).any(|e| e.suction_held().is_some());
+        let suction = match held {
+            true => S::zero(),
+            false => mode.suction * (S::one() - expanding),
+        };
+        let discharge = mode.discharge * expanding;
+        let line = flagged(suction, state.open[0], state.open[1]);
+        let open = suction + discharge;
+        let refill = self.speed.abs() * REFILL * (line / state.closed).ln();
+        (open, flagged(open, refill, S::zero()))
     }
 }
 

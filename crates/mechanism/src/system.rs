@@ -354,8 +354,7 @@ impl<S: Real> Dynamics<S> {
             }
             let gas = self.evaluation().throws[throw].gas;
             let mode = &mut self.mode_mut().throws[throw];
-            mode.head_end = gas.head_end.mode();
-            mode.crank_end = gas.crank_end.mode();
+            [mode.head_end, mode.crank_end] = gas.modes(outward);
             return;
         }
         let mode = &mut self.mode_mut().throws[throw];
