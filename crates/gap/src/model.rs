@@ -1,14 +1,15 @@
 //! A machine with what was fitted of it, and how far it is from the recordings.
 
+use crate::decision::NOISE;
 use crate::error::Error;
 use crate::journal::{Finished, Journal};
 use crate::pressures::{is_of_pressures, is_pressure};
 use crate::steps::Gap;
-use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
 use calibrate::observation::Observation;
 use calibrate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
 use calibrate::prediction::Prediction;
+use calibrate::{Problem, nearer_half};
 use std::ops::ControlFlow;
 
 /// Relative change of the sum of squares at which a rough and a full descent end.
@@ -16,6 +17,8 @@ const ROUGH: f64 = 1e-2;
 const FULL: f64 = 1e-4;
 /// The same for pressures alone, whose descents have no minima on the way.
 const FULL_OF_GAS: f64 = 1e-3;
+/// A descent from where the nearer runs have led is worth another one if it leaves less than this share.
+const BETTER: f64 = 0.95;
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
 /// throw: a step of two joints takes some 7 µs. Then what a search from the nominal machine may cost,
 /// and one that goes on from another.
@@ -157,7 +160,8 @@ impl Model {
         })
     }
 
-    /// The best fit that descents from `start` lead to: rough first, then full.
+    /// The best fit that descents from `start` lead to: rough first, then full; where that leaves more than
+    /// noise, the nearer runs by themselves, and from there all.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
@@ -181,9 +185,24 @@ impl Model {
                 let rough = descend(&rough, &x, ROUGH, effort, &within)?;
                 (x, change) = (rough.x, FULL);
             }
-            let full = descend(&Likelihood::new(&fitted), &x, change, effort, &within)?;
+            let full = |problem: &Problem, x: &[f64]| {
+                descend(&Likelihood::new(problem), x, change, effort, &within)
+            };
+            let mut best = full(&fitted, &x)?;
+            while best.misfit() > NOISE
+                && let Some(half) = nearer_half(&fitted, &best.x)
+            {
+                let after = full(&fitted, &full(&half, &best.x)?.x)?;
+                let better = after.misfit() < BETTER * best.misfit();
+                if after.cost < best.cost {
+                    best = after;
+                }
+                if !better {
+                    break;
+                }
+            }
             Ok(Finished {
-                numbers: full.x,
+                numbers: best.x,
                 cost: fitted.meter.steps(),
             })
         };
