@@ -9,8 +9,8 @@
 
 use crate::envelopes::Envelopes;
 use crate::error::Error;
+use crate::halves::halves;
 use crate::likelihood::{Likelihood, misfit};
-use crate::nearer_half::nearer_half;
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
 use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_alone};
@@ -61,7 +61,7 @@ struct Search<'a, 'w> {
 }
 
 /// The best fit: by Levenberg and Marquardt's method from `start`, each of several throws by itself
-/// at first; where that leaves more than noise, the runs that are nearer first, with continuation, from
+/// at first; where that leaves more than noise, by parts of the runs, with continuation, from
 /// kicks out of where that ends, and from the best of many other points, until the noise is reached or [`AGREE`] descents
 /// have ended at the same misfit; where they do not agree, by CMA-ES.
 ///
@@ -164,7 +164,7 @@ impl<'a, 'w> Search<'a, 'w> {
     /// recordings only the ringing is wrong, and a kick may do; elsewhere they come first.
     fn locally(&mut self, start: &[f64]) -> Result<(), Error> {
         self.descend(None, start)?;
-        while !self.ended() && self.nearer_first()? {}
+        while !self.ended() && self.by_halves()? {}
         if self.ended() {
             return Ok(());
         }
@@ -190,25 +190,30 @@ impl<'a, 'w> Search<'a, 'w> {
         Ok(())
     }
 
-    /// From the best point to the runs that are nearer by themselves, and from there to all; whether that has led
-    /// to a better one.
-    fn nearer_first(&mut self) -> Result<bool, Error> {
+    /// From the best point to parts of the runs by themselves, and from there to all; whether that has led to a
+    /// better one.
+    fn by_halves(&mut self) -> Result<bool, Error> {
         self.spent += 1;
         let (x, before, minima) = (self.best.x.clone(), self.best.cost, self.minima.len());
-        let Some(half) = nearer_half(self.problem, &x) else {
-            return Ok(false);
-        };
-        let left = self.left();
-        let found = {
-            let told = &mut self.told(false);
-            optimiser::levenberg_marquardt(&Likelihood::new(&half), &x, CHANGE, left, told)?
-        };
-        self.spent += found.evaluations;
-        if !self.ended() {
-            self.descend(None, &found.x)?;
+        for half in halves(self.problem, &x) {
+            if self.ended() {
+                break;
+            }
+            let left = self.left();
+            let found = {
+                let told = &mut self.told(false);
+                optimiser::levenberg_marquardt(&Likelihood::new(&half), &x, CHANGE, left, told)?
+            };
+            self.spent += found.evaluations;
+            if !self.ended() {
+                self.descend(None, &found.x)?;
+            }
+            self.minima.truncate(minima);
+            if self.best.cost < (1.0 - SAME) * before {
+                return Ok(true);
+            }
         }
-        self.minima.truncate(minima);
-        Ok(self.best.cost < (1.0 - SAME) * before)
+        Ok(false)
     }
 
     /// From `start` with the low orders first.
