@@ -192,7 +192,12 @@ impl Model {
             while best.misfit() > NOISE
                 && let Some(half) = nearer_half(&fitted, &best.x)
             {
-                let after = full(&fitted, &full(&half, &best.x)?.x)?;
+                let led = full(&half, &best.x).and_then(|near| full(&fitted, &near.x));
+                let after = match led {
+                    // A descent may end where the machine cannot be simulated.
+                    Err(Error::Fit(_)) => break,
+                    led => led?,
+                };
                 let better = after.misfit() < BETTER * best.misfit();
                 if after.cost < best.cost {
                     best = after;

@@ -8,7 +8,8 @@
 //! A is the area of one throttle over the root of their number, with its discharge coefficient, R T
 //! the square of `gas_speed`, taken where the gas comes from as in the suction line. The second
 //! equation is the first law for a chamber that loses gas of its own state. At equal pressures the
-//! root is smoothed over 2 % of the suction pressure. Signature: compression too low, expansion too
+//! root is smoothed over 2 % of the suction pressure. Near a dead centre gas may leak faster than the piston
+//! compresses; then the suction valve stays open (`gas`). Signature: compression too low, expansion too
 //! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
 
 use super::{Acts, ChamberAt};
