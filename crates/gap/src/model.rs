@@ -161,7 +161,7 @@ impl Model {
     }
 
     /// The best fit that descents from `start` lead to: rough first, then full; where that leaves more than
-    /// noise, the nearer runs by themselves, and from there all.
+    /// noise, the nearer runs by themselves, and from there all. Pressures alone need the full one only.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
@@ -189,7 +189,8 @@ impl Model {
                 descend(&Likelihood::new(problem), x, change, effort, &within)
             };
             let mut best = full(&fitted, &x)?;
-            while best.misfit() > NOISE
+            while loose > 0.0
+                && best.misfit() > NOISE
                 && let Some(half) = nearer_half(&fitted, &best.x)
             {
                 let led = full(&half, &best.x).and_then(|near| full(&fitted, &near.x));
