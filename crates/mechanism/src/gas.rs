@@ -461,16 +461,16 @@ impl<S: Scalar> CylinderAt<'_, S> {
             chamber.across = other.unwrap_or(chamber.across);
             let effects = self.effects.at_end(end);
             let rate = effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber));
-            let (reopened, refill) = self.reopened(end, state);
-            chamber.closed * rate + reopened * (rate + refill)
+            chamber.closed * rate + self.reopened(end, state, rate)
         })
     }
 
-    /// 1 where a valve stands open in the stroke that closed it, and what flows through it then, as a rate of
-    /// the closed chamber's logarithm, 1/s. Near a dead centre gas that leaks is faster than the piston: the
-    /// pressure falls back to the line's, and stays there until the piston is the faster one.
+    /// Rate of the drift, 1/s, where a valve stands open in the stroke that closed it; 0 elsewhere. Near a
+    /// dead centre gas that leaks is faster than the piston: the pressure falls back to the line's, and stays
+    /// there until the piston is the faster one, as what leaks flows in again. Where a clearance alone has the
+    /// piston beyond its dead centre nothing drifts.
     #[inline(always)]
-    fn reopened(&self, end: End, state: &GasState<S>) -> (S, S) {
+    fn reopened(&self, end: End, state: &GasState<S>, rate: S) -> S {
         let (expanding, mode) = match end {
             End::Head => (self.mode.outward, &self.mode.head_end),
             End::Crank => (S::one() - self.mode.outward, &self.mode.crank_end),
@@ -482,10 +482,14 @@ impl<S: Scalar> CylinderAt<'_, S> {
             false => mode.suction * (S::one() - expanding),
         };
         let discharge = mode.discharge * expanding;
+        let (zero, side) = (S::zero(), suction - discharge);
         let line = flagged(suction, state.open[0], state.open[1]);
-        let open = suction + discharge;
-        let refill = self.speed.abs() * REFILL * (line / state.closed).ln();
-        (open, flagged(open, refill, S::zero()))
+        let drift = self.drift.map_or(zero, |drift| drift[end as usize]);
+        let to_line = side * (line / state.closed).ln();
+        let lost = to_line.min(-side * drift).max(zero);
+        let leaks = (side * rate).min(zero);
+        let rate = side * (leaks + self.speed.abs() * REFILL * lost);
+        flagged(suction + discharge, rate, zero)
     }
 }
 

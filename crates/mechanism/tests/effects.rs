@@ -304,6 +304,25 @@ fn heat_follows_newton_and_much_of_it_keeps_the_gas_as_warm_as_the_walls() {
     );
 }
 
+/// At the end of a stroke a clearance lets the piston go beyond its ideal dead centre, or fall short of it.
+#[test]
+fn a_trace_of_heat_changes_nothing_where_a_clearance_moves_the_dead_centre() {
+    let trace = Law::HeatTransfer(HeatTransfer {
+        stanton: 1e-12,
+        wall_temperature: 1.2,
+    });
+    let plain = with_clearance(0.3e-3, 0.3e-3, 2e4);
+    let warmed = Machine {
+        effects: vec![trace.everywhere()],
+        ..plain.clone()
+    };
+    let angles = [190.0, 270.0, 350.0, 365.0, 390.0, 560.0, 750.0];
+    let [plain, warmed] = [plain, warmed].map(|machine| at_angles(machine, &angles, pressure));
+    for (plain, warmed) in plain.into_iter().zip(warmed) {
+        near(warmed, plain, 1e-8);
+    }
+}
+
 #[test]
 fn pulsation_swings_with_its_order_and_the_strokes_start_from_it() {
     let pulsation = GasPulsation {

@@ -24,11 +24,14 @@ const CREATED_BY: &str = "crosshead";
 /// Name of the values within a list, as the Parquet standard has it.
 const ELEMENT: &str = "element";
 
-/// Samples that are collected before they are encoded together (4 MiB of float32).
-const PENDING_SAMPLES: usize = 1 << 20;
+/// Samples that are collected before they are encoded together (1 MiB of float32).
+const PENDING_SAMPLES: usize = 1 << 18;
 
 /// Rows that are collected before they are encoded together.
 const PENDING_ROWS: usize = 1 << 12;
+
+/// Bytes of a page before compression: a column collects as many, and so does what compresses them.
+const PAGE_BYTES: usize = 1 << 18;
 
 /// Writes a table row by row.
 ///
@@ -182,6 +185,7 @@ fn properties(
         .set_key_value_metadata(Some(keys.collect()))
         .set_compression(Compression::ZSTD(level))
         .set_dictionary_enabled(false)
+        .set_data_page_size_limit(PAGE_BYTES)
         .set_max_row_group_row_count(Some(rows_per_group.get()));
     for column in schema.columns() {
         let name = column.name.clone();
