@@ -175,7 +175,12 @@ impl Search<'_> {
     }
 
     /// Fits a rival to the runs of `before`, from where `after` has the calibrated parameters.
-    fn fit_rival(&self, before: &Model, after: &Model, rival: &mut Tried) -> Result<(), Error> {
+    pub(crate) fn fit_rival(
+        &self,
+        before: &Model,
+        after: &Model,
+        rival: &mut Tried,
+    ) -> Result<(), Error> {
         let added = rival.candidate.added(&before.problem, &rival.values)?;
         let mut x = after.x[..before.x.len()].to_vec();
         x.resize(added.parameters.len(), 0.0);
@@ -196,12 +201,16 @@ impl Search<'_> {
 /// model leaves `least`: hardly more is left with it, of which it explains most; or, where more than noise
 /// is left anyway, it does the same and leaves not much more.
 pub(crate) fn is_rival(tried: &Tried, effect: &Evidence, least: f64) -> bool {
-    let alike = tried.likeness.is_some_and(|l| l.correlation > ALIKE);
     let near = tried.leaves() < rival(least) && tried.explains(effect) > AS_MUCH;
-    near || (alike && least > NOISE && tried.leaves() < RIVAL * least)
+    near || (tried.is_alike() && least > NOISE && tried.leaves() < RIVAL * least)
 }
 
 impl Tried {
+    /// Whether its signature is nearly that of the effect that was added.
+    pub(crate) fn is_alike(&self) -> bool {
+        self.likeness.is_some_and(|l| l.correlation > ALIKE)
+    }
+
     /// Misfit that it leaves, by its fit or as far as signatures tell, whichever is less: a fit may have
     /// ended in a local minimum.
     pub fn leaves(&self) -> f64 {

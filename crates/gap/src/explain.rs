@@ -474,23 +474,27 @@ impl Search<'_> {
                 let whole = after.problem.runs.len() == model.problem.runs.len();
                 whole && shows_in_each(&tried.candidate, &model, after)
             };
-            let (best, after) = tried.remove(tried.iter().position(shows).unwrap_or(0));
+            let (mut best, mut after) = tried.remove(tried.iter().position(shows).unwrap_or(0));
             let others = tried.into_iter().map(|(tried, _)| tried);
             if !(earns(&model, &after) && shows_in_each(&best.candidate, &model, &after)) {
                 let refused = std::iter::once(best).chain(others).collect();
                 return Ok((model, found, refused));
             }
-            let others = others.collect();
+            let mut others: Vec<Tried> = others.collect();
             let few = Model::at(few.problem, few.x, effort)?;
+            let rivals = |best: &Tried, after: &Model, others: &[Tried]| {
+                let (candidate, others) = (&best.candidate, others.to_vec());
+                search.rivals(&few, after, candidate, &best.evidence, &screened, others)
+            };
+            let mut like = rivals(&best, &after, &others)?;
+            let models = [&model, &few, &after];
+            if let Some((better, nearer)) = search.look_alike(models, &others, &like)? {
+                others.push(std::mem::replace(&mut best, better));
+                after = nearer;
+                like = rivals(&best, &after, &others)?;
+            }
             found.push(Found {
-                rivals: search.rivals(
-                    &few,
-                    &after,
-                    &best.candidate,
-                    &best.evidence,
-                    &screened,
-                    others,
-                )?,
+                rivals: like,
                 values: best.values,
                 model: Some(after.clone()),
                 by_run: best.by_run,

@@ -17,6 +17,7 @@ pub mod explain;
 pub mod journal;
 mod last_rivals;
 mod linearised;
+mod look_alike;
 pub mod mains_hum;
 mod measuring_chain;
 pub mod missing_force;
