@@ -75,31 +75,19 @@ impl Search<'_> {
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
-    use crate::journal::Journal;
-    use crate::linearised::tests::problem;
-    use crate::model::Effort;
+    use crate::linearised::tests::{candidate, effort, problem};
     use std::ops::ControlFlow;
 
     #[test]
     fn what_is_left_with_a_rival_counts_beside_all_that_was_found() {
         let problem = problem();
-        let effort = Effort {
-            held_out: Vec::new(),
-            evaluations: 40,
-            chaotic: false,
-            journal: Journal::default(),
-            found: 0,
-        };
+        let effort = effort();
         let search = Search {
             effort: &effort,
             watch: &|| ControlFlow::Continue(()),
             say: &|_, _| (),
         };
-        let all = Candidate::all(&problem);
-        let candidate = |name: &str| {
-            let mut named = all.iter().filter(|c| c.entry.name == name);
-            named.next().unwrap().clone()
-        };
+        let candidate = |name: &str| candidate(&problem, name);
         let rings = candidate("ring_friction");
         let values = [150.0, 1e-9, 0.01];
         let added = rings.added(&problem, &values).unwrap();

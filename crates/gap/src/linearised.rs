@@ -137,6 +137,9 @@ fn load(problem: &Problem, x: &[f64], library: &Candidate) -> Result<f64, Error>
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::candidate::Candidate;
+    use crate::journal::Journal;
+    use crate::model::Effort;
     use calibrate::observation::Observed;
     use calibrate::prediction::predict;
     use calibrate::{CrankMotion, Observation, Parameter};
@@ -144,6 +147,23 @@ pub(crate) mod tests {
     use serde_json::json;
     use signal::order_lines::OrderLines;
     use std::path::Path;
+
+    /// All runs of a problem fitted to, with few evaluations.
+    pub(crate) fn effort() -> Effort {
+        Effort {
+            held_out: Vec::new(),
+            evaluations: 40,
+            chaotic: false,
+            journal: Journal::default(),
+            found: 0,
+        }
+    }
+
+    /// The first candidate of an effect.
+    pub(crate) fn candidate(problem: &Problem, name: &str) -> Candidate {
+        let mut all = Candidate::all(problem).into_iter();
+        all.find(|candidate| candidate.entry.name == name).unwrap()
+    }
 
     /// The single-stage machine with a loose crosshead pin, and what it shows with a friction of 150 N.
     pub(crate) fn problem() -> Problem {

@@ -70,33 +70,20 @@ impl Search<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::Candidate;
     use crate::confusability::Likeness;
-    use crate::journal::Journal;
-    use crate::linearised::tests::problem;
-    use crate::model::Effort;
+    use crate::linearised::tests::{candidate, effort, problem};
     use std::ops::ControlFlow;
 
     #[test]
     fn what_the_screening_passed_over_is_fitted_where_it_is_like_the_effect() {
         let problem = problem();
-        let effort = Effort {
-            held_out: Vec::new(),
-            evaluations: 40,
-            chaotic: false,
-            journal: Journal::default(),
-            found: 0,
-        };
+        let effort = effort();
         let search = Search {
             effort: &effort,
             watch: &|| ControlFlow::Continue(()),
             say: &|_, _| (),
         };
-        let all = Candidate::all(&problem);
-        let candidate = |name: &str| {
-            let mut named = all.iter().filter(|c| c.entry.name == name);
-            named.next().unwrap().clone()
-        };
+        let candidate = |name: &str| candidate(&problem, name);
         let before = Model::at(problem.clone(), vec![0.0], &effort).unwrap();
         let force = candidate("misalignment");
         let added = force.added(&problem, &[100.0, 0.0, 50.0, 0.0]).unwrap();
