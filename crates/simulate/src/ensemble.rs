@@ -9,17 +9,22 @@ use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};
 
 /// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
-/// same bits.
-pub fn simulate_together(asked: &[Asked]) -> Vec<Result<Record, Error>> {
-    let mut records: Vec<_> = asked.iter().map(|_| None).collect();
+/// same bits. Each record becomes what `keep` makes of it as soon as it is there, so that none waits
+/// for the others at its full size; `keep` is told which of `asked` it is of.
+pub fn simulate_together<T>(
+    asked: &[Asked],
+    mut keep: impl FnMut(usize, Result<Record, Error>) -> T,
+) -> Vec<T> {
+    let mut kept: Vec<_> = asked.iter().map(|_| None).collect();
+    let mut file = |index: usize, record| kept[index] = Some(keep(index, record));
     for alike in of_one_build(asked) {
         in_lanes(Group {
             asked,
             alike: &alike,
-            records: &mut records,
+            file: &mut file,
         });
     }
-    records.into_iter().flatten().collect()
+    kept.into_iter().flatten().collect()
 }
 
 fn start(asked: Asked) -> Result<Task, Error> {
@@ -40,7 +45,8 @@ fn of_one_build(asked: &[Asked]) -> Vec<Vec<usize>> {
     groups.into_iter().map(|(_, group)| group).collect()
 }
 
-type Records = [Option<Result<Record, Error>>];
+/// Takes the record of who has arrived, or why it failed.
+type File<'f> = dyn FnMut(usize, Result<Record, Error>) + 'f;
 
 /// A record in a lane.
 struct Passenger<'a> {
@@ -71,22 +77,22 @@ impl<'a> Passenger<'a> {
     }
 
     /// At the end of a course; none where that was the last.
-    fn go_on(self, records: &mut Records) -> Option<Self> {
-        settle(self.index, Self::board(self.index, self.task), records)
+    fn go_on(self, file: &mut File) -> Option<Self> {
+        settle(self.index, Self::board(self.index, self.task), file)
     }
 }
 
 /// Cases that can share a coach.
-struct Group<'a, 'b> {
+struct Group<'a, 'b, 'f> {
     asked: &'b [Asked<'a>],
     alike: &'b [usize],
-    records: &'b mut Records,
+    file: &'b mut File<'f>,
 }
 
-impl InLanes for Group<'_, '_> {
+impl InLanes for Group<'_, '_, '_> {
     type Output = ();
     fn run<L: Lanes<W>, const W: usize>(self) {
-        travel::<L, W>(self.asked, self.alike, self.records);
+        travel::<L, W>(self.asked, self.alike, self.file);
     }
 }
 
@@ -97,27 +103,27 @@ struct Coach<'a, L: Scalar, const W: usize> {
     wide: SideBySide<L>,
 }
 
-fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], records: &mut Records) {
+fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &mut File) {
     let mut queue = alike.iter().copied();
     let mut passengers = [const { None }; W];
-    let mut next = |records: &mut Records| {
+    let mut next = |file: &mut File| {
         queue.find_map(|index| {
             let boarded = start(asked[index]).and_then(|task| Passenger::board(index, task));
-            settle(index, boarded, records)
+            settle(index, boarded, file)
         })
     };
     for place in &mut passengers {
-        *place = next(records);
+        *place = next(file);
     }
     let Some(mut coach) = Coach::<L, W>::new(passengers) else {
         return;
     };
     while coach.count() > 1 {
-        coach.step(records);
+        coach.step(file);
         let mut boarded = false;
         for lane in 0..W {
             if coach.passengers[lane].is_none()
-                && let Some(passenger) = next(records)
+                && let Some(passenger) = next(file)
             {
                 coach.ensemble.place(lane, passenger.task.run.integrator());
                 coach.passengers[lane] = Some(passenger);
@@ -136,7 +142,7 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], records
         }) = passenger.take()
         {
             coach.ensemble.give(lane, false, task.run.integrator_mut());
-            records[index] = Some(task.finish());
+            file(index, task.finish());
         }
     }
 }
@@ -145,12 +151,12 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], records
 fn settle<'a>(
     index: usize,
     boarded: Result<Result<Passenger<'a>, Record>, Error>,
-    records: &mut Records,
+    file: &mut File,
 ) -> Option<Passenger<'a>> {
     match boarded {
         Ok(Ok(passenger)) => return Some(passenger),
-        Ok(Err(record)) => records[index] = Some(Ok(record)),
-        Err(error) => records[index] = Some(Err(error)),
+        Ok(Err(record)) => file(index, Ok(record)),
+        Err(error) => file(index, Err(error)),
     }
     None
 }
@@ -184,7 +190,7 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
     }
 
     /// One step of everybody. Who has arrived leaves.
-    fn step(&mut self, filed: &mut Records) {
+    fn step(&mut self, file: &mut File) {
         let mut travellers = [const { None }; W];
         let mut samplers = [const { None }; W];
         for (lane, passenger) in self.passengers.iter_mut().enumerate() {
@@ -217,9 +223,9 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
             }
             match result.and_then(|()| passenger.task.propose()) {
                 Ok(Some(trial)) => passenger.trial = trial,
-                Ok(None) => *place = place.take().and_then(|p| p.go_on(filed)),
+                Ok(None) => *place = place.take().and_then(|p| p.go_on(file)),
                 Err(error) => {
-                    filed[passenger.index] = Some(Err(error.into()));
+                    file(passenger.index, Err(error.into()));
                     *place = None;
                 }
             }

@@ -16,11 +16,7 @@ pub fn simulate_cases(cases: &[Case]) -> Vec<Result<Recording, Failure>> {
             settings: &case.settings,
         })
         .collect();
-    let records = simulate_together(&asked);
-    let cases = cases.iter().zip(records);
-    cases
-        .map(|(case, record)| recording(case, &record?))
-        .collect()
+    simulate_together(&asked, |i, record| recording(&cases[i], &record?))
 }
 
 fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
