@@ -450,7 +450,8 @@ impl<S: Scalar> CylinderAt<'_, S> {
     /// the drift has opened again.
     #[inline(always)]
     fn drifts(&self, chambers: [(&GasState<S>, Option<ChamberAt<S>>); 2]) -> [S; 2] {
-        if self.drift.is_none() {
+        // The first is known to the compiler where a machine is plain.
+        if !self.effects.any() || self.drift.is_none() {
             return [S::zero(); 2];
         }
         [End::Head, End::Crank].map(|end| {

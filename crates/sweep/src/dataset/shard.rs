@@ -14,7 +14,7 @@ use crate::split::Split;
 use crate::sweep_file::Format;
 use crate::{Error, Plan};
 
-/// Samples of one channel and row group, all rows together: 4 MiB. A file of each split has one under way.
+/// Samples of a row group, all channels and rows together: 4 MiB. A file of each split has one under way.
 const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// The files of a shard while its cases come in.
