@@ -196,7 +196,7 @@ impl Candidate {
     }
 
     /// Usual values of the parameters, those of one item after those of another.
-    fn usual(&self) -> Vec<f64> {
+    pub(crate) fn usual(&self) -> Vec<f64> {
         let of_item = self.entry.parameters.iter().map(|p| p.start);
         let items = self.ends.len().max(1);
         of_item.collect::<Vec<f64>>().repeat(items)

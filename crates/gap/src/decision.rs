@@ -59,11 +59,15 @@ fn closes(share: f64, [before, after]: [f64; 2]) -> bool {
     after - 1.0 <= (1.0 - share) * (before - 1.0)
 }
 
+/// Whether most of the distance to the noise is gone, from the misfit before to that after.
+pub(crate) fn closes_most(misfit: [f64; 2]) -> bool {
+    closes(SURE, misfit)
+}
+
 impl Evidence {
     /// Whether the effect by itself closes most of the gap that it was added for.
     pub(crate) fn is_sure(&self) -> bool {
-        let closes = |misfit| closes(SURE, misfit);
-        closes(self.misfit) && self.heldout_misfit.is_none_or(closes)
+        closes_most(self.misfit) && self.heldout_misfit.is_none_or(closes_most)
     }
 }
 

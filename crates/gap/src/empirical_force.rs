@@ -168,7 +168,7 @@ pub fn empirical_force(
         if best.is_some() && !effort.goes_on_for_force() {
             break;
         }
-        let Some(dense) = search.dense(&few(model, effort), &library)? else {
+        let Some(dense) = search.dense(&few(model, effort)?, &library)? else {
             continue;
         };
         let better = |(_, best): &(Candidate, Dense)| dense.model.fitted < best.model.fitted;

@@ -462,10 +462,23 @@ impl Search<'_> {
             }
             let search = Search { effort, ..*self };
             (self.say)("screening", model.fitted);
-            let few = few(&model, effort);
+            let few = few(&model, effort)?;
             let candidates = candidates(&model.problem);
             let screened = screen(&few, candidates, effort, self.watch)?;
-            let mut tried = search.refit(&model, screened.clone())?;
+            let rough = search.roughly(&few, screened.clone())?;
+            let goes_on = effort.goes_on();
+            if found.len() + 1 < most
+                && let Some((pair, both)) = search.beside_wear(&model, &few, &rough, &screened)?
+            {
+                found.extend(pair);
+                model = both;
+                continue;
+            }
+            let rough = match goes_on {
+                true => search.further(&few, rough)?,
+                false => rough,
+            };
+            let mut tried = search.refit(&model, &few, rough)?;
             if tried.is_empty() {
                 break;
             }
@@ -481,7 +494,6 @@ impl Search<'_> {
                 return Ok((model, found, refused));
             }
             let mut others: Vec<Tried> = others.collect();
-            let few = Model::at(few.problem, few.x, effort)?;
             let rivals = |best: &Tried, after: &Model, others: &[Tried]| {
                 let (candidate, others) = (&best.candidate, others.to_vec());
                 search.rivals(&few, after, candidate, &best.evidence, &screened, others)

@@ -8,6 +8,7 @@
 //!                              └────────────── until the noise is reached <────────────┘
 //! ```
 
+mod beside_wear;
 pub mod candidate;
 mod confusability;
 pub mod decision;

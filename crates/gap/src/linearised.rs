@@ -144,7 +144,7 @@ pub(crate) mod tests {
     use calibrate::prediction::predict;
     use calibrate::{CrankMotion, Observation, Parameter};
     use input::effects::entry;
-    use serde_json::json;
+    use serde_json::{Value, json};
     use signal::order_lines::OrderLines;
     use std::path::Path;
 
@@ -167,6 +167,11 @@ pub(crate) mod tests {
 
     /// The single-stage machine with a loose crosshead pin, and what it shows with a friction of 150 N.
     pub(crate) fn problem() -> Problem {
+        problem_of(json!([{"empirical_force": {"velocity_sign": "-150 N"}}]))
+    }
+
+    /// The same machine, and what it shows with these effects.
+    pub(crate) fn problem_of(effects: Value) -> Problem {
         let path =
             Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
         let machine = input::machine_file::read(&path).unwrap();
@@ -182,7 +187,7 @@ pub(crate) mod tests {
             meter: calibrate::meter::Meter::default(),
         };
         let mut truth = problem.clone();
-        truth.tree["effects"] = json!([{"empirical_force": {"velocity_sign": "-150 N"}}]);
+        truth.tree["effects"] = effects;
         for rpm in [400.0, 560.0] {
             let observed = |lines| Observed {
                 column: "crosshead_acceleration_m_s2".into(),

@@ -24,7 +24,9 @@ const BETTER: f64 = 0.95;
 /// and one that goes on from another.
 const BUDGET: u64 = 24_000_000;
 /// By how much more it may cost for each effect that was found, so that what is left has its chance too.
-const FOR_ANOTHER: u64 = BUDGET / 2;
+const FOR_ANOTHER: u64 = BUDGET * 3 / 4;
+/// By how much more where another effect is looked for beside wear.
+const BESIDE_WEAR: u64 = BUDGET / 2;
 /// And by how much more before the search of a force of no name goes into its second and third attempts.
 const FOR_FORCE: u64 = BUDGET / 2;
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
@@ -122,6 +124,11 @@ impl Effort {
     /// Whether there is still something left of the budget.
     pub(crate) fn goes_on(&self) -> bool {
         self.journal.spent() < self.budget()
+    }
+
+    /// The same for the search of another effect beside wear.
+    pub(crate) fn goes_on_beside_wear(&self) -> bool {
+        self.journal.spent() < self.budget() + BESIDE_WEAR
     }
 
     /// The same for the search of a force of no name.

@@ -72,9 +72,8 @@ impl Search<'_> {
         let Some((best, after)) = tried.next().filter(|(_, after)| enough(after)) else {
             return Ok(None);
         };
-        let few = few(start, self.effort);
+        let few = few(start, self.effort)?;
         let screened = screen(&few, candidates, self.effort, self.watch)?;
-        let few = Model::at(few.problem, few.x, self.effort)?;
         let others = tried.map(|(tried, _)| tried).collect();
         let Tried {
             candidate,
@@ -102,7 +101,7 @@ impl Search<'_> {
         candidates: &[Candidate],
     ) -> Result<Vec<Matched>, Error> {
         let x = &with_force.x[..start.x.len()];
-        let runs = &few(start, self.effort).problem.runs;
+        let runs = &few(start, self.effort)?.problem.runs;
         let without = force(&start.problem, x, runs)?;
         let with = force(&with_force.problem, &with_force.x, runs)?;
         let size = squares(&with, &without).sqrt();

@@ -1,12 +1,12 @@
 //! The most promising candidates, fitted together with everything else.
 
 use crate::candidate::Candidate;
-use crate::decision::{NOISE, RIVAL, evidence};
+use crate::decision::{NOISE, RIVAL, closes_most, evidence};
 use crate::error::Error;
 use crate::explain::{Search, Tried, effects};
 use crate::model::{Effort, Model};
 use crate::screening::Screened;
-use calibrate::Problem;
+use calibrate::{Observation, Problem};
 use rayon::prelude::*;
 
 /// Candidates that are fitted, of those that were screened: the linear score may be wrong.
@@ -37,13 +37,13 @@ impl Search<'_> {
         Model::fit(problem, start, &effort, self.watch)
     }
 
-    /// The most promising candidates, fitted together with everything else, the best first.
-    pub(crate) fn refit(
+    /// The most promising candidates, each fitted to `few` runs together with everything else, the best
+    /// first.
+    pub(crate) fn roughly(
         &self,
-        model: &Model,
+        few: &Model,
         screened: Vec<Screened>,
-    ) -> Result<Vec<(Tried, Model)>, Error> {
-        let few = few(model, self.effort);
+    ) -> Result<Vec<Rough>, Error> {
         let mut rough: Vec<Rough> = Vec::new();
         let mut chosen = screened.into_iter().take(FITTED).peekable();
         while chosen.peek().is_some() {
@@ -56,24 +56,47 @@ impl Search<'_> {
             let near = near.map(|i| rough[i].model.clone());
             let fitted = together
                 .into_par_iter()
-                .map(|screened| self.candidate(&few, &screened, near.as_ref()));
+                .map(|screened| self.candidate(few, &screened, near.as_ref()));
             let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
             rough.extend(fitted.into_iter().flatten());
         }
         sort(&mut rough);
-        let missed = rough.first().is_some_and(|best| best.model.fitted > NOISE);
-        if missed && self.effort.goes_on() {
-            let later = rough.split_off(rough.len().min(DEEPER));
-            let deeper = rough.into_par_iter().map(|rough| {
-                let model = self.deeper(rough.model)?;
-                Ok(Rough { model, ..rough })
-            });
-            rough = deeper.collect::<Result<Vec<_>, Error>>()?;
-            rough.extend(later);
-            sort(&mut rough);
+        Ok(rough)
+    }
+
+    /// The same, the best few searched further where none has reached the noise: the best alone where it closes
+    /// most of the gap, for what is left then is likely another effect's.
+    pub(crate) fn further(&self, few: &Model, mut rough: Vec<Rough>) -> Result<Vec<Rough>, Error> {
+        let Some(best) = rough.first().map(|best| best.model.fitted) else {
+            return Ok(rough);
+        };
+        if best <= NOISE {
+            return Ok(rough);
         }
+        let deeper = match closes_most([few.fitted, best]) {
+            true => 1,
+            false => DEEPER,
+        };
+        let later = rough.split_off(rough.len().min(deeper));
+        let deeper = rough.into_par_iter().map(|rough| {
+            let model = self.deeper(rough.model)?;
+            Ok(Rough { model, ..rough })
+        });
+        rough = deeper.collect::<Result<Vec<_>, Error>>()?;
+        rough.extend(later);
+        sort(&mut rough);
+        Ok(rough)
+    }
+
+    /// The best of the candidates that were fitted to the runs of `few`, fitted to all runs of `model`, the
+    /// best first.
+    pub(crate) fn refit(
+        &self,
+        model: &Model,
+        few: &Model,
+        rough: Vec<Rough>,
+    ) -> Result<Vec<(Tried, Model)>, Error> {
         let least = rough.first().map_or(f64::NAN, |best| best.model.fitted);
-        let before = Model::at(few.problem.clone(), few.x.clone(), self.effort)?;
         let mut tried = Vec::new();
         for (i, rough) in rough.into_iter().enumerate() {
             let Rough {
@@ -89,7 +112,7 @@ impl Search<'_> {
                 let after = Model::fit(added, &fitted.x, self.effort, self.watch)?;
                 (model, after)
             } else {
-                (&before, fitted)
+                (few, fitted)
             };
             let evidence = evidence(before, &after, score);
             tried.push((
@@ -176,12 +199,12 @@ impl Search<'_> {
 }
 
 /// A candidate fitted to a few runs.
-struct Rough {
-    candidate: Candidate,
-    score: f64,
+pub(crate) struct Rough {
+    pub candidate: Candidate,
+    pub score: f64,
     /// Its parameters where their coordinates are 0, SI.
-    values: Vec<f64>,
-    model: Model,
+    pub values: Vec<f64>,
+    pub model: Model,
 }
 
 /// The best first.
@@ -190,7 +213,10 @@ fn sort(rough: &mut [Rough]) {
 }
 
 /// The model with a few of the runs that it is fitted to, of speeds as different as there are.
-pub(crate) fn few(model: &Model, effort: &Effort) -> Model {
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub(crate) fn few(model: &Model, effort: &Effort) -> Result<Model, Error> {
     let fitted = |id: &str| !effort.held_out.iter().any(|held| held == id);
     let mut runs: Vec<_> = model
         .problem
@@ -205,10 +231,6 @@ pub(crate) fn few(model: &Model, effort: &Effort) -> Model {
         .filter_map(|i| runs.get(i * last / parts))
         .map(|r| r.id.as_str())
         .collect();
-    Model {
-        problem: model
-            .problem
-            .with_runs(|run| chosen.contains(&run.id.as_str())),
-        ..model.clone()
-    }
+    let chosen = |run: &Observation| chosen.contains(&run.id.as_str());
+    Model::at(model.problem.with_runs(chosen), model.x.clone(), effort)
 }

@@ -1,0 +1,230 @@
+//! Another effect beside wear.
+//!
+//! Where a joint has more play than was believed, its blows fall elsewhere in the revolution. Without that no
+//! effect that changes the blows comes near to the recordings, and the play without the effect does not
+//! either: to add one after the other leads nowhere. Where no candidate by itself closes most of the gap,
+//! the most promising ones are fitted again in machines with more play.
+
+use crate::candidate::Candidate;
+use crate::decision::{closes_most, earns, evidence};
+use crate::error::Error;
+use crate::explain::{Found, Search, first_item, without};
+use crate::model::Model;
+use crate::refit::{Rough, few};
+use crate::screening::Screened;
+use calibrate::Problem;
+use rayon::prelude::*;
+
+/// The effect that wear is.
+const WEAR: &str = "extra_clearance";
+/// The play that is tried, over the effect's usual one. From each to the next is about as far as a descent goes.
+const TIMES: [f64; 5] = [1.2, 1.8, 2.7, 4.0, 6.0];
+/// In how many joints, the most promising first.
+const JOINTS: usize = 2;
+/// How many candidates are fitted beside it.
+const BESIDE: usize = 4;
+/// What wear and another effect may hide leaves more than this.
+const LEFT: f64 = 3.0;
+
+/// A candidate and the values at which a fit starts, SI.
+type Start = (Candidate, Vec<f64>);
+
+impl Search<'_> {
+    /// Wear and another effect that together close most of the gap of `model`, each of which earns its place
+    /// beside the other; and the model with both. They are looked for where none of `rough`, which were
+    /// fitted to the runs of `few`, does as much by itself.
+    pub(crate) fn beside_wear(
+        &self,
+        model: &Model,
+        few: &Model,
+        rough: &[Rough],
+        screened: &[Screened],
+    ) -> Result<Option<(Vec<Found>, Model)>, Error> {
+        let is_hidden = |best: &Rough| {
+            best.model.fitted > LEFT && !closes_most([few.fitted, best.model.fitted])
+        };
+        if !rough.first().is_some_and(is_hidden) {
+            return Ok(None);
+        }
+        let Some((pair, near)) = self.worn(few, rough, screened)? else {
+            return Ok(None);
+        };
+        let mut with = model.problem.clone();
+        for (candidate, values) in &pair {
+            with = candidate.added(&with, values)?;
+        }
+        let after = Model::fit(with, &near.x, self.effort, self.watch)?;
+        let found = self.each(
+            model,
+            &after,
+            pair.map(|(candidate, _)| candidate),
+            screened,
+        )?;
+        Ok(found.map(|found| (found, after)))
+    }
+
+    /// The least play with which an effect beside it closes most of the gap of `few`, that effect, and the
+    /// model with both.
+    fn worn(
+        &self,
+        few: &Model,
+        rough: &[Rough],
+        screened: &[Screened],
+    ) -> Result<Option<([Start; 2], Model)>, Error> {
+        let is_wear = |candidate: &&Candidate| candidate.entry.name == WEAR;
+        let others = rough.iter().filter(|rough| !is_wear(&&rough.candidate));
+        let others: Vec<&Rough> = others.take(BESIDE).collect();
+        let joints = screened.iter().map(|s| &s.candidate).filter(is_wear);
+        for wear in joints.take(JOINTS) {
+            for times in TIMES {
+                if !self.effort.goes_on_beside_wear() {
+                    return Ok(None);
+                }
+                let play: Vec<f64> = wear.usual().iter().map(|usual| times * usual).collect();
+                let worn = wear.added(&few.problem, &play)?;
+                let beside = others.par_iter().map(|other| {
+                    let label = other.candidate.label();
+                    (self.say)(&format!("{label} beside {}", wear.label()), few.fitted);
+                    self.from_nominal(other.candidate.added(&worn, &other.values)?)
+                });
+                let beside = beside.collect::<Result<Vec<_>, Error>>()?;
+                let fitted = others.iter().zip(beside);
+                let fitted = fitted.filter_map(|(other, model)| Some((other, model?)));
+                let best = fitted.min_by(|(_, a), (_, b)| a.criterion().total_cmp(&b.criterion()));
+                if let Some((other, model)) = best
+                    && closes_most([few.fitted, model.fitted])
+                {
+                    let other = (other.candidate.clone(), other.values.clone());
+                    return Ok(Some(([(wear.clone(), play), other], model)));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// The problem's machine fitted from where it is nominal: without what is missing the calibration has gone
+    /// astray. None where it cannot be simulated.
+    fn from_nominal(&self, problem: Problem) -> Result<Option<Model>, Error> {
+        let nominal = vec![0.0; problem.parameters.len()];
+        match self.rough(problem, &nominal) {
+            Err(Error::Fit(_)) => Ok(None),
+            model => model.map(Some),
+        }
+    }
+
+    /// Two effects of `after` that `before` has not, each with what speaks for it beside the other; none
+    /// where one does not earn its place.
+    fn each(
+        &self,
+        before: &Model,
+        after: &Model,
+        pair: [Candidate; 2],
+        screened: &[Screened],
+    ) -> Result<Option<Vec<Found>>, Error> {
+        let others = screened.iter().filter(|s| !pair.contains(&s.candidate));
+        let others: Vec<Screened> = others.cloned().collect();
+        let score = |candidate: &Candidate| {
+            let screened = screened.iter().find(|s| s.candidate == *candidate);
+            screened.map_or(0.0, |screened| screened.score)
+        };
+        let mut found: Vec<Found> = Vec::new();
+        for candidate in pair.clone() {
+            let index = first_item(&before.problem, &found, found.len());
+            found.push(Found {
+                values: candidate.values(after, index),
+                evidence: evidence(before, after, score(&candidate)),
+                candidate,
+                model: Some(after.clone()),
+                by_run: after.misfits(),
+                pressure_rms: after.pressure_rms()?,
+                gap: None,
+                rivals: Vec::new(),
+            });
+        }
+        for (i, candidate) in pair.iter().enumerate() {
+            let (problem, mut x) = without(&before.problem, after, &found, i)?;
+            let alone = Model::fit(problem, &x, self.effort, self.watch)?;
+            if !earns(&alone, after) {
+                return Ok(None);
+            }
+            let evidence = evidence(&alone, after, score(candidate));
+            // The same machine, this effect the last.
+            let with = candidate.added(&alone.problem, &found[i].values)?;
+            x.resize(with.parameters.len(), 0.0);
+            let with = Model::at(with, x, self.effort)?;
+            let few = few(&alone, self.effort)?;
+            found[i].rivals =
+                self.rivals(&few, &with, candidate, &evidence, &others, Vec::new())?;
+            found[i].evidence = evidence;
+        }
+        if let Some(last) = found.last_mut() {
+            last.gap = Some(after.gap());
+        }
+        Ok(Some(found))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linearised::tests::{effort, problem_of};
+    use serde_json::json;
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn an_effect_that_shows_in_a_worn_joint_alone_is_found_with_the_wear() {
+        let mut problem = problem_of(json!([
+            {"bearing_ovality": {"joint": "small_end", "part": "journal", "amplitude": "0.05 mm",
+                "direction": "1 rad"}},
+            {"extra_clearance": {"joint": "small_end", "clearance": "0.17 mm"}},
+        ]));
+        problem.runs.truncate(1);
+        let effort = effort();
+        let search = Search {
+            effort: &effort,
+            watch: &|| ControlFlow::Continue(()),
+            say: &|_, _| (),
+        };
+        let candidate = |label: &str| {
+            let mut all = Candidate::all(&problem).into_iter();
+            all.find(|candidate| candidate.label() == label).unwrap()
+        };
+        let ovality = candidate("bearing_ovality small_end journal");
+        let pair = [candidate("extra_clearance small_end"), ovality.clone()];
+        let screened = pair.clone().map(|candidate| Screened {
+            candidate,
+            score: 0.5,
+            starts: Vec::new(),
+        });
+        let model = Model::at(problem.clone(), vec![0.0], &effort).unwrap();
+        let values = ovality.usual();
+        let added = ovality.added(&problem, &values).unwrap();
+        let coordinates = added.parameters.len();
+        let mut rough = [Rough {
+            candidate: ovality,
+            score: 0.5,
+            values,
+            model: Model::at(added, vec![0.0; coordinates], &effort).unwrap(),
+        }];
+        let beside = |rough: &[Rough]| {
+            search
+                .beside_wear(&model, &model, rough, &screened)
+                .unwrap()
+        };
+        let (found, with) = beside(&rough).unwrap();
+        assert!(with.fitted < 1e-2, "{}", with.fitted);
+        for (found, (candidate, truth)) in found.iter().zip(pair.iter().zip([1.7e-4, 5e-5])) {
+            assert_eq!(found.candidate, *candidate);
+            assert!(
+                (found.values[0] / truth - 1.0).abs() < 1e-3,
+                "{:?}",
+                found.values
+            );
+            // What is left without it, where the other one is there.
+            assert!(found.evidence.is_sure() && found.evidence.misfit[0] != model.fitted);
+        }
+        // One that does as much by itself needs no wear.
+        rough[0].model.fitted = 0.1 * model.fitted;
+        assert!(beside(&rough).is_none());
+    }
+}
