@@ -7,12 +7,11 @@
 
 use crate::candidate::Candidate;
 use crate::decision::{closes_most, earns, evidence};
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Found, Search, first_item, without};
 use crate::model::Model;
 use crate::refit::{Rough, few};
 use crate::screening::Screened;
-use calibrate::Problem;
 use rayon::prelude::*;
 
 /// The effect that wear is.
@@ -53,7 +52,9 @@ impl Search<'_> {
         for (candidate, values) in &pair {
             with = candidate.added(&with, values)?;
         }
-        let after = Model::fit(with, &near.x, self.effort, self.watch)?;
+        let Some(after) = possible(Model::fit(with, &near.x, self.effort, self.watch))? else {
+            return Ok(None);
+        };
         let found = self.each(
             model,
             &after,
@@ -85,7 +86,10 @@ impl Search<'_> {
                 let beside = others.par_iter().map(|other| {
                     let label = other.candidate.label();
                     (self.say)(&format!("{label} beside {}", wear.label()), few.fitted);
-                    self.from_nominal(other.candidate.added(&worn, &other.values)?)
+                    // Without what is missing the calibration has gone astray.
+                    let with = other.candidate.added(&worn, &other.values)?;
+                    let nominal = vec![0.0; with.parameters.len()];
+                    possible(self.rough(with, &nominal))
                 });
                 let beside = beside.collect::<Result<Vec<_>, Error>>()?;
                 let fitted = others.iter().zip(beside);
@@ -100,16 +104,6 @@ impl Search<'_> {
             }
         }
         Ok(None)
-    }
-
-    /// The problem's machine fitted from where it is nominal: without what is missing the calibration has gone
-    /// astray. None where it cannot be simulated.
-    fn from_nominal(&self, problem: Problem) -> Result<Option<Model>, Error> {
-        let nominal = vec![0.0; problem.parameters.len()];
-        match self.rough(problem, &nominal) {
-            Err(Error::Fit(_)) => Ok(None),
-            model => model.map(Some),
-        }
     }
 
     /// Two effects of `after` that `before` has not, each with what speaks for it beside the other; none
@@ -143,10 +137,10 @@ impl Search<'_> {
         }
         for (i, candidate) in pair.iter().enumerate() {
             let (problem, mut x) = without(&before.problem, after, &found, i)?;
-            let alone = Model::fit(problem, &x, self.effort, self.watch)?;
-            if !earns(&alone, after) {
+            let alone = possible(Model::fit(problem, &x, self.effort, self.watch))?;
+            let Some(alone) = alone.filter(|alone| earns(alone, after)) else {
                 return Ok(None);
-            }
+            };
             let evidence = evidence(&alone, after, score(candidate));
             // The same machine, this effect the last.
             let with = candidate.added(&alone.problem, &found[i].values)?;

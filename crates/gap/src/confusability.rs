@@ -21,7 +21,7 @@
 
 use crate::candidate::Candidate;
 use crate::decision::{Evidence, NOISE, RIVAL, evidence, rival};
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Search, Tried, effects};
 use crate::journal::Finished;
 use crate::model::Model;
@@ -184,10 +184,8 @@ impl Search<'_> {
         let added = rival.candidate.added(&before.problem, &rival.values)?;
         let mut x = after.x[..before.x.len()].to_vec();
         x.resize(added.parameters.len(), 0.0);
-        let model = match self.rough(added, &x) {
-            // A descent may end where the machine cannot be simulated.
-            Err(Error::Fit(_)) => return Ok(()),
-            model => model?,
+        let Some(model) = possible(self.rough(added, &x))? else {
+            return Ok(());
         };
         rival.values = rival.candidate.values(&model, effects(&before.problem));
         rival.evidence = evidence(before, &model, rival.evidence.score);

@@ -24,3 +24,11 @@ pub enum Error {
     #[error("stopped before an explanation was found; the same command goes on from there")]
     Stopped,
 }
+
+/// What a fit found; none where it led to a machine that cannot be simulated.
+pub(crate) fn possible<T>(fit: Result<T, Error>) -> Result<Option<T>, Error> {
+    match fit {
+        Err(Error::Fit(_)) => Ok(None),
+        found => found.map(Some),
+    }
+}

@@ -4,7 +4,7 @@ use crate::candidate::Candidate;
 use crate::confusability::Likeness;
 use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, verdict};
 use crate::empirical_force::WithForce;
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::journal::Finished;
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
@@ -268,10 +268,8 @@ impl Search<'_> {
                 with = gas.candidate.added(&with, &gas.values)?;
             }
             let start = vec![0.0; with.parameters.len()];
-            match self.rough(with, &start) {
-                Err(Error::Fit(_)) => Ok(f64::INFINITY),
-                model => Ok(model?.fitted),
-            }
+            let model = possible(self.rough(with, &start))?;
+            Ok(model.map_or(f64::INFINITY, |model| model.fitted))
         };
         let mut least = None;
         for i in 0..found.len() {
@@ -359,14 +357,15 @@ impl Search<'_> {
             let label = found[i].candidate.label();
             (self.say)(&format!("without {label}"), model.fitted);
             let (without, x) = without(problem, &model, &found, i)?;
-            let without = Model::fit(without, &x, self.effort, self.watch)?;
-            if earns(&without, &model) {
-                i += 1;
-            } else {
-                found.remove(i);
-                // What later ones were left with was with this one.
-                found[i..].iter_mut().for_each(|later| later.gap = None);
-                model = without;
+            let without = possible(Model::fit(without, &x, self.effort, self.watch))?;
+            match without.filter(|without| !earns(without, &model)) {
+                None => i += 1,
+                Some(without) => {
+                    found.remove(i);
+                    // What later ones were left with was with this one.
+                    found[i..].iter_mut().for_each(|later| later.gap = None);
+                    model = without;
+                }
             }
         }
         Ok((model, found))

@@ -5,7 +5,7 @@
 
 use crate::confusability::is_rival;
 use crate::decision::evidence;
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Found, Search, Tried, effects, without};
 use crate::model::Model;
 use calibrate::Problem;
@@ -53,10 +53,8 @@ impl Search<'_> {
             return Ok(None);
         };
         x.resize(with.parameters.len(), 0.0);
-        let after = match self.rough(with, &x) {
-            // A descent may end where the machine cannot be simulated.
-            Err(Error::Fit(_)) => return Ok(None),
-            after => after?,
+        let Some(after) = possible(self.rough(with, &x))? else {
+            return Ok(None);
         };
         let beside = evidence(&before, model, found[which].evidence.score);
         let rival = Tried {

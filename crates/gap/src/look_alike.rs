@@ -4,7 +4,7 @@
 //! have their chance where it leaves more than the noise.
 
 use crate::decision::{earns, evidence};
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Search, Tried, effects};
 use crate::model::Model;
 use crate::replication::shows_in_each;
@@ -49,7 +49,9 @@ impl Search<'_> {
             let added = rival.candidate.added(&before.problem, &rival.values)?;
             let mut x = rough.x[..before.x.len()].to_vec();
             x.resize(added.parameters.len(), 0.0);
-            let model = Model::fit(added, &x, self.effort, self.watch)?;
+            let Some(model) = possible(Model::fit(added, &x, self.effort, self.watch))? else {
+                continue;
+            };
             let holds = earns(before, &model) && shows_in_each(&rival.candidate, before, &model);
             if holds && model.criterion() < after.criterion() {
                 let tried = Tried {

@@ -8,7 +8,7 @@
 
 use crate::candidate::Candidate;
 use crate::decision::evidence;
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Found, Search, Tried, effects};
 use crate::missing_force::missing_force;
 use crate::model::Model;
@@ -60,11 +60,8 @@ impl Search<'_> {
             let mut x = with_force.x[..start.x.len()].to_vec();
             let added = matched.candidate.added(&start.problem, &matched.values)?;
             x.resize(added.parameters.len(), 0.0);
-            match Model::fit(added, &x, self.effort, self.watch) {
-                Ok(after) => tried.push((matched.tried(start, &after), after)),
-                // A descent may end where the machine cannot be simulated.
-                Err(Error::Fit(_)) => {}
-                Err(error) => return Err(error),
+            if let Some(after) = possible(Model::fit(added, &x, self.effort, self.watch))? {
+                tried.push((matched.tried(start, &after), after));
             }
         }
         tried.sort_by(|(_, a), (_, b)| a.criterion().total_cmp(&b.criterion()));

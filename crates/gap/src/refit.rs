@@ -2,7 +2,7 @@
 
 use crate::candidate::Candidate;
 use crate::decision::{NOISE, RIVAL, closes_most, evidence};
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::explain::{Search, Tried, effects};
 use crate::model::{Effort, Model};
 use crate::screening::Screened;
@@ -106,11 +106,13 @@ impl Search<'_> {
                 model: fitted,
             } = rough;
             let close = fitted.fitted < RIVAL * least.max(1.0);
-            let (before, after) = if i == 0 || (i < FINAL && close) {
+            let (before, after) = if tried.is_empty() || (i < FINAL && close) {
                 (self.say)(&candidate.label(), fitted.fitted);
                 let added = candidate.added(&model.problem, &values)?;
-                let after = Model::fit(added, &fitted.x, self.effort, self.watch)?;
-                (model, after)
+                match possible(Model::fit(added, &fitted.x, self.effort, self.watch))? {
+                    Some(after) => (model, after),
+                    None => continue,
+                }
             } else {
                 (few, fitted)
             };
@@ -139,11 +141,11 @@ impl Search<'_> {
     /// is wrong.
     fn deeper(&self, model: Model) -> Result<Model, Error> {
         (self.say)("searching further", model.fitted);
-        match self.searched(&model.problem, Some(model.x.clone()), SEARCH) {
-            // Where the search starts, the machine may be one that cannot be simulated.
-            Err(Error::Fit(_)) => Ok(model),
-            found => Ok(model.better(found?)),
-        }
+        let found = possible(self.searched(&model.problem, Some(model.x.clone()), SEARCH))?;
+        Ok(match found {
+            None => model,
+            Some(found) => model.better(found),
+        })
     }
 
     /// A candidate fitted to `few` runs together with everything else. Where another one has reached
@@ -173,10 +175,8 @@ impl Search<'_> {
             let added = candidate.added(&few.problem, &start.values)?;
             let mut x = near.map_or(&start.x, |near| &near.x)[..few.x.len()].to_vec();
             x.resize(added.parameters.len(), 0.0);
-            let model = match Model::fit(added, &x, &effort, self.watch) {
-                // A descent may end where the machine cannot be simulated.
-                Err(Error::Fit(_)) => continue,
-                model => model?,
+            let Some(model) = possible(Model::fit(added, &x, &effort, self.watch))? else {
+                continue;
             };
             if best
                 .as_ref()
