@@ -3,7 +3,6 @@
 use crate::candidate::Candidate;
 use crate::confusability::Likeness;
 use crate::decision::{Evidence, GAS_NOISE, NOISE, Verdict, earns, verdict};
-use crate::empirical_force::WithForce;
 use crate::error::{Error, possible};
 use crate::journal::Finished;
 use crate::mains_hum::Hum;
@@ -137,7 +136,7 @@ pub fn explain(
     let (model, found) = search.pruned(problem, model, found)?;
     let with_force = search.with_force(problem, &baseline, model, found)?;
     let missing_force = with_force.missing.clone();
-    let (model, found, refused) = search.sure(problem, &baseline, with_force, refused)?;
+    let (model, found, refused) = search.believed(problem, &baseline, with_force, refused)?;
     let found = search.with_last_rivals(problem, &model, found)?;
     say("finding bounds", model.fitted);
     let Fit {
@@ -371,47 +370,6 @@ impl Search<'_> {
         Ok((model, found))
     }
 
-    /// Where the effects leave the whole unexplained, or explain a part to which a force of no name
-    /// comes nearer, those alone that are sure by themselves; the others are refused.
-    fn sure(
-        &self,
-        problem: &Problem,
-        baseline: &Model,
-        with_force: WithForce,
-        refused: Vec<Tried>,
-    ) -> Result<(Model, Vec<Found>, Vec<Tried>), Error> {
-        let WithForce {
-            model,
-            found,
-            nearer,
-            ..
-        } = with_force;
-        let is_believed = match verdict(baseline, &model, found.len()) {
-            Verdict::NoGap | Verdict::Explained => true,
-            Verdict::PartlyExplained => !nearer,
-            Verdict::Unexplained => false,
-        };
-        if is_believed {
-            return Ok((model, found, refused));
-        }
-        let is_sure = |found: &Found| found.evidence.is_sure();
-        let (mut kept, others): (Vec<_>, Vec<_>) = found.into_iter().partition(is_sure);
-        if others.is_empty() {
-            return Ok((model, kept, refused));
-        }
-        kept.iter_mut().for_each(|kept| kept.gap = None);
-        let others = others.into_iter().map(|found| Tried {
-            candidate: found.candidate,
-            values: found.values,
-            evidence: found.evidence,
-            by_run: found.by_run,
-            likeness: None,
-            model: found.model,
-        });
-        let refused = others.chain(refused).collect();
-        Ok((self.with_only(problem, baseline, &kept)?, kept, refused))
-    }
-
     /// The model with these effects and no others.
     pub(crate) fn with_only(
         &self,
@@ -432,7 +390,7 @@ impl Search<'_> {
     }
 
     /// The parameters of a model with their bounds.
-    fn bounds(&self, model: &Model) -> Result<Fit, Error> {
+    pub(crate) fn bounds(&self, model: &Model) -> Result<Fit, Error> {
         let settings = FitSettings {
             optimiser: Optimiser::LevenbergMarquardt,
             seed: 0,

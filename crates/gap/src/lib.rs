@@ -8,6 +8,7 @@
 //!                              └────────────── until the noise is reached <────────────┘
 //! ```
 
+mod belief;
 mod beside_wear;
 pub mod candidate;
 mod confusability;
