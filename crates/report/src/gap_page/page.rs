@@ -53,19 +53,24 @@ fn verdict(page: &GapPage) -> String {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
         _ => named.join(""),
     };
-    let most = page.effects.first().map_or("", |e| e.sentence.as_str());
+    let it = match page.effects.len() {
+        1 => "it",
+        _ => "them",
+    };
+    let sentences: Vec<&str> = page.effects.iter().map(|e| e.sentence.as_str()).collect();
+    let sentences = sentences.join(" ");
     let [before, after] = page.gap.map(size);
     match page.verdict.as_str() {
         "no-gap" => format!(
             "The calibrated model agrees with the recordings within their noise ({before} times): nothing is missing."
         ),
         "explained" => format!(
-            "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with it {after} \
-             times the noise are left. {most}"
+            "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with {it} \
+             {after} times the noise are left. {sentences}"
         ),
         "partly-explained" => format!(
-            "The calibrated model missed the recordings by {before} times their noise. {most} Together, {named} take this down to \
-             {after}; something smaller is still missing."
+            "The calibrated model missed the recordings by {before} times their noise. {sentences} Together, {named} take this \
+             down to {after}; something smaller is still missing."
         ),
         _ => format!(
             "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
@@ -90,8 +95,20 @@ fn pressure(page: &GapPage) -> String {
 fn usual(unit: &str) -> (f64, &str) {
     match unit {
         "rad" => (1_f64.to_degrees(), "deg"),
+        "m" => (1e3, "mm"),
+        "m^2" => (1e6, "mm^2"),
         "%" => (100.0, "%"),
         other => (1.0, other),
+    }
+}
+
+/// Significant digits that show the width of a parameter's interval to two digits, and at least four.
+fn digits(parameter: &Parameter) -> usize {
+    let width = parameter.interval.map_or(0.0, |[low, high]| high - low);
+    let ratio = (parameter.value / width).abs();
+    match ratio.is_finite() && ratio > 100.0 {
+        true => (ratio.log10().ceil() as usize + 2).min(9),
+        false => 4,
     }
 }
 
@@ -103,7 +120,7 @@ impl View<'_> {
 
     fn value(parameter: &Parameter) -> String {
         let (factor, unit) = usual(&parameter.unit);
-        let value = text::number(factor * parameter.value, 4);
+        let value = text::number(factor * parameter.value, digits(parameter));
         match unit.is_empty() {
             true => value,
             false => format!("{value}\u{a0}{}", text::unit(unit)),
@@ -115,7 +132,8 @@ impl View<'_> {
             Some([low, high]) if low == high => "not searched".to_owned(),
             Some(ends) => {
                 let (factor, _) = usual(&parameter.unit);
-                let [low, high] = ends.map(|end| text::number(factor * end, 4));
+                let digits = digits(parameter);
+                let [low, high] = ends.map(|end| text::number(factor * end, digits));
                 format!("{low} to {high}")
             }
             None => "not told".to_owned(),
@@ -163,5 +181,28 @@ impl View<'_> {
                 text::counted(n, "run")
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_narrow_interval_has_digits_enough_to_be_one() {
+        let parameter = |unit: &str, value, interval| Parameter {
+            key: "clearance".to_owned(),
+            unit: unit.to_owned(),
+            value,
+            interval,
+        };
+        let narrow = parameter("m", 1.692e-4, Some([1.691_8e-4, 1.692_2e-4]));
+        assert_eq!(View::value(&narrow), "0.1692\u{a0}mm");
+        assert_eq!(View::interval(&narrow), "0.16918 to 0.16922");
+        let wide = parameter("", 0.18, Some([0.123_456, 0.234_567]));
+        assert_eq!(View::interval(&wide), "0.1235 to 0.2346");
+        let untold = parameter("m^2", 5e-6, None);
+        assert_eq!(View::value(&untold), "5\u{a0}mm²");
+        assert_eq!(View::interval(&untold), "not told");
     }
 }
