@@ -57,7 +57,9 @@ fn verdict(page: &GapPage) -> String {
         1 => "it",
         _ => "them",
     };
-    let sentences: Vec<&str> = page.effects.iter().map(|e| e.sentence.as_str()).collect();
+    let mut sentences: Vec<&str> = page.effects.iter().map(|e| e.sentence.as_str()).collect();
+    // An effect at two places is told once.
+    sentences.dedup();
     let sentences = sentences.join(" ");
     let [before, after] = page.gap.map(size);
     match page.verdict.as_str() {
@@ -69,8 +71,8 @@ fn verdict(page: &GapPage) -> String {
              {after} times the noise are left. {sentences}"
         ),
         "partly-explained" => format!(
-            "The calibrated model missed the recordings by {before} times their noise. {sentences} Together, {named} take this \
-             down to {after}; something smaller is still missing."
+            "The calibrated model missed the recordings by {before} times their noise. {sentences} With {named} \
+             {after} times the noise are left; something smaller is still missing."
         ),
         _ => format!(
             "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
