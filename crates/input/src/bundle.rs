@@ -16,6 +16,9 @@ use std::path::{Path, PathBuf};
 /// Name of the file that makes a folder a bundle.
 pub const FILE: &str = "recordings.yaml";
 
+/// What the key `format` says of a file that this program reads.
+pub(crate) const FORMAT: &str = "clearance recordings 1";
+
 /// A folder of measured runs.
 #[derive(Clone, Debug)]
 pub struct Bundle {
@@ -109,6 +112,12 @@ const KEYS: [&str; 10] = [
     "channels",
 ];
 
+/// The keys of a throw's load.
+const LOAD: [&str; 2] = ["suction_pressure_pa", "discharge_pressure_pa"];
+
+/// The joints of a throw.
+const JOINTS: [&str; 3] = ["big_end", "small_end", "guide"];
+
 impl Bundle {
     /// Whether `path` is a folder with a `recordings.yaml`, or that file itself.
     pub fn is_at(path: &Path) -> bool {
@@ -135,7 +144,9 @@ impl Bundle {
     /// # Errors
     /// The first mistake, with its line.
     pub fn new(folder: &Path, document: Document) -> Result<Self, Error> {
-        let runs = runs(&document.tree).map_err(|error| document.locate(error))?;
+        let runs = known_format(&document.tree)
+            .and_then(|()| runs(&document.tree))
+            .map_err(|error| document.locate(error))?;
         Ok(Self {
             folder: folder.to_owned(),
             machine: document.tree.get("machine").cloned().unwrap_or_default(),
@@ -155,18 +166,26 @@ impl Bundle {
     }
 }
 
+/// Checks that the file is of the format that is read here; one that does not say is taken for it.
+fn known_format(tree: &Value) -> Result<(), Error> {
+    match tree.get("format") {
+        None => Ok(()),
+        Some(Value::String(format)) if format == FORMAT => Ok(()),
+        Some(_) => Err(Error::clash("format", format_args!("'{FORMAT}'"))),
+    }
+}
+
 fn runs(tree: &Value) -> Result<Vec<Run>, Error> {
     let list = match tree.get("runs") {
         Some(Value::Array(list)) if !list.is_empty() => list,
         Some(_) => return Err(Error::clash("runs", "a list of one run or more")),
         None => return Err(Error::missing("runs")),
     };
-    let several = tree.get("machine").and_then(|m| m.get("throws")).is_some();
     let mut ids = BTreeSet::new();
     let mut runs = Vec::new();
     for (i, run) in list.iter().enumerate() {
         let key = format!("runs.{i}");
-        let run = read_run(run, several).map_err(|error| error.under(&key))?;
+        let run = read_run(run).map_err(|error| error.under(&key))?;
         if !ids.insert(run.id.clone()) {
             return Err(Error::clash(
                 format!("{key}.id"),
@@ -178,7 +197,18 @@ fn runs(tree: &Value) -> Result<Vec<Run>, Error> {
     Ok(runs)
 }
 
-fn read_run(section: &Value, several: bool) -> Result<Run, Error> {
+/// Whether `section` holds a section of the keys `own` for each throw, in place of these keys themselves.
+/// The machine does not decide it: it may stand in another file.
+fn is_by_throw(section: &Value, own: &[&str]) -> bool {
+    let of_throw = |value: &Value| {
+        let keys = value.as_object().map(|part| part.keys());
+        keys.is_some_and(|mut keys| keys.any(|key| nearest(key, own.iter().copied()).is_some()))
+    };
+    let throws = section.as_object();
+    throws.is_some_and(|throws| throws.values().any(of_throw))
+}
+
+fn read_run(section: &Value) -> Result<Run, Error> {
     let mut tree = section.clone();
     if let Value::Object(section) = &mut tree {
         for key in section.keys().filter(|key| !KEYS.contains(&key.as_str())) {
@@ -186,8 +216,11 @@ fn read_run(section: &Value, several: bool) -> Result<Run, Error> {
                 return Err(Error::unknown_key(key, &KEYS));
             }
         }
-        for key in ["load", "joints"] {
-            if let Some(value) = section.get_mut(key).filter(|_| !several) {
+        for (key, own) in [("load", &LOAD[..]), ("joints", &JOINTS[..])] {
+            if let Some(value) = section
+                .get_mut(key)
+                .filter(|value| !is_by_throw(value, own))
+            {
                 // A key without letters leaves no trace in messages.
                 *value = Value::Object(Map::from_iter([(String::new(), value.take())]));
             }

@@ -6,7 +6,7 @@
 
 use crate::bundle::Channel;
 use crate::error::{Error, Problem};
-use crate::unit::{self, Dimension, UnitError};
+use crate::unit::{self, Dimension, GRAVITY, UnitError};
 use simulate::{Axis, ChamberEnd, Measured};
 use std::f64::consts::TAU;
 
@@ -54,11 +54,6 @@ impl ToSi {
     }
 }
 
-/// Standard gravity, m/s² (3rd CGPM, 1901).
-const GRAVITY: f64 = 9.806_65;
-/// Pounds per square inch, Pa: 0.45359237 kg × 9.80665 m/s² over (0.0254 m)².
-const PSI: f64 = 6_894.757_293_168;
-
 /// Slips of the keyboard by which a name is taken for a known one that is misspelt: `oil pressure` is
 /// none.
 const SLIPS: usize = 2;
@@ -68,25 +63,12 @@ const PRESSURE: Dimension = Dimension::of(-1.0, 1.0, -2.0, 0.0);
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 /// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
-const RECORDED: [(&str, Dimension, f64); 8] = [
+const RECORDED: [(&str, Dimension, f64); 5] = [
     ("g", ACCELERATION, GRAVITY),
     ("mg", ACCELERATION, 1e-3 * GRAVITY),
-    ("gn", ACCELERATION, GRAVITY),
-    ("psi", PRESSURE, PSI),
-    ("psia", PRESSURE, PSI),
     ("degree", ANGLE, TAU / 360.0),
     ("degrees", ANGLE, TAU / 360.0),
     ("rev", ANGLE, TAU),
-];
-
-/// Pressure units over the ambient pressure, and the unit that each is one of.
-const GAUGE: [(&str, &str); 6] = [
-    ("psig", "psi"),
-    ("barg", "bar"),
-    ("bar(g)", "bar"),
-    ("kPag", "kPa"),
-    ("kPa(g)", "kPa"),
-    ("MPag", "MPa"),
 ];
 
 /// What a channel is in a machine whose throws have these names (one that is empty for a machine of
@@ -241,9 +223,7 @@ fn words(text: &str) -> String {
 fn to_si(channel: &Channel, dimension: Dimension, expected: &str) -> Result<ToSi, Error> {
     let text = channel.unit.trim();
     let refuse = |reason: String| Error::new("unit", Problem::Other(reason));
-    let gauge = GAUGE
-        .iter()
-        .find(|(name, _)| name.eq_ignore_ascii_case(text));
+    let gauge = unit::gauge(text);
     if let Some((name, of)) = gauge
         && channel.offset.is_none()
     {
@@ -344,7 +324,7 @@ mod tests {
                 "psi",
                 &one,
                 "cylinder_pressure_crank_end_pa",
-                PSI,
+                4.448_221_615_260_5 / 6.4516e-4,
             ),
             (
                 "throw2 crosshead acceleration",

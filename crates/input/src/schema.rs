@@ -99,7 +99,10 @@ pub fn bundle_schema() -> Value {
         "description": "Measured runs of one machine. Values are SI; the unit ends the key.",
         "type": "object",
         "properties": {
-            "format": text_of("What the file is: `clearance recordings 1`."),
+            "format": {
+                "description": "What the file is.",
+                "const": crate::bundle::FORMAT,
+            },
             "machine": without_heading(machine),
             "runs": {
                 "description": "The runs.",

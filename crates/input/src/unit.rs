@@ -57,6 +57,16 @@ pub enum UnitError {
         /// The unit that was probably meant.
         nearest: Option<&'static str>,
     },
+    /// A pressure over the ambient pressure, which a quantity cannot be.
+    #[error(
+        "{name} counts from the ambient pressure: add that and give the absolute pressure, in {absolute}"
+    )]
+    Gauge {
+        /// The unit as it is written.
+        name: &'static str,
+        /// The unit without the reference.
+        absolute: &'static str,
+    },
     /// Units in a form that is not understood.
     #[error("the unit is not understood")]
     Form,
@@ -173,7 +183,10 @@ const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Di
     }
 }
 
-const UNITS: [Unit; 19] = [
+/// Standard gravity, m/s² (3rd CGPM, 1901).
+pub(crate) const GRAVITY: f64 = 9.806_65;
+
+const UNITS: [Unit; 22] = [
     unit("m", true, 0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
     unit("g", true, -3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
     unit("t", false, 3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
@@ -190,6 +203,15 @@ const UNITS: [Unit; 19] = [
     unit("W", true, 0, Dimension::of(2.0, 1.0, -3.0, 0.0)),
     unit("Pa", true, 0, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
     unit("bar", true, 5, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
+    // A pound-force (0.45359237 kg × 9.80665 m/s²) per square inch.
+    odd(
+        "psi",
+        4.448_221_615_260_5,
+        6.4516e-4,
+        Dimension::of(-1.0, 1.0, -2.0, 0.0),
+    ),
+    odd("gn", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
+    odd("g0", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
     unit("%", false, -2, Dimension::NONE),
     unit("‰", false, -3, Dimension::NONE),
     unit("1", false, 0, Dimension::NONE),
@@ -209,10 +231,41 @@ const PREFIXES: [(char, i32); 11] = [
     ('G', 9),
 ];
 
+/// Pressure units that name the absolute reference, and the unit that each is.
+const ABSOLUTE: [(&str, &str); 8] = [
+    ("bara", "bar"),
+    ("bar(a)", "bar"),
+    ("psia", "psi"),
+    ("psi(a)", "psi"),
+    ("kPaa", "kPa"),
+    ("kPa(a)", "kPa"),
+    ("MPaa", "MPa"),
+    ("MPa(a)", "MPa"),
+];
+
+/// Pressure units over the ambient pressure, and the unit that each is one of.
+const GAUGE: [(&str, &str); 8] = [
+    ("barg", "bar"),
+    ("bar(g)", "bar"),
+    ("psig", "psi"),
+    ("psi(g)", "psi"),
+    ("kPag", "kPa"),
+    ("kPa(g)", "kPa"),
+    ("MPag", "MPa"),
+    ("MPa(g)", "MPa"),
+];
+
+/// A gauge pressure's unit with the unit that it is one of, if `name` is one; capitals do not count.
+pub(crate) fn gauge(name: &str) -> Option<(&'static str, &'static str)> {
+    let mut units = GAUGE.into_iter();
+    units.find(|(gauge, _)| gauge.eq_ignore_ascii_case(name))
+}
+
 /// Names that are suggested for a misspelt one.
-const COMMON: [&str; 31] = [
+const COMMON: [&str; 32] = [
     "m", "mm", "um", "cm", "kg", "g", "t", "s", "ms", "min", "h", "rad", "deg", "rpm", "Hz", "kHz",
-    "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "%",
+    "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "psi",
+    "%",
 ];
 
 /// Reads a number with its unit.
@@ -342,6 +395,8 @@ fn raise(base: f64, power: f64) -> f64 {
 
 /// The unit called `name`, and the power of ten of its prefix.
 fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
+    let absolute = ABSOLUTE.into_iter().find(|(unit, _)| *unit == name);
+    let name = absolute.map_or(name, |(_, unit)| unit);
     if let Some(unit) = UNITS.iter().find(|u| u.name == name) {
         return Ok((unit, 0));
     }
@@ -352,15 +407,18 @@ fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
             return Ok((unit, ten));
         }
     }
+    if let Some((name, absolute)) = gauge(name) {
+        return Err(UnitError::Gauge { name, absolute });
+    }
     Err(UnitError::Unknown {
         name: name.chars().take(20).collect(),
         nearest: nearest(name, COMMON),
     })
 }
 
-/// `m^1.5`, `m²` or `m2`: the name and the exponent.
+/// `m^1.5`, `m²` or `m2`: the name and the exponent. A unit whose name has a digit stays whole.
 fn split_exponent(factor: &str) -> Result<(&str, f64), UnitError> {
-    if factor == "1" {
+    if UNITS.iter().any(|unit| unit.name == factor) {
         return Ok((factor, 1.0));
     }
     let is_exponent = |c: char| c.is_ascii_digit() || "^⁰¹²³⁴⁵⁶⁷⁸⁹⁻".contains(c);
@@ -378,8 +436,9 @@ fn split_exponent(factor: &str) -> Result<(&str, f64), UnitError> {
         })
         .collect();
     let exponent: f64 = plain.parse().map_err(|_| UnitError::Form)?;
-    // Larger ones are slips of the keyboard, and would overflow the power of ten.
-    if name.is_empty() || exponent.is_nan() || exponent.abs() > 9.0 {
+    // Larger ones are slips of the keyboard, and would overflow the power of ten; 0 would leave the
+    // unit without effect.
+    if name.is_empty() || exponent.is_nan() || exponent == 0.0 || exponent.abs() > 9.0 {
         return Err(UnitError::Form);
     }
     Ok((name, exponent))

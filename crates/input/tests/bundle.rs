@@ -51,6 +51,17 @@ fn throws_keep_their_names() {
 }
 
 #[test]
+fn throws_keep_their_names_where_the_machine_stands_elsewhere() {
+    let machine = "machine:\n  crank: {driven: free}\n  throws: [{name: throw1}, {name: throw2}]\n";
+    for other in ["", "machine: {name: press}\n"] {
+        let bundle = read(&TWO_THROWS.replace(machine, other)).unwrap();
+        let run = &bundle.runs[0];
+        assert_eq!(run.load["throw2"].discharge_pressure_pa.get(), 1.3e6);
+        assert!(matches!(&run.joints["throw2"]["big_end"], Joint::Scalar(_)));
+    }
+}
+
+#[test]
 fn a_bundle_needs_little() {
     let text = "runs:\n- {id: a, file: a.csv, channels: [{column: p, unit: Pa}]}\n";
     let bundle = read(text).unwrap();
@@ -67,6 +78,10 @@ fn mistakes_are_named_with_their_line() {
             "recordings.yaml:1:7: runs: found a list, expected a list of one run or more",
         ),
         ("machine: {}\n".to_owned(), "runs: missing"),
+        (
+            format!("format: foo\n{one}"),
+            ":1:9: format: found 'foo', expected 'clearance recordings 1'",
+        ),
         (
             format!("{one}  speed_rpm: -3\n"),
             ":5:14: runs.0.speed_rpm: found -3, expected a plain number greater than 0",

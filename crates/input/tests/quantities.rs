@@ -52,8 +52,16 @@ fn texts_mean_exactly_their_decimal_number() {
         (" 1.5E-3  m ", 1.5e-3),
         ("1 N/mm", 1000.0),
         ("0 Pa", 0.0),
+        ("3 bara", 3e5),
+        ("3 bar(a)", 3e5),
+        ("20 gn", 20.0 * 9.80665),
+        ("20 g0", 20.0 * 9.80665),
     ] {
         assert_eq!(si(text), value, "{text}");
+    }
+    // Pounds per square inch: NIST Special Publication 811, appendix B.8.
+    for text in ["100 psi", "100 psia"] {
+        assert!((si(text) / 689_475.7 - 1.0).abs() < 1e-7, "{text}");
     }
     // A fractional power of a prefix is no power of ten: 1 N/mm^1.5 = 10^4.5 N/m^1.5.
     assert!((si("1 N/mm^1.5") / 10f64.powf(4.5) - 1.0).abs() < 1e-15);
@@ -256,5 +264,28 @@ fn one_line(text: &str) {
             "{message}"
         );
         assert!(!message.contains('\n'), "{message:?}");
+    }
+}
+
+#[test]
+fn a_gauge_pressure_is_told_from_an_absolute_one() {
+    for (text, unit, absolute) in [
+        ("3.4 barg", "barg", "bar"),
+        ("50 psig", "psig", "psi"),
+        ("50 PSIG", "psig", "psi"),
+        ("340 kPa(g)", "kPa(g)", "kPa"),
+    ] {
+        let message = Quantity::<Pressure>::parse(text).unwrap_err();
+        let expected = format!("{unit} counts from the ambient pressure");
+        assert!(message.contains(&expected), "{message}");
+        assert!(message.contains(&format!("in {absolute}")), "{message}");
+        assert!(!message.contains("did you mean"), "{message}");
+    }
+}
+
+#[test]
+fn a_unit_to_the_power_of_0_is_none() {
+    for text in ["3 m0", "3 m^0", "3 Pa⁰"] {
+        assert_eq!(parse(text), Err(UnitError::Form), "{text}");
     }
 }
