@@ -6,6 +6,9 @@
 //! dataset is not complete yet.
 #![allow(clippy::print_stdout)]
 
+#[macro_use]
+mod output;
+
 pub mod bundle;
 pub mod calibrate;
 pub mod explain_gap;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 /// Labelled recordings of reciprocating compressors with worn bearings.
 #[derive(Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(name = "crosshead", version, arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,

@@ -50,9 +50,10 @@ fn together(gap: &PressureGap) -> Option<String> {
     };
     (worse < AS_GOOD * better).then(|| {
         format!(
-            "{}: this curve does not tell clearance volume and polytropic exponents apart; a clearance of {} \
-             (compression, expansion) fits it as well as {}. Take one of them from elsewhere.",
+            "{}, {}: this curve does not determine both clearance volume and polytropic exponents: a clearance \
+             of {} (compression, expansion) fits it as well as {}. Take one of them from elsewhere.",
             gap.run,
+            gap.column,
             reading(&a),
             reading(&b)
         )
