@@ -77,13 +77,6 @@ impl<S: Scalar> Drive<S> {
         }
     }
 
-    /// The sense of rotation: 1 counter-clockwise, −1 clockwise (a negative speed).
-    #[inline(always)]
-    pub(crate) fn sense(&self) -> S {
-        let clockwise = self.reference_speed().lt(S::zero());
-        S::select(clockwise, -S::one(), S::one())
-    }
-
     /// Whether the crank's speed is the same at all times.
     #[inline(always)]
     pub(crate) fn is_constant(&self) -> bool {

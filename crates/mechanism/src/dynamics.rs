@@ -44,6 +44,7 @@ impl<S: Scalar> Dynamics<S> {
         let zero = S::zero();
         let throws = machine.throws.len();
         let mode = Mode {
+            turning: S::one(),
             main: ContactMode::apart(),
             throws: vec![
                 ThrowMode {
@@ -93,24 +94,31 @@ impl<S: Scalar> Dynamics<S> {
     fn start(&mut self) {
         let y = self.initial_state();
         self.close_links();
-        self.set_gas_mode(S::zero(), &y);
+        self.set_outward(S::zero(), &y);
+        self.set_valves(S::zero(), &y);
     }
 
     /// Puts the machine into the mode of the state `y` at `t`, which another machine of the same
     /// build left in the mode `left`. Contacts are taken over: where the new parameters contradict
-    /// them, a guard is overdue, and the integrator switches it at once. The gas has no memory, so
-    /// its mode follows from the state.
+    /// them, a guard is overdue, and the integrator switches it at once. Strokes and valves follow from
+    /// the state; a stroke that is no longer the same forgets what its chambers had trapped.
     pub fn resume(&mut self, t: S, y: &[S], left: &Mode<S>) {
         self.mode.clone_from(left);
-        self.set_gas_mode(t, y);
+        self.set_outward(t, y);
+        for (mode, left) in self.mode.throws.iter_mut().zip(&left.throws) {
+            let other = S::zero().lt((mode.outward - left.outward).abs());
+            for chamber in [&mut mode.head_end, &mut mode.crank_end] {
+                chamber.trapped = S::select(other, S::one(), chamber.trapped);
+            }
+        }
+        self.set_valves(t, y);
     }
 
-    /// Sets the strokes and valves that the state calls for.
-    fn set_gas_mode(&mut self, t: S, y: &[S]) {
-        self.set_outward(t, y);
+    /// Sets the valves that the state calls for.
+    fn set_valves(&mut self, t: S, y: &[S]) {
         self.evaluate(t, y);
         for (mode, throw) in self.mode.throws.iter_mut().zip(&self.evaluation.throws) {
-            [mode.head_end, mode.crank_end] = throw.gas.modes(mode.outward);
+            throw.gas.set_valves(mode);
         }
     }
 
@@ -132,14 +140,15 @@ impl<S: Scalar> Dynamics<S> {
     }
 
     fn set_outward(&mut self, t: S, y: &[S]) {
-        let (angle, _) = self.crank(t, y);
-        let sense = self.machine.drive.sense();
+        let (angle, speed) = self.crank(t, y);
+        let turning = S::select(speed.lt(S::zero()), -S::one(), S::one());
+        self.mode.turning = turning;
         for (throw, mode) in self.machine.throws.iter().zip(&mut self.mode.throws) {
             let (sine, cosine) = throw.local_angle(angle).sin_cos();
             // At a dead centre the sine is rounding; there the new phase counts.
             let tiny = S::constant(1e-12);
             let at_centre = sine.abs().lt(tiny);
-            let by_sine = S::select((sine * sense).lt(S::zero()), S::zero(), S::one());
+            let by_sine = S::select((sine * turning).lt(S::zero()), S::zero(), S::one());
             let by_cosine = S::select(cosine.lt(S::zero()), S::zero(), S::one());
             mode.outward = S::select(at_centre, by_cosine, by_sine);
         }
@@ -517,6 +526,19 @@ impl<S: Scalar> Dynamics<S> {
             #[inline(always)]
             || energy::of(&self.machine, &self.evaluation),
         )
+    }
+}
+
+impl Dynamics<f64> {
+    /// What gas and back pressure hold for the pistons at the last evaluation, J, to an unknown constant:
+    /// with ideal valves they never do more work than this falls by. None where effects act on the
+    /// machine, or where compression and expansion have different exponents (heat does work there).
+    pub fn gas_energy(&self) -> Option<f64> {
+        if !self.machine.effects.is_empty() {
+            return None;
+        }
+        let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
+        throws.map(|(throw, at)| at.gas.held(throw, &at.motion)).sum()
     }
 }
 

@@ -85,15 +85,27 @@ impl<S: Scalar> GasState<S> {
         }
     }
 
-    /// Where the drift of the chamber's next stroke starts, at a dead centre where `next` is the
-    /// same gas in that stroke: 0, as the valve that was open leaves the line's pressure behind,
-    /// unless it never opened.
+    /// What a dead centre traps for the next stroke ([`ChamberMode::trapped`]), where `next` is the same
+    /// gas as that stroke has it with 1: the valve that was open leaves the line's pressure behind,
+    /// at the ideal piston's place. Gas that never came to the line stays what it was. `expanding` is of
+    /// the next stroke, `held` whether its suction valve is held open.
     #[inline(always)]
-    pub(crate) fn carried(&self, next: &Self, expanding: S) -> S {
-        let zero = S::zero();
-        let short = (self.closed / next.closed).ln().min(zero);
-        let full = (self.closed / next.open[0]).ln().max(zero);
-        flagged(expanding, short, full)
+    pub(crate) fn past_centre(&self, next: &Self, expanding: S, held: bool) -> S {
+        let one = S::one();
+        let full = match held {
+            true => next.open[0],
+            false => next.closed,
+        };
+        let (short, full) = (self.closed / next.closed, self.closed / full);
+        flagged(expanding, short.min(one), full.max(one))
+    }
+
+    /// What is trapped where the crank turns back within a stroke: the valve that was open closes, and
+    /// the pressure stays what it is.
+    #[inline(always)]
+    pub(crate) fn turned_back(&self, next: &Self) -> S {
+        let [suction, discharge] = self.open;
+        self.closed.max(suction).min(discharge) / next.closed
     }
 
     /// Guards of the suction and the discharge valve's state in `mode`.
@@ -119,7 +131,7 @@ impl<S: Scalar> GasState<S> {
     /// The mode that the pressures call for, where the closed chamber drifts at `rate`: one that is at
     /// the line and drifts beyond it leaves the valve open.
     #[inline(always)]
-    pub(crate) fn mode(&self, expanding: S, rate: S) -> ChamberMode<S> {
+    pub(crate) fn mode(&self, expanding: S, rate: S, trapped: S) -> ChamberMode<S> {
         let flag = |mask| S::select(mask, S::one(), S::zero());
         let [suction, discharge] = self.open;
         let falls = flag(rate.lt(S::zero())) * (S::one() - expanding);
@@ -127,6 +139,7 @@ impl<S: Scalar> GasState<S> {
         ChamberMode {
             suction: flag(self.closed.lt(suction * (falls * AT_LINE + 1.0))),
             discharge: flag((discharge * (S::one() - rises * AT_LINE)).lt(self.closed)),
+            trapped,
         }
     }
 }
@@ -149,7 +162,7 @@ impl<S: Scalar> Chamber<S> {
         let start = flagged(expanding, self.dead, self.filled);
         let [compression, expansion] = self.exponents;
         let exponent = flagged(expanding, expansion, compression);
-        let mut closed = from * (start / distance).powf(exponent);
+        let mut closed = from * (start / distance).powf(exponent) * mode.trapped;
         if let Some(drift) = drift {
             closed *= drift.exp();
         }
@@ -211,15 +224,57 @@ impl<S: Scalar> Gas<S> {
         }
     }
 
-    /// The modes of head end and crank end that the pressures call for; `outward` is 1 while the piston moves
-    /// away from the head.
+    /// Sets the valves of head end and crank end as the pressures call for.
     #[inline(always)]
-    pub(crate) fn modes(&self, outward: S) -> [ChamberMode<S>; 2] {
-        let [head, crank] = self.drift;
-        [
-            self.head_end.mode(outward, head),
-            self.crank_end.mode(S::one() - outward, crank),
-        ]
+    pub(crate) fn set_valves(&self, mode: &mut ThrowMode<S>) {
+        let ([head, crank], outward) = (self.drift, mode.outward);
+        let trapped = [mode.head_end.trapped, mode.crank_end.trapped];
+        mode.head_end = self.head_end.mode(outward, head, trapped[0]);
+        mode.crank_end = (self.crank_end).mode(S::one() - outward, crank, trapped[1]);
+    }
+}
+
+impl Gas<f64> {
+    /// What the gas of the throw and the back pressure hold for the piston, J, to a constant; none with two
+    /// exponents. The work that a chamber does until it is at the suction pressure, all valves closed, and
+    /// what a constant pressure holds:
+    ///
+    /// ```text
+    /// A (∫ (p − ps) dx − ps x),   p xᵐ constant
+    /// ```
+    ///
+    /// It falls with whatever passes a valve and a reversal, and changes by the work alone elsewhere.
+    pub(crate) fn held(&self, throw: &Throw<f64>, motion: &Motion<f64>) -> Option<f64> {
+        let cylinder = &throw.cylinder;
+        let (exponent, suction) = (cylinder.exponent, cylinder.suction);
+        if exponent != cylinder.expansion_exponent {
+            return None;
+        }
+        let of = |pressure: f64, x: f64| {
+            let ratio = (pressure / suction).max(1.0);
+            let full = x * ratio.powf(1.0 / exponent);
+            // ∫ p dx from x to where it is at the suction pressure; (yᵃ − 1)/a tends to ln y.
+            let power = 1.0 - 1.0 / exponent;
+            let grown = match exponent == 1.0 {
+                true => ratio.ln(),
+                false => (1.0 - ratio.powf(-power)) / (exponent - 1.0),
+            };
+            pressure * x * grown - suction * full
+        };
+        let face = area(cylinder.piston_radius);
+        let reach = throw.crank_radius + throw.rod.length;
+        let to_head = cylinder.head_clearance + reach - motion.crosshead;
+        let head = face * of(self.head_end.pressure, to_head);
+        Some(match &cylinder.crank_end {
+            None => head - face * cylinder.back * motion.crosshead,
+            Some(end) => {
+                let rod = area(end.rod_radius);
+                let to_cover =
+                    end.clearance + motion.crosshead - (throw.rod.length - throw.crank_radius);
+                let crank = (face - rod) * of(self.crank_end.pressure, to_cover);
+                head + crank - rod * cylinder.back * motion.crosshead
+            }
+        })
     }
 }
 

@@ -8,6 +8,8 @@ use scalar::Scalar;
 parameters! {
     /// The mode of the whole machine.
     pub struct Mode<S> {
+        /// 1 while the crank turns counter-clockwise, −1 while it turns clockwise.
+        pub turning: S,
         /// The main bearing.
         pub main: ContactMode<S>,
         /// Each throw.
@@ -24,7 +26,7 @@ parameters! {
         pub small_end: ContactMode<S>,
         /// Contact at the guide's corners: upper rear, upper front, lower rear, lower front.
         pub guide: [ContactMode<S>; 4],
-        /// 1 while the piston moves away from the head (0 ≤ α mod 2π < π, turning counter-clockwise).
+        /// 1 while the crank moves the piston away from the head: sin α · θ̇ > 0.
         pub outward: S,
         /// Gas at the head end.
         pub head_end: ChamberMode<S>,
@@ -51,19 +53,23 @@ parameters! {
 }
 
 parameters! {
-    /// The mode of the gas in one chamber; both flags 0 while both valves are closed.
+    /// The mode of the gas in one chamber; both valves' flags are 0 while both are closed.
     #[derive(Copy)]
     pub struct ChamberMode<S> {
         /// 1 while the suction valve is open.
         pub suction: S,
         /// 1 while the discharge valve is open.
         pub discharge: S,
+        /// What is trapped, as p xᵐ at the stroke's beginning over what the stroke would begin with at its
+        /// dead centre had a valve been open there: 1 in a crank that comes round with valves that open.
+        pub trapped: S,
     }
 }
 
 impl<S> Mode<S> {
     /// Shows each number of the mode to `put`, with the one of `other` in the same place.
     pub(crate) fn each(&mut self, other: &Mode, mut put: impl FnMut(&mut S, f64)) {
+        put(&mut self.turning, other.turning);
         self.main.each(&other.main, &mut put);
         for (throw, other) in self.throws.iter_mut().zip(&other.throws) {
             throw.big_end.each(&other.big_end, &mut put);
@@ -94,6 +100,7 @@ impl<S> ChamberMode<S> {
     fn each(&mut self, other: &ChamberMode, put: &mut impl FnMut(&mut S, f64)) {
         put(&mut self.suction, other.suction);
         put(&mut self.discharge, other.discharge);
+        put(&mut self.trapped, other.trapped);
     }
 }
 
@@ -117,6 +124,7 @@ impl<S: Scalar> ChamberMode<S> {
         Self {
             suction: S::zero(),
             discharge: S::zero(),
+            trapped: S::one(),
         }
     }
 }

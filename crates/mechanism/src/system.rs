@@ -2,7 +2,9 @@
 
 use crate::drive::Drive;
 use crate::dynamics::{Dynamics, Place};
+use crate::effects::{Acting, Acts, End};
 use crate::energy;
+use crate::gas::GasState;
 use crate::joints::guide::Guide;
 use crate::joints::revolute::{CONTACT_GUARDS, JointModel, Revolute, switch_contact};
 use crate::machine::Machine;
@@ -39,6 +41,8 @@ enum Watched {
     Corner(usize, usize),
     /// The gas of a throw: dead centres, and two valves a chamber.
     Gas(usize),
+    /// The crank's speed, where it is not constant: the crank turns back.
+    Crank,
 }
 
 /// The guards that a machine of this build has, in the order in which they are written.
@@ -65,6 +69,9 @@ pub(crate) fn watches<S: Scalar>(machine: &Machine<S>) -> Vec<Watch> {
         }
         let chambers = 1 + usize::from(throw.cylinder.crank_end.is_some());
         add(Watched::Gas(i), 1 + 2 * chambers);
+    }
+    if !machine.drive.is_constant() {
+        add(Watched::Crank, 1);
     }
     watches
 }
@@ -197,6 +204,7 @@ impl<S: Scalar> Dynamics<S> {
                 if let Revolute::Clear(clear) = &machine.main {
                     put(&clear.guards(&at.main, &mode.main, at.shaft.push));
                 }
+                let turning = mode.turning;
                 let throws = || machine.throws.iter().zip(&at.throws).zip(&mode.throws);
                 for ((throw, at), mode) in throws() {
                     let forces = &at.accelerations;
@@ -217,12 +225,15 @@ impl<S: Scalar> Dynamics<S> {
                             put(&clear.guards(corner, mode));
                         }
                     }
-                    let sine = at.motion.angle_sin_cos.0 * machine.drive.sense();
+                    let sine = at.motion.angle_sin_cos.0 * turning;
                     put(&[flagged(mode.outward, sine, -sine)]);
                     put(&at.gas.head_end.guards(&mode.head_end));
                     if throw.cylinder.crank_end.is_some() {
                         put(&at.gas.crank_end.guards(&mode.crank_end));
                     }
+                }
+                if !machine.drive.is_constant() {
+                    put(&[at.speed * turning]);
                 }
             },
         )
@@ -272,7 +283,11 @@ impl<S: Real> System<S> for Dynamics<S> {
                 let mode = &mut self.mode_mut().throws[throw].guide[corner];
                 switch_contact(mode, part, rate);
             }
-            Watched::Gas(throw) => self.switch_gas(throw, part, t, y),
+            Watched::Gas(throw) if part == 0 => {
+                self.begin_stroke(throw, t, y, GasState::past_centre);
+            }
+            Watched::Gas(throw) => self.switch_valve(throw, part),
+            Watched::Crank => self.turn_back(t, y),
         }
     }
 }
@@ -298,7 +313,8 @@ impl<S: Real> Dynamics<S> {
     }
 
     /// What the present forces depend on beside time, state and switches: the approach speeds of
-    /// closed contacts whose law has a coefficient of restitution, m/s.
+    /// closed contacts whose law has a coefficient of restitution, m/s; and what chambers have trapped
+    /// where no dead centre has set it.
     pub fn memory_mut(&mut self) -> Vec<&mut S> {
         let Dynamics { machine, mode, .. } = self;
         let joint = |joint: &Revolute<S>| {
@@ -307,17 +323,21 @@ impl<S: Real> Dynamics<S> {
                 .is_some_and(|c| c.model == JointModel::ThreeMode && c.contact.remembers())
         };
         let mut contacts = vec![(joint(&machine.main), &mut mode.main)];
+        let mut chambers = Vec::new();
         for (throw, mode) in machine.throws.iter().zip(&mut mode.throws) {
             contacts.push((joint(&throw.big_end), &mut mode.big_end));
             contacts.push((joint(&throw.small_end), &mut mode.small_end));
             let guide = matches!(&throw.guide, Guide::Clear(c) if c.contact.remembers());
             contacts.extend(mode.guide.iter_mut().map(|corner| (guide, corner)));
+            chambers.extend([&mut mode.head_end, &mut mode.crank_end]);
         }
         let remembered = contacts
             .into_iter()
-            .filter(|(remembers, contact)| *remembers && contact.touching.value() > 0.0);
+            .filter(|(remembers, contact)| *remembers && contact.touching.value() > 0.0)
+            .map(|(_, contact)| &mut contact.approach);
+        let trapped = chambers.into_iter().map(|chamber| &mut chamber.trapped);
         remembered
-            .map(|(_, contact)| &mut contact.approach)
+            .chain(trapped.filter(|trapped| trapped.value() != 1.0))
             .collect()
     }
 
@@ -330,33 +350,56 @@ impl<S: Real> Dynamics<S> {
         }
     }
 
-    /// A dead centre (part 0) or a valve.
-    fn switch_gas(&mut self, throw: usize, part: usize, t: S, y: &mut [S]) {
-        if part == 0 {
-            let before = self.evaluation().throws[throw].gas;
-            let drift = self.layout().throws[throw].gas;
-            if let Some(i) = drift {
-                y[i..i + 2].fill(S::zero());
-            }
-            let mode = &mut self.mode_mut().throws[throw];
-            mode.outward = S::one() - mode.outward;
-            let outward = mode.outward;
-            // The new polytrope decides which valves are open.
-            self.evaluate(t, y);
-            if let Some(i) = drift {
-                let after = self.evaluation().throws[throw].gas;
-                let inward = S::one() - outward;
-                y[i] = before.head_end.carried(&after.head_end, outward);
-                if self.machine().throws[throw].cylinder.crank_end.is_some() {
-                    y[i + 1] = before.crank_end.carried(&after.crank_end, inward);
-                }
-                self.evaluate(t, y);
-            }
-            let gas = self.evaluation().throws[throw].gas;
-            let mode = &mut self.mode_mut().throws[throw];
-            [mode.head_end, mode.crank_end] = gas.modes(outward);
-            return;
+    /// The crank turns back: every stroke ends where it is.
+    fn turn_back(&mut self, t: S, y: &mut [S]) {
+        let mode = self.mode_mut();
+        mode.turning = -mode.turning;
+        for throw in 0..self.machine().throws.len() {
+            self.begin_stroke(throw, t, y, |before, next, _, _| before.turned_back(next));
         }
+    }
+
+    /// The next stroke of a throw begins: at a dead centre, or where the crank turns back. `trapped` is what
+    /// each chamber takes over into it, from the gas before and after, whether it expands, and whether its
+    /// suction valve is held.
+    fn begin_stroke(
+        &mut self,
+        throw: usize,
+        t: S,
+        y: &mut [S],
+        trapped: impl Fn(&GasState<S>, &GasState<S>, S, bool) -> S,
+    ) {
+        let before = self.evaluation().throws[throw].gas;
+        if let Some(i) = self.layout().throws[throw].gas {
+            y[i..i + 2].fill(S::zero());
+        }
+        let mode = &mut self.mode_mut().throws[throw];
+        mode.outward = S::one() - mode.outward;
+        let outward = mode.outward;
+        mode.head_end.trapped = S::one();
+        mode.crank_end.trapped = S::one();
+        self.evaluate(t, y);
+        let next = self.evaluation().throws[throw].gas;
+        let held = [End::Head, End::Crank].map(|end| {
+            let effects = Acting::on_throw(&self.machine().effects, throw);
+            effects.at_end(end).any(|e| e.suction_held().is_some())
+        });
+        let double = self.machine().throws[throw].cylinder.crank_end.is_some();
+        let mode = &mut self.mode_mut().throws[throw];
+        mode.head_end.trapped = trapped(&before.head_end, &next.head_end, outward, held[0]);
+        if double {
+            let expanding = S::one() - outward;
+            mode.crank_end.trapped =
+                trapped(&before.crank_end, &next.crank_end, expanding, held[1]);
+        }
+        self.evaluate(t, y);
+        // The new polytrope decides which valves are open.
+        let gas = self.evaluation().throws[throw].gas;
+        gas.set_valves(&mut self.mode_mut().throws[throw]);
+    }
+
+    /// A valve opens or closes.
+    fn switch_valve(&mut self, throw: usize, part: usize) {
         let mode = &mut self.mode_mut().throws[throw];
         let chamber = if part <= 2 {
             &mut mode.head_end

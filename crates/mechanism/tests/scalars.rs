@@ -48,8 +48,10 @@ fn pack_modes<S: Scalar>(modes: &[&Mode<f64>], pack: &impl Fn(&[f64]) -> S) -> M
     let chamber = |of: &dyn Fn(&Mode<f64>) -> ChamberMode<f64>| ChamberMode {
         suction: gather(&|m| of(m).suction),
         discharge: gather(&|m| of(m).discharge),
+        trapped: gather(&|m| of(m).trapped),
     };
     Mode {
+        turning: gather(&|m| m.turning),
         main: contact(&|m| m.main),
         throws: (0..modes[0].throws.len())
             .map(|i| ThrowMode {

@@ -153,6 +153,8 @@ mod tests {
             transient: 0,
             settled: false,
             energy_residual: None,
+            mean_speed: 50.0,
+            penetrations: Vec::new(),
             work: Default::default(),
         };
         let mut noisy = sensor(ACCELERATION, None, None);

@@ -1,13 +1,13 @@
 //! A machine on its way through time, over plain or dual numbers.
 
 use crate::leaving::{Leaving, Left};
-use crate::record::Error;
+use crate::record::{Error, MOST_MISSING, MOST_SLIP};
 use crate::settings::Transient;
 use integrate::{Course, Integrator, Real, Step, System, Work};
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
 use scalar::Scalar;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
 const LONGEST_STEP: f64 = 0.05;
@@ -20,6 +20,11 @@ pub(crate) struct Run<S: Scalar> {
     revolution: f64,
     state: Vec<S>,
     hurried: bool,
+}
+
+/// An angular speed, rad/s, as rev/min.
+fn rpm(speed: f64) -> f64 {
+    speed * 30.0 / PI
 }
 
 /// Equally spaced instants at which a run is looked at.
@@ -68,6 +73,8 @@ pub(crate) struct Standing {
 pub(crate) struct Ledger {
     energy: f64,
     works: [f64; 4],
+    /// What the gas holds for the pistons; none where effects act on it.
+    gas: Option<f64>,
 }
 
 impl<S: Real> Run<S> {
@@ -252,9 +259,46 @@ impl<S: Real> Run<S> {
             .iter()
             .all(|y| y.value().is_finite())
         {
-            return Ok(());
+            return self.check_crank();
         }
         Err(Error::NotFinite { time })
+    }
+
+    /// Checks that a free crank turns the way that its drive does.
+    fn check_crank(&self) -> Result<(), Error> {
+        let reference = TAU / self.revolution;
+        let turning = self.dynamics.mode().turning.value() * reference;
+        match self.free_crank() {
+            Some((angle, _)) if turning < 0.0 => Err(Error::TurnsBack {
+                time: self.time(),
+                revolutions: angle * reference.signum() / TAU,
+                stated: rpm(reference.abs()),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that the crank keeps its speed, on average since `before`, where its angle and the time
+    /// were taken; that speed, rad/s.
+    pub(crate) fn mean_speed(&self, before: [f64; 2]) -> Result<f64, Error> {
+        let reference = TAU / self.revolution;
+        let Some((angle, _)) = self.free_crank() else {
+            return Ok(reference);
+        };
+        let mean = (angle - before[0]) / (self.time() - before[1]);
+        match (mean / reference - 1.0).abs() <= MOST_SLIP {
+            true => Ok(mean),
+            false => Err(Error::OffSpeed {
+                mean: rpm(mean * reference.signum()),
+                stated: rpm(reference.abs()),
+            }),
+        }
+    }
+
+    /// Angle of the crank and time, rad and s.
+    pub(crate) fn crank_and_time(&self) -> [f64; 2] {
+        let angle = self.free_crank().map_or(0.0, |(angle, _)| angle);
+        [angle, self.time()]
     }
 
     /// Goes on to the last of the instants and shows each.
@@ -386,16 +430,34 @@ impl Run<f64> {
         Ledger {
             energy: self.dynamics.energy().total(),
             works,
+            gas: self.dynamics.gas_energy(),
         }
     }
 
-    /// What the ledger misses since `before`, over the larger of the works.
-    pub(crate) fn residual(&mut self, before: &Ledger) -> f64 {
+    /// What the ledger misses since `before`, over the energy turned over.
+    ///
+    /// # Errors
+    /// Where that is too much, or the gas did more work than it held.
+    pub(crate) fn residual(&mut self, before: &Ledger) -> Result<f64, Error> {
         let now = self.ledger();
         let [gas, drive, friction, damping] =
             std::array::from_fn(|i| now.works[i] - before.works[i]);
         let missing = now.energy - before.energy - (gas + drive - friction - damping);
         let turned = gas.abs() + drive.abs() + friction.abs() + damping.abs();
-        if turned > 0.0 { missing / turned } else { 0.0 }
+        if turned == 0.0 {
+            return Ok(0.0);
+        }
+        let missing = missing / turned;
+        if !(missing.abs() <= MOST_MISSING) {
+            return Err(Error::EnergyMissing {
+                missing: missing.abs(),
+            });
+        }
+        let held = before.gas.zip(now.gas).map(|(before, now)| before - now);
+        let gained = held.map_or(0.0, |held| (gas - held) / turned);
+        if gained > MOST_MISSING {
+            return Err(Error::EnergyFromGas { gained });
+        }
+        Ok(missing)
     }
 }

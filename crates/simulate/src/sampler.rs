@@ -5,6 +5,7 @@
 
 use crate::chain::UnderWay;
 use crate::lookout::{self, Lookout};
+use crate::penetration::{Penetration, Watch};
 use crate::run::{Instants, Run};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
@@ -22,11 +23,23 @@ pub(crate) struct Sampler<'a> {
     series: Vec<UnderWay>,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
+    /// How deep joints are pressed in.
+    joints: Watch,
     /// Where it looks at a run that is in no lane, and the mode that its machine is in.
     lookout: Option<(Box<dyn Lookout>, Mode)>,
     /// Instants within a step.
     times: Vec<f64>,
     state: Vec<f64>,
+}
+
+/// What was seen of a run.
+pub(crate) struct Seen {
+    /// What each sensor has recorded.
+    pub series: Vec<Vec<f64>>,
+    /// The motion itself, where it was asked for.
+    pub trace: Option<Trace>,
+    /// How deep each joint with clearance was pressed in.
+    pub penetrations: Vec<Penetration>,
 }
 
 impl<'a> Sampler<'a> {
@@ -40,6 +53,7 @@ impl<'a> Sampler<'a> {
     ) -> Self {
         let dimension = run.state().len();
         let mut sampler = Self {
+            joints: Watch::new(run.dynamics()),
             lookout: None,
             times: Vec::new(),
             state: vec![0.0; dimension],
@@ -86,6 +100,7 @@ impl<'a> Sampler<'a> {
 
     /// Looks at the instants within a step.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
+        self.joints.look(|i| step.to[i]);
         let within = self.within(step.start + step.length);
         if within == 0 {
             return;
@@ -134,14 +149,18 @@ impl<'a> Sampler<'a> {
 
     /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond
     /// the last step.
-    pub fn end_with(mut self, run: &mut Run<f64>, start: f64) -> (Vec<Vec<f64>>, Option<Trace>) {
+    pub fn end_with(mut self, run: &mut Run<f64>, start: f64) -> Seen {
         self.finish();
         let last = run.evaluate();
         while self.seen < self.instants.count {
             self.look(last);
         }
         let series = self.series.into_iter().map(|series| series.end(start));
-        (series.collect(), self.trace.map(|(trace, _)| trace))
+        Seen {
+            series: series.collect(),
+            trace: self.trace.map(|(trace, _)| trace),
+            penetrations: self.joints.end(),
+        }
     }
 }
 
@@ -154,10 +173,11 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
 ) {
     let stop = step.start + step.length;
     let mut within = [0; W];
-    for (lane, sampler) in samplers.iter().enumerate() {
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
         if let Some(sampler) = sampler
             && stands[lane]
         {
+            sampler.joints.look(|i| step.to[i].get(lane));
             within[lane] = sampler.within(stop.get(lane));
         }
     }

@@ -4,7 +4,7 @@ use crate::chain::Sampling;
 use crate::leaving::{Leaving, Left};
 use crate::record::{Error, Record};
 use crate::run::{Ledger, Run};
-use crate::sampler::Sampler;
+use crate::sampler::{Sampler, Seen};
 use crate::sensor::Sensor;
 use crate::settings::Settings;
 use crate::trace::Trace;
@@ -44,6 +44,8 @@ struct Recording<'a> {
     start: f64,
     sampler: Sampler<'a>,
     before: Option<Ledger>,
+    /// Angle of the crank, rad, and time, s, where it set out.
+    from: [f64; 2],
 }
 
 impl<'a> Task<'a> {
@@ -90,10 +92,15 @@ impl<'a> Task<'a> {
             sensors,
             settings,
         } = self.asked;
-        let start = f64::from(left.transient) * self.run.revolution() + self.delay;
         let length = f64::from(settings.revolutions) * self.run.revolution();
         let sampling = Sampling::new(settings, length)?;
         let lead = sampling.lead();
+        let planned = f64::from(left.transient) * self.run.revolution() + self.delay;
+        // A free crank that is slow may have taken longer for its transient.
+        let start = match self.run.is_free() {
+            true => planned.max(self.run.time() + lead as f64 / sampling.inner_rate),
+            false => planned,
+        };
         let recorded = lead..lead + sampling.samples * sampling.factor;
         let trace = self
             .traced
@@ -103,6 +110,7 @@ impl<'a> Task<'a> {
             left,
             start,
             before: self.traced.then(|| self.run.ledger()),
+            from: self.run.crank_and_time(),
             sampler: Sampler::begin(
                 &mut self.run,
                 sensors,
@@ -144,9 +152,16 @@ impl<'a> Task<'a> {
                     start,
                     sampler,
                     before,
+                    from,
                 } = *recording;
                 let run = &mut self.run;
-                let (series, trace) = sampler.end_with(run, start);
+                let mean_speed = run.mean_speed(from)?;
+                let residual = before.map(|before| run.residual(&before)).transpose()?;
+                let Seen {
+                    series,
+                    trace,
+                    penetrations,
+                } = sampler.end_with(run, start);
                 Ok(Ok(Record {
                     sample_rate: self.asked.settings.sample_rate,
                     start,
@@ -154,7 +169,9 @@ impl<'a> Task<'a> {
                     series,
                     transient: left.transient,
                     settled: left.period.is_some(),
-                    energy_residual: before.map(|before| run.residual(&before)),
+                    energy_residual: residual,
+                    mean_speed,
+                    penetrations,
                     work: run.work(),
                 }))
             }

@@ -50,6 +50,11 @@ fn switches(a: &Mode<Number>, b: &Mode<Number>) -> Vec<&'static str> {
         contact(&a.big_end, &b.big_end);
         contact(&a.small_end, &b.small_end);
     }
+    // Where the crank turns back the gas follows.
+    if a.turning.value != b.turning.value {
+        compare("turning back", a.turning, b.turning);
+        return found;
+    }
     for (a, b) in a.throws.iter().zip(&b.throws) {
         // At a dead centre the valves follow.
         if a.outward == b.outward {
@@ -251,4 +256,16 @@ fn a_free_crank() {
         slope: 40.0,
     });
     check("free crank", &machine, &GAS);
+}
+
+#[test]
+fn a_crank_that_turns_back() {
+    let mut machine = machine(|_| ());
+    machine.crankshaft.inertia = 0.2;
+    machine.drive = Drive::Free(MotorLine {
+        reference_speed: SPEED,
+        mean_torque: 5.0,
+        slope: 0.0,
+    });
+    check("turning back", &machine, &["turning back"]);
 }
