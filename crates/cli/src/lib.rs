@@ -18,6 +18,7 @@ pub mod gen_dataset;
 pub mod hidden_effects;
 pub mod replay;
 pub mod report;
+mod run_progress;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;

@@ -1,6 +1,7 @@
 //! `crosshead simulate`: one run of a machine, its signals and a picture.
 
 use crate::Failure;
+use crate::run_progress::Progress;
 use ::report::case_picture::{CasePicture, ClearJoint};
 use clap::{Args, ValueEnum};
 use input::quantity::{AboveZero, Frequency, Quantity};
@@ -11,8 +12,8 @@ use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
 use simulate::{
-    ExponentSettings, Extent, JointTrace, Motion, Record, Regime, Settings, ThrowTrace, Trace,
-    Transient,
+    ExponentSettings, Extent, JointTrace, Motion, Penetration, Record, Regime, Settings,
+    ThrowTrace, Trace, Transient,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -95,7 +96,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let picture = out.join("picture.svg");
     refuse_existing(&[&signals, &picture], arguments.overwrite)?;
 
-    let record = simulate::simulate(&machine.machine, &machine.sensors, &settings, true)
+    let recordable = settings.check(machine.speed);
+    recordable.map_err(|e| Failure::input(format!("{}: {e}", machine.name)))?;
+    let mut progress = Progress::new();
+    let (m, sensors) = (&machine.machine, &machine.sensors);
+    let record = simulate::simulate_watched(m, sensors, &settings, &mut |done| progress.tell(done))
         .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
     let throws: Vec<&str> = machine
         .machine
@@ -325,7 +330,15 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
     .into_iter()
     .flatten()
     .collect();
-    let title = format!("{}, {}", machine.name, rpm(machine.speed));
+    let deep = too_deep(record).map(|joint| {
+        let times = joint.deepest / joint.clearance;
+        format!(
+            " · {} penetrates by {times:.2} times its clearance",
+            joint.joint
+        )
+    });
+    let deep: String = deep.collect();
+    let title = format!("{}, {}{deep}", machine.name, rpm(machine.speed));
     CasePicture {
         title: &title,
         crank_angle_rad: &trace.crank_angle,
@@ -345,11 +358,19 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
     .svg()
 }
 
+/// The joints whose surfaces penetrate each other too deeply.
+fn too_deep(record: &Record) -> impl Iterator<Item = &Penetration> {
+    record
+        .penetrations
+        .iter()
+        .filter(|joint| joint.is_too_deep())
+}
+
 fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &[&Path]) {
     println!("{}, {}", machine.name, rpm(machine.speed));
     let energy = record.energy_residual.map_or(String::new(), |missing| {
         format!(
-            ", energy closed to {:.1e} of the energy turned over",
+            ", energy ledger closes to within {:.1e} of the energy turned over",
             missing.abs()
         )
     });
@@ -366,6 +387,9 @@ fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &
             "  {}: rms {rms:.4e}, peak {peak:.4e} {}",
             channel.name, channel.unit
         );
+    }
+    for joint in too_deep(record) {
+        println!("  warning: {joint}");
     }
     for file in files {
         println!("{}", file.display());

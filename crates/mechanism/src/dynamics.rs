@@ -538,7 +538,9 @@ impl Dynamics<f64> {
             return None;
         }
         let throws = self.machine.throws.iter().zip(&self.evaluation.throws);
-        throws.map(|(throw, at)| at.gas.held(throw, &at.motion)).sum()
+        throws
+            .map(|(throw, at)| at.gas.held(throw, &at.motion))
+            .sum()
     }
 }
 

@@ -186,7 +186,10 @@ proptest! {
 /// ever has is what it started with.
 #[test]
 fn a_crank_that_turns_back_gains_no_energy() {
-    for (machine, inertia) in [(single_stage(), 0.2), (with_clearance(1e-4, 1e-4, 2e4), 2.0)] {
+    for (machine, inertia) in [
+        (single_stage(), 0.2),
+        (with_clearance(1e-4, 1e-4, 2e4), 2.0),
+    ] {
         let mut machine = machine;
         machine.crankshaft.inertia = inertia;
         machine.drive = Drive::Free(MotorLine {

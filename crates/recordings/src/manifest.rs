@@ -19,6 +19,18 @@ pub struct Manifest {
     pub files: Vec<FileEntry>,
     /// The cases that have no row, sorted by identifier.
     pub failed: Vec<FailedCase>,
+    /// What is doubtful about cases that have rows, sorted by identifier.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<CaseWarning>,
+}
+
+/// Something doubtful about a case that was simulated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseWarning {
+    /// Identifier of the case.
+    pub case_id: String,
+    /// What it is, and what to do.
+    pub warning: String,
 }
 
 /// How many cases and rows a dataset has.

@@ -6,8 +6,8 @@ mod venv;
 use recordings::formats::mcap::{self, Channel, Recording};
 use recordings::formats::parquet::TableWriter;
 use recordings::{
-    Column, Counts, DatasetCard, FailedCase, FileEntry, FileRecord, Kind, Manifest, Schema, Subset,
-    Value, WholeFile,
+    CaseWarning, Column, Counts, DatasetCard, FailedCase, FileEntry, FileRecord, Kind, Manifest,
+    Schema, Subset, Value, WholeFile,
 };
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
@@ -278,6 +278,10 @@ impl Dataset {
                 case_id: "case-5".into(),
                 reason: "the step is too small at 0.25 s".into(),
                 command: "crosshead simulate machine.yaml".into(),
+            }],
+            warnings: vec![CaseWarning {
+                case_id: "case-6".into(),
+                warning: "big_end: too deep".into(),
             }],
         };
         let root = self.folder.path().join("dataset");

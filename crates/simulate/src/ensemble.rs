@@ -142,7 +142,7 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &
         }) = passenger.take()
         {
             coach.ensemble.give(lane, false, task.run.integrator_mut());
-            file(index, task.finish());
+            file(index, task.finish(&mut |_| ()));
         }
     }
 }

@@ -40,12 +40,12 @@ pub use measure::measure;
 pub use penetration::Penetration;
 pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};
-pub use record::{Error, Record, simulate, simulate_later};
+pub use record::{Error, Record, simulate, simulate_later, simulate_watched};
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
     Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
 };
-pub use settings::{Settings, Transient};
+pub use settings::{Settings, Transient, Unrecordable};
 pub use task::Asked;
 pub use trace::{JointTrace, ThrowTrace, Trace};

@@ -84,7 +84,12 @@ impl Watch {
         for (throw, at) in machine.throws.iter().zip(&layout.throws) {
             let name = throw.name.as_str();
             add(name, "big_end", of(&throw.big_end), journal(at.big_end));
-            add(name, "small_end", of(&throw.small_end), journal(at.small_end));
+            add(
+                name,
+                "small_end",
+                of(&throw.small_end),
+                journal(at.small_end),
+            );
             if let Guide::Clear(guide) = &throw.guide {
                 let place = at.guide.map(|i| Place::Guide(i, guide.half_length));
                 add(name, "guide", Some(guide.clearance), place);

@@ -2,7 +2,7 @@
 
 use crate::penetration::Penetration;
 use crate::sensor::Sensor;
-use crate::settings::Settings;
+use crate::settings::{Settings, Unrecordable};
 use crate::task::{Asked, Task};
 use crate::trace::Trace;
 use mechanism::Machine;
@@ -23,6 +23,9 @@ pub enum Error {
     /// The integration stopped.
     #[error("{0}")]
     Integration(#[from] integrate::Error),
+    /// The settings give no record of this machine.
+    #[error("{0}")]
+    Settings(#[from] Unrecordable),
     /// A filter of the measuring chain cannot be built.
     #[error("sensor {column}: {source}")]
     Sensor {
@@ -149,5 +152,23 @@ pub fn simulate_later(
         sensors,
         settings,
     };
-    Task::start(asked, delay, traced)?.finish()
+    Task::start(asked, delay, traced)?.finish(&mut |_| ())
+}
+
+/// As [`simulate`] with a trace; `watch` is told after each step which share of the run is done.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_watched(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Record, Error> {
+    let asked = Asked {
+        machine,
+        sensors,
+        settings,
+    };
+    Task::start(asked, 0.0, true)?.finish(watch)
 }

@@ -1,5 +1,7 @@
 //! How a machine is run: how long, how finely, how accurately.
 
+use std::f64::consts::TAU;
+
 /// Settings of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
@@ -30,6 +32,48 @@ pub enum Transient {
         /// Revolutions after which the recording starts anyway.
         at_most: u32,
     },
+}
+
+/// Fewest samples in a revolution: the crank's own frequency must lie in the pass band of the recorder, which
+/// reaches to 0.8 of half the sample rate ([`signal::decimate`]).
+pub const LEAST_PER_REVOLUTION: f64 = 2.5;
+/// Most samples that a channel of a record may have, 2²⁶: half a GiB of numbers, of which each channel of
+/// each case that is simulated at the time takes as many.
+pub const MOST_SAMPLES: f64 = 67_108_864.0;
+
+/// A sample rate that gives no record of a machine.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("sample rate: found {rate} Hz, expected {expected}")]
+pub struct Unrecordable {
+    /// The sample rate, Hz.
+    pub rate: f64,
+    /// What would be one.
+    pub expected: String,
+}
+
+impl Settings {
+    /// Checks that a machine of this speed, rad/s, can be recorded so.
+    ///
+    /// # Errors
+    /// A sample rate that is too low for a revolution, or too high for the memory.
+    pub fn check(&self, speed: f64) -> Result<(), Unrecordable> {
+        let (rate, revolutions) = (self.sample_rate, self.revolutions);
+        let frequency = speed.abs() / TAU;
+        let rpm = frequency * 60.0;
+        let least = LEAST_PER_REVOLUTION * frequency;
+        let most = MOST_SAMPLES * frequency / f64::from(revolutions.max(1));
+        let expected = if rate < least {
+            format!("at least {least:.4} Hz, so that a revolution at {rpm:.4} rpm can be seen")
+        } else if rate > most {
+            format!(
+                "at most {most:.4e} Hz, as {revolutions} revolutions at {rpm:.4} rpm would otherwise be more \
+                 than {MOST_SAMPLES} samples a channel"
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Unrecordable { rate, expected })
+    }
 }
 
 impl Default for Settings {

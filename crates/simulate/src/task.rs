@@ -6,7 +6,7 @@ use crate::record::{Error, Record};
 use crate::run::{Ledger, Run};
 use crate::sampler::{Sampler, Seen};
 use crate::sensor::Sensor;
-use crate::settings::Settings;
+use crate::settings::{Settings, Transient};
 use crate::trace::Trace;
 use integrate::{Course, Trial};
 use mechanism::Machine;
@@ -56,6 +56,7 @@ impl<'a> Task<'a> {
             transient,
             ..
         } = *asked.settings;
+        (asked.settings).check(asked.machine.drive.reference_speed())?;
         let mut run = Run::start(asked.machine.clone(), tolerance, traced);
         let leaving = Leaving::new(&mut run, transient);
         let next = leaving.next(&run);
@@ -84,6 +85,21 @@ impl<'a> Task<'a> {
         };
         self.course = self.run.course(end);
         Ok(())
+    }
+
+    /// When it will end if the start takes as long as it may, s.
+    fn planned_end(&self) -> f64 {
+        let Settings {
+            transient,
+            revolutions,
+            ..
+        } = *self.asked.settings;
+        let (Transient::Revolutions(before)
+        | Transient::Settled {
+            at_most: before, ..
+        }) = transient;
+        let count = f64::from(before) + f64::from(revolutions);
+        count * self.run.revolution() + self.delay
     }
 
     fn recording(&mut self, left: Left) -> Result<Recording<'a>, Error> {
@@ -156,7 +172,16 @@ impl<'a> Task<'a> {
                 } = *recording;
                 let run = &mut self.run;
                 let mean_speed = run.mean_speed(from)?;
-                let residual = before.map(|before| run.residual(&before)).transpose()?;
+                let residual = match before {
+                    Some(before) => {
+                        run.check_gas(&before)?;
+                        Some(run.residual(&before)?)
+                    }
+                    // Works cost time: those of a record without a trace are looked at afterwards.
+                    None => run
+                        .close_ledger(self.asked.settings.tolerance)
+                        .map(|()| None)?,
+                };
                 let Seen {
                     series,
                     trace,
@@ -178,17 +203,17 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Goes to the end by itself.
-    pub fn finish(mut self) -> Result<Record, Error> {
+    /// Goes to the end by itself; `watch` is told after each step which share of the way is done.
+    pub fn finish(mut self, watch: &mut dyn FnMut(f64)) -> Result<Record, Error> {
+        let whole = self.planned_end();
         loop {
-            let (run, course, sampler) = self.parts();
-            let end = course.end();
-            match sampler {
-                None => run.advance(end)?,
-                Some(sampler) => {
-                    run.watch(end, |dynamics, step| sampler.observe(dynamics, step))?
+            let (run, course, mut sampler) = self.parts();
+            run.watch(course.end(), |dynamics, step| {
+                if let Some(sampler) = &mut sampler {
+                    sampler.observe(dynamics, step);
                 }
-            }
+                watch((step.start / whole).min(1.0));
+            })?;
             match self.arrive()? {
                 Ok(record) => return Ok(record),
                 Err(task) => self = task,

@@ -29,6 +29,10 @@ fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
     };
     Ok(Recording {
         motion,
+        warnings: (record.penetrations.iter())
+            .filter(|joint| joint.is_too_deep())
+            .map(ToString::to_string)
+            .collect(),
         sample_rate_hz: record.sample_rate,
         channels: measure(record, &resolved.sensors, &names, &mut case.noise()),
     })

@@ -69,6 +69,7 @@ fn record(case: &Case) -> Result<Recording, Failure> {
     });
     Ok(Recording {
         motion: None,
+        warnings: Vec::new(),
         sample_rate_hz: rate,
         channels: channels.collect(),
     })

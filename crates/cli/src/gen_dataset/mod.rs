@@ -5,7 +5,7 @@ mod calibrated;
 use crate::Failure;
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use recordings::{FailedCase, Manifest};
+use recordings::{CaseWarning, FailedCase, Manifest};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -284,6 +284,25 @@ pub(crate) fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
         manifest.files.len() + 1,
         bytes as f64 / 1e6
     );
+    if let Some(text) = warnings(&manifest.warnings) {
+        println!("{text}");
+    }
+}
+
+/// What is doubtful about cases, if anything is: the first few.
+fn warnings(all: &[CaseWarning]) -> Option<String> {
+    if all.is_empty() {
+        return None;
+    }
+    let mut text = format!("warnings: {}", all.len());
+    for CaseWarning { case_id, warning } in all.iter().take(SHOWN_FAILURES) {
+        text += &format!("\n  {case_id}: {warning}");
+    }
+    if all.len() > SHOWN_FAILURES {
+        let more = all.len() - SHOWN_FAILURES;
+        text += &format!("\n  and {more} more, in `warnings` of manifest.json");
+    }
+    Some(text)
 }
 
 /// What is to be said of the cases that failed, if any did: the first few, each with the command that

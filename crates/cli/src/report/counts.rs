@@ -2,7 +2,7 @@
 
 use super::dataset::Dataset;
 use super::windows::{Case, Windows};
-use ::report::dataset_page::{FailedCase, FaultCount, ParameterRange};
+use ::report::dataset_page::{CaseWarning, FailedCase, FaultCount, ParameterRange};
 use std::collections::BTreeMap;
 
 /// Cases and windows by fault: the healthy first, then by the number of faulty joints.
@@ -53,6 +53,16 @@ pub(super) fn failed(dataset: &Dataset) -> Vec<FailedCase> {
             case_id: case.case_id,
             reason: case.reason,
             command: case.command,
+        })
+        .collect()
+}
+
+pub(super) fn warnings(dataset: &Dataset) -> Vec<CaseWarning> {
+    let warnings = dataset.manifest.warnings.iter().cloned();
+    warnings
+        .map(|case| CaseWarning {
+            case_id: case.case_id,
+            warning: case.warning,
         })
         .collect()
 }

@@ -189,6 +189,7 @@ impl Contents {
             faults,
             ranges: counts::ranges(dataset, windows, cases),
             failed: counts::failed(dataset),
+            warnings: counts::warnings(dataset),
             no_examples: dataset.why_no_recordings(),
             examples,
             design,

@@ -11,8 +11,10 @@ mod comparison;
 mod distributions;
 mod examples;
 mod page;
+mod warnings;
 
 pub use claims::CaseLevel;
+pub use warnings::CaseWarning;
 
 /// All that the page tells. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
@@ -41,6 +43,8 @@ pub struct DatasetPage {
     pub ranges: Vec<ParameterRange>,
     /// The cases that have no data.
     pub failed: Vec<FailedCase>,
+    /// What is doubtful about the others.
+    pub warnings: Vec<CaseWarning>,
     /// One example per fault.
     pub examples: Vec<ClassExample>,
     /// Why there is no example; empty where there are some.

@@ -3,8 +3,8 @@
 use super::claims::{self, Claim};
 use super::examples::{self, MOST_EXAMPLES, fault_words};
 use super::{
-    CaseLevel, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount, FeatureRow,
-    ParameterRange, comparison, distributions,
+    CaseLevel, CaseWarning, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount,
+    FeatureRow, ParameterRange, comparison, distributions,
 };
 use crate::figure::Colour;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
@@ -178,6 +178,10 @@ impl View<'_> {
 
     fn failed(&self) -> &[FailedCase] {
         &self.page.failed[..self.page.failed.len().min(MOST_FAILED)]
+    }
+
+    fn warnings(&self) -> &[CaseWarning] {
+        super::warnings::shown(&self.page.warnings)
     }
 
     fn columns(&self) -> &[Column] {

@@ -19,6 +19,8 @@ pub(super) struct CaseRows {
     pub case_id: String,
     pub split: Split,
     pub fault: String,
+    /// What is doubtful about it.
+    pub warnings: Vec<String>,
     /// Rows of `features`, one per window.
     pub features: Vec<Vec<Value>>,
     pub signals: Signals,
@@ -95,6 +97,7 @@ fn rows(
         split: case.split,
         case_id: case.id,
         fault: case.labels.fault,
+        warnings: recording.warnings,
     })
 }
 

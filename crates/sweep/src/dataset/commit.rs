@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use recordings::{FailedCase, FileEntry};
+use recordings::{CaseWarning, FailedCase, FileEntry};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -30,6 +30,9 @@ pub struct Commit {
     pub rows: BTreeMap<String, BTreeMap<String, u64>>,
     /// The cases that failed.
     pub failed: Vec<FailedCase>,
+    /// What is doubtful about cases.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<CaseWarning>,
 }
 
 impl Commit {

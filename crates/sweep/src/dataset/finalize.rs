@@ -27,7 +27,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
         }
     }
     let mut files: Vec<FileEntry> = Vec::new();
-    let mut failed = Vec::new();
+    let (mut failed, mut warnings) = (Vec::new(), Vec::new());
     let mut missing = Vec::new();
     scan(plan, output, 0..plan.parts(), |index, made| {
         match made {
@@ -35,6 +35,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
                 add(&mut rows, commit.rows);
                 files.extend(commit.files);
                 failed.extend(commit.failed);
+                warnings.extend(commit.warnings);
             }
             Some(Made::Diagram(commit)) => files.push(commit.file),
             None => missing.push(index),
@@ -71,6 +72,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
         },
         files,
         failed,
+        warnings,
     };
     output
         .store

@@ -52,6 +52,8 @@ pub struct Recording {
     pub channels: Vec<Channel>,
     /// The motion as judged from the equations, where the case asks for that and can be disturbed.
     pub motion: Option<Motion>,
+    /// What is doubtful about it; its texts go into the manifest.
+    pub warnings: Vec<String>,
 }
 
 /// Why a case failed; its text goes into the manifest.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use recordings::formats::parquet::TableWriter;
-use recordings::{FailedCase, FileEntry, Schema, Value};
+use recordings::{CaseWarning, FailedCase, FileEntry, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
 use super::commit::Commit;
@@ -67,6 +67,7 @@ impl<'a> ShardWriter<'a> {
                 files: Vec::new(),
                 rows: BTreeMap::new(),
                 failed: Vec::new(),
+                warnings: Vec::new(),
             },
         })
     }
@@ -85,6 +86,11 @@ impl<'a> ShardWriter<'a> {
                 return Ok(());
             }
         };
+        for warning in case.warnings {
+            let case_id = case.case_id.clone();
+            self.output.say(format_args!("{case_id}: {warning}"));
+            self.commit.warnings.push(CaseWarning { case_id, warning });
+        }
         let faults = self
             .commit
             .rows

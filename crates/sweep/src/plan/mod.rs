@@ -27,7 +27,7 @@ use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use simulate::{ExponentSettings, Extent, Settings, Transient};
+use simulate::{ExponentSettings, Extent, Settings, Transient, Unrecordable};
 
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
@@ -208,6 +208,10 @@ impl Plan {
             sweep,
         };
         check_windows(file)?;
+        let recordable = plan.settings.check(plan.base.speed);
+        recordable.map_err(|Unrecordable { rate, expected }| {
+            Error::found("run.sample_rate", format_args!("{rate} Hz"), expected)
+        })?;
         for (position, block) in file.cases.iter().enumerate() {
             let block = Block::new(block, position, plan.seed, &plan.frame())?;
             plan.blocks.push(block);

@@ -42,6 +42,7 @@ fn runner(cases: &[Case]) -> Vec<Result<Recording, Failure>> {
                 sample_rate_hz: 1000.0,
                 channels: channels.collect(),
                 motion: None,
+                warnings: Vec::new(),
             }),
         }
     };

@@ -43,6 +43,7 @@ pub fn grid() -> DatasetPage {
             .to_owned(),
         faults: counts([1, 3, 3, 3]),
         failed: Vec::new(),
+        warnings: Vec::new(),
         ranges: vec![
             range("clearance of the big end", "m", 0.0, 3e-4, 4),
             range("clearance of the small end", "m", 0.0, 3e-4, 4),
@@ -109,6 +110,7 @@ pub fn random() -> DatasetPage {
         about: "Random cases of the single-stage compressor with clearance in its joints."
             .to_owned(),
         faults: counts([750, 750, 749, 750]),
+        warnings: Vec::new(),
         failed: vec![FailedCase {
             case_id: "1733".to_owned(),
             reason: "the step fell below 1e-14 s at t = 0.4321 s in the big end's contact"
@@ -151,6 +153,7 @@ fn page(design: Design) -> DatasetPage {
         faults: Vec::new(),
         ranges: Vec::new(),
         failed: Vec::new(),
+        warnings: Vec::new(),
         examples: (0..4).map(example).collect(),
         no_examples: String::new(),
         design,
