@@ -6,6 +6,7 @@ use ::report::case_picture::{CasePicture, ClearJoint};
 use clap::{Args, ValueEnum};
 use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
+use mechanism::drive::Drive;
 use recordings::formats::{csv, parquet};
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use scalar::random::{Purpose, Stream, stream};
@@ -387,6 +388,9 @@ fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &
             "  {}: rms {rms:.4e}, peak {peak:.4e} {}",
             channel.name, channel.unit
         );
+    }
+    if let Drive::Free(_) = machine.machine.drive {
+        println!("  mean speed {}", rpm(record.mean_speed));
     }
     for joint in too_deep(record) {
         println!("  warning: {joint}");
