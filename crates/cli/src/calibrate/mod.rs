@@ -10,14 +10,13 @@ mod problem;
 mod progress;
 mod relation;
 
-use crate::{Failure, report};
+use crate::{Failure, interrupt, report};
 use ::calibrate::optimiser::Progress;
 use earlier::Earlier;
 use input::calibration::Calibration;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -84,9 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         machine: None,
         locate: &locate,
     };
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let out = arguments.out();
     let done = into_folder(&settings, out, arguments.existing(), &cancel)?;
     if done.reused {

@@ -65,9 +65,11 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
-/// What is known of a parameter.
-pub(crate) fn told(estimate: &Estimate) -> Value {
-    let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
+/// What is known of a parameter. Where the model does not explain the recordings (`adequate` is false), it
+/// has no interval.
+pub(crate) fn told(estimate: &Estimate, adequate: bool) -> Value {
+    let interval = estimate.interval.filter(|_| adequate);
+    let [low, high] = interval.map_or([None, None], |i| i.map(Some));
     json!({
         "value": estimate.value,
         "low": low,
@@ -86,7 +88,7 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
         let path = &estimate.parameter.path;
-        parameters.insert(path.clone(), told(estimate));
+        parameters.insert(path.clone(), told(estimate, fit.model_is_adequate()));
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);
         let row: Map<String, Value> = others
             .map(|(j, other)| {
@@ -115,6 +117,7 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
         "evaluations": found.evaluations,
         "seconds": found.seconds,
         "complete": fit.complete,
+        "model_is_adequate": fit.model_is_adequate(),
         "fingerprint": found.fingerprint,
         "parameters": parameters,
         "correlations": correlations,
@@ -153,7 +156,10 @@ pub fn summary(results: &Value) {
                 };
                 println!("{path}: {value:.4e} ({low:.4e} to {high:.4e}){stuck}");
             }
-            _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
+            _ if estimate["identifiable"] == true => {
+                println!("{path}: {value:.4e} (no interval: the model is wrong)");
+            }
+            _ => println!("{path}: not identifiable from the recordings; it stays {value:.4e}"),
         }
     }
     for (id, run) in results["runs"].as_object().into_iter().flatten() {
@@ -165,6 +171,15 @@ pub fn summary(results: &Value) {
             "{id} {kind}: {:.2} times its noise, {:.2} before",
             number(&run["calibrated"]),
             number(&run["nominal"])
+        );
+    }
+    if results["model_is_adequate"] == false {
+        let held_out = results["fit"]["heldout_calibrated"].as_f64();
+        println!(
+            "the model is wrong: it leaves {:.2} times the noise{}; above 1.5 no interval is known, and no value \
+             is to be relied on",
+            number(&results["fit"]["calibrated"]),
+            held_out.map_or(String::new(), |misfit| format!(", {misfit:.2} predicted"))
         );
     }
     gas::summary(&results["gas"]);
