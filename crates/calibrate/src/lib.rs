@@ -14,7 +14,9 @@
 
 pub mod alignment;
 pub mod comparison;
+pub mod correction;
 pub mod crank_motion;
+mod data_sheet;
 mod envelopes;
 pub mod error;
 mod few_revolutions;
@@ -39,6 +41,7 @@ pub mod throw_alone;
 pub mod transfer;
 
 pub use comparison::{Comparison, compare, compare_models};
+pub use correction::{Corrected, Correction, correct};
 pub use crank_motion::CrankMotion;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
