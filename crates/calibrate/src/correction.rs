@@ -145,11 +145,17 @@ struct Work<'a> {
 impl Work<'_> {
     /// The values in doubt that are felt, those that promise to close most first, with their starts.
     fn ranked(&mut self, doubts: Vec<Doubt>, x: &[f64]) -> Vec<Ranked> {
-        let points = [x.to_vec(), vec![0.0; x.len()]];
+        // The zero of the crank angle is nothing that is calibrated: it is known whatever is wrong.
+        let nominal = self.problem.parameters.iter().zip(x);
+        let nominal = nominal.map(|(parameter, x)| match parameter.is_crank_angle_offset() {
+            true => *x,
+            false => 0.0,
+        });
+        let points = [x.to_vec(), nominal.collect()];
         // Those that stand in the machine file already are looked at together.
         let (there, added): (Vec<Doubt>, Vec<Doubt>) = doubts
             .into_iter()
-            .partition(|d| d.tree == self.problem.tree);
+            .partition(|d| d.tree == self.problem.tree && d.starts == [0.0]);
         let added = added.into_iter().map(|doubt| vec![doubt]);
         let groups = std::iter::once(there).chain(added);
         let mut ranked: Vec<Ranked> = groups

@@ -141,7 +141,10 @@ fn of_joints(problem: &Problem) -> Result<Vec<Doubt>, Error> {
         if let Some((_, value)) = settings.filter(|(key, _)| *key == path).next_back() {
             paths::set(&mut tree, &path, value.clone())?;
         }
-        doubts.extend(relative(tree, &path, CLEARANCE));
+        doubts.extend(relative(tree, &path, CLEARANCE).map(|doubt| Doubt {
+            starts: (-3..=3).map(|i| 0.15 * f64::from(i)).collect(),
+            ..doubt
+        }));
     }
     Ok(doubts)
 }

@@ -13,6 +13,7 @@
 //! Weights come from that noise alone.
 
 pub mod alignment;
+pub mod checkpoint;
 pub mod comparison;
 pub mod correction;
 pub mod crank_motion;
@@ -39,6 +40,7 @@ pub mod run_condition;
 mod search;
 pub mod throw_alone;
 pub mod transfer;
+pub mod zero;
 
 pub use comparison::{Comparison, compare, compare_models};
 pub use correction::{Corrected, Correction, correct};

@@ -114,7 +114,35 @@ impl Task {
         self.problem.runs = seen.collect::<Result<_, _>>()?;
         let nominal = vec![0.0; self.problem.parameters.len()];
         self.align(&nominal)?;
-        contradiction::check(&self.problem)
+        let start = self.start_at_zero()?;
+        contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
+        self.settings.start = start;
+        Ok(())
+    }
+
+    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre; the bounds of
+    /// the offset are opened that far.
+    fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Failure> {
+        let parameters = self.problem.parameters.iter();
+        let mut offsets = parameters
+            .clone()
+            .enumerate()
+            .filter(|(_, p)| p.is_crank_angle_offset());
+        let (Some((i, _)), None) = (offsets.next(), offsets.next()) else {
+            return Ok(None);
+        };
+        let Some(offset) =
+            ::calibrate::zero::crank_angle_offset(&self.problem).map_err(Failure::input)?
+        else {
+            return Ok(None);
+        };
+        let parameter = &mut self.problem.parameters[i];
+        if parameter.run.is_some() || !parameter.open_for_offset(offset) {
+            return Ok(None);
+        }
+        let mut start = vec![0.0; self.problem.parameters.len()];
+        start[i] = self.problem.parameters[i].coordinate(offset);
+        Ok(Some(start))
     }
 
     /// Sets the zero of the crank angle of every run where it was not recorded to what the machine

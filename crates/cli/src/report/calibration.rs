@@ -58,7 +58,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         seconds: results.content["seconds"].as_f64().unwrap_or(f64::NAN),
         complete: results.content["complete"].as_bool().unwrap_or(true),
         adequate: results.content["model_is_adequate"] != false,
-        corrections: results.corrections(tree),
+        corrections: results.corrections(),
         fitted: Misfit {
             before: number("nominal")?,
             after: number("calibrated")?,
@@ -117,14 +117,14 @@ impl<'a> Results<'a> {
         Ok(entries.collect())
     }
 
-    fn corrections(&self, tree: &Value) -> Vec<Correction> {
+    fn corrections(&self) -> Vec<Correction> {
         let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
         let of = |content: &Value| {
-            let path = content["path"].as_str().unwrap_or_default();
+            let text = |key: &str| content[key].as_str().unwrap_or_default().to_owned();
             Correction {
-                path: path.to_owned(),
-                unit: unit_of(tree, path),
-                nominal: number(&content["nominal"]),
+                path: text("path"),
+                unit: text("unit"),
+                nominal: content["nominal"].as_f64(),
                 value: number(&content["value"]),
                 interval: bounded(content).interval,
                 probability: number(&content["probability"]),

@@ -11,11 +11,11 @@ pub(super) fn sentences(corrections: &[Correction]) -> Vec<String> {
     let mut said: Vec<String> = applied
         .map(|correction| {
             format!(
-                "With the {} freed the model explains the recordings: {} in place of the stated {}. The calibrated machine \
+                "With the {} freed the model explains the recordings: {} in place of {}. The calibrated machine \
                  and the other values on this page have this correction.",
                 name(correction),
                 quantity(correction.value, &correction.unit),
-                quantity(correction.nominal, &correction.unit),
+                stated(correction),
             )
         })
         .collect();
@@ -30,6 +30,14 @@ pub(super) fn sentences(corrections: &[Correction]) -> Vec<String> {
     said
 }
 
+fn stated(correction: &Correction) -> String {
+    let quantity = |nominal| quantity(nominal, &correction.unit);
+    match correction.nominal {
+        Some(nominal) => format!("the stated {}", quantity(nominal)),
+        None => "none that is stated".to_owned(),
+    }
+}
+
 /// The cells of a row: stated, found, interval, misfit, probability.
 pub(super) fn row(correction: &Correction) -> [String; 5] {
     let said = |value: f64| quantity(value, &correction.unit);
@@ -38,7 +46,7 @@ pub(super) fn row(correction: &Correction) -> [String; 5] {
         |[low, high]| format!("{} to {}", said(low), said(high)),
     );
     [
-        said(correction.nominal),
+        correction.nominal.map_or_else(|| "–".to_owned(), said),
         said(correction.value),
         interval,
         size(correction.misfit),
@@ -55,7 +63,7 @@ mod tests {
         let of = |path: &str, applied| Correction {
             path: path.into(),
             unit: "kg".into(),
-            nominal: 18.54,
+            nominal: Some(18.54),
             value: 18.0,
             interval: Some([17.99, 18.01]),
             probability: 0.5,

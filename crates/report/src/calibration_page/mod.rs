@@ -110,8 +110,8 @@ pub struct Correction {
     pub path: String,
     /// Its unit; empty for none.
     pub unit: String,
-    /// The value that was stated.
-    pub nominal: f64,
+    /// The value that was stated, where one was.
+    pub nominal: Option<f64>,
     /// The value that explains the recordings.
     pub value: f64,
     /// Its 95 % interval, where the recordings determine it.
