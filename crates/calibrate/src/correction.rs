@@ -93,7 +93,7 @@ pub fn correct(
     ranked.truncate(FITTED);
     let mut tried = Vec::new();
     for candidate in ranked {
-        if work.stopped {
+        if work.left() == 0 {
             break;
         }
         tried.push(work.descend(candidate, &mut watch)?);
@@ -143,6 +143,14 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
+    /// Evaluations that are left: as many as the search itself was given.
+    fn left(&self) -> u64 {
+        match self.stopped {
+            true => 0,
+            false => self.settings.evaluations.saturating_sub(self.evaluations),
+        }
+    }
+
     /// The values in doubt that are felt, those that promise to close most first, with their starts.
     fn ranked(&mut self, doubts: Vec<Doubt>, x: &[f64]) -> Vec<Ranked> {
         // The zero of the crank angle is nothing that is calibrated: it is known whatever is wrong.
@@ -227,13 +235,14 @@ impl Work<'_> {
             let reached = best
                 .as_ref()
                 .is_some_and(|best| best.misfit() < search::NOISE);
-            if self.stopped || reached {
+            let most = self.left().min(DESCENT);
+            if most == 0 || reached {
                 break;
             }
             let found = {
                 let told = &mut self.told(watch);
                 let change = search::CHANGE;
-                optimiser::levenberg_marquardt(&likelihood, start, change, DESCENT, told)?
+                optimiser::levenberg_marquardt(&likelihood, start, change, most, told)?
             };
             self.evaluations += found.evaluations;
             if best.as_ref().is_none_or(|best| found.cost < best.cost) {
@@ -257,14 +266,15 @@ impl Work<'_> {
         trial: &mut Trial,
         watch: &mut impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        if self.stopped {
+        let most = self.left().min(SEARCH);
+        if most == 0 {
             return Ok(());
         }
         let added = trial.doubt.added(self.problem);
         let seed = self.settings.seed;
         let found = {
             let told = &mut self.told(watch);
-            search::search(&added, &trial.x, seed, SEARCH, told)?
+            search::search(&added, &trial.x, seed, most, told)?
         };
         self.evaluations += found.evaluations;
         if found.misfit() < trial.misfit {
