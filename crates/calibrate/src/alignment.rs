@@ -134,8 +134,16 @@ impl Windowed {
 /// By how much the crank angle of an observed run is to be raised so that it shows what the
 /// prediction does, rad in (−π, π]: least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
+    common_phase(&[(observed, predicted)])
+}
+
+/// The same of all these runs together.
+pub fn common_phase(runs: &[(&Observation, &Prediction)]) -> f64 {
     let mut products = Vec::new();
-    for (channel, lines) in observed.channels.iter().zip(&predicted.lines) {
+    let channels = runs
+        .iter()
+        .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
+    for (channel, lines) in channels {
         let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
         let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
         for &k in channel.orders.iter().filter(|k| **k > 0) {

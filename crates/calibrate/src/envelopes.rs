@@ -70,12 +70,22 @@ impl LeastSquares for Envelopes<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let runs = self.problem.runs.par_iter();
-        let parts: Vec<Vec<Vec<f64>>> = runs.map(|run| self.of_run(run, x, false)).collect();
-        parts.concat().iter().map(|row| row[0]).collect()
+        self.problem.once(&"envelopes", x, || {
+            let runs = self.problem.runs.par_iter();
+            let parts: Vec<Vec<Vec<f64>>> = runs.map(|run| self.of_run(run, x, false)).collect();
+            parts.concat().iter().map(|row| row[0]).collect()
+        })
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+        let columns = || self.evaluated_jacobian(x).as_slice().to_vec();
+        let values = self.problem.once(&"slopes of envelopes", x, columns);
+        DMatrix::from_vec(self.count(), x.len(), values)
+    }
+}
+
+impl Envelopes<'_> {
+    fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<Vec<Vec<f64>>> = runs.map(|run| self.of_run(run, x, true)).collect();
         let rows = parts.concat();

@@ -3,9 +3,11 @@
 use crate::error::Error;
 use crate::identifiability::{Information, information, widening};
 use crate::likelihood::{Likelihood, misfit};
+use crate::observation::Observation;
 use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
+use crate::relation::{ClearJoint, clearances};
 use crate::search::{self, NOISE};
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
@@ -53,6 +55,10 @@ impl Optimiser {
     }
 }
 
+/// A misfit above which the model does not explain the recordings. Intervals follow from the noise, as if it
+/// were all that is left; at 1.5 more than half of the mean square is something else, and what that does to
+/// the parameters nobody knows.
+pub(crate) const ADEQUATE: f64 = 1.5;
 /// A value this near to a bound, as a share of the range, is at it.
 const AT_BOUND: f64 = 1e-3;
 
@@ -82,6 +88,23 @@ impl Fit {
             .collect();
         let mean = chosen.iter().sum::<f64>() / chosen.len() as f64;
         (!chosen.is_empty()).then(|| mean.sqrt())
+    }
+
+    /// The coordinates of what was found.
+    pub fn coordinates(&self) -> Vec<f64> {
+        let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
+        self.estimates.iter().map(coordinate).collect()
+    }
+
+    /// Whether the model explains the recordings: no more than noise is left of the fitted runs, and of those
+    /// held out that have the clearances of a fitted one. Runs at other clearances judge the relation between
+    /// clearances, not the parameters.
+    pub fn model_is_adequate(&self) -> bool {
+        let alike = self.runs.iter().filter(|run| run.held_out && run.alike);
+        let squares: Vec<f64> = alike.map(|run| run.calibrated.powi(2)).collect();
+        let held_out = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
+        let fitted = self.misfit(false, |run| run.calibrated);
+        fitted.is_some_and(|fitted| fitted <= ADEQUATE) && held_out <= ADEQUATE
     }
 }
 
@@ -113,6 +136,8 @@ pub struct RunFit {
     pub id: String,
     /// True where it was not fitted to.
     pub held_out: bool,
+    /// True where it has the clearances of a run that was fitted to.
+    pub alike: bool,
     /// With the nominal parameters.
     pub nominal: f64,
     /// With the calibrated ones.
@@ -199,12 +224,27 @@ pub fn calibrate(
         all[*i] = *value;
     }
     let after = Likelihood::new(problem).by_run(&all)?;
-    let runs = problem.runs.iter().zip(before.iter().zip(&after));
+    let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
+    let joints = ClearJoint::of(&problem.tree, of_runs)?;
+    let state = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
+    let states = fitted
+        .runs
+        .iter()
+        .map(state)
+        .collect::<Result<Vec<_>, _>>()?;
+    let alike = problem
+        .runs
+        .iter()
+        .map(|run| Ok(states.contains(&state(run)?)));
+    let alike = alike.collect::<Result<Vec<bool>, Error>>()?;
+    let misfits = before.iter().zip(&after).zip(alike);
+    let runs = problem.runs.iter().zip(misfits);
     Ok(Fit {
         runs: runs
-            .map(|(run, (before, after))| RunFit {
+            .map(|(run, ((before, after), alike))| RunFit {
                 id: run.id.clone(),
                 held_out: held_out(&run.id),
+                alike,
                 nominal: misfit(before),
                 calibrated: misfit(after),
             })

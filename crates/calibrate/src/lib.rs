@@ -13,8 +13,11 @@
 //! Weights come from that noise alone.
 
 pub mod alignment;
+pub mod checkpoint;
 pub mod comparison;
+pub mod correction;
 pub mod crank_motion;
+mod data_sheet;
 mod envelopes;
 pub mod error;
 mod few_revolutions;
@@ -37,8 +40,10 @@ pub mod run_condition;
 mod search;
 pub mod throw_alone;
 pub mod transfer;
+pub mod zero;
 
 pub use comparison::{Comparison, compare, compare_models};
+pub use correction::{Corrected, Correction, correct};
 pub use crank_motion::CrankMotion;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};

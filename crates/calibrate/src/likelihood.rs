@@ -88,17 +88,29 @@ impl LeastSquares for Likelihood<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let runs = self.problem.runs.par_iter();
-        let parts: Vec<Vec<f64>> = runs
-            .map(|run| match self.prediction(run, x, false) {
-                Ok(prediction) => residuals(run, &prediction, self.timing),
-                Err(_) => vec![FAILED; residual_count(run)],
-            })
-            .collect();
-        parts.concat()
+        let what = ("residuals", self.timing);
+        self.problem.once(&what, x, || {
+            let runs = self.problem.runs.par_iter();
+            let parts: Vec<Vec<f64>> = runs
+                .map(|run| match self.prediction(run, x, false) {
+                    Ok(prediction) => residuals(run, &prediction, self.timing),
+                    Err(_) => vec![FAILED; residual_count(run)],
+                })
+                .collect();
+            parts.concat()
+        })
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+        let what = ("derivatives", self.timing);
+        let columns = || self.evaluated_jacobian(x).as_slice().to_vec();
+        let values = self.problem.once(&what, x, columns);
+        DMatrix::from_vec(self.count(), x.len(), values)
+    }
+}
+
+impl Likelihood<'_> {
+    fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let runs = self.problem.runs.par_iter();
         let parts: Vec<DMatrix<f64>> = runs
             .map(|run| match self.prediction(run, x, true) {

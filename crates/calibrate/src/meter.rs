@@ -1,22 +1,42 @@
 //! What predictions cost, in steps of the integrator: a measure of time that is the same on every
-//! machine.
+//! machine; and which of them are known from before.
 
+use crate::checkpoint::Checkpoint;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Counts the steps of all predictions of a problem. Copies count together.
 #[derive(Clone, Default)]
-pub struct Meter(Arc<AtomicU64>);
+pub struct Meter {
+    steps: Arc<AtomicU64>,
+    checkpoint: Option<Arc<Checkpoint>>,
+}
 
 impl Meter {
+    /// One that keeps what is evaluated, and evaluates nothing twice.
+    pub fn with_checkpoint(checkpoint: Checkpoint) -> Self {
+        Self {
+            checkpoint: Some(Arc::new(checkpoint)),
+            ..Self::default()
+        }
+    }
+
     pub(crate) fn add(&self, steps: u64) {
-        self.0.fetch_add(steps, Ordering::Relaxed);
+        self.steps.fetch_add(steps, Ordering::Relaxed);
     }
 
     /// Steps so far; one with eight tangents counts as seven.
     pub fn steps(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
+        self.steps.load(Ordering::Relaxed)
+    }
+
+    /// The numbers that `work` gives for this input, or gave before.
+    pub(crate) fn once(&self, input: &dyn fmt::Debug, work: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
+        match &self.checkpoint {
+            Some(checkpoint) => checkpoint.once(input, work),
+            None => work(),
+        }
     }
 }
 

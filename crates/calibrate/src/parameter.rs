@@ -183,6 +183,12 @@ impl Parameter {
         self.holds_in(run) && !self.is_crank_angle_offset()
     }
 
+    /// Whether it is the clearance of a joint, searched on a logarithmic scale.
+    pub(crate) fn is_clearance(&self) -> bool {
+        let of_joint = |place: &String| place.contains("joints.") && place.ends_with(".clearance");
+        self.scale == Scale::Logarithmic && self.places.iter().any(of_joint)
+    }
+
     /// Whether it is by how much the recorded crank angle is ahead of the crank.
     pub fn is_crank_angle_offset(&self) -> bool {
         self.places.is_empty()

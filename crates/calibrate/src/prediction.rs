@@ -8,7 +8,7 @@ use rustfft::num_complex::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::OrderLines;
-use simulate::{Settings, Transient, sensitivities};
+use simulate::{Sensor, Settings, Transient, sensitivities};
 
 /// Relative local error of the integration; far below the noise of any sensor.
 const TOLERANCE: f64 = 1e-6;
@@ -64,7 +64,8 @@ pub(crate) fn prediction(
     wanted: bool,
     coarse: bool,
 ) -> Result<Prediction, Error> {
-    let machine = problem.machine(run, x)?;
+    let mut machine = problem.machine(run, x)?;
+    let delays = take_delays(&mut machine.sensors);
     let speed = machine.speed.abs();
     // With the speed given, samples then stand at the grid's angles themselves.
     let sample_rate = POINTS as f64 * speed / std::f64::consts::TAU;
@@ -91,7 +92,11 @@ pub(crate) fn prediction(
     let moving = |i: &usize| problem.parameters[*i].moves(&run.id);
     groups.iter_mut().for_each(|group| group.retain(moving));
     groups.retain(|group| !group.is_empty());
-    let moved = problem.moved(run, x, &groups)?;
+    let mut moved = problem.moved(run, x, &groups)?;
+    let moved_delays: Vec<Vec<f64>> = moved
+        .iter_mut()
+        .map(|moved| take_delays(&mut moved.sensors))
+        .collect();
     let record = sensitivities(&machine.machine, &machine.sensors, &moved, &settings);
     let record = record.map_err(failed)?;
     problem.meter.add(record.steps);
@@ -109,9 +114,12 @@ pub(crate) fn prediction(
     let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
     let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
     let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
+    // A delay turns the lines as an offset of the crank angle does that the shaft takes as long for.
+    let lag = |channel: usize| offset + run.crank.speed * delays[channel];
     let lines = series
         .iter()
-        .map(|s| Ok(later(lines_of(s)?, offset)))
+        .enumerate()
+        .map(|(channel, s)| Ok(later(lines_of(s)?, lag(channel))))
         .collect::<Result<Vec<_>, Error>>()?;
     let mut derivatives = record
         .derivatives
@@ -120,11 +128,11 @@ pub(crate) fn prediction(
             let Some((of_angle, of_series)) = of_parameter.split_last() else {
                 return Ok(Vec::new());
             };
-            let channels = of_series.iter().zip(series);
+            let channels = of_series.iter().zip(series).enumerate();
             channels
-                .map(|(derivative, x)| {
+                .map(|(channel, (derivative, x))| {
                     let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
-                    let lines = later(lines_of(&at_angle)?, offset);
+                    let lines = later(lines_of(&at_angle)?, lag(channel));
                     let per_coordinate = |c: &Complex64| c / problem.step();
                     Ok(lines.amplitude.iter().map(per_coordinate).collect())
                 })
@@ -134,8 +142,11 @@ pub(crate) fn prediction(
     if wanted && periodic {
         derivatives = apart(problem, run, &groups, derivatives, &lines);
     }
-    for (of_parameter, slope) in derivatives.iter_mut().zip(&offset_slopes) {
-        for (of_channel, lines) in of_parameter.iter_mut().zip(&lines) {
+    for (parameter, of_parameter) in derivatives.iter_mut().enumerate() {
+        let group = groups.iter().position(|group| group.contains(&parameter));
+        for (channel, (of_channel, lines)) in of_parameter.iter_mut().zip(&lines).enumerate() {
+            let later = group.map_or(0.0, |g| moved_delays[g][channel] - delays[channel]);
+            let slope = offset_slopes[parameter] + run.crank.speed * later / problem.step();
             for (k, (d, c)) in of_channel.iter_mut().zip(&lines.amplitude).enumerate() {
                 *d -= Complex64::I * (k as f64 * slope) * c;
             }
@@ -146,6 +157,12 @@ pub(crate) fn prediction(
         derivatives,
         periodic,
     })
+}
+
+/// The delays of sensors, s, which have none afterwards.
+fn take_delays(sensors: &mut [Sensor]) -> Vec<f64> {
+    let delays = sensors.iter_mut().map(|sensor| &mut sensor.chain.delay);
+    delays.map(std::mem::take).collect()
 }
 
 /// The rate at which the motion is sampled, Hz. Without filters between motion and recorder four

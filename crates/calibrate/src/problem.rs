@@ -11,6 +11,7 @@ use input::paths;
 use mechanism::drive::Drive;
 use serde_json::Value;
 use simulate::{ChamberEnd, Measured, Moved, Sensor};
+use std::fmt;
 
 /// A machine file, the values of it that are free, and the runs that they must explain.
 #[derive(Clone, Debug)]
@@ -141,6 +142,17 @@ impl Problem {
             runs: self.runs.iter().filter(|run| keep(run)).cloned().collect(),
             ..self.clone()
         }
+    }
+
+    /// The numbers that `work` gives at the coordinates `x`, or gave before; `what` tells them from others of the
+    /// same problem.
+    pub(crate) fn once(
+        &self,
+        what: &dyn fmt::Debug,
+        x: &[f64],
+        work: impl FnOnce() -> Vec<f64>,
+    ) -> Vec<f64> {
+        self.meter.once(&(what, x, self), work)
     }
 
     /// The same problem with a meter of its own.

@@ -10,11 +10,22 @@ use serde_json::Value;
 /// By how much the recorded crank angle is ahead of the crank, rad: a dead centre that was set wrong
 /// at the encoder. It is a parameter of every run, or of one: `runs.RUN.crank_angle_offset`.
 pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
-/// Without bounds of its own it is searched over 5° to either side.
+/// Without bounds of its own it is searched over 5° to either side, of 0 and of where it is seen.
 const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 impl Parameter {
+    /// Opens the bounds of an offset of the crank angle that has none of its own, so that they hold what is seen
+    /// of it, rad; whether they had to be opened.
+    pub fn open_for_offset(&mut self, seen: f64) -> bool {
+        let [low, high] = self.bounds;
+        if self.bounds != OFFSETS || !self.is_crank_angle_offset() || (low..=high).contains(&seen) {
+            return false;
+        }
+        self.bounds = [low.min(seen + OFFSETS[0]), high.max(seen + OFFSETS[1])];
+        true
+    }
+
     /// The parameter that `path` names, with bounds of its own where they are given, SI: a value of
     /// the machine file `tree`; `runs.RUN.PATH`, the same value in one run alone (the suction
     /// pressure, say, which differs from run to run); or [`CRANK_ANGLE_OFFSET`], of all runs or one.

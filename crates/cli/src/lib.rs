@@ -16,6 +16,7 @@ pub mod failure;
 pub mod features;
 pub mod gen_dataset;
 pub mod hidden_effects;
+mod interrupt;
 pub mod replay;
 pub mod report;
 mod run_progress;

@@ -1,5 +1,6 @@
 //! The measuring chain up to the recorder: filters at the inner rate, then decimation.
 
+use crate::delay::Delay;
 use crate::record::Error;
 use crate::sensor::{Axis, ChamberEnd, Measured, Sensor};
 use crate::settings::Settings;
@@ -120,6 +121,7 @@ impl Sampling {
             }
         })?;
         Ok(UnderWay {
+            delay: Delay::new(sensor.chain.delay * self.inner_rate),
             sensor: sensor.clone(),
             filters,
             seen: 0,
@@ -137,6 +139,7 @@ const AT_A_TIME: usize = 256;
 /// the decimation still needs.
 pub(crate) struct UnderWay {
     sensor: Sensor,
+    delay: Delay,
     filters: Vec<Filter>,
     /// Inner samples so far.
     seen: usize,
@@ -169,7 +172,7 @@ impl UnderWay {
     }
 
     fn filter(&mut self, x: f64) {
-        let x = x * self.sensor.chain.gain;
+        let x = self.delay.run(x * self.sensor.chain.gain);
         if self.seen == 0 {
             self.filters.iter_mut().for_each(|f| f.settle(x));
         }

@@ -10,6 +10,7 @@
 
 pub mod bifurcation;
 mod chain;
+mod delay;
 mod ensemble;
 pub mod flow;
 mod leaving;

@@ -75,10 +75,12 @@ pub enum ChamberEnd {
     Crank,
 }
 
-/// What happens between the quantity and the recorded number, in this order: mounting resonance,
-/// low-pass, gain, hum, noise, range, quantisation; of an encoder the offset of its zero.
+/// What happens between the quantity and the recorded number, in this order: delay, mounting resonance,
+/// low-pass, gain, hum, noise, range, quantisation; of an encoder the offset of its zero alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
+    /// By how much the recorded number is late, s.
+    pub delay: f64,
     /// Resonance of the sensor on its mount.
     pub mounting: Option<Resonance>,
     /// Low-pass of the amplifier.
@@ -100,6 +102,7 @@ pub struct Chain {
 impl Default for Chain {
     fn default() -> Self {
         Self {
+            delay: 0.0,
             mounting: None,
             low_pass: None,
             gain: 1.0,

@@ -13,8 +13,10 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 What is fitted are paths of the machine file; without --parameter the contact stiffness, damping and
-friction of every joint that is clear in some run, or, where pressures alone were recorded, exponent,
-clearance and pressures of the gas. Of every four runs one is held out and predicted,
+friction of every joint that is clear in some run (as the run states, else as the machine file does), or,
+where pressures alone were recorded, exponent, clearance and pressures of the gas. With accelerations the
+zero of the crank angle is always fitted as well (crank_angle_offset). Above a misfit of 1.5 times the
+noise no interval is given; then values of the data sheet are freed one by one. Of every four runs one is held out and predicted,
 the last whose clearances a fitted run has. Options override the settings file.
 
 Examples:

@@ -1,7 +1,7 @@
 //! Whether recordings and machine can be of one another, before anything is fitted.
 
 use crate::{Failure, bundle};
-use ::calibrate::prediction::predict;
+use ::calibrate::prediction::{Prediction, predict};
 use ::calibrate::{Problem, Run};
 use rayon::prelude::*;
 use signal::order_lines::OrderLines;
@@ -15,6 +15,10 @@ const FACTOR: f64 = 1.5;
 const PHASE: f64 = 45.0;
 /// Share of a cylinder's pressures within which the greatest and least reach those that are stated.
 const PRESSURE: f64 = 0.25;
+/// Relative difference of two runs' pressures from which their order counts: valve losses, which go with the
+/// speed, raise the greatest pressure of a run by up to a fifth, and here two runs have to differ by as much in
+/// all.
+const ORDER: f64 = 0.1;
 /// Points over a revolution at which a mean is looked at.
 const POINTS: usize = 360;
 
@@ -34,22 +38,13 @@ pub fn speed(run: &Run, measured: f64) -> Result<(), Failure> {
     Err(bundle::unusable(&run.id, &error.to_string()))
 }
 
-/// Holds every run against what the nominal machine shows.
+/// Holds every run against what the machine shows at the coordinates `x`.
 ///
 /// # Errors
-/// The first run that no parameters could bring together with the machine.
-pub fn check(problem: &Problem) -> Result<(), Failure> {
-    let nominal = vec![0.0; problem.parameters.len()];
-    let predictions: Result<Vec<_>, _> = problem
-        .runs
-        .par_iter()
-        .map(|run| predict(problem, run, &nominal))
-        .collect();
-    for (run, prediction) in problem
-        .runs
-        .iter()
-        .zip(predictions.map_err(Failure::input)?)
-    {
+/// The first run that no parameters could bring together with the machine, or two that seem to be each other.
+pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Failure> {
+    let predictions = predictions(problem, x)?;
+    for (run, prediction) in problem.runs.iter().zip(&predictions) {
         for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
             let found = match observed.column.contains("crosshead_acceleration") {
                 true => acceleration(&observed.lines, predicted),
@@ -64,7 +59,63 @@ pub fn check(problem: &Problem) -> Result<(), Failure> {
             }
         }
     }
+    swapped(problem, &predictions)
+}
+
+/// What the machine shows of every run.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+fn predictions(problem: &Problem, x: &[f64]) -> Result<Vec<Prediction>, Failure> {
+    let runs = problem.runs.par_iter();
+    let predictions: Result<Vec<_>, _> = runs.map(|run| predict(problem, run, x)).collect();
+    predictions.map_err(Failure::input)
+}
+
+/// Refuses two runs of which each has recorded the load that is stated for the other.
+fn swapped(problem: &Problem, predictions: &[Prediction]) -> Result<(), Failure> {
+    let runs = problem.runs.iter().zip(predictions);
+    let mut seen: Vec<(&str, &str, [f64; 2], [f64; 2])> = Vec::new();
+    for (run, prediction) in runs {
+        for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
+            if !observed.column.contains("pressure") {
+                continue;
+            }
+            let [recorded, stated] = [&observed.lines, predicted].map(extremes);
+            let column = observed.column.as_str();
+            for (other, _, other_recorded, other_stated) in
+                seen.iter().filter(|(_, other, ..)| *other == column)
+            {
+                for (i, which) in [(1, "greatest"), (0, "least")] {
+                    let [shown, given] = [
+                        [recorded[i], other_recorded[i]],
+                        [stated[i], other_stated[i]],
+                    ];
+                    if are_opposed(shown, given) {
+                        let reason = format!(
+                            "channel {column}: its {which} value is {:.4} Pa and that of run {other} is {:.4} Pa, but \
+                             their loads are stated the other way round, as {:.4} Pa and {:.4} Pa: are the two \
+                             recordings or their loads swapped?",
+                            shown[0], shown[1], given[0], given[1]
+                        );
+                        return Err(bundle::unusable(&run.id, &reason));
+                    }
+                }
+            }
+            seen.push((&run.id, column, recorded, stated));
+        }
+    }
     Ok(())
+}
+
+/// Whether the one pair clearly rises where the other clearly falls.
+fn are_opposed(a: [f64; 2], b: [f64; 2]) -> bool {
+    let rise = |[from, to]: [f64; 2]| match from > 0.0 && to > 0.0 {
+        true => (to / from).ln(),
+        false => 0.0,
+    };
+    let [a, b] = [rise(a), rise(b)];
+    a.abs() > ORDER && b.abs() > ORDER && (a > 0.0) != (b > 0.0)
 }
 
 fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Option<String> {
@@ -122,4 +173,18 @@ fn extremes(lines: &OrderLines) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [low.min(x), high.max(x)]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_are_opposed_where_both_differ_clearly() {
+        assert!(are_opposed([3.0, 3.9], [3.9, 3.0]));
+        assert!(!are_opposed([3.0, 3.9], [3.0, 3.9]));
+        // Losses of valves at another speed.
+        assert!(!are_opposed([3.0, 3.2], [3.2, 3.0]));
+        assert!(!are_opposed([3.0, 3.0], [3.9, 3.0]) && !are_opposed([-1.0, 3.0], [3.0, 1.0]));
+    }
 }

@@ -2,9 +2,12 @@
 
 use super::{Existing, output};
 use crate::Failure;
-use ::calibrate::Problem;
+use ::calibrate::checkpoint::Checkpoint;
 use serde_json::Value;
 use std::path::Path;
+
+/// Name of the file of what was evaluated, which is there while a calibration is not complete.
+const CHECKPOINT: &str = "checkpoint.bin";
 
 /// What an earlier calibration of the same inputs has left.
 pub struct Earlier {
@@ -18,20 +21,9 @@ impl Earlier {
         self.results["complete"] == true
     }
 
-    /// Its evaluations of the model, and their time, s.
-    pub fn spent(&self) -> (u64, f64) {
-        let evaluations = self.results["evaluations"].as_u64();
-        let seconds = self.results["seconds"].as_f64();
-        (evaluations.unwrap_or(0), seconds.unwrap_or(0.0))
-    }
-
-    /// The coordinates of what it found, nominal where it found nothing.
-    pub fn start(&self, problem: &Problem) -> Vec<f64> {
-        let value = |path: &str| self.results["parameters"][path]["value"].as_f64();
-        let parameters = problem.parameters.iter();
-        parameters
-            .map(|p| value(&p.path).map_or(0.0, |value| p.coordinate(value)))
-            .collect()
+    /// How long it took, s.
+    pub fn seconds(&self) -> f64 {
+        self.results["seconds"].as_f64().unwrap_or(0.0)
     }
 }
 
@@ -54,14 +46,24 @@ pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
             _ => Ok(()),
         };
     }
-    let mut entries = match std::fs::read_dir(folder) {
+    let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(Failure::input(format!("{}: {error}", folder.display()))),
     };
-    match entries.next() {
-        None => Ok(()),
-        Some(_) => Err(Failure::input(format!(
+    let names = entries
+        .filter_map(Result::ok)
+        .map(|entry| entry.file_name());
+    let names: Vec<_> = names.collect();
+    match names.iter().any(|name| name == CHECKPOINT) {
+        _ if names.is_empty() => Ok(()),
+        true if existing == Existing::Refuse => Err(Failure::input(format!(
+            "{} holds a calibration that was interrupted: --resume goes on with it, --overwrite begins anew, \
+             --out DIR writes elsewhere",
+            folder.display()
+        ))),
+        true => Ok(()),
+        false => Err(Failure::input(format!(
             "{} is not empty and no calibration, so it is left alone: choose another folder",
             folder.display()
         ))),
@@ -77,7 +79,14 @@ pub fn look(
     existing: Existing,
     fingerprint: &str,
 ) -> Result<Option<Earlier>, Failure> {
+    let checkpoint = folder.join(CHECKPOINT);
     let path = folder.join(output::RESULTS);
+    if existing == Existing::Resume && !path.is_file() && checkpoint.is_file() {
+        return match Checkpoint::is_of(&checkpoint, fingerprint) {
+            true => Ok(None),
+            false => Err(other(&checkpoint)),
+        };
+    }
     if !path.is_file() || !matches!(existing, Existing::Resume | Existing::Renew) {
         return Ok(None);
     }
@@ -87,11 +96,42 @@ pub fn look(
     let same = results["fingerprint"] == fingerprint && folder.join(output::MACHINE).is_file();
     match (same, existing) {
         (true, _) => Ok(Some(Earlier { results })),
-        (false, Existing::Resume) => Err(wrong(
-            "it was made from other recordings, another machine, other settings or by another \
-             version: --overwrite makes it anew, --out DIR writes elsewhere"
-                .into(),
-        )),
+        (false, Existing::Resume) => Err(other(&path)),
         (false, _) => Ok(None),
     }
+}
+
+fn other(path: &Path) -> Failure {
+    Failure::input(format!(
+        "{}: it was made from other recordings, another machine, other settings or by another version: --overwrite \
+         makes it anew, --out DIR writes elsewhere",
+        path.display()
+    ))
+}
+
+/// The checkpoint of a calibration into `folder`: what was evaluated before, if it goes on, or nothing yet.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn checkpoint(
+    folder: &Path,
+    existing: Existing,
+    fingerprint: &str,
+) -> Result<Checkpoint, Failure> {
+    let path = folder.join(CHECKPOINT);
+    let unwritten = |error| Failure::unwritten(&path, error);
+    std::fs::create_dir_all(folder).map_err(unwritten)?;
+    if path.is_file() && !matches!(existing, Existing::Resume | Existing::Renew) {
+        std::fs::remove_file(&path).map_err(unwritten)?;
+    }
+    Checkpoint::open(&path, fingerprint).map_err(unwritten)
+}
+
+/// Takes the checkpoint of a calibration away that is complete.
+///
+/// # Errors
+/// A file that cannot be removed.
+pub fn remove_checkpoint(folder: &Path) -> Result<(), Failure> {
+    let path = folder.join(CHECKPOINT);
+    std::fs::remove_file(&path).map_err(|error| Failure::unwritten(&path, error))
 }

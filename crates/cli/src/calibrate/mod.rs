@@ -10,14 +10,14 @@ mod problem;
 mod progress;
 mod relation;
 
-use crate::{Failure, report};
+use crate::{Failure, interrupt, report};
+use ::calibrate::meter::Meter;
 use ::calibrate::optimiser::Progress;
 use earlier::Earlier;
 use input::calibration::Calibration;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -84,9 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         machine: None,
         locate: &locate,
     };
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let out = arguments.out();
     let done = into_folder(&settings, out, arguments.existing(), &cancel)?;
     if done.reused {
@@ -122,6 +120,7 @@ pub struct Prepared {
     task: Task,
     fingerprint: String,
     out: PathBuf,
+    existing: Existing,
     earlier: Option<Earlier>,
 }
 
@@ -139,6 +138,7 @@ pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Pr
         earlier: earlier::look(out, existing, &fingerprint)?,
         task,
         fingerprint,
+        existing,
         out: out.to_owned(),
     })
 }
@@ -150,7 +150,8 @@ impl Prepared {
     }
 
     /// Searches, unless it is done. `cancel` stops the search at its next step, and what was best so
-    /// far is written, marked as incomplete.
+    /// far is written, marked as incomplete. What is evaluated is on the disk at once, so that a calibration that
+    /// was stopped, or killed, goes on from there and ends with the same results.
     ///
     /// # Errors
     /// A machine that cannot be simulated, or files that cannot be written.
@@ -159,10 +160,11 @@ impl Prepared {
             mut task,
             fingerprint,
             out,
+            existing,
             earlier,
         } = self;
         let machine = out.join(output::MACHINE);
-        let (mut evaluations, mut seconds) = (0, 0.0);
+        let mut seconds = 0.0;
         if let Some(earlier) = earlier {
             if earlier.is_complete() {
                 return Ok(Calibrated {
@@ -171,11 +173,24 @@ impl Prepared {
                     reused: true,
                 });
             }
-            task.settings.start = Some(earlier.start(&task.problem));
-            (evaluations, seconds) = earlier.spent();
+            seconds = earlier.seconds();
         }
+        let checkpoint = earlier::checkpoint(&out, existing, &fingerprint)?;
+        task.problem.meter = Meter::with_checkpoint(checkpoint);
         let start = Instant::now();
-        let fit = progress::search(&mut task, cancel)?;
+        let mut fit = progress::search(&mut task, cancel)?;
+        let mut evaluations = fit.evaluations;
+        let mut corrected = None;
+        if fit.complete && !fit.model_is_adequate() {
+            let mut found = progress::correct(&task, &fit, cancel)?;
+            evaluations += found.evaluations;
+            if let Some((problem, better)) = found.fit.take() {
+                task.problem = problem;
+                fit = better;
+            }
+            fit.complete &= found.complete;
+            corrected = Some(found);
+        }
         let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
@@ -189,7 +204,8 @@ impl Prepared {
             fit: &fit,
             transfer: transfer.as_ref(),
             fingerprint: &fingerprint,
-            evaluations: evaluations + fit.evaluations,
+            corrected: corrected.as_ref(),
+            evaluations,
             seconds: seconds + start.elapsed().as_secs_f64(),
         };
         let x: Vec<f64> = fit
@@ -200,6 +216,9 @@ impl Prepared {
         let compared = ::calibrate::compare(&task.problem, &task.runs, &x);
         pictures::write(&out, &compared.map_err(Failure::work)?)?;
         let results = output::write(&out, &task, &found)?;
+        if fit.complete {
+            earlier::remove_checkpoint(&out)?;
+        }
         report::write_calibration(&out, &out.join(report::PAGE))?;
         Ok(Calibrated {
             machine,

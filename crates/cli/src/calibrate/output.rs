@@ -4,7 +4,7 @@ use super::{Task, gas, relation};
 use crate::Failure;
 use ::calibrate::fit::{Estimate, Fit, FitSettings};
 use ::calibrate::parameter::Scale;
-use ::calibrate::{Problem, Transfer};
+use ::calibrate::{Corrected, Correction, Problem, Transfer};
 use input::MachineFile;
 use recordings::WholeFile;
 use serde_json::{Map, Value, json};
@@ -22,6 +22,8 @@ pub struct Found<'a> {
     pub fit: &'a Fit,
     /// What it comes to at other clearances; none where the search was stopped.
     pub transfer: Option<&'a Transfer>,
+    /// What was looked for in the data sheet; none where the model explains the recordings at once.
+    pub corrected: Option<&'a Corrected>,
     /// What tells its inputs from others.
     pub fingerprint: &'a str,
     /// Evaluations of the model, those before an interruption included.
@@ -65,9 +67,11 @@ fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
         .map_err(Failure::work)
 }
 
-/// What is known of a parameter.
-pub(crate) fn told(estimate: &Estimate) -> Value {
-    let [low, high] = estimate.interval.map_or([None, None], |i| i.map(Some));
+/// What is known of a parameter. Where the model does not explain the recordings (`adequate` is false), it
+/// has no interval.
+pub(crate) fn told(estimate: &Estimate, adequate: bool) -> Value {
+    let interval = estimate.interval.filter(|_| adequate);
+    let [low, high] = interval.map_or([None, None], |i| i.map(Some));
     json!({
         "value": estimate.value,
         "low": low,
@@ -86,7 +90,7 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
     let mut correlations = Map::new();
     for (i, estimate) in fit.estimates.iter().enumerate() {
         let path = &estimate.parameter.path;
-        parameters.insert(path.clone(), told(estimate));
+        parameters.insert(path.clone(), told(estimate, fit.model_is_adequate()));
         let others = fit.estimates.iter().enumerate().filter(|(j, _)| *j != i);
         let row: Map<String, Value> = others
             .map(|(j, other)| {
@@ -115,9 +119,15 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
         "evaluations": found.evaluations,
         "seconds": found.seconds,
         "complete": fit.complete,
+        "model_is_adequate": fit.model_is_adequate(),
         "fingerprint": found.fingerprint,
         "parameters": parameters,
         "correlations": correlations,
+        "corrections": found.corrected.map_or_else(Vec::new, corrections),
+        "corrections_tried": found.corrected.map(|corrected| {
+            let tried = corrected.tried.iter();
+            tried.map(|(path, misfit)| json!({"path": path, "misfit": misfit})).collect::<Vec<_>>()
+        }),
         "fit": {
             "unit": "standard deviations of the synchronous mean's noise",
             "noise_floor": 1.0,
@@ -137,6 +147,30 @@ fn calibration(found: &Found, settings: &FitSettings) -> Value {
     })
 }
 
+/// The values of the data sheet that would explain the recordings, the most probable first.
+fn corrections(corrected: &Corrected) -> Vec<Value> {
+    let of = |(i, correction): (usize, &Correction)| {
+        let Estimate {
+            parameter,
+            value,
+            interval,
+        } = &correction.estimate;
+        let [low, high] = interval.map_or([None, None], |i| i.map(Some));
+        json!({
+            "path": parameter.path,
+            "value": value,
+            "low": low,
+            "high": high,
+            "nominal": correction.stated.then_some(parameter.nominal),
+            "probability": correction.probability,
+            "misfit": correction.misfit,
+            "unit": parameter.dimension.map_or(String::new(), |unit| unit.to_string()),
+            "applied": corrected.applied && i == 0,
+        })
+    };
+    corrected.corrections.iter().enumerate().map(of).collect()
+}
+
 /// Prints what was found: the content of `calibration.json`.
 pub fn summary(results: &Value) {
     if results["complete"] == false {
@@ -153,7 +187,10 @@ pub fn summary(results: &Value) {
                 };
                 println!("{path}: {value:.4e} ({low:.4e} to {high:.4e}){stuck}");
             }
-            _ => println!("{path}: the recordings do not tell it; it stays {value:.4e}"),
+            _ if estimate["identifiable"] == true => {
+                println!("{path}: {value:.4e} (no interval: the model is wrong)");
+            }
+            _ => println!("{path}: not identifiable from the recordings; it stays {value:.4e}"),
         }
     }
     for (id, run) in results["runs"].as_object().into_iter().flatten() {
@@ -167,8 +204,59 @@ pub fn summary(results: &Value) {
             number(&run["nominal"])
         );
     }
+    summary_of_corrections(results);
+    if results["model_is_adequate"] == false {
+        let held_out = results["fit"]["heldout_calibrated"].as_f64();
+        println!(
+            "the model is wrong: it leaves {:.2} times the noise{}; above 1.5 no interval is known, and no value \
+             is to be relied on",
+            number(&results["fit"]["calibrated"]),
+            held_out.map_or(String::new(), |misfit| format!(", {misfit:.2} predicted"))
+        );
+    }
     gas::summary(&results["gas"]);
     relations(&results["relations"]);
+}
+
+/// Prints which values of the data sheet were looked at because the model was wrong, and what came of it.
+fn summary_of_corrections(results: &Value) {
+    let Some(tried) = results["corrections_tried"].as_array() else {
+        return;
+    };
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    let path = |value: &Value| value["path"].as_str().unwrap_or_default().to_owned();
+    let corrections = results["corrections"].as_array();
+    let corrections = corrections.map_or(&[][..], Vec::as_slice);
+    for correction in corrections {
+        let stated = match correction["nominal"].as_f64() {
+            Some(nominal) => format!("in place of the stated {nominal:.5e}"),
+            None => "which nobody has stated".to_owned(),
+        };
+        let end = match correction["applied"] == true {
+            true => "; machine.yaml has it",
+            false => "",
+        };
+        println!(
+            "data sheet: {} = {:.5e} ({:.5e} to {:.5e}), {stated}, explains the recordings ({:.2} times the noise, \
+             probability {:.2}){end}",
+            path(correction),
+            number(&correction["value"]),
+            number(&correction["low"]),
+            number(&correction["high"]),
+            number(&correction["misfit"]),
+            number(&correction["probability"]),
+        );
+    }
+    if corrections.len() > 1 && corrections.iter().all(|c| c["applied"] != true) {
+        println!("data sheet: these are not told apart, and none is corrected: measure them");
+    }
+    if let (true, Some(nearest)) = (corrections.is_empty(), tried.first()) {
+        println!(
+            "data sheet: no single value of it explains the recordings; {} comes nearest, to {:.2} times the noise",
+            path(nearest),
+            number(&nearest["misfit"])
+        );
+    }
 }
 
 /// Prints how the relations between clearances compare, where the recordings tell them apart.

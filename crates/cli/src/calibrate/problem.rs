@@ -114,7 +114,35 @@ impl Task {
         self.problem.runs = seen.collect::<Result<_, _>>()?;
         let nominal = vec![0.0; self.problem.parameters.len()];
         self.align(&nominal)?;
-        contradiction::check(&self.problem)
+        let start = self.start_at_zero()?;
+        contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
+        self.settings.start = start;
+        Ok(())
+    }
+
+    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre; the bounds of
+    /// the offset are opened that far.
+    fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Failure> {
+        let parameters = self.problem.parameters.iter();
+        let mut offsets = parameters
+            .clone()
+            .enumerate()
+            .filter(|(_, p)| p.is_crank_angle_offset());
+        let (Some((i, _)), None) = (offsets.next(), offsets.next()) else {
+            return Ok(None);
+        };
+        let Some(offset) =
+            ::calibrate::zero::crank_angle_offset(&self.problem).map_err(Failure::input)?
+        else {
+            return Ok(None);
+        };
+        let parameter = &mut self.problem.parameters[i];
+        if parameter.run.is_some() || !parameter.open_for_offset(offset) {
+            return Ok(None);
+        }
+        let mut start = vec![0.0; self.problem.parameters.len()];
+        start[i] = self.problem.parameters[i].coordinate(offset);
+        Ok(Some(start))
     }
 
     /// Sets the zero of the crank angle of every run where it was not recorded to what the machine
@@ -299,7 +327,8 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
         Parameter::named(tree, runs, path, bounds).map_err(|e| refuse(path, e.to_string()))
     };
     if asked.is_empty() {
-        return defaults(runs).iter().map(|path| of(path, None)).collect();
+        let defaults = defaults(tree, runs)?;
+        return defaults.iter().map(|path| of(path, None)).collect();
     }
     let mut parameters: Vec<Parameter> = Vec::new();
     for (path, bounds) in asked {
@@ -319,22 +348,36 @@ fn parameters(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Par
         }
         parameters.push(parameter);
     }
+    // The zero of the encoder is the recordings' and not the machine's: whatever is asked of the machine, an
+    // encoder's last digit matters. A bound of its own holds it where it is known.
+    let has_offset = parameters.iter().any(Parameter::is_crank_angle_offset);
+    if !has_offset && !are_pressures_alone(runs) {
+        parameters.push(of(CRANK_ANGLE_OFFSET, None)?);
+    }
     Ok(parameters)
+}
+
+fn are_pressures_alone(runs: &[Run]) -> bool {
+    let mut columns = runs.iter().flat_map(|run| &run.channels).map(|c| &c.column);
+    columns.all(|column| column.contains("cylinder_pressure"))
 }
 
 /// What is fitted where nothing is asked for: the contact of the joints that are clear, and the zero
 /// of the crank angle, of which an encoder's last digit already matters; the gas where pressures are
 /// all that was recorded.
-fn defaults(runs: &[Run]) -> Vec<String> {
-    let columns = || runs.iter().flat_map(|run| &run.channels).map(|c| &c.column);
-    if columns().all(|column| column.contains("cylinder_pressure")) {
-        return gas_defaults(runs);
+/// A joint of which no run speaks has the clearance that the machine file states.
+fn defaults(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Failure> {
+    if are_pressures_alone(runs) {
+        return Ok(gas_defaults(runs));
     }
     let clear = |(path, value): &&(String, Value)| path.ends_with(".clearance") && value != "ideal";
     let settings = runs.iter().flat_map(|run| &run.settings).filter(clear);
-    let mut joints: Vec<&str> = settings
-        .map(|(path, _)| path.trim_end_matches(".clearance"))
+    let mut joints: Vec<String> = settings
+        .map(|(path, _)| path.trim_end_matches(".clearance").to_owned())
         .collect();
+    let of_runs = runs.iter().map(|run| &run.settings[..]);
+    let of_machine = ClearJoint::of(tree, of_runs).map_err(Failure::input)?;
+    joints.extend(of_machine.into_iter().map(|joint| joint.path));
     joints.sort_unstable();
     joints.dedup();
     let keys = [
@@ -342,9 +385,9 @@ fn defaults(runs: &[Run]) -> Vec<String> {
         "contact.damping",
         "friction.coefficient",
     ];
-    let of_joint = |joint: &&str| keys.map(|key| format!("{joint}.{key}"));
+    let of_joint = |joint: &String| keys.map(|key| format!("{joint}.{key}"));
     let contacts = joints.iter().flat_map(of_joint);
-    contacts.chain([CRANK_ANGLE_OFFSET.to_owned()]).collect()
+    Ok(contacts.chain([CRANK_ANGLE_OFFSET.to_owned()]).collect())
 }
 
 /// The exponent and the clearance of every chamber with a pressure, and the pressures of the lines

@@ -3,6 +3,7 @@
 
 use super::Task;
 use crate::Failure;
+use ::calibrate::Corrected;
 use ::calibrate::fit::{Fit, FitSettings, Optimiser};
 use ::calibrate::optimiser::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -13,6 +14,11 @@ use std::time::Duration;
 /// How often the clock of the bar goes on between two steps.
 const TICK: Duration = Duration::from_millis(500);
 
+/// What is shown of the search, and of the look at the data sheet that may follow.
+const FITTING: &str =
+    "{spinner} {pos} evaluations of at most {len}, {per_sec}, {elapsed}, misfit {msg}";
+const CORRECTING: &str = "{spinner} the model is wrong: values of the data sheet, {pos} evaluations, {elapsed}, misfit {msg}";
+
 /// Local fits after each of which runs without a zero of their crank angle are aligned anew, before
 /// the search proper, which a wrong zero would send far away.
 const ALIGNMENTS: usize = 3;
@@ -22,20 +28,48 @@ const ALIGNMENTS: usize = 3;
 /// # Errors
 /// Where the machine cannot be simulated.
 pub fn search(task: &mut Task, cancel: &AtomicBool) -> Result<Fit, Failure> {
-    let bar = ProgressBar::with_draw_target(
-        Some(task.settings.evaluations),
-        ProgressDrawTarget::stderr(),
-    );
-    let template =
-        "{spinner} {pos} evaluations of at most {len}, {per_sec}, {elapsed}, misfit {msg}";
+    let bar = bar(task.settings.evaluations, FITTING);
+    let found = aligned(task, cancel, &bar);
+    bar.finish_and_clear();
+    found
+}
+
+/// Looks for the value of the data sheet that keeps the model from explaining the recordings, until `cancel`
+/// is set.
+///
+/// # Errors
+/// Where the machine cannot be simulated.
+pub fn correct(task: &Task, fit: &Fit, cancel: &AtomicBool) -> Result<Corrected, Failure> {
+    let bar = bar(task.settings.evaluations, CORRECTING);
+    let watch = |progress: &Progress| told(&bar, 0, cancel, progress);
+    let corrected = ::calibrate::correct(&task.problem, fit, &task.settings, watch);
+    bar.finish_and_clear();
+    corrected.map_err(Failure::work)
+}
+
+fn bar(evaluations: u64, template: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(evaluations), ProgressDrawTarget::stderr());
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
     bar.set_message("–");
     bar.enable_steady_tick(TICK);
-    let found = aligned(task, cancel, &bar);
-    bar.finish_and_clear();
-    found
+    bar
+}
+
+/// Shows the best so far, and says whether to go on.
+fn told(
+    bar: &ProgressBar,
+    spent: u64,
+    cancel: &AtomicBool,
+    progress: &Progress,
+) -> ControlFlow<()> {
+    bar.set_position(spent + progress.evaluations);
+    bar.set_message(format!("{:.3}", progress.misfit()));
+    match cancel.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    }
 }
 
 fn aligned(task: &mut Task, cancel: &AtomicBool, bar: &ProgressBar) -> Result<Fit, Failure> {
@@ -75,14 +109,7 @@ fn fit(
     bar: &ProgressBar,
     spent: u64,
 ) -> Result<Fit, Failure> {
-    let watch = |progress: &Progress| {
-        bar.set_position(spent + progress.evaluations);
-        bar.set_message(format!("{:.3}", progress.misfit()));
-        match cancel.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    };
+    let watch = |progress: &Progress| told(bar, spent, cancel, progress);
     let mut fit = ::calibrate::calibrate(&task.problem, settings, watch).map_err(Failure::work)?;
     fit.evaluations += spent;
     Ok(fit)

@@ -6,7 +6,7 @@ mod words;
 
 use crate::calibrate::arguments::read;
 use crate::calibrate::{Settings, pictures, task};
-use crate::{Failure, replay, report};
+use crate::{Failure, interrupt, replay, report};
 use ::calibrate::pressure_gap::pressure_gaps_of;
 use clap::Args;
 use gap::{Effort, Journal};
@@ -15,7 +15,6 @@ use input::yaml::Document;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -82,9 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !arguments.leave_out.is_empty() {
         calibration.leave_out = arguments.leave_out.clone();
     }
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let asked = Asked {
         calibration: &calibration,
         base: &base,

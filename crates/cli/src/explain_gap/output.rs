@@ -139,7 +139,7 @@ fn by_name(values: &[(String, f64)]) -> Value {
 
 /// What was fitted with what is known of it, the parameters of effects included.
 fn parameters(explanation: &Explanation) -> Value {
-    let of = |estimate: &Estimate| (estimate.parameter.path.clone(), told(estimate));
+    let of = |estimate: &Estimate| (estimate.parameter.path.clone(), told(estimate, true));
     let all = explanation.estimates.iter().map(of);
     all.collect::<Map<_, _>>().into()
 }

@@ -6,7 +6,7 @@ mod units;
 mod warnings;
 mod window;
 
-use crate::Failure;
+use crate::{Failure, interrupt};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use input::quantity::{AboveZero, Frequency, Quantity, Speed};
@@ -16,7 +16,7 @@ use recordings::measured::{MeasuredFile, Options, Recording, Windows};
 use recordings::{Value, WholeFile};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use sweep::in_order::in_order;
 use table::{Columns, Job, Layout};
 use window::Asked;
@@ -109,9 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = WholeFile::create(&arguments.out.with_extension("part"), &arguments.out);
     let out = out.map_err(Failure::input)?;
     let mut writer = TableWriter::new(out, &schema, ROWS_PER_GROUP).map_err(Failure::work)?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let threads = arguments.threads.map_or_else(
         || std::thread::available_parallelism().map_or(1, Into::into),
         usize::from,

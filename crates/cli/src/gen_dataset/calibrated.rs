@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use sweep::calibration::{Calibration, Estimate, Sweep};
 use sweep::dataset::{CALIBRATION, Claim};
-use sweep::sweep_file::Amount;
+use sweep::sweep_file::{Amount, Calibrate, Uncertainty};
 use sweep::{Existing, Plan};
 
 /// Standard deviations on either side that bound 95 % of a normal distribution.
@@ -81,7 +81,16 @@ fn tell(done: &Calibrated, folder: &Path) {
 }
 
 fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {
-    let mut calibration = read(folder)?;
+    let results = results(folder)?;
+    let sampled = |calibrate: &Calibrate| calibrate.uncertainty == Uncertainty::Sampled;
+    if results["model_is_adequate"] == false && sweep.calibrate().is_some_and(sampled) {
+        return Err(Failure::work(format!(
+            "{}: the calibrated model does not explain the recordings, so that `uncertainty: sampled` has no \
+             interval to draw from; `uncertainty: ignored` takes the values as they are",
+            folder.join(output::RESULTS).display()
+        )));
+    }
+    let mut calibration = read(folder, &results)?;
     if let Some(own) = sweep.machine()? {
         let fitted = |path: &str| calibration.estimates.iter().any(|e| e.path == path);
         let mut machine = calibration.machine.clone();
@@ -107,20 +116,27 @@ fn conditions(sweep: &Sweep, machine: &Value) -> Result<BTreeSet<String>, Failur
     Ok(conditions)
 }
 
-/// The calibration in `folder`.
+fn damaged(folder: &Path, reason: &str) -> Failure {
+    let path = folder.join(output::RESULTS);
+    let path = path.display();
+    Failure::work(format!("{path}: {reason}; --overwrite calibrates again"))
+}
+
+/// The content of the `calibration.json` in `folder`.
+fn results(folder: &Path) -> Result<Value, Failure> {
+    let damaged = |reason: String| damaged(folder, &reason);
+    let text = std::fs::read_to_string(folder.join(output::RESULTS));
+    let text = text.map_err(|error| damaged(error.to_string()))?;
+    serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))
+}
+
+/// The calibration in `folder`, of which these are the results.
 ///
 /// # Errors
 /// A file that is not what a calibration writes.
-fn read(folder: &Path) -> Result<Calibration, Failure> {
+fn read(folder: &Path, results: &Value) -> Result<Calibration, Failure> {
     let machine = input::machine_file::read(&folder.join(output::MACHINE))?;
     let machine = machine.to_tree().clone();
-    let path = folder.join(output::RESULTS);
-    let damaged = |reason: String| {
-        let path = path.display();
-        Failure::work(format!("{path}: {reason}; --overwrite calibrates again"))
-    };
-    let text = std::fs::read_to_string(&path).map_err(|error| damaged(error.to_string()))?;
-    let results: Value = serde_json::from_str(&text).map_err(|e| damaged(e.to_string()))?;
     let parameters = results["parameters"].as_object();
     let mut estimates = Vec::new();
     // The parameter of each estimate: one value may stand at several places.
@@ -134,7 +150,8 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
     {
         for place in paths::matching(&machine, name)? {
             let estimate = estimate(&machine, &place, found);
-            let estimate = estimate.ok_or_else(|| damaged(format!("{name} is not complete")))?;
+            let incomplete = || damaged(folder, &format!("{name} is not complete"));
+            let estimate = estimate.ok_or_else(incomplete)?;
             estimates.push(estimate);
             names.push(name.as_str());
         }
@@ -160,7 +177,8 @@ fn estimate(machine: &Value, place: &str, found: &Value) -> Option<Estimate> {
         Some(Amount { si, dimension }.to_value())
     };
     let logarithmic = found["logarithmic"].as_bool()?;
-    let interval = match found["identifiable"].as_bool()? {
+    // One that is not identifiable has no interval, nor has any in a model that is wrong.
+    let interval = match found["identifiable"].as_bool()? && !found["low"].is_null() {
         true => Some([found["low"].as_f64()?, found["high"].as_f64()?]),
         false => None,
     };

@@ -2,13 +2,12 @@
 
 mod calibrated;
 
-use crate::Failure;
+use crate::{Failure, interrupt};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use recordings::{CaseWarning, FailedCase, Manifest};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_diagram};
 use sweep::sweep_file::Format;
@@ -77,10 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.dry_run {
         return dry_run(&arguments.planned(&sweep, nominal, &out)?);
     }
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    // A second Ctrl-C while the first is being obeyed changes nothing: finished shards are safe.
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let existing = match (arguments.resume, arguments.overwrite) {
         (true, _) => Existing::Resume,
         (_, true) => Existing::Overwrite,

@@ -12,8 +12,8 @@ mod plan;
 mod recordings;
 mod truth;
 
-use crate::Failure;
 use crate::calibrate::output::write_file;
+use crate::{Failure, interrupt};
 use bench::Bench;
 use clap::Args;
 use input::effects::CATALOGUE;
@@ -26,8 +26,7 @@ use plan::{Case, NOTHING};
 use recordings::Recorder;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 /// Names of the files with what all cases come to.
 pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
@@ -130,9 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let open = cases
         .iter()
         .filter(|case| done.iter().all(|outcome| outcome.case != case.number));

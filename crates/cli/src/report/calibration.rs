@@ -6,8 +6,8 @@ use crate::calibrate::output::{MACHINE, RESULTS};
 use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::report::calibration_page::{
-    Bounded, CalibrationPage, Channel, Estimate, Forecast, Hypothesis, Misfit, OrderResidual,
-    Point, Run, Transfer,
+    Bounded, CalibrationPage, Channel, Correction, Estimate, Forecast, Hypothesis, Known, Misfit,
+    OrderResidual, Point, Run, Transfer,
 };
 use input::paths;
 use input::unit::{self, Dimension};
@@ -57,6 +57,8 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         evaluations: results.content["evaluations"].as_u64().unwrap_or(0),
         seconds: results.content["seconds"].as_f64().unwrap_or(f64::NAN),
         complete: results.content["complete"].as_bool().unwrap_or(true),
+        adequate: results.content["model_is_adequate"] != false,
+        corrections: results.corrections(),
         fitted: Misfit {
             before: number("nominal")?,
             after: number("calibrated")?,
@@ -115,6 +117,25 @@ impl<'a> Results<'a> {
         Ok(entries.collect())
     }
 
+    fn corrections(&self) -> Vec<Correction> {
+        let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+        let of = |content: &Value| {
+            let text = |key: &str| content[key].as_str().unwrap_or_default().to_owned();
+            Correction {
+                path: text("path"),
+                unit: text("unit"),
+                nominal: content["nominal"].as_f64(),
+                value: number(&content["value"]),
+                interval: bounded(content).interval,
+                probability: number(&content["probability"]),
+                misfit: number(&content["misfit"]),
+                applied: content["applied"] == true,
+            }
+        };
+        let all = self.content["corrections"].as_array();
+        all.into_iter().flatten().map(of).collect()
+    }
+
     fn estimate(&self, path: &str, content: &Value, tree: &Value) -> Result<Estimate, Failure> {
         let number = |key: &str| self.number(content, &format!("parameters.{path}.{key}"), key);
         let identifiable = content["identifiable"] == true;
@@ -123,9 +144,10 @@ impl<'a> Results<'a> {
             unit: unit_of(tree, path),
             nominal: number("nominal")?,
             value: number("value")?,
-            interval: match identifiable {
-                true => Some([number("low")?, number("high")?]),
-                false => None,
+            known: match (identifiable, content["low"].is_null()) {
+                (false, _) => Known::Nothing,
+                (true, true) => Known::Fitted,
+                (true, false) => Known::Within([number("low")?, number("high")?]),
             },
             at_bound: content["at_bound"] == true,
             reason: content["reason"].as_str().unwrap_or_default().to_owned(),

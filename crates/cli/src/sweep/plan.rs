@@ -1,11 +1,9 @@
 //! `sweep plan`: a dataset is begun.
 
-use crate::Failure;
 use crate::gen_dataset::{self, FormatArgument};
+use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use sweep::Sweep;
 
 /// Arguments of `sweep plan`.
@@ -42,9 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::read(&arguments.sweep)?;
     let nominal = sweep.nominal()?;
     nominal.check_size().map_err(gen_dataset::failed)?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let out = &arguments.out;
     let (claim, plan) = gen_dataset::claim(&sweep, nominal, out, sweep::Existing::Resume, &cancel)?;
     let mut plan = gen_dataset::with_format(plan, arguments.format);

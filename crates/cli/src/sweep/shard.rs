@@ -1,12 +1,10 @@
 //! `sweep shard`: one shard is made.
 
 use super::index;
-use crate::Failure;
 use crate::gen_dataset::{self, Bar};
+use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 use sweep::dataset::{Existing, Options, Output, run_part};
 use sweep::{Error, simulate_cases};
@@ -50,9 +48,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let index = index.saturating_add(arguments.offset);
     let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
-    let cancel = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&cancel);
-    ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
+    let cancel = interrupt::flag()?;
     let options = Options {
         existing: Existing::Resume,
         threads: gen_dataset::threads(arguments.threads),

@@ -4,8 +4,8 @@ use super::sections::Resonance;
 use crate::choice::Count;
 use crate::error::{Error, Problem, quoted};
 use crate::quantity::{
-    Acceleration, Angle, Any, Frequency, Kind, NonNegative, Number, Part, Positive, Pressure,
-    Quantity, Ratio, describe, found, text_schema,
+    Acceleration, Angle, Any, Duration, Frequency, Kind, NonNegative, Number, Part, Positive,
+    Pressure, Quantity, Ratio, describe, found, text_schema,
 };
 use crate::unit::{self, Dimension};
 use mechanism::Machine;
@@ -55,6 +55,9 @@ macro_rules! sensor {
             /// Noise of the chain.
             #[serde(default)]
             noise: Option<Noise<Level<$kind>>>,
+            /// By how much the recorded value is late; 0 s where it is left out.
+            #[serde(default)]
+            delay: Option<NonNegative<Duration>>,
             /// Low-pass filter of the amplifier (Butterworth).
             #[serde(default)]
             low_pass: Option<LowPass>,
@@ -69,6 +72,7 @@ macro_rules! sensor {
         impl $name {
             fn chain(&self) -> Chain {
                 Chain {
+                    delay: self.delay.map_or(0.0, |delay| delay.si()),
                     mounting: self.mounting.map(|mounting| sensor::Resonance {
                         frequency: mounting.frequency.si(),
                         damping_ratio: mounting.damping_ratio.si(),

@@ -4,6 +4,7 @@
 //! [`CalibrationPage::render`] is one file with its styles and figures inside. Its size is bounded
 //! whatever the calibration.
 
+mod corrections;
 mod gas;
 pub(crate) mod misfits;
 mod page;
@@ -31,6 +32,10 @@ pub struct CalibrationPage {
     pub seconds: f64,
     /// False where the search was stopped before its end.
     pub complete: bool,
+    /// Whether the model explains the recordings; where it does not, no interval is known.
+    pub adequate: bool,
+    /// Values of the data sheet that were looked at one by one because it did not.
+    pub corrections: Vec<Correction>,
     /// Misfit of the runs that were fitted.
     pub fitted: Misfit,
     /// Misfit of the runs that were held out, where there are any.
@@ -98,6 +103,27 @@ pub struct Bounded {
     pub interval: Option<[f64; 2]>,
 }
 
+/// A value of the data sheet that is wrong, or may be.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Correction {
+    /// Its path in the machine file.
+    pub path: String,
+    /// Its unit; empty for none.
+    pub unit: String,
+    /// The value that was stated, where one was.
+    pub nominal: Option<f64>,
+    /// The value that explains the recordings.
+    pub value: f64,
+    /// Its 95 % interval, where the recordings determine it.
+    pub interval: Option<[f64; 2]>,
+    /// Probability that this value is the one that is wrong.
+    pub probability: f64,
+    /// Misfit of the fitted runs with it.
+    pub misfit: f64,
+    /// Whether the calibrated machine has it.
+    pub applied: bool,
+}
+
 /// A misfit before and after.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Misfit {
@@ -118,15 +144,40 @@ pub struct Estimate {
     pub nominal: f64,
     /// The value found; the nominal one where the recordings do not tell it.
     pub value: f64,
-    /// 95 % interval; none where the recordings do not tell the parameter.
-    pub interval: Option<[f64; 2]>,
+    /// How well it is known.
+    pub known: Known,
     /// Whether the value lies at the edge of its search range.
     pub at_bound: bool,
     /// Why it is not told, in words; empty where that is not known, or where it is told.
     pub reason: String,
 }
 
+/// How well an estimate is known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Known {
+    /// Its 95 % interval.
+    Within([f64; 2]),
+    /// It was fitted with a model that does not explain the recordings: there is no interval.
+    Fitted,
+    /// It is not identifiable from the recordings.
+    #[default]
+    Nothing,
+}
+
 impl Estimate {
+    /// Its 95 % interval, where there is one.
+    fn interval(&self) -> Option<[f64; 2]> {
+        match self.known {
+            Known::Within(interval) => Some(interval),
+            Known::Fitted | Known::Nothing => None,
+        }
+    }
+
+    /// Whether the recordings determine it, by this model at least.
+    fn is_identifiable(&self) -> bool {
+        self.known != Known::Nothing
+    }
+
     /// Whether it makes sense to state the value as a share of the nominal one: not for an angle, nor
     /// for the exponent of a clearance, whose zero means something.
     fn is_ratio(&self) -> bool {

@@ -1,8 +1,8 @@
 //! The page itself.
 
 use super::{
-    CalibrationPage, Estimate, Hypothesis, Phase, Transfer, gas, misfits, parameters, transfers,
-    verdict, waveforms, words,
+    CalibrationPage, Correction, Estimate, Hypothesis, Known, Phase, Transfer, corrections, gas,
+    misfits, parameters, transfers, verdict, waveforms, words,
 };
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
@@ -17,6 +17,7 @@ struct View<'a> {
     found: Vec<String>,
     untold: Vec<String>,
     together: Vec<String>,
+    corrections: Vec<String>,
     misfits: Vec<(usize, Plate)>,
     intervals: Vec<(usize, Plate)>,
     correlations: Vec<(usize, Plate)>,
@@ -40,6 +41,7 @@ impl CalibrationPage {
             found: verdict::found(&self.parameters),
             untold: verdict::untold(&self.parameters),
             together: verdict::together(self),
+            corrections: corrections::sentences(&self.corrections),
             misfits: numbered(misfits::plate(self).into_iter().collect()),
             intervals: numbered(parameters::intervals(self).into_iter().collect()),
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
@@ -76,7 +78,7 @@ impl View<'_> {
 
     fn told(&self) -> String {
         let all = &self.page.parameters;
-        let told = all.iter().filter(|e| e.interval.is_some()).count();
+        let told = all.iter().filter(|e| e.is_identifiable()).count();
         format!("{told} of {}", all.len())
     }
 
@@ -103,23 +105,32 @@ impl View<'_> {
     }
 
     fn interval(estimate: &Estimate) -> String {
-        match estimate.interval {
-            Some([low, high]) => format!(
+        match estimate.known {
+            Known::Within([low, high]) => format!(
                 "{} to {}",
                 Self::value(&low, estimate),
                 Self::value(&high, estimate)
             ),
-            None => "not told".to_owned(),
+            Known::Fitted => "none: the model is wrong".to_owned(),
+            Known::Nothing => "not identifiable".to_owned(),
         }
     }
 
     fn change(estimate: &Estimate) -> String {
-        if estimate.interval.is_none() || !estimate.is_ratio() {
+        if !estimate.is_identifiable() || !estimate.is_ratio() {
             return String::new();
         }
         let change = 100.0 * (estimate.value / estimate.nominal - 1.0);
         let sign = if change > 0.0 { "+" } else { "" };
         format!("{sign}{}\u{a0}%", text::decimal(change, 1))
+    }
+
+    fn correction(correction: &Correction) -> [String; 5] {
+        corrections::row(correction)
+    }
+
+    fn none_untold(&self) -> &'static str {
+        verdict::none_untold(self.page)
     }
 
     fn decision(transfer: &Transfer) -> String {

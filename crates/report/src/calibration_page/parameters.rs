@@ -1,7 +1,7 @@
 //! The parameters: against their nominal values, and against each other.
 
 use super::misfits::{AFTER, ROW};
-use super::{CalibrationPage, Estimate, words};
+use super::{CalibrationPage, Estimate, Known, words};
 use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
@@ -37,21 +37,23 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
     }
     let top = estimates.len() as f64 - 1.0;
     let mut bars = Vec::new();
-    let (mut told, mut untold) = (Vec::new(), Vec::new());
+    let (mut told, mut fitted, mut untold) = (Vec::new(), Vec::new(), Vec::new());
     for (i, estimate) in estimates.iter().enumerate() {
         let y = top - i as f64;
         let place = |value: f64| [value / estimate.nominal, y];
-        match estimate.interval {
-            Some([low, high]) => {
+        match estimate.known {
+            Known::Within([low, high]) => {
                 told.push(place(estimate.value));
                 bars.extend([place(low), place(high), [f64::NAN; 2]]);
             }
-            None => untold.push(place(estimate.nominal)),
+            Known::Fitted => fitted.push(place(estimate.value)),
+            Known::Nothing => untold.push(place(estimate.nominal)),
         }
     }
     let positive = bars
         .iter()
         .chain(&told)
+        .chain(&fitted)
         .all(|[x, _]| x.is_nan() || *x > 0.0);
     let label = "value over its nominal value";
     let named = |points: &[[f64; 2]], name: &str| match points.is_empty() {
@@ -80,7 +82,16 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
                 told,
             ),
             Series::new(
-                named(&untold, "not told: the nominal value stays"),
+                named(
+                    &fitted,
+                    "found by a model that is wrong: no interval is known",
+                ),
+                AFTER,
+                Mark::Rings,
+                fitted,
+            ),
+            Series::new(
+                named(&untold, "not identifiable: the nominal value stays"),
                 Colour::Ink,
                 Mark::Rings,
                 untold,
@@ -109,7 +120,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
         return None;
     }
     let estimates = &page.parameters[..count];
-    let told = |i: usize| estimates[i].interval.is_some();
+    let told = |i: usize| estimates[i].is_identifiable();
     let field = |i: usize, j: usize| {
         let r = page.correlations[i].get(j).copied().unwrap_or(0.0);
         let both = told(i) && told(j);

@@ -1,10 +1,12 @@
 //! What came out, in sentences.
 
-use super::{CalibrationPage, Estimate, Misfit, words};
+use super::{CalibrationPage, Estimate, Known, Misfit, words};
 use crate::text;
 
 /// A misfit up to here is said to be noise: a calibration takes it for that, too.
 const NOISE: f64 = 1.15;
+/// A misfit that shrinks by less than this share has come no closer: nobody sees a twentieth in a figure.
+const CLOSER: f64 = 0.05;
 /// Estimates that are correlated more than this are told only together.
 const TOGETHER: f64 = 0.9;
 
@@ -27,10 +29,10 @@ pub(super) fn verdict(page: &CalibrationPage) -> String {
         after if after <= NOISE => {
             "agrees with the recordings as well as their noise allows: what is left is"
         }
-        after if after < page.fitted.before => {
-            "is closer to the recordings than before, but something is left that is no noise:"
+        after if after < (1.0 - CLOSER) * page.fitted.before => {
+            "is closer to the recordings than the nominal one, but something is left that is no noise:"
         }
-        _ => "is no closer to the recordings than before: what is left is",
+        _ => "is no closer to the recordings than the nominal one: what is left is",
     };
     format!(
         "The calibrated model {how} {}{held_out}.",
@@ -47,7 +49,15 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if page.fitted.after > NOISE {
+    if !page.adequate && !page.runs.is_empty() {
+        warnings.push(
+            "The model is wrong: it does not explain the recordings, so that no interval is known for any parameter. Do not \
+             rely on the values below. The machine does something that the model does not have, or a value of its data sheet \
+             is wrong, or a better fit was not found: explain-gap looks for a missing effect; other parameters, wider bounds \
+             or more evaluations may help."
+                .to_owned(),
+        );
+    } else if page.fitted.after > NOISE {
         warnings.push(
             "No choice of these parameters that was tried explains the recordings to within their noise. Either the machine \
              does something that the model does not have, or a better fit was not found: try other parameters, wider bounds \
@@ -76,8 +86,14 @@ pub(crate) fn size(misfit: f64) -> String {
 /// What was found of each parameter that is told, as a mechanic would say it.
 pub(super) fn found(estimates: &[Estimate]) -> Vec<String> {
     let say = |estimate: &Estimate| {
-        let [low, high] = estimate.interval?;
         let name = text::capitalised(&words::path(&estimate.path));
+        if estimate.known == Known::Fitted {
+            let value = quantity(estimate.value, &estimate.unit);
+            return Some(format!(
+                "{name}: {value} in a model that is wrong; no interval is known."
+            ));
+        }
+        let [low, high] = estimate.interval()?;
         if !estimate.is_ratio() {
             let [value, low, high] =
                 [estimate.value, low, high].map(|value| quantity(value, &estimate.unit));
@@ -125,8 +141,19 @@ pub(super) fn untold(estimates: &[Estimate]) -> Vec<String> {
             quantity(estimate.nominal, &estimate.unit),
         )
     };
-    let not_told = estimates.iter().filter(|e| e.interval.is_none());
+    let not_told = estimates.iter().filter(|e| !e.is_identifiable());
     not_told.map(say).collect()
+}
+
+/// What stands in the place of parameters that are not identifiable, where there are none.
+pub(super) fn none_untold(page: &CalibrationPage) -> &'static str {
+    match (page.parameters.is_empty(), page.adequate) {
+        (true, _) => "No parameter was fitted.",
+        (_, true) => "Every parameter that was fitted is identifiable.",
+        (_, false) => {
+            "A model that does not explain the recordings cannot tell which parameters they determine."
+        }
+    }
 }
 
 /// The pairs that are told only together.
@@ -168,11 +195,14 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::calibration_page::Run;
 
     fn page(fitted: [f64; 2], held_out: Option<[f64; 2]>) -> CalibrationPage {
         let misfit = |[before, after]: [f64; 2]| Misfit { before, after };
         CalibrationPage {
             complete: true,
+            adequate: fitted[1] <= 1.5,
+            runs: vec![Run::default()],
             fitted: misfit(fitted),
             held_out: held_out.map(misfit),
             ..CalibrationPage::default()
@@ -192,7 +222,11 @@ mod tests {
         let poor = page([14.0, 4.0], None);
         assert!(verdict(&poor).contains("something is left that is no noise"));
         assert_eq!(warnings(&poor).len(), 1);
+        assert!(warnings(&poor)[0].contains("The model is wrong"));
+        assert!(none_untold(&good).contains("No parameter"));
         assert!(verdict(&page([2.0, 2.0], None)).contains("no closer"));
+        // Less than anybody sees: 204 before and after.
+        assert!(verdict(&page([204.3, 203.9], None)).contains("no closer"));
         let narrow = page([14.0, 1.0], Some([14.0, 9.0]));
         assert!(warnings(&narrow)[0].contains("held back"));
         let stopped = CalibrationPage {
@@ -204,27 +238,29 @@ mod tests {
 
     #[test]
     fn what_was_found_is_said_against_the_nominal_values() {
-        let of = |value: f64, interval| Estimate {
+        let of = |value: f64, known| Estimate {
             path: "joints.big_end.contact.stiffness".into(),
             unit: "N/m^1.5".into(),
             nominal: 2e10,
             value,
-            interval,
+            known,
             ..Estimate::default()
         };
         let found = found(&[
-            of(1.6e10, Some([1.52e10, 1.68e10])),
-            of(2.1e10, Some([1.9e10, 2.3e10])),
-            of(2e10, None),
+            of(1.6e10, Known::Within([1.52e10, 1.68e10])),
+            of(2.1e10, Known::Within([1.9e10, 2.3e10])),
+            of(1.6e10, Known::Fitted),
+            of(2e10, Known::Nothing),
         ]);
         assert_eq!(
             found,
             [
                 "Big end contact stiffness: 20\u{a0}% below its nominal value, known to ±5\u{a0}%.",
                 "Big end contact stiffness: its nominal value, as far as the recordings tell, known to ±9.5\u{a0}%.",
+                "Big end contact stiffness: 1.6 × 10¹⁰\u{a0}N/m^1.5 in a model that is wrong; no interval is known.",
             ]
         );
-        let untold = untold(&[of(2e10, None)]);
+        let untold = untold(&[of(2e10, Known::Nothing)]);
         assert!(
             untold[0].starts_with(
                 "Big end contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: the"

@@ -1,7 +1,7 @@
 //! The page of a calibration: every section, its numbers, and what it says where data are missing.
 
 use crate::synthetic::calibration;
-use report::calibration_page::{CalibrationPage, Channel, Estimate, Misfit, Run};
+use report::calibration_page::{CalibrationPage, Channel, Estimate, Known, Misfit, Run};
 
 #[test]
 fn every_section_is_there_and_every_figure_is_well_formed() {
@@ -51,7 +51,7 @@ fn the_numbers_are_those_of_the_calibration() {
         assert!(html.contains(said), "{said}");
     }
     let untold = html.split("class=\"untold\"").nth(1).unwrap();
-    assert!(untold[..300].contains("not told"));
+    assert!(untold[..300].contains("not identifiable"));
 }
 
 /// Whatever the names and the numbers, the page is a page.
@@ -69,7 +69,7 @@ fn empty_hostile_and_infinite_content_is_borne() {
             path: "a.<i>".into(),
             nominal: -1.0,
             value: f64::NAN,
-            interval: Some([f64::NEG_INFINITY, 0.0]),
+            known: Known::Within([f64::NEG_INFINITY, 0.0]),
             ..Estimate::default()
         }],
         correlations: vec![vec![]],

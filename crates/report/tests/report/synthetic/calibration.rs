@@ -2,8 +2,8 @@
 
 use super::Uniform;
 use report::calibration_page::{
-    Bounded, CalibrationPage, Chamber, Channel, Diagram, Estimate, Forecast, Hypothesis, Misfit,
-    OrderResidual, Phase, Point, Pressure, Run, Transfer,
+    Bounded, CalibrationPage, Chamber, Channel, Diagram, Estimate, Forecast, Hypothesis, Known,
+    Misfit, OrderResidual, Phase, Point, Pressure, Run, Transfer,
 };
 use std::f64::consts::TAU;
 
@@ -33,6 +33,8 @@ pub fn page() -> CalibrationPage {
         evaluations: 48,
         seconds: 13.2,
         complete: true,
+        adequate: true,
+        corrections: Vec::new(),
         fitted: Misfit {
             before: 14.2,
             after: 1.04,
@@ -117,7 +119,9 @@ fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> Estimat
         unit: unit.into(),
         nominal,
         value,
-        interval: half.map(|half| [value * (1.0 - half), value * (1.0 + half)]),
+        known: half.map_or(Known::Nothing, |half| {
+            Known::Within([value * (1.0 - half), value * (1.0 + half)])
+        }),
         ..Estimate::default()
     }
 }

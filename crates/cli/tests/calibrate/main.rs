@@ -2,144 +2,19 @@
 //! and what becomes of a calibration that is stopped.
 #![allow(clippy::print_stdout)]
 
+mod ends;
+mod example_run;
+mod input;
+
+use ::input::bundle::Bundle;
 use cli::bundle;
-use cli::calibrate::{Existing, Settings, Task, into_folder, task};
-use input::bundle::Bundle;
-use input::calibration::Calibration;
-use recordings::measured::{MeasuredFile, Options};
+use cli::calibrate::{Existing, Settings, Task, into_folder};
+use example_run::*;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::atomic::AtomicBool;
 use tempfile::TempDir;
-
-/// The example whose run is used, and that run's length: 12 revolutions at 650 rpm.
-const EXAMPLE: &str = "../../data/recordings/example-single-stage";
-const RUN: &str = "run03";
-const SAMPLES: usize = 22_154;
-
-fn example() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(EXAMPLE)
-}
-
-/// Time, crank angle, acceleration and pressure of the run, in SI units.
-fn recorded() -> [Vec<f64>; 4] {
-    let path = example().join(format!("{RUN}.parquet"));
-    let mut file = MeasuredFile::open(&path, &Options::default()).unwrap();
-    let names: Vec<String> = file.channels().iter().map(|c| c.column.clone()).collect();
-    let mut samples = vec![Vec::new(); names.len()];
-    let mut recording = file.next().unwrap().unwrap();
-    while samples[0].len() < SAMPLES {
-        let most = SAMPLES - samples[0].len();
-        recording.read(most, &mut samples).unwrap();
-    }
-    let of = |column: &str| {
-        let place = names.iter().position(|name| name == column).unwrap();
-        samples[place].iter().map(|x| f64::from(*x)).collect()
-    };
-    let time = (0..SAMPLES).map(|i| i as f64 / 20_000.0).collect();
-    let [angle, acceleration, pressure] = [
-        "crank_angle_rad",
-        "crosshead_acceleration_m_s2",
-        "cylinder_pressure_pa",
-    ]
-    .map(of);
-    [time, angle, acceleration, pressure]
-}
-
-/// A column of a recording: its heading, its entry in the list of channels, and the samples.
-type Column = (&'static str, &'static str, Vec<f64>);
-
-const TIME: &str = "{name: time, column: t_s, unit: s}";
-const ANGLE: &str = "{name: crank angle, column: crank_angle_rad, unit: rad}";
-const ACCELERATION: &str =
-    "{name: crosshead acceleration, column: crosshead_acceleration_m_s2, unit: m/s2}";
-const PRESSURE: &str = "{name: cylinder pressure, column: cylinder_pressure_pa, unit: Pa}";
-
-/// The columns as the example has them.
-fn plain() -> Vec<Column> {
-    let [time, angle, acceleration, pressure] = recorded();
-    vec![
-        ("t_s", TIME, time),
-        ("crank_angle_rad", ANGLE, angle),
-        ("crosshead_acceleration_m_s2", ACCELERATION, acceleration),
-        ("cylinder_pressure_pa", PRESSURE, pressure),
-    ]
-}
-
-/// recordings.yaml of one run with these columns.
-fn yaml(columns: &[Column]) -> String {
-    let text = fs::read_to_string(example().join("recordings.yaml")).unwrap();
-    let machine = text.split("runs:").next().unwrap();
-    let channels: String = columns
-        .iter()
-        .map(|(_, entry, _)| format!("  - {entry}\n"))
-        .collect();
-    format!(
-        "{machine}runs:\n- id: run03\n  file: run03.csv\n  speed_rpm: 650\n  load:\n    \
-         suction_pressure_pa: 105000.0\n    discharge_pressure_pa: 393000.0\n  joints:\n    \
-         big_end:\n      clearance_m: 0.0001\n    small_end:\n      clearance_m: 0.0001\n  \
-         sample_rate_hz: 20000\n  channels:\n{channels}"
-    )
-}
-
-fn csv(columns: &[Column]) -> String {
-    let headings: Vec<&str> = columns.iter().map(|(heading, ..)| *heading).collect();
-    let mut text = headings.join(",") + "\n";
-    for i in 0..columns[0].2.len() {
-        let cells: Vec<String> = columns.iter().map(|(.., x)| x[i].to_string()).collect();
-        text += &(cells.join(",") + "\n");
-    }
-    text
-}
-
-/// A bundle `bundle` in a folder of its own.
-fn write(yaml: &str, csv: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let bundle = folder.path().join("bundle");
-    fs::create_dir(&bundle).unwrap();
-    fs::write(bundle.join("recordings.yaml"), yaml).unwrap();
-    fs::write(bundle.join("run03.csv"), csv).unwrap();
-    folder
-}
-
-fn written(columns: &[Column]) -> TempDir {
-    write(&yaml(columns), &csv(columns))
-}
-
-/// The exit status and the message of `crosshead calibrate`.
-fn calibrate(folder: &Path, arguments: &[&str]) -> (i32, String) {
-    let program = Command::new(env!("CARGO_BIN_EXE_crosshead"))
-        .current_dir(folder)
-        .arg("calibrate")
-        .args(arguments)
-        .output()
-        .unwrap();
-    let message = String::from_utf8(program.stderr).unwrap();
-    (program.status.code().unwrap(), message)
-}
-
-/// The task of a settings file's text, beside the bundle.
-fn task_of(folder: &Path, text: &str) -> Task {
-    let calibration = settings_of(folder, text);
-    let settings = Settings {
-        machine: None,
-        calibration: &calibration,
-        base: folder,
-        locate: &|error| error,
-    };
-    task(&settings)
-        .map_err(|failure| format!("{failure:?}"))
-        .unwrap()
-}
-
-fn settings_of(folder: &Path, text: &str) -> Calibration {
-    let path = folder.join("calibration.yaml");
-    fs::write(&path, text).unwrap();
-    Calibration::read(&path).unwrap().0
-}
 
 #[test]
 fn names_units_and_angles_of_any_kind_are_read_alike() {
@@ -428,7 +303,7 @@ fn settings_are_checked_with_their_lines() {
 fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
     let folder = written(&plain());
     let text = "bundle: bundle\nparameters: [joints.big_end.contact.damping]\n\
-                optimiser: levenberg_marquardt\n";
+                optimiser: levenberg_marquardt\nevaluations: 30\n";
     let calibration = settings_of(folder.path(), text);
     let settings = Settings {
         machine: None,

@@ -1,0 +1,162 @@
+//! What a calibration has evaluated, on the disk while the work goes on.
+//!
+//! The file begins with a line that says what it is of. Then each evaluation of the model follows when it is
+//! done: the digest of everything that it depends on, the number of its values, and these. A calibration that
+//! was ended in whatever way begins anew with the same file: it takes the same steps, finds their evaluations
+//! there, and goes on with the first that is not; its results are bit-identical to those of one that was never
+//! ended. What is lost is the evaluation under way.
+
+use sha2::{Digest, Sha256};
+use std::collections::HashMap;
+use std::fmt::{self, Debug, Write as _};
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write as _};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// SHA-256 of what an evaluation depends on.
+type Key = [u8; 32];
+
+/// Bytes of a number.
+const NUMBER: usize = 8;
+
+/// Evaluations on the disk.
+#[derive(Debug)]
+pub struct Checkpoint {
+    kept: Mutex<Kept>,
+}
+
+#[derive(Debug)]
+struct Kept {
+    file: File,
+    /// Where the values of each evaluation begin, and how many they are.
+    known: HashMap<Key, (u64, usize)>,
+    end: u64,
+}
+
+impl Checkpoint {
+    /// The checkpoint in a file, which is made where there is none, or one of something else than `title` says.
+    /// An evaluation that was cut off does not count.
+    ///
+    /// # Errors
+    /// A file that cannot be read or written.
+    pub fn open(path: &Path, title: &str) -> io::Result<Self> {
+        if !Self::is_of(path, title) {
+            std::fs::write(path, format!("{title}\n"))?;
+        }
+        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+        let length = file.metadata()?.len();
+        let mut end = title.len() as u64 + 1;
+        let mut known = HashMap::new();
+        loop {
+            let mut key = Key::default();
+            let mut count = [0; NUMBER];
+            file.seek(SeekFrom::Start(end))?;
+            let read = file.read_exact(&mut key);
+            if read.and_then(|()| file.read_exact(&mut count)).is_err() {
+                break;
+            }
+            let values = end + (size_of::<Key>() + NUMBER) as u64;
+            let count = u64::from_le_bytes(count);
+            let size = count.checked_mul(NUMBER as u64);
+            let Some(after) = size.and_then(|size| values.checked_add(size)) else {
+                break;
+            };
+            let Some(count) = usize::try_from(count).ok().filter(|_| after <= length) else {
+                break;
+            };
+            known.insert(key, (values, count));
+            end = after;
+        }
+        file.set_len(end)?;
+        Ok(Self {
+            kept: Mutex::new(Kept { file, known, end }),
+        })
+    }
+
+    /// Whether there is a checkpoint with this title in a file.
+    pub fn is_of(path: &Path, title: &str) -> bool {
+        let line = format!("{title}\n");
+        let mut start = vec![0; line.len()];
+        let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
+        read.is_ok() && start == line.as_bytes()
+    }
+
+    /// The numbers that `work` gives for this input, or gave before. Numbers that cannot be written are lost, and
+    /// no more than that.
+    pub(crate) fn once(&self, input: &dyn Debug, work: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
+        let key = key(input);
+        let open = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(values) = open().read(&key) {
+            return values;
+        }
+        let values = work();
+        let _lost = open().write(key, &values);
+        values
+    }
+}
+
+impl Kept {
+    fn read(&mut self, key: &Key) -> Option<Vec<f64>> {
+        let (start, count) = *self.known.get(key)?;
+        let mut bytes = vec![0; count * NUMBER];
+        self.file.seek(SeekFrom::Start(start)).ok()?;
+        self.file.read_exact(&mut bytes).ok()?;
+        let (numbers, _) = bytes.as_chunks::<NUMBER>();
+        let numbers = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes));
+        Some(numbers.collect())
+    }
+
+    fn write(&mut self, key: Key, values: &[f64]) -> io::Result<()> {
+        let mut bytes = key.to_vec();
+        bytes.extend((values.len() as u64).to_le_bytes());
+        bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        self.file.seek(SeekFrom::Start(self.end))?;
+        self.file.write_all(&bytes)?;
+        let start = self.end + (size_of::<Key>() + NUMBER) as u64;
+        self.known.insert(key, (start, values.len()));
+        self.end += bytes.len() as u64;
+        Ok(())
+    }
+}
+
+/// Digest of an input as it shows itself: numbers are shown with all of their digits.
+fn key(input: &dyn Debug) -> Key {
+    struct Hashed(Sha256);
+    impl fmt::Write for Hashed {
+        fn write_str(&mut self, text: &str) -> fmt::Result {
+            self.0.update(text);
+            Ok(())
+        }
+    }
+    let mut hashed = Hashed(Sha256::new());
+    let _infallible = write!(hashed, "{input:?}");
+    hashed.0.finalize().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_evaluated_is_found_again_after_any_end() {
+        let path = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
+        let third = [1.0 / 3.0, f64::NEG_INFINITY];
+        let first = Checkpoint::open(&path, "of this").unwrap();
+        assert_eq!(first.once(&("a", 0.1), || third.to_vec()), third);
+        assert_eq!(first.once(&("b", 0.1), || vec![2.0]), [2.0]);
+        drop(first);
+        // Killed in the middle of the second.
+        let length = std::fs::metadata(&path).unwrap().len();
+        let file = OpenOptions::new().write(true).open(&path).unwrap();
+        file.set_len(length - 3).unwrap();
+        assert!(Checkpoint::is_of(&path, "of this") && !Checkpoint::is_of(&path, "of that"));
+        let again = Checkpoint::open(&path, "of this").unwrap();
+        assert_eq!(again.once(&("a", 0.1), Vec::new), third);
+        assert_eq!(again.once(&("b", 0.1), || vec![3.0]), [3.0]);
+        assert_eq!(again.once(&("b", 0.1), Vec::new), [3.0]);
+        let other = Checkpoint::open(&path, "of that").unwrap();
+        assert_eq!(other.once(&("a", 0.1), || vec![4.0]), [4.0]);
+        std::fs::remove_file(path).unwrap();
+    }
+}
