@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 /// Points per revolution over which orders are found.
 pub const POINTS: usize = 1024;
-/// A recording that stands at its greatest value for this many samples is clipped.
+/// A recording that stands at its greatest or least value for this many samples is clipped.
 const CLIPPED: usize = 4;
 /// Relative difference between stated and recorded speed that is a contradiction.
 const SPEED: f64 = 0.02;
@@ -231,8 +231,9 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
     if !channel.column.contains("acceleration") {
         return Ok(());
     }
-    for limit in [f64::max, f64::min] {
-        let value = channel.samples.iter().copied().reduce(limit).unwrap_or(0.0);
+    let limits: [(fn(f64, f64) -> f64, _); 2] = [(f64::max, "greatest"), (f64::min, "least")];
+    for (of, limit) in limits {
+        let value = channel.samples.iter().copied().reduce(of).unwrap_or(0.0);
         let (mut longest, mut count) = (0, 0);
         for x in &channel.samples {
             count = if *x == value { count + 1 } else { 0 };
@@ -243,6 +244,7 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
                 run: run.id.clone(),
                 channel: channel.column.clone(),
                 count: longest,
+                limit,
                 value,
             });
         }
@@ -308,5 +310,29 @@ mod tests {
         let all = [quiet, strong, weak, restless];
         let repeats = all.each_ref().map(|run| run.repeats_like(&all));
         assert_eq!(repeats, [true, true, true, false]);
+    }
+
+    #[test]
+    fn the_limit_at_which_a_channel_is_clipped_is_named() {
+        let clipped = |limits: [f64; 2]| {
+            let wave = (0..100).map(|i| (0.1 * f64::from(i)).sin().clamp(limits[0], limits[1]));
+            let channel = Channel {
+                column: "crosshead_acceleration_m_s2".into(),
+                samples: wave.collect(),
+            };
+            let run = Run {
+                id: "a".into(),
+                settings: Vec::new(),
+                speed_rpm: 600.0,
+                sample_rate: 1000.0,
+                crank_angle: None,
+                channels: Vec::new(),
+            };
+            not_clipped(&run, &channel).unwrap_err().to_string()
+        };
+        let least = clipped([-0.5, 1.0]);
+        assert!(least.ends_with("stand at its least value -0.5"), "{least}");
+        let greatest = clipped([-1.0, 0.5]);
+        assert!(greatest.ends_with("stand at its greatest value 0.5"), "{greatest}");
     }
 }
