@@ -45,7 +45,7 @@ pub use record::{Error, Record, simulate, simulate_later, simulate_watched};
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
-    Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
+    Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Range, Resonance, Sensor,
 };
 pub use settings::{Settings, Transient, Unrecordable};
 pub use task::Asked;
