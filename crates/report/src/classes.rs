@@ -7,7 +7,7 @@ use crate::text;
 pub(crate) const HEALTHY: &str = "none";
 
 /// The label in words; a machine without fault is healthy.
-pub(crate) fn name(label: &str) -> String {
+pub fn name(label: &str) -> String {
     match label {
         HEALTHY => "healthy".to_owned(),
         label => text::words(label),
