@@ -144,6 +144,74 @@ fn a_dry_run_writes_nothing() {
     assert!(!out.exists());
 }
 
+/// Cases of the table's lines by label: train, validation, test, all.
+fn lines_by_label(stdout: &[u8]) -> Vec<(String, Vec<u64>)> {
+    let text = String::from_utf8_lossy(stdout);
+    let (_, table) = text.split_once("cases by label and split:\n").unwrap();
+    let lines = table.lines().skip(1);
+    let cells = lines.map(|line| line.split_whitespace().map(str::to_owned).collect());
+    let lines: Vec<(String, Vec<u64>)> = cells
+        .map_while(|cells: Vec<String>| {
+            let (label, counts) = cells.split_first()?;
+            let counts: Result<Vec<u64>, _> = counts.iter().map(|n| n.parse()).collect();
+            Some((label.clone(), counts.ok()?))
+        })
+        .collect();
+    lines
+}
+
+#[test]
+fn the_end_is_a_table_of_cases_by_label_and_split() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    let (head, _) = text.split_once("cases:").unwrap();
+    // Five healthy points, and one worn one, which two of three splits lack.
+    let cases = "cases:
+  - grid: {speed: {from: 450 rpm, to: 550 rpm, count: 5}}
+  - grid: {joints: [[big_end]], clearance: 0.2 mm}
+";
+    std::fs::write(&sweep, format!("{head}{cases}")).unwrap();
+    let out = folder.path().join("out");
+    let arguments = [sweep.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let planned = gen_dataset(&[&arguments[..], &["--dry-run"]].concat());
+    let made = gen_dataset(&arguments);
+    let table = lines_by_label(&made.stdout);
+    assert_eq!(table, lines_by_label(&planned.stdout));
+    let [none, worn, all] = &table[..] else {
+        panic!("{table:?}");
+    };
+    assert_eq!((none.0.as_str(), none.1[3]), ("none", 10));
+    assert!(none.1.iter().all(|count| *count >= 2), "{none:?}");
+    assert_eq!((worn.0.as_str(), worn.1[3]), ("big_end", 2));
+    assert_eq!((all.0.as_str(), all.1[3]), ("all", 12));
+    for output in [&planned, &made] {
+        let warnings = String::from_utf8_lossy(&output.stderr).into_owned();
+        let lacking = "has no case of 1 of 2 labels (big_end)";
+        assert_eq!(warnings.matches(lacking).count(), 2, "{warnings}");
+    }
+}
+
+#[test]
+fn a_name_that_leads_out_of_the_folder_is_refused_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let sweep = write_sweep(folder.path());
+    let text = std::fs::read_to_string(&sweep).unwrap();
+    std::fs::write(&sweep, text.replace("name: small", "name: ../../evil")).unwrap();
+    let inner = folder.path().join("a/b");
+    std::fs::create_dir_all(&inner).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_gen-dataset"))
+        .arg(&sweep)
+        .current_dir(&inner)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("name: found '../../evil'"), "{message}");
+    assert!(!folder.path().join("a/evil").exists());
+    assert!(!inner.join("datasets").exists());
+}
+
 #[test]
 fn a_failing_case_is_recorded_and_the_others_go_on() {
     let folder = tempfile::tempdir().unwrap();

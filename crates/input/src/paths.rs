@@ -42,6 +42,15 @@ pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
     Ok(())
 }
 
+/// `path` as keys and indices, the names of list items replaced: two ways of writing one path
+/// give the same.
+///
+/// # Errors
+/// Where the format has no such path or the file has no such list item.
+pub fn keys(tree: &Value, path: &str) -> Result<Vec<String>, Error> {
+    resolve(tree, path)
+}
+
 /// The value at `path`; of a throw that does not have it, the one that the throws share.
 ///
 /// # Errors

@@ -142,7 +142,7 @@ fn what_a_user_may_add() {
     // The last run's small end has 0.25 mm.
     let tree = from_bundle(&machine).unwrap();
     let resolved = at_run(tree.clone(), &bundle["runs"][6]);
-    assert_eq!(resolved.normal_clearance.throws[0].small_end, 1.2e-4);
+    assert_eq!(resolved.normal_clearance.throws[0].small_end, Some(1.2e-4));
     let stiffness = |joint: &Revolute| joint.clear().unwrap().contact.spring().0;
     let throw = &resolved.machine.throws[0];
     assert_eq!(stiffness(&throw.big_end), 24e9);

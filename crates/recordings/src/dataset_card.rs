@@ -1,7 +1,7 @@
 //! `README.md` of a dataset: what is in it, for people, and the front matter by which Hugging Face
 //! `datasets` finds its tables.
 
-use crate::Schema;
+use crate::{Role, Schema};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
@@ -196,16 +196,17 @@ Foxglove opens the files of `mcap/` as they are: add a Plot panel and drag a cha
             let columns = subset.schema.columns();
             writeln!(
                 f,
-                "\n## Columns of `{}`\n\n| column | holds | unit | meaning |\n|---|---|---|---|",
+                "\n## Columns of `{}`\n\n| column | role | holds | unit | meaning |\n|---|---|---|---|---|",
                 subset.name
             )?;
             for column in columns {
                 let optional = if column.optional { ", or nothing" } else { "" };
                 let unit = column.unit.as_deref().unwrap_or_default();
+                let role = column.role.map(Role::name).unwrap_or_default();
                 let (name, kind) = (cell(&column.name), column.kind);
                 writeln!(
                     f,
-                    "| `{name}` | {kind}{optional} | {} | {} |",
+                    "| `{name}` | {role} | {kind}{optional} | {} | {} |",
                     cell(unit),
                     cell(&column.description)
                 )?;
@@ -274,6 +275,7 @@ mod tests {
     fn card() -> DatasetCard {
         let column = Column::new("clearance_m", Kind::Real, "of a | joint")
             .unit("m")
+            .role(Role::Label)
             .optional();
         let faults =
             |rows: &[(&str, u64)]| rows.iter().map(|(f, n)| ((*f).to_owned(), *n)).collect();
@@ -344,7 +346,7 @@ configs:
 | all | 32 | 0 | 1 | 33 |
 ";
         assert!(text.contains(expected), "{text}");
-        let column = r"| `clearance_m` | a real number, or nothing | m | of a \| joint |";
+        let column = r"| `clearance_m` | label | a real number, or nothing | m | of a \| joint |";
         assert_eq!(text.matches(column).count(), 2, "{text}");
     }
 }

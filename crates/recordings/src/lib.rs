@@ -40,6 +40,6 @@ mod whole_file;
 pub use dataset_card::{DatasetCard, Subset};
 pub use error::Error;
 pub use manifest::{CaseWarning, Counts, FailedCase, FileEntry, Manifest};
-pub use schema::{Column, Kind, Schema};
+pub use schema::{Column, Kind, Role, Schema};
 pub use table::{Cell, Data, Table, Value};
 pub use whole_file::{FileRecord, WholeFile};

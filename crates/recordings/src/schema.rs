@@ -31,6 +31,47 @@ impl fmt::Display for Kind {
     }
 }
 
+/// What a column is to those who learn from a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// What is to be found out: the fault, and how large it is.
+    Label,
+    /// At what the machine ran, and what else was chosen.
+    Condition,
+    /// What varied without being known.
+    Unknown,
+    /// A number or a word computed from a recording.
+    Feature,
+    /// A recording.
+    Signal,
+}
+
+impl Role {
+    const ALL: [Self; 5] = [
+        Self::Label,
+        Self::Condition,
+        Self::Unknown,
+        Self::Feature,
+        Self::Signal,
+    ];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Label => "label",
+            Self::Condition => "condition",
+            Self::Unknown => "unknown",
+            Self::Feature => "feature",
+            Self::Signal => "signal",
+        }
+    }
+
+    /// The role of that name.
+    pub fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|role| role.name() == name)
+    }
+}
+
 /// A column: what stands in it and in which unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
@@ -42,6 +83,8 @@ pub struct Column {
     pub unit: Option<String>,
     /// What the values mean, in a sentence.
     pub description: String,
+    /// What it is to those who learn from the table; none of what names a row.
+    pub role: Option<Role>,
     /// Whether a value may be missing (null in files).
     pub optional: bool,
 }
@@ -54,6 +97,7 @@ impl Column {
             kind,
             unit: None,
             description: description.into(),
+            role: None,
             optional: false,
         }
     }
@@ -62,6 +106,14 @@ impl Column {
     pub fn unit(self, unit: impl Into<String>) -> Self {
         Self {
             unit: Some(unit.into()),
+            ..self
+        }
+    }
+
+    /// The same column with a role.
+    pub fn role(self, role: Role) -> Self {
+        Self {
+            role: Some(role),
             ..self
         }
     }

@@ -19,6 +19,7 @@
 pub mod calibration_page;
 pub mod case_picture;
 pub mod chaos_page;
+pub mod classes;
 pub mod dataset_page;
 pub mod features_page;
 pub mod figure;

@@ -1,7 +1,19 @@
-//! The labels of a case: which joints are faulty, and how large each clearance is.
+//! The labels of a case: which joints are faulty, how large each clearance is, and which of the
+//! effects that the sweep varies it has.
 
-use input::Resolved;
+use input::{Resolved, paths};
 use mechanism::Machine;
+use serde_json::Value;
+
+use crate::effects::VariedEffect;
+use crate::sweep_file::Amount;
+
+/// The label of a case without any fault.
+pub const NONE: &str = "none";
+
+/// By how much of itself a clearance may exceed the normal one and still be equal to it: one length
+/// written in two units, 30 um and 0.03 mm, differs by rounding, 1e-16.
+const ROUNDING: f64 = 1e-9;
 
 /// A joint of the machine, by the name that labels and sweeps give it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,7 +38,8 @@ enum Place {
 /// The labels of one case.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Labels {
-    /// The faulty joints, joined by `+` in the order of [`joints`]; `none` where there is none.
+    /// The faulty joints in the order of [`joints`], then the effects, joined by `+`; `none` where
+    /// there is neither.
     pub fault: String,
     /// How many joints are faulty.
     pub faulty_joints: usize,
@@ -61,49 +74,76 @@ pub fn joints(machine: &Machine) -> Vec<Joint> {
 }
 
 impl Joint {
-    /// Its clearance in `case`, and the one up to which it is healthy, m.
-    fn clearances(&self, case: &Resolved) -> [f64; 2] {
+    /// Its clearance in `case`, and the one up to which it is healthy where the file states that, m.
+    fn clearances(&self, case: &Resolved) -> (f64, Option<f64>) {
         let (machine, normal) = (&case.machine, &case.normal_clearance);
         let revolute = |joint: &mechanism::joints::revolute::Revolute| {
             joint.clear().map_or(0.0, |c| c.clearance)
         };
         match self.place {
-            Place::Main => [revolute(&machine.main), normal.main],
-            Place::BigEnd(i) => [
+            Place::Main => (revolute(&machine.main), normal.main),
+            Place::BigEnd(i) => (
                 revolute(&machine.throws[i].big_end),
                 normal.throws[i].big_end,
-            ],
-            Place::SmallEnd(i) => [
+            ),
+            Place::SmallEnd(i) => (
                 revolute(&machine.throws[i].small_end),
                 normal.throws[i].small_end,
-            ],
-            Place::Guide(i) => [
+            ),
+            Place::Guide(i) => (
                 machine.throws[i].guide.clear().map_or(0.0, |c| c.clearance),
                 normal.throws[i].guide,
-            ],
+            ),
         }
+    }
+
+    /// The clearance that the machine file `tree` gives it, before any effect changes it, m.
+    fn stated_clearance(&self, tree: &Value) -> f64 {
+        let value = paths::get(tree, &self.clearance_path).ok().flatten();
+        value.and_then(Amount::of).map_or(0.0, |amount| amount.si)
+    }
+
+    /// Whether it is faulty in the case with the machine file `tree`, which is `resolved`; `own` is
+    /// the sweep's machine file, with what is drawn about its values as a calibration leaves them.
+    ///
+    /// Where no normal clearance is stated, the one of `own` is normal. Both are
+    /// then compared as the files state them: what an effect adds to a clearance (warmth, say) is
+    /// part of the machine, or a label of its own.
+    fn is_faulty(&self, tree: &Value, resolved: &Resolved, own: &Value) -> bool {
+        let (clearance, normal) = match self.clearances(resolved) {
+            (clearance, Some(normal)) => (clearance, normal),
+            (_, None) => (self.stated_clearance(tree), self.stated_clearance(own)),
+        };
+        clearance > normal * (1.0 + ROUNDING)
     }
 }
 
-/// The labels of `case`, a machine with these `joints`. A joint is faulty where its clearance
-/// exceeds the normal one.
-pub fn labels(joints: &[Joint], case: &Resolved) -> Labels {
-    let clearances: Vec<[f64; 2]> = joints.iter().map(|joint| joint.clearances(case)).collect();
+/// The labels of the case with the machine file `tree`, which is `resolved`: a machine with these
+/// `joints` in a sweep that varies these `effects` of the machine file `own`.
+pub(crate) fn labels(
+    joints: &[Joint],
+    effects: &[VariedEffect],
+    tree: &Value,
+    resolved: &Resolved,
+    own: &Value,
+) -> Labels {
     let faulty: Vec<&str> = joints
         .iter()
-        .zip(&clearances)
-        .filter(|(_, [clearance, normal])| clearance > normal)
-        .map(|(joint, _)| joint.name.as_str())
+        .filter(|joint| joint.is_faulty(tree, resolved, own))
+        .map(|joint| joint.name.as_str())
         .collect();
+    let mut names = faulty.clone();
+    for effect in effects.iter().filter(|effect| effect.is_in(tree)) {
+        if !names.contains(&effect.label.as_str()) {
+            names.push(&effect.label);
+        }
+    }
     Labels {
-        fault: match faulty.as_slice() {
-            [] => "none".into(),
-            faulty => faulty.join("+"),
+        fault: match names.as_slice() {
+            [] => NONE.into(),
+            names => names.join("+"),
         },
         faulty_joints: faulty.len(),
-        clearances_m: clearances
-            .into_iter()
-            .map(|[clearance, _]| clearance)
-            .collect(),
+        clearances_m: joints.iter().map(|j| j.clearances(resolved).0).collect(),
     }
 }

@@ -353,3 +353,36 @@ fn a_billion_cases_are_planned_but_not_run() {
         .to_string();
     assert!(text.contains("more than 2^64 combinations"), "{text}");
 }
+
+#[test]
+fn a_dataset_has_the_name_of_a_folder() {
+    let named = |name: &str| {
+        let rest = HEAD.replace("name: test", &format!("name: \"{name}\""));
+        plan(&format!("{rest}cases: [{{grid: {{speed: 500 rpm}}}}]"))
+    };
+    for name in ["paper2", "Bearing faults v1.2", "Lagerschäden_2", "日本"] {
+        assert_eq!(named(name).unwrap().name, name);
+    }
+    let long = "a".repeat(61);
+    for name in [
+        "../../evil",
+        "/evil",
+        "a/b",
+        "",
+        ".",
+        "..",
+        ".a",
+        "a.",
+        "a ",
+        "C:evil",
+        &long,
+    ] {
+        let message = named(name).unwrap_err().to_string();
+        let expected = format!(
+            "sweep.yaml:1:7: name: found '{name}', expected the name of a folder: a letter or digit, \
+             then letters, digits, '-', '_', '.' and spaces, 60 characters at most, e.g. \
+             bearing-faults"
+        );
+        assert_eq!(message, expected);
+    }
+}

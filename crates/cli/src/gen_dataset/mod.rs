@@ -11,7 +11,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_diagram};
 use sweep::sweep_file::Format;
-use sweep::{Plan, Sweep, simulate_cases};
+use sweep::{Census, Plan, Sweep, simulate_cases};
 
 /// Cases that `--dry-run` simulates to measure the time: enough for the lanes to be full for most of
 /// it, and few where the motion of each is judged, which takes much longer.
@@ -92,11 +92,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let claim = || claim(&sweep, nominal, &out, existing, &cancel);
     let (claim, plan) = on_threads(threads, claim)?;
     let plan = with_format(plan, arguments.format);
+    // Before hours of simulation.
+    warn(&plan.census().mistakes());
     let mut bar = Bar::default();
     let manifest = generate_in(claim, &plan, &options, &simulate_cases, &mut bar)
         .map_err(|error| failure(arguments, error))?;
     bar.finish();
-    summarise(&manifest, &out, started.elapsed().as_secs_f64());
+    summarise(&plan, &manifest, &out, started.elapsed().as_secs_f64());
     let failed = failures(&manifest.failed, manifest.counts.cases, &out);
     failed.map_or(Ok(()), |text| Err(Failure::work(text)))
 }
@@ -264,8 +266,16 @@ impl Bar {
     }
 }
 
-/// Prints what a finished dataset has.
-pub(crate) fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
+/// Says what is wrong.
+pub(crate) fn warn(warnings: &[String]) {
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Prints what a finished dataset has, and says what is wrong with its labels beside the mistakes that
+/// were told when it was begun.
+pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f64) {
     let bytes: u64 = manifest.files.iter().map(|file| file.bytes).sum();
     let rows: u64 = manifest
         .counts
@@ -280,6 +290,12 @@ pub(crate) fn summarise(manifest: &Manifest, out: &Path, seconds: f64) {
         manifest.files.len() + 1,
         bytes as f64 / 1e6
     );
+    let census = Census::of(plan, manifest);
+    println!("{census}");
+    let mut warnings = census.warnings();
+    let told = plan.census().mistakes();
+    warnings.retain(|warning| !told.contains(warning));
+    warn(&warnings);
     if let Some(text) = warnings(&manifest.warnings) {
         println!("{text}");
     }
@@ -330,6 +346,8 @@ fn dry_run(plan: &Plan) -> Result<(), Failure> {
         "recordings before compression: {:.1} MB",
         estimate.bytes / 1e6
     );
+    println!("{}", plan.census());
+    warn(&plan.census().warnings());
     let most = match plan.judgement {
         Some(_) => JUDGED_CASES,
         None => SAMPLE_CASES,

@@ -5,13 +5,13 @@ use super::windows::{Case, Windows};
 use ::report::dataset_page::{CaseWarning, FailedCase, FaultCount, ParameterRange};
 use std::collections::BTreeMap;
 
-/// Cases and windows by fault: the healthy first, then by the number of faulty joints.
+/// Cases and windows by fault: the healthy first, then by the number of faults.
 pub(super) fn faults(dataset: &Dataset, windows: &Windows, cases: &[Case]) -> Vec<FaultCount> {
     let splits = dataset.splits();
     let mut counts: BTreeMap<(usize, String), FaultCount> = BTreeMap::new();
     for case in cases {
         let fault = &windows.fault[case.first];
-        let order = (windows.faulty_joints(case.first).count(), fault.clone());
+        let order = (windows.faults(case.first).count(), fault.clone());
         let count = counts.entry(order).or_insert_with(|| FaultCount {
             fault: fault.clone(),
             cases: vec![0; splits.len()],

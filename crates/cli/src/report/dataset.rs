@@ -125,6 +125,12 @@ impl Dataset {
         .to_owned()
     }
 
+    /// Names of the machine's joints.
+    pub(super) fn joints(&self) -> Vec<String> {
+        let joints = self.plan.joints.iter();
+        joints.map(|joint| joint.name.clone()).collect()
+    }
+
     /// Names of the splits that have rows, in the order of use.
     pub(super) fn splits(&self) -> Vec<String> {
         let names = ["train", "validation", "test"].into_iter();
@@ -146,8 +152,12 @@ impl Dataset {
             0 => String::new(),
             n => format!(" ({n} failed)"),
         };
+        let effects = match self.plan.effects.is_empty() {
+            true => "",
+            false => " and the effects that vary",
+        };
         let mut about = format!(
-            "Simulated recordings of the {machine}, labelled with the clearance of its joints: {}{failed}, {} of the crank \
+            "Simulated recordings of the {machine}, labelled with the clearance of its joints{effects}: {}{failed}, {} of the crank \
              each.",
             text::counted(counts.cases as usize, "case"),
             text::counted(self.plan.settings.revolutions as usize, "revolution"),

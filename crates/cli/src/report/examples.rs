@@ -59,7 +59,7 @@ fn described(dataset: &Dataset, windows: &Windows, window: usize) -> String {
     let clearances = dataset.labels.iter().zip(&windows.labels);
     let clearances = clearances.filter_map(|(label, values)| {
         let joint = label.joint.as_deref()?;
-        let faulty = windows.faulty_joints(window).any(|faulty| faulty == joint);
+        let faulty = windows.faults(window).any(|faulty| faulty == joint);
         faulty.then(|| format!("{} {}", text::words(joint), text::clearance(values[window])))
     });
     let mut parts: Vec<String> = clearances.collect();

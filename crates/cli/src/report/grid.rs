@@ -109,10 +109,11 @@ fn is_grid(points: &[Point]) -> bool {
 }
 
 /// The clearance that all faulty joints of the window's case have; 0 for a machine without any.
-/// None where they differ, or where a machine without fault has clearance.
+/// None where they differ, where a machine without fault has clearance, and where the case has an
+/// effect as a fault.
 fn common_clearance(dataset: &Dataset, windows: &Windows, window: usize) -> Option<f64> {
     let largest = windows.largest_clearance(dataset, window);
-    let mut faulty = windows.faulty_joints(window).peekable();
+    let mut faulty = windows.faults(window).peekable();
     if faulty.peek().is_none() {
         return (largest == 0.0).then_some(0.0);
     }

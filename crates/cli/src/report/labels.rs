@@ -64,7 +64,7 @@ pub(super) fn of(plan: &Plan) -> Vec<Label> {
 /// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
 pub(super) fn in_words(path: &str) -> String {
-    let sections = ["joints.", "sensors.", "throws."];
+    let sections = ["joints.", "sensors.", "throws.", "effects."];
     let path = sections.iter().fold(path, |path, section| {
         path.strip_prefix(section).unwrap_or(path)
     });
@@ -86,5 +86,6 @@ mod tests {
             "throw1 joints guide clearance"
         );
         assert_eq!(in_words("crosshead.mass"), "crosshead mass");
+        assert_eq!(in_words("effects.ring_leakage.area"), "ring leakage area");
     }
 }

@@ -185,6 +185,7 @@ impl Contents {
                 .into_iter()
                 .map(|(name, _)| name)
                 .collect(),
+            joints: dataset.joints(),
             splits: dataset.splits(),
             faults,
             ranges: counts::ranges(dataset, windows, cases),

@@ -99,17 +99,18 @@ impl Windows {
             .collect()
     }
 
-    /// The joints that the fault of the window names.
-    pub(super) fn faulty_joints(&self, window: usize) -> impl Iterator<Item = &str> {
-        self.fault[window]
-            .split('+')
-            .filter(|joint| *joint != "none")
+    /// The joints and effects that the fault of the window names.
+    pub(super) fn faults(&self, window: usize) -> impl Iterator<Item = &str> {
+        self.fault[window].split('+').filter(|name| *name != "none")
     }
 
     /// The largest clearance of the window's case among the faulty joints, or among all where none
     /// is faulty, in m.
     pub(super) fn largest_clearance(&self, dataset: &Dataset, window: usize) -> f64 {
-        let faulty: BTreeSet<&str> = self.faulty_joints(window).collect();
+        let joints = dataset.labels.iter().filter_map(|l| l.joint.as_deref());
+        let joints: BTreeSet<&str> = joints.collect();
+        let faulty = self.faults(window).filter(|name| joints.contains(name));
+        let faulty: BTreeSet<&str> = faulty.collect();
         let counts = |joint: &String| faulty.is_empty() || faulty.contains(joint.as_str());
         let clearances = dataset.labels.iter().zip(&self.labels);
         clearances

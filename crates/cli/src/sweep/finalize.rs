@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         verify(&output, &manifest).map_err(gen_dataset::failed)?;
     }
     let seconds = started.elapsed().as_secs_f64();
-    gen_dataset::summarise(&manifest, &arguments.url, seconds);
+    gen_dataset::summarise(&plan, &manifest, &arguments.url, seconds);
     if let Some(text) =
         gen_dataset::failures(&manifest.failed, manifest.counts.cases, &arguments.url)
     {

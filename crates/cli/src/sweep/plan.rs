@@ -47,6 +47,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(shards) = arguments.shards {
         plan = plan.with_shards(shards).map_err(gen_dataset::failed)?;
     }
+    gen_dataset::warn(&plan.census().mistakes());
     claim.open(&plan).map_err(gen_dataset::failed)?;
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",

@@ -55,7 +55,8 @@ pub(super) struct ThrowJoints {
 pub(super) struct Bearing {
     /// Radial clearance. With 0 or `ideal` the joint is ideal, whatever else stands here.
     clearance: Gap,
-    /// Clearance up to which the joint counts as healthy; 0 where it is left out.
+    /// Clearance up to which the joint counts as healthy; where it is left out, the clearance that
+    /// the joint has in this file.
     #[serde(default)]
     normal_clearance: Option<NonNegative<Length>>,
     /// Radius of the journal.
@@ -76,7 +77,8 @@ pub(super) struct Bearing {
 pub(super) struct GuideFaces {
     /// Gap to each face when the crosshead is centred. With 0 or `ideal` the guide is ideal.
     clearance: Gap,
-    /// Gap up to which the guide counts as healthy; 0 where it is left out.
+    /// Gap up to which the guide counts as healthy; where it is left out, the gap that it has in
+    /// this file.
     #[serde(default)]
     normal_clearance: Option<NonNegative<Length>>,
     /// Half the length of the crosshead's shoes.
@@ -155,10 +157,11 @@ impl JsonSchema for Gap {
     }
 }
 
-/// A joint as the machine has it, and the clearance up to which it is healthy, m.
+/// A joint as the machine has it, and the clearance up to which it is healthy, m, where the file
+/// states one.
 pub(super) struct Fitted<T> {
     pub joint: T,
-    pub normal_clearance: f64,
+    pub normal_clearance: Option<f64>,
 }
 
 /// The bearing that a file describes.
@@ -166,7 +169,7 @@ pub(super) fn bearing(joint: &Option<Joint<Bearing>>) -> Result<Fitted<Revolute>
     match joint {
         None | Some(Or::Scalar(Ideal)) => Ok(Fitted {
             joint: Revolute::Ideal,
-            normal_clearance: 0.0,
+            normal_clearance: None,
         }),
         Some(Or::Section(bearing)) => bearing.resolve(),
     }
@@ -177,7 +180,7 @@ pub(super) fn guide(joint: &Option<Joint<GuideFaces>>) -> Result<Fitted<Guide>, 
     match joint {
         None | Some(Or::Scalar(Ideal)) => Ok(Fitted {
             joint: Guide::Ideal,
-            normal_clearance: 0.0,
+            normal_clearance: None,
         }),
         Some(Or::Section(guide)) => guide.resolve(),
     }
@@ -231,7 +234,7 @@ impl Bearing {
             } else {
                 Revolute::Ideal
             },
-            normal_clearance: self.normal_clearance.map_or(0.0, |c| c.si()),
+            normal_clearance: self.normal_clearance.map(|c| c.si()),
         })
     }
 }
@@ -255,7 +258,7 @@ impl GuideFaces {
             } else {
                 Guide::Ideal
             },
-            normal_clearance: self.normal_clearance.map_or(0.0, |c| c.si()),
+            normal_clearance: self.normal_clearance.map(|c| c.si()),
         })
     }
 }

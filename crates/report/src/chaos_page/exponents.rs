@@ -5,7 +5,7 @@ use super::levels::Levels;
 use super::{CaseChaos, ChaosPage};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
-use crate::text;
+use crate::{classes, text};
 
 /// Half of a 95 % interval in standard errors.
 const HALF: f64 = 1.96;
@@ -91,11 +91,7 @@ fn speed_words(apart: bool, speeds: &Levels) -> &'static str {
 }
 
 fn set_words(joints: &str) -> String {
-    if joints == "none" {
-        "No clearance".to_owned()
-    } else {
-        text::capitalised(&text::words(joints))
-    }
+    text::capitalised(&classes::name(joints))
 }
 
 fn panel<'a>(title: &str, cases: impl Iterator<Item = &'a &'a CaseChaos>) -> Panel {

@@ -28,6 +28,8 @@ pub struct ChaosPage {
     pub version: String,
     /// Seed of the sweep.
     pub seed: u64,
+    /// The machine's joints, in their order.
+    pub joints: Vec<String>,
     /// The cases whose motion is shown, in rows.
     pub motions: Vec<MotionRow>,
     /// Which cases these are, as a rule.

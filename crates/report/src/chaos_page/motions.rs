@@ -2,6 +2,7 @@
 //! in every figure.
 
 use super::{ChaosPage, Motion};
+use crate::classes;
 use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
 use crate::revolutions::last_turns;
@@ -62,7 +63,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
             ..Axis::crank_angle()
         },
         y: Axis::linear("approach (m/s)"),
-        series: per_joint(motion, Mark::WideDots, |orbit| {
+        series: per_joint(page, motion, Mark::WideDots, |orbit| {
             orbit
                 .impacts
                 .iter()
@@ -105,7 +106,7 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
     let panel = |motion: &Motion| Panel {
         x: Axis::linear("x (µm)"),
         y: Axis::linear("y (µm)"),
-        series: per_joint(motion, Mark::HairLine, |orbit| {
+        series: per_joint(page, motion, Mark::HairLine, |orbit| {
             let points = orbit.x_m.iter().zip(&orbit.y_m);
             let points = points.skip(last_turns(&motion.crank_angle_rad, ORBIT_REVOLUTIONS));
             points
@@ -163,24 +164,16 @@ fn cases(page: &ChaosPage) -> String {
 }
 
 fn per_joint(
+    page: &ChaosPage,
     motion: &Motion,
     mark: Mark,
     points: impl Fn(&super::Orbit) -> Vec<[f64; 2]>,
 ) -> Vec<Series> {
     let series = motion.joints.iter().map(|orbit| {
-        let (name, colour) = (text::words(&orbit.name), joint_colour(&orbit.name));
-        Series::new(name, colour, mark, points(orbit))
+        let colour = classes::colour(&orbit.name, &page.joints, std::iter::empty());
+        Series::new(classes::name(&orbit.name), colour, mark, points(orbit))
     });
     series.collect()
-}
-
-/// The colour that a joint has wherever joints are told apart.
-fn joint_colour(name: &str) -> Colour {
-    let joint = name.rsplit('.').next().unwrap_or(name);
-    let place = ["big_end", "small_end", "main", "guide"]
-        .iter()
-        .position(|known| *known == joint);
-    Colour::Class(place.unwrap_or(4))
 }
 
 /// A row of panels for each row of motions.

@@ -1,6 +1,7 @@
 //! Spectra of each class.
 
 use super::{ChaosPage, ClassSpectra, Quartiles};
+use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
 use crate::text;
@@ -75,10 +76,7 @@ fn small_multiples(
             .into_iter()
             .chain(line(2).collect::<Vec<_>>().into_iter().rev())
             .collect();
-        let name = match class.class.as_str() {
-            "none" => "No clearance".to_owned(),
-            joints => text::capitalised(&text::words(joints)),
-        };
+        let name = text::capitalised(&classes::name(&class.class));
         Panel {
             title: format!("{name} ({})", text::counted(class.windows, "window")),
             x: Axis::linear(x),

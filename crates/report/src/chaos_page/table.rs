@@ -1,7 +1,7 @@
 //! The table of all cases.
 
 use super::{CaseChaos, Regime, WindowChaos};
-use crate::text;
+use crate::{classes, text};
 
 /// Standard errors below this share of the exponent are rounding as far as a reader is concerned.
 const TINY: f64 = 1e-3;
@@ -38,7 +38,7 @@ impl Table {
 fn head(column: usize) -> Head {
     let (name, unit, is_number) = [
         ("Case", "", false),
-        ("Joints", "", false),
+        ("Class", "", false),
         ("Clearance", "mm", true),
         ("Speed", "rpm", true),
         ("λ from the equations", "1/s", true),
@@ -68,11 +68,7 @@ fn cells(case: &CaseChaos) -> [String; 9] {
     };
     [
         case.case_id.clone(),
-        if case.joints == "none" {
-            "none".to_owned()
-        } else {
-            text::words(&case.joints)
-        },
+        classes::name(&case.joints),
         if case.clearance_m > 0.0 {
             text::number(case.clearance_m * 1e3, 4)
         } else {

@@ -7,7 +7,7 @@
 //! frequency that the ideal motion hardly reaches.
 
 use super::ClearanceGrid;
-use crate::text;
+use crate::{classes, text};
 use std::fmt::Write;
 
 /// A level is higher than another if it exceeds it by more than this factor: less may be the noise
@@ -95,11 +95,7 @@ impl ClearanceGrid {
 pub(super) fn level_cells(level: &CaseLevel) -> [String; 6] {
     let ideal = level.joints == "none";
     [
-        if ideal {
-            "none".to_owned()
-        } else {
-            text::words(&level.joints)
-        },
+        classes::name(&level.joints),
         if ideal {
             "–".to_owned()
         } else {

@@ -6,6 +6,7 @@ use super::captions::{self, Level};
 use super::examples::{PORTRAIT_REVOLUTIONS, portrait};
 use super::page::class_colour;
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
+use crate::classes::{self, HEALTHY};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
 use crate::revolutions::Revolutions;
@@ -176,7 +177,7 @@ fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
     let ideal = grid
         .ideal
         .as_ref()
-        .map(|response| one_revolution("no clearance", Colour::Ink, response));
+        .map(|response| one_revolution(&classes::name(HEALTHY), Colour::Ink, response));
     let overlaid = order
         .iter()
         .map(|d| one_revolution("", d.colour, d.response))

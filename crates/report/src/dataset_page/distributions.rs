@@ -1,8 +1,8 @@
 //! How the cases of a random sweep lie, and how features go with parameters.
 
-use super::examples::fault_words;
 use super::page::class_colour;
 use super::{DatasetPage, Histogram, RandomSweep, Scatter};
+use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
@@ -105,7 +105,7 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let (x_factor, x_unit) = readable(points().map(|point| point[0]), x_unit);
     let series = scatter.classes.iter().map(|(fault, points)| {
         Series::new(
-            fault_words(fault),
+            classes::name(fault),
             class_colour(page, fault),
             Mark::Points,
             points.iter().map(|p| [p[0] * x_factor, p[1]]),
@@ -126,7 +126,7 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         .classes
         .iter()
         .filter_map(|(fault, points)| {
-            Some((fault_words(fault), median(points.iter().map(|p| p[1]))?))
+            Some((classes::name(fault), median(points.iter().map(|p| p[1]))?))
         })
         .collect();
     let cases = scatter.classes.iter().map(|(_, points)| points.len()).sum();

@@ -2,6 +2,7 @@
 
 use super::page::class_colour;
 use super::{ClassExample, DatasetPage, Spectrum, captions};
+use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::revolutions::{Revolutions, last_turns};
@@ -45,7 +46,7 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
         )
     });
     Plate {
-        heading: text::capitalised(&fault_words(&example.fault)),
+        heading: text::capitalised(&classes::name(&example.fault)),
         caption: format!(
             "{}: one revolution, the velocity-acceleration portrait of the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, the \
              amplitude spectrum (rms over stretches of two revolutions) and the order spectrum (rms over the \
@@ -59,15 +60,6 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
             ..Figure::default()
         }
         .svg(),
-    }
-}
-
-/// The label of a fault in words; a machine without one is healthy.
-pub(super) fn fault_words(fault: &str) -> String {
-    if fault == "none" {
-        "healthy".to_owned()
-    } else {
-        text::words(fault)
     }
 }
 

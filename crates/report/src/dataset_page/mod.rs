@@ -35,6 +35,8 @@ pub struct DatasetPage {
     pub samples_per_window: (usize, usize),
     /// The channels, by name.
     pub channels: Vec<String>,
+    /// The machine's joints, in their order.
+    pub joints: Vec<String>,
     /// Names of the splits, in the order of the counts below.
     pub splits: Vec<String>,
     /// How many cases and windows there are of each fault.

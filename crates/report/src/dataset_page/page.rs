@@ -1,14 +1,14 @@
 //! The page itself: figures and tables in the order of reading.
 
 use super::claims::{self, Claim};
-use super::examples::{self, MOST_EXAMPLES, fault_words};
+use super::examples::{self, MOST_EXAMPLES};
 use super::{
     CaseLevel, CaseWarning, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount,
     FeatureRow, ParameterRange, comparison, distributions,
 };
 use crate::figure::Colour;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
-use crate::{Error, text};
+use crate::{Error, classes, text};
 use askama::Template;
 
 /// Longest tables on the page, in rows.
@@ -65,12 +65,10 @@ impl DatasetPage {
     }
 }
 
-/// The colour that a class has in all figures of the page; grey if the page does not count it.
+/// The colour that a class has in all figures.
 pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
-    page.faults
-        .iter()
-        .position(|count| count.fault == fault)
-        .map_or(Colour::Ink, Colour::Class)
+    let labels = page.faults.iter().map(|count| count.fault.as_str());
+    classes::colour(fault, &page.joints, labels)
 }
 
 fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
@@ -239,6 +237,6 @@ impl View<'_> {
     }
 
     fn words(fault: &str) -> String {
-        fault_words(fault)
+        classes::name(fault)
     }
 }

@@ -140,11 +140,16 @@ fn card(
         summary: format!(
             "Simulated recordings of a reciprocating compressor, labelled with the clearance of \
              its joints: {} cases, {} revolutions each at {} Hz. A joint counts as faulty where \
-             its clearance exceeds the machine's normal one. Splits are by group: cases that \
-             differ in noise alone are in the same split.",
+             its clearance exceeds the machine's normal one.{} Splits are by group: cases that \
+             differ in noise and sensors alone are in the same split.{}",
             plan.cases(),
             plan.settings.revolutions,
             plan.settings.sample_rate,
+            effects(plan),
+            match plan.is_stratified() {
+                true => " They are stratified by label.",
+                false => "",
+            },
         ),
         // Whose data they are is for the one who publishes them to say.
         license: "unknown".into(),
@@ -162,6 +167,19 @@ fn card(
         mcap_example: example.next().cloned(),
         command: "gen-dataset sweep.yaml --out another-folder".into(),
         version: env!("CARGO_PKG_VERSION").into(),
+    }
+}
+
+/// Which effects are labels, as a sentence; empty where none is.
+fn effects(plan: &Plan) -> String {
+    let mut labels: Vec<&str> = plan.effects.iter().map(|e| e.label.as_str()).collect();
+    labels.dedup();
+    match labels.as_slice() {
+        [] => String::new(),
+        labels => format!(
+            " Effects are labels as well, where their amplitude is not 0: {}.",
+            labels.join(", ")
+        ),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use recordings::formats::parquet::TableWriter;
-use recordings::{CaseWarning, FailedCase, FileEntry, Schema, Value};
+use recordings::{CaseWarning, Column, FailedCase, FileEntry, Kind, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
 use super::commit::Commit;
@@ -14,8 +14,13 @@ use crate::split::Split;
 use crate::sweep_file::Format;
 use crate::{Error, Plan};
 
-/// Samples of a row group, all channels and rows together: 4 MiB. A file of each split has one under way.
+/// Bytes of a row group before compression: 4 MiB. A file of each table and split has one under way,
+/// and a group of a table of some hundred numbers then has some hundred rows, so that what is said
+/// of each column and group (some 150 bytes) weighs little.
 const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
+
+/// Most rows of a group: as many as the writer collects anyway.
+const ROWS_PER_GROUP: f64 = 4096.0;
 
 /// The files of a shard while its cases come in.
 pub(super) struct ShardWriter<'a> {
@@ -44,8 +49,8 @@ impl<'a> ShardWriter<'a> {
         let part = |folder: &str, schema: &Schema, split: Split| {
             let (name, shards) = (split.name(), plan.shards());
             let path = format!("{folder}/{name}-{shard:05}-of-{shards:05}.parquet");
-            let table =
-                TableWriter::new(output.store.create(&path)?, schema, rows_per_group(plan))?;
+            let rows_per_group = rows_per_group(schema, plan.samples_per_window());
+            let table = TableWriter::new(output.store.create(&path)?, schema, rows_per_group)?;
             Ok::<_, Error>((split, PartFile { path, table }))
         };
         let cases = plan.shard(shard);
@@ -158,8 +163,33 @@ fn write_rows(
     Ok(())
 }
 
-/// Rows of one row group: as many as fit its size at the speed of the machine file.
-fn rows_per_group(plan: &Plan) -> usize {
-    let bytes = plan.samples_per_window() * 4.0 * plan.channels().len() as f64;
-    (BYTES_PER_GROUP / bytes.max(1.0)).clamp(1.0, 4096.0) as usize
+/// Rows of one row group of a table with these columns: as many as fit its size, where a recording
+/// has so many samples.
+fn rows_per_group(schema: &Schema, samples: f64) -> usize {
+    let bytes = |column: &Column| match column.kind {
+        Kind::Samples => 4.0 * samples,
+        Kind::Text | Kind::Integer | Kind::Real => 8.0,
+        Kind::Flag => 1.0,
+    };
+    let row: f64 = schema.columns().iter().map(bytes).sum();
+    (BYTES_PER_GROUP / row.max(1.0)).clamp(1.0, ROWS_PER_GROUP) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn row_groups_are_sized_by_the_table() {
+        let table = |kind, count| {
+            let columns = (0..count).map(|i| Column::new(format!("c{i}"), kind, ""));
+            Schema::new(columns.collect()).unwrap()
+        };
+        // Four channels of 24 000 samples: 384 kB a row.
+        assert_eq!(rows_per_group(&table(Kind::Samples, 4), 24e3), 10);
+        // 500 features: 4 kB a row, however long the recordings are.
+        assert_eq!(rows_per_group(&table(Kind::Real, 500), 24e3), 1048);
+        assert_eq!(rows_per_group(&table(Kind::Samples, 1), 1e9), 1);
+        assert_eq!(rows_per_group(&table(Kind::Flag, 1), 1.0), 4096);
+    }
 }

@@ -3,14 +3,12 @@
 use std::collections::BTreeMap;
 
 use features::{Cell, Content, Definition};
-use input::paths;
-use recordings::{Column, Kind, Schema, Value};
+use recordings::{Column, Kind, Role, Schema, Value};
 use signal::channel::Channel;
 
 use super::judged::{judged_columns, judged_values};
 use crate::Plan;
-use crate::plan::{Case, Parameter};
-use crate::sweep_file::Amount;
+use crate::plan::Case;
 
 /// The columns of both tables.
 #[derive(Clone, Debug)]
@@ -31,14 +29,15 @@ impl Tables {
         let about = about(plan);
         let mut signals = about.clone();
         signals.extend(channels.iter().map(|(name, unit)| {
-            Column::new(name, Kind::Samples, "the recorded channel").unit(*unit)
+            let column = Column::new(name, Kind::Samples, "the recorded channel");
+            column.unit(*unit).role(Role::Signal)
         }));
         let rate = Column::new(
             "sample_rate_hz",
             Kind::Real,
             "samples per second of the channels",
         );
-        signals.push(rate.unit("Hz"));
+        signals.push(rate.unit("Hz").role(Role::Condition));
         let mut summed_up = about;
         let names = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
         summed_up.extend(
@@ -78,19 +77,24 @@ fn about(plan: &Plan) -> Vec<Column> {
         ),
         text(
             "fault",
-            "the joints whose clearance exceeds the normal one, joined by +, or none",
-        ),
-        integer("faulty_joints", "how many joints those are"),
+            "the joints whose clearance exceeds the normal one and the varied effects that are \
+             there, joined by +, or none",
+        )
+        .role(Role::Label),
+        integer("faulty_joints", "how many joints those are").role(Role::Label),
     ];
     columns.extend(plan.joints.iter().map(|joint| {
         let meaning = format!("clearance of the joint {}; 0 where it is ideal", joint.name);
-        real(format!("clearance_{}_m", joint.name), "m", meaning)
+        let column = real(format!("clearance_{}_m", joint.name), "m", meaning);
+        column.role(Role::Label)
     }));
-    columns.push(real("speed_rpm".into(), "rpm", "speed of the crank".into()));
+    let speed = real("speed_rpm".into(), "rpm", "speed of the crank".into());
+    columns.push(speed.role(Role::Condition));
     for throw in plan.throws() {
         for side in ["suction", "discharge"] {
             let name = prefixed(throw, &format!("{side}_pressure_pa"));
-            columns.push(real(name, "Pa", format!("{side} pressure, absolute")));
+            let pressure = real(name, "Pa", format!("{side} pressure, absolute"));
+            columns.push(pressure.role(Role::Condition));
         }
     }
     columns.extend(plan.parameters.iter().map(|parameter| {
@@ -101,12 +105,14 @@ fn about(plan: &Plan) -> Vec<Column> {
         };
         let meaning = format!("{} of the machine file", parameter.path);
         let column = Column::new(&parameter.column, kind, meaning).optional();
+        let column = column.role(parameter.role);
         match &parameter.unit {
             Some(unit) if unit != "%" => column.unit(unit),
             _ => column,
         }
     }));
-    columns.extend(plan.judgement.iter().flat_map(judged_columns));
+    let judged = plan.judgement.iter().flat_map(judged_columns);
+    columns.extend(judged.map(|column| column.role(Role::Label)));
     columns
 }
 
@@ -120,6 +126,7 @@ pub fn feature_column((definition, content): (Definition, Content)) -> Column {
         Content::Text => (Kind::Text, definition.description),
     };
     let column = Column::new(definition.name, kind, meaning).optional();
+    let column = column.role(Role::Feature);
     match definition.unit.as_str() {
         "1" => column,
         unit => column.unit(unit),
@@ -148,20 +155,11 @@ fn about_row(plan: &Plan, case: &Case, window: usize) -> Vec<Value> {
     row.push(case.operating_point.speed_rpm.into());
     let pressures = case.operating_point.pressures_pa.iter().flatten();
     row.extend(pressures.map(|&p| Value::from(p)));
-    row.extend(plan.parameters.iter().map(|p| parameter(p, case)));
+    row.extend(plan.parameters.iter().map(|p| p.value(&case.tree)));
     if let Some(judgement) = &plan.judgement {
         row.extend(judged_values(judgement, case.motion.as_ref()));
     }
     row
-}
-
-fn parameter(parameter: &Parameter, case: &Case) -> Value {
-    match paths::get(&case.tree, &parameter.path).ok().flatten() {
-        Some(value) if parameter.is_number => Amount::of(value).map(|a| a.si).into(),
-        Some(serde_json::Value::String(text)) => text.as_str().into(),
-        Some(value) => value.to_string().into(),
-        None => Value::Missing,
-    }
 }
 
 /// The row of `signals` for a window with these channels.

@@ -1,8 +1,9 @@
 //! A block of cases, made ready: what its case at an index sets in the machine file.
 
 use input::Error;
+use serde_json::Value;
 
-use super::axis::{Assignments, Frame, Target};
+use super::axis::{Assignments, Frame, JointSet, Target};
 use super::drawn::Drawn;
 use super::listed::Listed;
 use crate::design::hash::hash;
@@ -70,11 +71,20 @@ impl Block {
         }
     }
 
-    /// Paths of the machine file that have an axis of their own, in order.
-    pub(super) fn paths(&self) -> Vec<&str> {
-        fn path(target: &Target) -> Option<&str> {
+    /// The joints that case `index` names as worn; none where the block has no axis `joints`.
+    pub(super) fn named(&self, index: u64) -> Option<&JointSet> {
+        match self {
+            Block::Listed(block) => block.named(index),
+            Block::Drawn(block) => block.named(index),
+        }
+    }
+
+    /// Paths of the machine file that have an axis of their own, in order, each with values that
+    /// show what it goes through.
+    pub(super) fn paths(&self) -> Vec<(&str, Vec<Value>)> {
+        fn path((target, values): (&Target, Vec<Value>)) -> Option<(&str, Vec<Value>)> {
             match target {
-                Target::Path(path) => Some(path),
+                Target::Path(path) => Some((path, values)),
                 _ => None,
             }
         }

@@ -10,6 +10,7 @@ use simulate::poincare::{Joint, clear_joints};
 use super::axis::{Axis, Frame, JointSet, Target, check_clearances, own};
 use super::case::rpm;
 use super::levels::Levels;
+use super::name::check_diagram;
 use super::sampler::{same_dimension, text};
 use crate::sweep_file::{Amount, Bifurcation, Directions, Range, Values};
 
@@ -45,7 +46,7 @@ impl Diagram {
     /// The diagram that the sweep file has at `bifurcations.{position}`.
     pub(super) fn new(file: &Bifurcation, position: usize, frame: &Frame) -> Result<Self, Error> {
         let key = format!("bifurcations.{position}");
-        check_name(&file.name).map_err(|e| e.under(&key))?;
+        check_diagram(&file.name).map_err(|e| e.under(&key))?;
         let set = match &file.joints {
             None => Vec::new(),
             Some(names) => {
@@ -237,14 +238,4 @@ fn unit(amount: &Amount) -> Option<String> {
         Some(dimension) if dimension == Speed::DIMENSION => Some("rpm".into()),
         dimension => dimension.map(|d| d.to_string()).filter(|unit| unit != "%"),
     }
-}
-
-fn check_name(name: &str) -> Result<(), Error> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    if !name.is_empty() && name.chars().all(plain) {
-        return Ok(());
-    }
-    let found = format_args!("'{name}'");
-    let expected = "letters, digits, '-' and '_', e.g. big-end-clearance";
-    Err(Error::found("name", found, expected))
 }

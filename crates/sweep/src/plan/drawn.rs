@@ -1,6 +1,7 @@
 //! Blocks whose values are drawn.
 
 use input::{Error, paths};
+use serde_json::Value;
 
 use super::axis::{Assignments, Axis, Frame, JointSet, Target, check_clearances, each, own};
 use super::sampler::Sampler;
@@ -16,6 +17,8 @@ use crate::sweep_file::{self, Design, Draw, Values};
 pub(super) struct Drawn {
     /// The sets of joints; one empty set where the block has no axis `joints`.
     sets: Vec<JointSet>,
+    /// Whether the block has an axis `joints`.
+    has_joints: bool,
     weights: Vec<f64>,
     axes: Vec<Axis<Sampler>>,
     /// The joints whose clearance `clearance` draws.
@@ -68,6 +71,7 @@ impl Drawn {
         joints.retain(|joint| !own.contains(joint));
         let block = Self {
             sets,
+            has_joints: block.axes.joints().is_some(),
             weights,
             axes,
             joints,
@@ -135,9 +139,16 @@ impl Drawn {
         keys
     }
 
-    /// What the axes set.
-    pub(super) fn targets(&self) -> impl Iterator<Item = &Target> {
-        self.axes.iter().map(|axis| &axis.target)
+    /// The set of joints that case `index` names; none where the block has no axis `joints`.
+    pub(super) fn named(&self, index: u64) -> Option<&JointSet> {
+        let set = || &self.sets[choose(&self.weights, self.point(index)[0])];
+        self.has_joints.then(set)
+    }
+
+    /// What the axes set, each with values that show what it draws.
+    pub(super) fn targets(&self) -> impl Iterator<Item = (&Target, Vec<Value>)> {
+        let axes = self.axes.iter();
+        axes.map(|axis| (&axis.target, axis.values.representatives()))
     }
 
     fn dimensions(&self) -> usize {

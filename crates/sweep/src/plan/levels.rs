@@ -75,6 +75,14 @@ impl Levels {
         }
     }
 
+    /// Values that show what the axis goes through: all of a list, the ends of a range.
+    pub(super) fn representatives(&self) -> Vec<Value> {
+        match self {
+            Levels::List(values) => values.clone(),
+            Levels::Steps { ends, .. } => ends.iter().map(|end| end.to_value()).collect(),
+        }
+    }
+
     /// The key of value `level` below that of its axis: nothing where no value stands by itself.
     pub(super) fn key(&self, axis: &str, level: usize) -> String {
         match self {

@@ -1,6 +1,7 @@
 //! Blocks whose values are listed: a grid of every combination, or lists side by side.
 
 use input::Error;
+use serde_json::Value;
 
 use super::axis::{Assignments, Axis, Frame, JointSet, Target, check_clearances, each, own};
 use super::levels::Levels;
@@ -12,6 +13,8 @@ use crate::sweep_file::{self, Axes, Values};
 pub(super) struct Listed {
     /// The sets of joints; one empty set where the block has no axis `joints`.
     sets: Vec<JointSet>,
+    /// Whether the block has an axis `joints`.
+    has_joints: bool,
     axes: Vec<Axis<Levels>>,
     arrangement: Arrangement,
 }
@@ -32,11 +35,11 @@ const TRIED: u64 = 1000;
 impl Listed {
     /// The grid at `key` of the sweep file.
     pub(super) fn grid(
-        axes: &Axes<sweep_file::Levels>,
+        from: &Axes<sweep_file::Levels>,
         key: &str,
         frame: &Frame,
     ) -> Result<Self, Error> {
-        let (sets, axes) = read(axes, key, frame)?;
+        let (sets, axes) = read(from, key, frame)?;
         let own = own(&axes);
         let size = |axis: &Axis<Levels>, set: &JointSet| match axis.target.says(set, &own) {
             true => axis.values.len(),
@@ -56,6 +59,7 @@ impl Listed {
         let arrangement = Arrangement::Grid { sizes };
         Ok(Self {
             sets,
+            has_joints: from.joints().is_some(),
             axes,
             arrangement,
         })
@@ -63,11 +67,11 @@ impl Listed {
 
     /// The lists at `key` of the sweep file.
     pub(super) fn zip(
-        axes: &Axes<sweep_file::Levels>,
+        from: &Axes<sweep_file::Levels>,
         key: &str,
         frame: &Frame,
     ) -> Result<Self, Error> {
-        let (sets, axes) = read(axes, key, frame)?;
+        let (sets, axes) = read(from, key, frame)?;
         let joints = (format!("{key}.joints"), sets.len() as u64);
         let lengths = axes
             .iter()
@@ -88,6 +92,7 @@ impl Listed {
         let arrangement = Arrangement::Zip { count };
         Ok(Self {
             sets,
+            has_joints: from.joints().is_some(),
             axes,
             arrangement,
         })
@@ -173,9 +178,16 @@ impl Listed {
         keys
     }
 
-    /// What the axes set.
-    pub(super) fn targets(&self) -> impl Iterator<Item = &Target> {
-        self.axes.iter().map(|axis| &axis.target)
+    /// The set of joints that case `index` names; none where the block has no axis `joints`.
+    pub(super) fn named(&self, index: u64) -> Option<&JointSet> {
+        let (set, _) = self.levels(index);
+        self.has_joints.then(|| &self.sets[set])
+    }
+
+    /// What the axes set, each with values that show what it goes through.
+    pub(super) fn targets(&self) -> impl Iterator<Item = (&Target, Vec<Value>)> {
+        let axes = self.axes.iter();
+        axes.map(|axis| (&axis.target, axis.values.representatives()))
     }
 }
 

@@ -7,17 +7,27 @@ mod case;
 mod diagram;
 mod drawn;
 mod estimate;
+mod labelled_effects;
 mod levels;
 mod listed;
+mod name;
+mod parameter;
 mod sampler;
+mod settings;
+mod survey;
 mod together;
+mod varied;
 
 pub use case::{Case, Judgement, OperatingPoint};
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
+pub use parameter::Parameter;
+pub use survey::Census;
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use input::choice::Or;
 use input::yaml::Document;
@@ -27,22 +37,26 @@ use rand::Rng;
 use scalar::random::{Purpose, stream};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
-use simulate::{ExponentSettings, Extent, Settings, Transient, Unrecordable};
+use simulate::{Settings, Unrecordable};
 
 use crate::design::hash::unit;
+use crate::effects::VariedEffect;
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Amount, Draw, Format, MOST_CASES_A_SHARD, Run, SweepFile, Windows};
+use crate::sweep_file::{Format, MOST_CASES_A_SHARD, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use sampler::Sampler;
+use settings::{check_windows, judgement, settings, shares};
+use survey::Survey;
 use together::Together;
+use varied::Varied;
 
 /// Most cases that one sweep may run.
 pub const MOST_CASES: u64 = 100_000_000;
 
 /// Changes when the same plan would give other bytes.
-const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 1");
+const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 2");
 
 /// A sweep, made ready.
 #[derive(Clone, Debug)]
@@ -69,6 +83,8 @@ pub struct Plan {
     pub shard_size: u64,
     /// The joints of the machine, in the order of the labels.
     pub joints: Vec<Joint>,
+    /// The effects that the sweep varies, each of them a label.
+    pub effects: Vec<VariedEffect>,
     /// What the sweep sets or varies beside clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
     /// The bifurcation diagrams.
@@ -84,50 +100,7 @@ pub struct Plan {
     together: Vec<Together>,
     repeats: u64,
     sweep: Value,
-}
-
-/// An unknown that varies by itself.
-#[derive(Clone, Debug)]
-struct Varied {
-    /// Its path as the sweep file has it.
-    written: String,
-    /// The places that get the value that is drawn: several where the path has a `*`.
-    places: Vec<String>,
-    sampler: Sampler,
-}
-
-impl Varied {
-    /// What the sweep file says under `vary`; `machine` is the machine file's tree.
-    fn new(path: &str, draw: &Draw, machine: &Value) -> Result<Self, Error> {
-        let at_path = |e: Error| Error::new(path, e.problem().clone());
-        let places = match path.split('.').any(|part| part == "*") {
-            false => vec![path.to_owned()],
-            true => paths::matching(machine, path).map_err(at_path)?,
-        };
-        let Some(first) = places.first() else {
-            let expected = "a path that stands for a value of the machine file";
-            return Err(Error::found(path, "nothing in the machine file", expected));
-        };
-        let given = paths::get(machine, first).map_err(at_path)?;
-        Ok(Self {
-            written: path.to_owned(),
-            sampler: Sampler::new(draw, given).map_err(|e| e.under(path))?,
-            places,
-        })
-    }
-}
-
-/// Something that a sweep sets or varies.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// Path in the machine file.
-    pub path: String,
-    /// Name of its column: the path and the unit, `joints.big_end.contact.damping_n_s_m`.
-    pub column: String,
-    /// Unit, where it is a quantity.
-    pub unit: Option<String>,
-    /// Whether it is a number; text otherwise.
-    pub is_number: bool,
+    survey: OnceLock<Survey>,
 }
 
 impl Plan {
@@ -146,6 +119,7 @@ impl Plan {
     /// As [`Plan::read`].
     pub fn new(document: &Document, folder: &Path) -> Result<Self, Error> {
         let file: SweepFile = document.read()?;
+        name::check_dataset(&file.name).map_err(|error| document.locate(error))?;
         if file.calibrate.is_some() {
             let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
             return Err(document.locate(Error::found(
@@ -226,6 +200,7 @@ impl Plan {
             format: file.format,
             shard_size: file.shard_size.map_or(256, |n| n.get()).into(),
             joints: joints(&base.machine),
+            effects: Vec::new(),
             parameters: Vec::new(),
             diagrams: Vec::new(),
             throws: base.machine.throws.iter().map(|t| t.name.clone()).collect(),
@@ -237,6 +212,7 @@ impl Plan {
             together: Vec::new(),
             repeats: file.repeats.map_or(1, |n| n.get()).into(),
             sweep,
+            survey: OnceLock::new(),
         };
         check_windows(file)?;
         let recordable = plan.settings.check(plan.base.speed);
@@ -282,7 +258,8 @@ impl Plan {
             Some(0) => Err(Error::found("cases", "no case at all", "at least one")),
             None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
-                plan.parameters = plan.find_parameters();
+                plan.effects = plan.find_effects();
+                plan.parameters = parameter::find(&plan);
                 Ok(plan)
             }
         }
@@ -355,12 +332,20 @@ impl Plan {
         format!("case-{index:0digits$}")
     }
 
-    /// Case `index`, computed from its index alone, in about 0.1 ms (95 µs measured with the
-    /// shipped `bearing-faults.yaml`, optimised).
+    /// Case `index`, computed from its index alone but for its split, in about 0.1 ms (95 µs
+    /// measured with the shipped `bearing-faults.yaml`, optimised). The split follows from the labels
+    /// of all cases where those are few (see [`Census`]); the first call looks at them.
     ///
     /// # Errors
     /// Where the drawn values do not make a machine; `index` must be below [`Plan::cases`].
     pub fn case(&self, index: u64) -> Result<Case, Error> {
+        let case = self.case_before_splits(index)?;
+        let split = self.split(case.group);
+        Ok(Case { split, ..case })
+    }
+
+    /// Case `index` with the split that its group has by itself.
+    fn case_before_splits(&self, index: u64) -> Result<Case, Error> {
         let (point, repeat) = (index / self.repeats, index % self.repeats);
         let (block, inside) = self.block_of(point);
         let mut tree = self.tree.clone();
@@ -371,8 +356,11 @@ impl Plan {
                 paths::set(&mut tree, place, value.clone())?;
             }
         }
+        // What is known of the machine with an uncertainty is its own in each case.
+        let mut own = Cow::Borrowed(&self.tree);
         for together in &self.together {
             for (path, value) in together.draw(&mut variation) {
+                paths::set(own.to_mut(), path, value.clone())?;
                 paths::set(&mut tree, path, value)?;
             }
         }
@@ -389,7 +377,7 @@ impl Plan {
             judgement: self.judgement,
             motion: None,
             windows: self.windows,
-            labels: labels(&self.joints, &resolved),
+            labels: labels(&self.joints, &self.effects, &tree, &resolved, &own),
             operating_point: OperatingPoint::of(&resolved),
             group,
             split: split::assign(self.shares, self.seed, group),
@@ -425,7 +413,7 @@ impl Plan {
         let mut start = 0;
         for (position, block) in self.blocks.iter().enumerate() {
             for inside in block.probes() {
-                let case = self.case((start + inside) * self.repeats);
+                let case = self.case_before_splits((start + inside) * self.repeats);
                 if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
                     let keys = block.keys(inside, &self.frame());
                     return Err(document.locate(self.blame(error, keys, position, inside)));
@@ -465,48 +453,12 @@ impl Plan {
             }
         }
     }
-
-    fn find_parameters(&self) -> Vec<Parameter> {
-        let mut paths: Vec<&str> = self.varied().map(|(_, path)| path).collect();
-        paths.extend(self.blocks.iter().flat_map(Block::paths));
-        let mut seen = std::collections::BTreeSet::new();
-        let has_column = |path: &str| {
-            path == "speed"
-                || path.ends_with("cylinder.suction")
-                || path.ends_with("cylinder.discharge")
-                || self.joints.iter().any(|j| j.clearance_path == path)
-        };
-        paths.retain(|path| !has_column(path) && seen.insert(*path));
-        paths.into_iter().map(|path| self.parameter(path)).collect()
-    }
-
-    /// How `path` stands in the first case that says what it is.
-    fn parameter(&self, path: &str) -> Parameter {
-        let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
-        let first = || value(&self.case(0).ok()?.tree);
-        let amount = value(&self.tree).or_else(first);
-        let unit = amount.and_then(|a| a.dimension).map(|d| d.to_string());
-        let suffix = unit.as_deref().map_or(String::new(), suffix);
-        Parameter {
-            path: path.to_owned(),
-            column: format!("{path}{suffix}"),
-            is_number: amount.is_some(),
-            unit,
-        }
-    }
 }
 
 fn channels(machine: &Resolved, throws: &[String]) -> Vec<(String, &'static str)> {
     let throws: Vec<&str> = throws.iter().map(String::as_str).collect();
     let sensors = machine.sensors.iter().map(|sensor| &sensor.measured);
     sensors.map(|m| (m.column(&throws), m.unit())).collect()
-}
-
-/// `_n_s_m` of `N s/m`: the ending of a column's name.
-fn suffix(unit: &str) -> String {
-    let parts = unit.split([' ', '/']).filter(|part| *part != "%");
-    let plain = |part: &str| part.replace(['^', '.'], "").to_lowercase();
-    parts.map(|part| format!("_{}", plain(part))).collect()
 }
 
 /// The file's content with its machine in it, and with what it leaves out.
@@ -540,80 +492,4 @@ fn id(sweep: &Value) -> String {
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect()
-}
-
-/// The settings of a run; `sample_rate` is the machine file's, Hz.
-fn settings(run: &Run, sample_rate: Option<f64>) -> Result<Settings, Error> {
-    let default = Settings::default();
-    let tolerance = run.tolerance.map_or(default.tolerance, |t| t.get());
-    if !(1e-13..=1e-3).contains(&tolerance) {
-        let found = format_args!("{tolerance:e}");
-        return Err(Error::found(
-            "run.tolerance",
-            found,
-            "1e-13 to 1e-3, e.g. 1e-9",
-        ));
-    }
-    Ok(Settings {
-        revolutions: run.revolutions.get(),
-        transient: match &run.transient {
-            None => default.transient,
-            Some(Or::Scalar(revolutions)) => Transient::Revolutions(revolutions.get()),
-            Some(Or::Section(settled)) => Transient::Settled {
-                change: settled.until_settled.get(),
-                at_most: settled.at_most.get(),
-            },
-        },
-        sample_rate: run
-            .sample_rate
-            .map(|rate| rate.si())
-            .or(sample_rate)
-            .unwrap_or(default.sample_rate),
-        tolerance,
-        ..default
-    })
-}
-
-fn judgement(run: &Run) -> Result<Option<Judgement>, Error> {
-    let Some(asked) = run.lyapunov else {
-        return Ok(None);
-    };
-    let default = ExponentSettings::default();
-    Ok(Some(Judgement {
-        settings: ExponentSettings {
-            transient: asked.transient.map_or(default.transient, |n| n.get()),
-            revolutions: asked.revolutions.get(),
-            tolerance: settings(run, None)?.tolerance,
-        },
-        extent: if asked.spectrum {
-            Extent::Spectrum
-        } else {
-            Extent::Largest
-        },
-        convergence: asked.convergence,
-    }))
-}
-
-fn shares(file: &SweepFile) -> Result<[f64; 3], Error> {
-    let shares = file.splits.shares();
-    let total: f64 = shares.iter().sum();
-    if (total - 1.0).abs() > 1e-9 {
-        let found = format_args!("{} % together", (total * 1e9).round() / 1e7);
-        return Err(Error::found("splits", found, "shares that add up to 100 %"));
-    }
-    Ok(shares)
-}
-
-fn check_windows(file: &SweepFile) -> Result<(), Error> {
-    let Some(windows) = file.windows else {
-        return Ok(());
-    };
-    let (count, each) = (windows.count.get(), windows.revolutions.get());
-    let recorded = file.run.revolutions.get();
-    if u64::from(count) * u64::from(each) <= recorded.into() {
-        return Ok(());
-    }
-    let found = format_args!("{count} windows of {each} revolutions");
-    let expected = format_args!("no more than run.revolutions, {recorded}");
-    Err(Error::found("windows", found, expected))
 }

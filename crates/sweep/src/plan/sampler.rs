@@ -51,6 +51,18 @@ impl Sampler {
         }
     }
 
+    /// Values that show what is drawn: all that can be of a list, two of a distribution.
+    pub(super) fn representatives(&self) -> Vec<Value> {
+        match self {
+            Sampler::Choice { values, weights } => {
+                let choices = values.iter().zip(weights);
+                let possible = choices.filter(|(_, weight)| **weight > 0.0);
+                possible.map(|(value, _)| value.clone()).collect()
+            }
+            Sampler::Number { .. } => [0.25, 0.75].map(|unit| self.draw(unit)).into(),
+        }
+    }
+
     /// The value that `unit` in (0, 1) stands for.
     pub(super) fn draw(&self, unit: f64) -> Value {
         match self {

@@ -50,6 +50,15 @@ impl Together {
         self.parameters.iter().map(|(path, ..)| path.as_str())
     }
 
+    /// Each path with two values that it may have.
+    pub(super) fn representatives(&self) -> impl Iterator<Item = (&str, Vec<Value>)> {
+        let parameters = self.parameters.iter();
+        parameters.map(|(path, gaussian, scale)| {
+            let values = [-1.0, 1.0].map(|deviate| scale.value(gaussian.value(deviate)));
+            (path.as_str(), values.into())
+        })
+    }
+
     /// A value of each unknown: independent normal deviates times the root of the correlations.
     pub(super) fn draw(&self, random: &mut Stream) -> Vec<(&str, Value)> {
         let independent: Vec<f64> = self

@@ -36,7 +36,8 @@ pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepFile {
-    /// Name of the dataset.
+    /// Name of the dataset, and of its folder where `--out` names none: a letter or digit, then
+    /// letters, digits, `-`, `_`, `.` and spaces.
     pub name: String,
     /// The machine: path of its file, from the folder of this one, or the machine itself. With
     /// `calibrate` it may be left out: it is then the machine section of the bundle, at the

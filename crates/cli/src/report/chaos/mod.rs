@@ -26,6 +26,7 @@ pub(super) fn page(
         name: dataset.plan.name.clone(),
         version: dataset.manifest.version.clone(),
         seed: dataset.manifest.seed,
+        joints: dataset.joints(),
         motions: motions::rows(dataset, &known, &shown)?,
         shown: shown.rule,
         bifurcations: bifurcations::diagrams(dataset)?,

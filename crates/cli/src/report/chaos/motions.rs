@@ -4,7 +4,7 @@ use super::shown::Shown;
 use crate::Failure;
 use crate::report::dataset::Dataset;
 use ::report::chaos_page::{CaseChaos, Motion, MotionRow, Orbit};
-use ::report::text;
+use ::report::{classes, text};
 use simulate::poincare::{Joint, SectionSettings, Sections, sections};
 use simulate::{Error, JointTrace, Settings, Transient, simulate};
 use std::collections::BTreeMap;
@@ -38,7 +38,7 @@ pub(super) fn rows(
         let motions = row.iter().map(|case| {
             let mut motion = made.remove(&(*case)?)?;
             if heading.is_empty() {
-                let joints = text::capitalised(&text::words(&known[(*case)?].joints));
+                let joints = text::capitalised(&classes::name(&known[(*case)?].joints));
                 motion.title = format!("{joints}, {}", motion.title);
             }
             Some(motion)

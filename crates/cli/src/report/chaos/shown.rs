@@ -5,7 +5,7 @@ use crate::report::examples::{nearest_median, operating_point};
 use crate::report::grid::all_else;
 use crate::report::windows::{Case, Windows};
 use ::report::chaos_page::CaseChaos;
-use ::report::text;
+use ::report::{classes, text};
 
 /// At most this many rows, and cases in a row.
 const MOST_ROWS: usize = 6;
@@ -122,5 +122,5 @@ fn sets(known: &[CaseChaos], cases: &[usize]) -> Vec<String> {
 }
 
 fn heading(set: &str) -> String {
-    text::capitalised(&text::words(set))
+    text::capitalised(&classes::name(set))
 }

@@ -1,6 +1,6 @@
 //! Parquet to tables: our own, and those of other programs.
 
-use crate::{Column, Data, Error, Kind, Schema, Table};
+use crate::{Column, Data, Error, Kind, Role, Schema, Table};
 use arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
 use arrow::compute::cast;
 use arrow::datatypes::{DataType, Field, Float32Type, Float64Type, Int64Type};
@@ -273,6 +273,7 @@ fn column(field: &Field) -> Option<Column> {
             .get("description")
             .cloned()
             .unwrap_or_default(),
+        role: field.metadata().get("role").and_then(|name| Role::of(name)),
         optional: field.is_nullable(),
     })
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::{Column, Data, Error, Kind, Schema, Table, Value};
+use crate::{Column, Data, Error, Kind, Role, Schema, Table, Value};
 use arrow::array::{ArrayRef, RecordBatch};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding};
@@ -17,7 +17,9 @@ fn schema() -> Schema {
         Column::new("case_id", Kind::Text, "name of the case"),
         Column::new("reason", Kind::Text, "why there is none").optional(),
         Column::new("window", Kind::Integer, "index of the window").optional(),
-        Column::new("clearance_big_end_m", Kind::Real, "radial").unit("m"),
+        Column::new("clearance_big_end_m", Kind::Real, "radial")
+            .unit("m")
+            .role(Role::Label),
         Column::new("lyapunov_per_s", Kind::Real, "largest exponent")
             .unit("1/s")
             .optional(),

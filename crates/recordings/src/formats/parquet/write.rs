@@ -164,6 +164,7 @@ fn arrow_field(column: &Column) -> Field {
     };
     let mut metadata = Metadata::from([("description", column.description.clone())]);
     metadata.extend(column.unit.iter().map(|unit| ("unit", unit.clone())));
+    metadata.extend(column.role.map(|role| ("role", role.name().to_owned())));
     Field::new(&column.name, data_type, column.optional).with_metadata(metadata)
 }
 

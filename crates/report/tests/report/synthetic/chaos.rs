@@ -21,6 +21,9 @@ pub fn page() -> ChaosPage {
         name: "chaos-map".to_owned(),
         version: "0.1.0".to_owned(),
         seed: 3,
+        joints: ["main", "big_end", "small_end", "guide"]
+            .map(str::to_owned)
+            .into(),
         motions: SETS.iter().map(row).collect(),
         shown: "All cases of the first operating point, 500 rpm.".to_owned(),
         bifurcations: vec![bifurcation()],

@@ -149,6 +149,9 @@ fn page(design: Design) -> DatasetPage {
         ]
         .map(str::to_owned)
         .into(),
+        joints: ["main", "big_end", "small_end", "guide"]
+            .map(str::to_owned)
+            .into(),
         splits: ["train", "validation", "test"].map(str::to_owned).into(),
         faults: Vec::new(),
         ranges: Vec::new(),

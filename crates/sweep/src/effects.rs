@@ -1,0 +1,175 @@
+//! The effects that a sweep varies: each is a label, like a worn joint, with its amplitudes as
+//! columns.
+//!
+//! An effect that stands in the machine file and keeps its amplitudes is part of the machine, and so
+//! is one that the machine has in every case and whose size is drawn as an unknown (`vary`). Any
+//! other effect whose amplitudes differ among the cases is a label. A case has it where one of its
+//! amplitudes is not the one at which the effect vanishes.
+
+use std::collections::BTreeMap;
+
+use input::effects::{Entry, Parameter, entry};
+use serde_json::Value;
+
+use crate::sweep_file::Amount;
+
+/// An effect of the machine file that a sweep varies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariedEffect {
+    /// Its label: `ring_leakage`; with the throw before it where it names one: `throw1.ring_leakage`.
+    pub label: String,
+    /// Its amplitudes, without those at which it vanishes throughout.
+    pub amplitudes: Vec<Amplitude>,
+    id: Id,
+}
+
+/// How large an effect is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Amplitude {
+    /// Its path in the machine file, by the name of the effect.
+    pub path: String,
+    /// What it means.
+    pub parameter: &'static Parameter,
+    /// Its place among the effect's amplitudes.
+    position: usize,
+}
+
+/// What tells an effect from the others of a file: its name, its place, and its order where it has
+/// one.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Id {
+    name: &'static str,
+    /// Words of its place, and its order.
+    place: Vec<String>,
+    throw: Option<String>,
+}
+
+/// The amplitudes of every effect of a machine file, SI, in the order of the catalogue.
+type Amplitudes = BTreeMap<Id, Vec<f64>>;
+
+impl VariedEffect {
+    /// Whether the machine file `tree` has it.
+    pub(crate) fn is_in(&self, tree: &Value) -> bool {
+        size(&amplitudes(tree), &self.id) != absent(self.id.name)
+    }
+
+    /// The value of one of its amplitudes in the machine file `tree`, SI: the one at which the
+    /// effect vanishes where the file does not have it.
+    pub(crate) fn value(&self, amplitude: &Amplitude, tree: &Value) -> f64 {
+        size(&amplitudes(tree), &self.id)[amplitude.position]
+    }
+
+    /// Where the machine file `tree` has it in its list, if it does.
+    pub(crate) fn index_in(&self, tree: &Value) -> Option<usize> {
+        items(tree).position(|item| item.is_some_and(|(id, _)| id == self.id))
+    }
+
+    /// Its name in the machine file.
+    pub(crate) fn name(&self) -> &'static str {
+        self.id.name
+    }
+}
+
+/// The effects that differ among machine files, in the order of their names.
+///
+/// `chosen` are files that differ in what the sweep's cases set, `drawn` those that differ in what
+/// it draws as unknown; `own` is the sweep's machine file.
+pub(crate) fn varied(chosen: &[Value], drawn: &[Value], own: &Value) -> Vec<VariedEffect> {
+    let [chosen, drawn] = [chosen, drawn].map(|trees| trees.iter().map(amplitudes).collect());
+    let (chosen, drawn): (Vec<Amplitudes>, Vec<Amplitudes>) = (chosen, drawn);
+    let own = amplitudes(own);
+    let all = || chosen.iter().chain(&drawn);
+    let mut ids: Vec<Id> = all().flat_map(|file| file.keys().cloned()).collect();
+    ids.sort();
+    ids.dedup();
+    let differs = |files: &[Amplitudes], id: &Id| {
+        let mut sizes = files.iter().map(|file| size(file, id));
+        sizes
+            .next()
+            .is_some_and(|first| sizes.any(|other| other != first))
+    };
+    let is_missing = |id: &Id| {
+        let mut files = all().chain([&own]);
+        files.any(|file| size(file, id) == absent(id.name))
+    };
+    let is_label = |id: &Id| differs(&chosen, id) || (differs(&drawn, id) && is_missing(id));
+    let labelled: Vec<Id> = ids.into_iter().filter(is_label).collect();
+    let effects = labelled.iter().filter_map(|id| {
+        let namesakes = labelled.iter().filter(|other| other.name == id.name);
+        let mut amplitudes = of_catalogue(entry(id.name)?, id, namesakes.count() > 1);
+        let absent = absent(id.name);
+        let is_used = |position: usize| {
+            let mut files = all();
+            files.any(|file| size(file, id)[position] != absent[position])
+        };
+        amplitudes.retain(|amplitude| is_used(amplitude.position));
+        Some(VariedEffect {
+            label: match &id.throw {
+                Some(throw) => format!("{throw}.{}", id.name),
+                None => id.name.to_owned(),
+            },
+            amplitudes,
+            id: id.clone(),
+        })
+    });
+    effects.collect()
+}
+
+/// The amplitudes of an effect; among several of one name the paths have its place in them.
+fn of_catalogue(entry: &'static Entry, id: &Id, is_one_of_several: bool) -> Vec<Amplitude> {
+    let mut prefix = vec!["effects", entry.name];
+    if is_one_of_several {
+        prefix.extend(id.place.iter().map(String::as_str));
+    }
+    let amplitudes = entry.amplitudes().enumerate();
+    let amplitudes = amplitudes.map(|(position, parameter)| Amplitude {
+        path: format!("{}.{}", prefix.join("."), parameter.key),
+        parameter,
+        position,
+    });
+    amplitudes.collect()
+}
+
+/// The amplitudes of `id` in a file; where it vanishes if the file does not have it.
+fn size(file: &Amplitudes, id: &Id) -> Vec<f64> {
+    let size = file.get(id).cloned();
+    size.unwrap_or_else(|| absent(id.name))
+}
+
+/// The amplitudes at which an effect vanishes.
+fn absent(name: &str) -> Vec<f64> {
+    let amplitudes = entry(name)
+        .into_iter()
+        .flat_map(Entry::amplitudes)
+        .filter_map(|parameter| parameter.absent);
+    amplitudes.collect()
+}
+
+fn amplitudes(tree: &Value) -> Amplitudes {
+    items(tree).flatten().collect()
+}
+
+/// The effects of a machine file in the order of its list; none for what is no effect, which
+/// reading the file tells.
+fn items(tree: &Value) -> impl Iterator<Item = Option<(Id, Vec<f64>)>> {
+    tree["effects"].as_array().into_iter().flatten().map(item)
+}
+
+fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
+    let (name, section) = item.as_object()?.iter().next()?;
+    let entry = entry(name)?;
+    let word = |key| section.get(key).and_then(Value::as_str).map(str::to_owned);
+    let words = entry.places.iter().filter_map(|choice| word(choice.key));
+    let orders = entry.parameters.iter().filter(|parameter| parameter.whole);
+    let orders = orders.filter_map(|parameter| section.get(parameter.key).map(Value::to_string));
+    let value = |parameter: &Parameter| {
+        let amount = section.get(parameter.key).and_then(Amount::of);
+        amount.map_or(parameter.absent.unwrap_or(0.0), |amount| amount.si)
+    };
+    let id = Id {
+        name: entry.name,
+        place: words.chain(orders).collect(),
+        throw: word("throw"),
+    };
+    Some((id, entry.amplitudes().map(value).collect()))
+}

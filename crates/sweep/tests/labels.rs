@@ -1,0 +1,354 @@
+//! Labels: healthy joints, effects as faults, splits stratified by label, and what is warned of.
+
+use input::yaml::Document;
+use recordings::Role;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use sweep::dataset::Tables;
+use sweep::{Case, Plan};
+
+/// The single-stage machine with `changed` text, in a folder of its own, and a sweep of it.
+fn plan_of(machine: &str, changes: &[(&str, &str)], rest: &str) -> Plan {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
+    let mut text = std::fs::read_to_string(shipped.join(machine)).unwrap();
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("machine.yaml"), text).unwrap();
+    let sweep =
+        format!("name: test\nmachine: machine.yaml\nrun: {{revolutions: 4, transient: 2}}\n{rest}");
+    let document = Document::parse(&sweep, "sweep.yaml").unwrap();
+    Plan::new(&document, folder.path()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn cases(plan: &Plan) -> Vec<Case> {
+    (0..plan.cases()).map(|i| plan.case(i).unwrap()).collect()
+}
+
+fn faults(plan: &Plan) -> Vec<String> {
+    let cases = cases(plan).into_iter();
+    cases.map(|case| case.labels.fault).collect()
+}
+
+/// Names of the columns with the role of a label that hold the size of an effect.
+fn sizes(plan: &Plan) -> Vec<String> {
+    let columns = Tables::new(plan).unwrap().features;
+    let columns = columns.columns().iter();
+    columns
+        .filter(|c| c.role == Some(Role::Label) && c.name.starts_with("effects."))
+        .map(|c| c.name.clone())
+        .collect()
+}
+
+/// Every joint with a clearance of its own, and no normal one.
+const WORN_IN: [(&str, &str); 5] = [
+    ("clearance: ideal ", "clearance: 0.03 mm "),
+    ("clearance: ideal\n", "clearance: 0.03 mm\n"),
+    ("    normal_clearance: 0.04 mm       # assumed here\n", ""),
+    ("    normal_clearance: 0.03 mm       # assumed here\n", ""),
+    ("    normal_clearance: 0.05 mm       # assumed here\n", ""),
+];
+
+#[test]
+fn a_joints_own_clearance_is_normal_where_the_machine_file_states_none() {
+    let rest = "cases:
+  - grid: {joints: [[], [big_end]], clearance: [0.02 mm, 30 um, 0.1 mm], speed: [400 rpm, 500 rpm]}
+";
+    let plan = plan_of("single-stage.yaml", &WORN_IN, rest);
+    let expected = [
+        "none", "none", "none", "none", "none", "none", "big_end", "big_end",
+    ];
+    assert_eq!(faults(&plan), expected);
+    assert_eq!(cases(&plan)[6].labels.faulty_joints, 1);
+    // Each joint stays at its own clearance where a case sets none.
+    assert_eq!(cases(&plan)[0].labels.clearances_m, [3e-5; 4]);
+}
+
+#[test]
+fn a_clearance_that_follows_the_speed_is_no_fault() {
+    let mut machine = WORN_IN.to_vec();
+    machine.push((
+        "effects: []",
+        "effects: [{thermal_clearance: {joint: big_end, change: 10 um}}]",
+    ));
+    let rest = "cases:
+  - grid: {joints: [[], [big_end]], clearance: 0.1 mm, speed: [400 rpm, 600 rpm]}
+";
+    let plan = plan_of("single-stage.yaml", &machine, rest);
+    assert_eq!(faults(&plan), ["none", "none", "big_end", "big_end"]);
+    let warm = cases(&plan)[1].labels.clearances_m[1];
+    assert!((warm - 4.2e-5).abs() < 1e-9, "{warm}");
+}
+
+#[test]
+fn a_clearance_that_is_known_with_an_uncertainty_is_no_fault() {
+    let rest = "cases: [{grid: {joints: [[], [big_end]], clearance: 0.1 mm, speed: {from: 400 rpm, to: 500 rpm, count: 8}}}]
+vary_together:
+  - parameters: {joints.small_end.clearance: {lognormal: {factor: 1.1}}}
+    correlations: [[1]]
+";
+    let plan = plan_of("single-stage.yaml", &WORN_IN, rest);
+    let expected = [["none"; 8], ["big_end"; 8]].concat();
+    assert_eq!(faults(&plan), expected);
+    let drawn = |case: &Case| case.labels.clearances_m[2].to_bits();
+    let drawn: BTreeSet<u64> = cases(&plan).iter().map(drawn).collect();
+    assert_eq!(drawn.len(), 16);
+}
+
+#[test]
+fn joints_that_are_faulty_unasked_and_a_single_label_are_warned_of() {
+    // The guide's clearance is above what the file calls normal.
+    let worn = (
+        "    clearance: ideal\n    normal_clearance: 0.05 mm",
+        "    clearance: 0.1 mm\n    normal_clearance: 0.05 mm",
+    );
+    let rest =
+        "cases: [{grid: {joints: [[], [guide]], clearance: 0.2 mm, speed: [400 rpm, 500 rpm]}}]
+";
+    let plan = plan_of("single-stage.yaml", &[worn], rest);
+    assert_eq!(faults(&plan), ["guide"; 4]);
+    let warnings = plan.census().warnings();
+    assert!(
+        warnings[0].starts_with("all 4 cases have the label guide"),
+        "{warnings:?}"
+    );
+    let expected = "guide is faulty in 2 cases whose `joints` do not name it (case-000000: a \
+                    clearance of 0.1000 mm): joints.guide.normal_clearance in the machine file must \
+                    be at least joints.guide.clearance where the joint is healthy";
+    assert_eq!(warnings[1], expected);
+    // A sweep without mistakes has no warning but for its size.
+    let fine = plan_of(
+        "single-stage.yaml",
+        &[],
+        "cases: [{grid: {joints: [[], [guide]], clearance: 0.2 mm, speed: {from: 400 rpm, to: 500 rpm, count: 20}}}]",
+    );
+    assert_eq!(fine.census().warnings(), [String::new(); 0]);
+}
+
+#[test]
+fn splits_are_stratified_by_label_where_there_is_room() {
+    // 3 healthy cases of 21: they had none in validation and test with most seeds.
+    for seed in 0..10 {
+        let rest = format!(
+            "seed: {seed}
+cases:
+  - grid: {{joints: [[]], speed: [400 rpm, 450 rpm, 500 rpm]}}
+  - grid: {{joints: [[big_end], [small_end]], clearance: [0.1 mm, 0.2 mm, 0.3 mm], speed: [400 rpm, 450 rpm, 500 rpm]}}
+"
+        );
+        let plan = plan_of("single-stage.yaml", &[], &rest);
+        let census = plan.census();
+        let count = |label| -> Vec<u64> { census.cases(label).into_values().collect() };
+        // By the names of the splits: test, train, validation.
+        assert_eq!(count("none"), [1, 1, 1], "seed {seed}");
+        let sums = |i: usize| {
+            let labels = ["none", "big_end", "small_end"];
+            labels.iter().map(|label| count(label)[i]).sum::<u64>()
+        };
+        assert_eq!([sums(0), sums(1), sums(2)], [3, 15, 3], "seed {seed}");
+        assert!(census.warnings().is_empty());
+        // The cases are where the census has them, whatever the shards.
+        let of_validation = |plan: &Plan| -> Vec<u64> {
+            let all = cases(plan).into_iter();
+            let own = all.filter(|case| case.split.name() == "validation");
+            own.map(|case| case.index).collect()
+        };
+        assert_eq!(of_validation(&plan).len(), 3);
+        let other = plan.clone().with_shards(5).unwrap();
+        assert_eq!(of_validation(&other), of_validation(&plan));
+    }
+}
+
+#[test]
+fn a_label_that_a_split_lacks_is_warned_of() {
+    let rest = "splits: {train: 50 %, test: 50 %}
+cases:
+  - grid: {joints: [[]]}
+  - grid: {joints: [[big_end]], clearance: [0.1 mm, 0.2 mm, 0.3 mm]}
+";
+    let census = plan_of("single-stage.yaml", &[], rest);
+    let census = census.census();
+    let lacking: Vec<&str> = census
+        .cases("none")
+        .into_iter()
+        .filter_map(|(split, count)| (count == 0).then_some(split))
+        .collect();
+    let expected = format!(
+        "the split {} has no case of 1 of 2 labels (none): more cases of a label, or a larger share \
+         of the split, give it some",
+        lacking[0]
+    );
+    assert_eq!(census.warnings(), [expected]);
+    let table = census.to_string();
+    let lines: Vec<Vec<&str>> = table
+        .lines()
+        .map(|l| l.split_whitespace().collect())
+        .collect();
+    assert_eq!(lines[1], ["label", "train", "test", "all"]);
+    assert_eq!(lines[2][3], "1");
+    assert_eq!(lines[3][3], "3");
+    assert_eq!(lines[4], ["all", "2", "2", "4"]);
+}
+
+#[test]
+fn an_effect_that_the_sweep_varies_is_a_label_with_its_size() {
+    let leak = [(
+        "effects: []",
+        "effects: [{ring_leakage: {area: 0 mm^2}}, {valve_loss: {suction: 0.1, discharge: 0.1}}]",
+    )];
+    let rest = "cases:
+  - grid: {joints: [[], [big_end]], clearance: 0.1 mm, effects.ring_leakage.area: [0 mm^2, 3 mm^2]}
+";
+    let plan = plan_of("single-stage.yaml", &leak, rest);
+    // The loss of the valves is part of the machine.
+    assert_eq!(
+        faults(&plan),
+        ["none", "ring_leakage", "big_end", "big_end+ring_leakage"]
+    );
+    assert_eq!(cases(&plan)[3].labels.faulty_joints, 1);
+    assert_eq!(sizes(&plan), ["effects.ring_leakage.area_m2"]);
+    // By its index, and in a second block alone.
+    let rest = "cases:
+  - grid: {speed: [400 rpm, 500 rpm]}
+  - grid: {effects.0.ring_leakage.area: 3 mm^2}
+";
+    let plan = plan_of("single-stage.yaml", &leak, rest);
+    assert_eq!(faults(&plan), ["none", "none", "ring_leakage"]);
+    // Of an effect with several amplitudes each is a column, also those that do not vary.
+    let rest = "cases: [{grid: {effects.valve_loss.discharge: [0, 0.2]}}]";
+    let both = [(
+        "effects: []",
+        "effects: [{valve_loss: {suction: 0, discharge: 0}}]",
+    )];
+    let plan = plan_of("single-stage.yaml", &both, rest);
+    assert_eq!(faults(&plan), ["none", "valve_loss"]);
+    assert_eq!(sizes(&plan), ["effects.valve_loss.discharge"]);
+    let plan = plan_of("single-stage.yaml", &leak, rest);
+    assert_eq!(faults(&plan), ["valve_loss", "valve_loss"]);
+    assert_eq!(
+        sizes(&plan),
+        ["effects.valve_loss.discharge", "effects.valve_loss.suction"]
+    );
+    // What is no amplitude is no label.
+    let hum = [(
+        "effects: []",
+        "effects: [{mains_hum: {amplitude: 5 m/s^2}}]",
+    )];
+    let rest = "cases: [{grid: {effects.mains_hum.frequency: [50 Hz, 60 Hz]}}]";
+    let plan = plan_of("single-stage.yaml", &hum, rest);
+    assert_eq!(faults(&plan), ["none", "none"]);
+    assert_eq!(plan.parameters[0].role, Role::Condition);
+}
+
+#[test]
+fn whole_lists_of_effects_are_labels_too() {
+    let rest = "cases:
+  - grid:
+      effects:
+        - []
+        - [{ring_leakage: {area: 3 mm^2}}]
+        - [{squeeze_film: {joint: big_end, viscosity: 0.1 Pa s}}, {ring_leakage: {area: 1 mm^2}}]
+";
+    let plan = plan_of("single-stage.yaml", &[], rest);
+    assert_eq!(
+        faults(&plan),
+        ["none", "ring_leakage", "ring_leakage+squeeze_film"]
+    );
+    let area = plan
+        .parameters
+        .iter()
+        .position(|p| p.path == "effects.ring_leakage.area");
+    assert!(area.is_some(), "{:?}", plan.parameters);
+    let column = "effects.ring_leakage.area_m2".to_owned();
+    assert!(sizes(&plan).contains(&column), "{:?}", sizes(&plan));
+}
+
+#[test]
+fn effects_of_one_throw_have_its_name() {
+    let leak = [(
+        "effects: []",
+        "effects: [{ring_leakage: {throw: throw2, area: 0 mm^2}}, {heat_transfer: {stanton: 0}}]",
+    )];
+    let rest = "cases: [{zip: {effects.ring_leakage.area: [0 mm^2, 3 mm^2, 3 mm^2], effects.heat_transfer.stanton: [0, 0, 0.01]}}]";
+    let plan = plan_of("two-stage.yaml", &leak, rest);
+    assert_eq!(
+        faults(&plan),
+        [
+            "none",
+            "throw2.ring_leakage",
+            "heat_transfer+throw2.ring_leakage"
+        ]
+    );
+}
+
+#[test]
+fn what_is_drawn_about_an_effect_of_the_machine_is_an_unknown() {
+    let lossy = [(
+        "effects: []",
+        "effects: [{valve_loss: {suction: 0.1, discharge: 0.1}}]",
+    )];
+    let rest = "cases: [{grid: {speed: [400 rpm, 500 rpm]}}]
+vary: {effects.valve_loss.discharge: {lognormal: {factor: 1.2}}}
+";
+    let plan = plan_of("single-stage.yaml", &lossy, rest);
+    assert_eq!(faults(&plan), ["none", "none"]);
+    assert_eq!(plan.parameters[0].role, Role::Unknown);
+    // Drawn among values without it, it is a fault.
+    let rest = "cases: [{grid: {speed: {from: 400 rpm, to: 500 rpm, count: 40}}}]
+vary: {effects.valve_loss: [{suction: 0, discharge: 0}, {suction: 0.1, discharge: 0.2}]}
+";
+    let plan = plan_of("single-stage.yaml", &lossy, rest);
+    let found: BTreeSet<String> = faults(&plan).into_iter().collect();
+    assert_eq!(found, ["none", "valve_loss"].map(String::from).into());
+}
+
+#[test]
+fn cases_that_differ_in_the_sensors_effects_stay_together() {
+    let gain = [("effects: []", "effects: [{sensor_gain: {error: 0 %}}]")];
+    let rest = "cases: [{grid: {speed: {from: 400 rpm, to: 500 rpm, count: 20}, effects.sensor_gain.error: [0 %, 5 %, -5 %]}}]";
+    let plan = plan_of("single-stage.yaml", &gain, rest);
+    let mut splits: BTreeMap<u64, BTreeSet<&str>> = BTreeMap::new();
+    for case in cases(&plan) {
+        splits
+            .entry(case.group)
+            .or_default()
+            .insert(case.split.name());
+    }
+    assert_eq!(splits.len(), 20);
+    assert!(splits.values().all(|names| names.len() == 1));
+    // Three of 20 groups in validation and in test, each with one case of none and two of the gain.
+    let counts: Vec<u64> = plan.census().cases("sensor_gain").into_values().collect();
+    assert_eq!(counts, [6, 28, 6]);
+}
+
+#[test]
+fn columns_have_roles() {
+    let rest = "cases: [{grid: {joints: [[], [big_end]], clearance: 0.1 mm, crosshead.mass: [18 kg, 19 kg]}}]
+vary: {joints.big_end.contact.damping: {lognormal: {factor: 1.5}}}
+";
+    let plan = plan_of("single-stage.yaml", &[], rest);
+    let tables = Tables::new(&plan).unwrap();
+    let role = |schema: &recordings::Schema, name: &str| {
+        let column = &schema.columns()[schema.position(name).unwrap()];
+        column.role.map(Role::name)
+    };
+    let signals = |name| role(&tables.signals, name);
+    assert_eq!(signals("case_id"), None);
+    assert_eq!(signals("split"), None);
+    for label in ["fault", "faulty_joints", "clearance_big_end_m"] {
+        assert_eq!(signals(label), Some("label"), "{label}");
+    }
+    for condition in ["speed_rpm", "discharge_pressure_pa", "crosshead.mass_kg"] {
+        assert_eq!(signals(condition), Some("condition"), "{condition}");
+    }
+    assert_eq!(
+        signals("joints.big_end.contact.damping_n_s_m"),
+        Some("unknown")
+    );
+    assert_eq!(signals("crosshead_acceleration_m_s2"), Some("signal"));
+    let rms = "crosshead_acceleration.rms_m_s2";
+    assert_eq!(role(&tables.features, rms), Some("feature"));
+    assert_eq!(role(&tables.features, "fault"), Some("label"));
+}
