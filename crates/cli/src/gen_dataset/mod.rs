@@ -296,13 +296,13 @@ pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f
     let told = plan.census().mistakes();
     warnings.retain(|warning| !told.contains(warning));
     warn(&warnings);
-    if let Some(text) = warnings(&manifest.warnings) {
+    if let Some(text) = doubtful(&manifest.warnings) {
         println!("{text}");
     }
 }
 
 /// What is doubtful about cases, if anything is: the first few.
-fn warnings(all: &[CaseWarning]) -> Option<String> {
+fn doubtful(all: &[CaseWarning]) -> Option<String> {
     if all.is_empty() {
         return None;
     }
