@@ -46,7 +46,6 @@ use crate::split;
 use crate::sweep_file::{Format, MOST_CASES_A_SHARD, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
-use sampler::Sampler;
 use settings::{check_windows, judgement, settings, shares};
 use survey::Survey;
 use together::Together;

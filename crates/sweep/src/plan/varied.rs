@@ -30,8 +30,8 @@ impl Varied {
         };
         let given = paths::get(machine, first).map_err(at_path)?;
         Ok(Self {
-            pub(super) written: path.to_owned(),
-            pub(super) sampler: Sampler::new(draw, given).map_err(|e| e.under(path))?,
+            written: path.to_owned(),
+            sampler: Sampler::new(draw, given).map_err(|e| e.under(path))?,
             places,
         })
     }
