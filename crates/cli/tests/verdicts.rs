@@ -44,7 +44,6 @@ fn a_stalled_machine_is_a_failed_case_with_its_reason_and_command() {
     let output = gen_dataset(folder.path(), &sweep(&machine, run, case));
     let text = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("has stopped and turns back"), "{text}");
     let manifest = Manifest::read(&folder.path().join("out/manifest.json")).unwrap();
     let [failed] = &manifest.failed[..] else {
         panic!("{manifest:?}")

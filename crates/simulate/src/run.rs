@@ -11,9 +11,6 @@ use std::f64::consts::{PI, TAU};
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
 const LONGEST_STEP: f64 = 0.05;
-/// Share of a revolution over which a ledger is checked that is not kept all along: a tenth, which has the
-/// machine's inertia, its gas and its contacts in it, and takes some hundredth of the time of a record.
-const AUDITED: f64 = 0.1;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
 /// A machine on its way.
@@ -420,32 +417,6 @@ impl Run<f64> {
                 .map_or(reference, |i| reference + self.state()[i + 1]);
         }
         Ok(())
-    }
-
-    /// Goes on for a little with the works integrated along, and checks that the ledger of that stretch
-    /// closes. Where the run cannot be taken further nothing is said: the record is there.
-    ///
-    /// # Errors
-    /// As [`residual`](Self::residual).
-    pub(crate) fn close_ledger(&self, tolerance: f64) -> Result<(), Error> {
-        let standing = self.standing();
-        let mut ledger = Self::start(self.dynamics.machine().clone(), tolerance, true);
-        let mut state = standing.state;
-        state.resize(ledger.state.len(), 0.0);
-        *ledger.dynamics.mode_mut() = standing.mode;
-        let longest = LONGEST_STEP * ledger.revolution;
-        ledger.integrator = Integrator::new(
-            &mut ledger.dynamics,
-            standing.time,
-            &state,
-            tolerance,
-            longest,
-        );
-        let before = ledger.ledger();
-        match ledger.advance(standing.time + AUDITED * self.revolution) {
-            Ok(()) => ledger.residual(&before).map(drop),
-            Err(_) => Ok(()),
-        }
     }
 
     /// Where energy and works stand.

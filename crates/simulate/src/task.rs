@@ -177,10 +177,7 @@ impl<'a> Task<'a> {
                         run.check_gas(&before)?;
                         Some(run.residual(&before)?)
                     }
-                    // Works cost time: those of a record without a trace are looked at afterwards.
-                    None => run
-                        .close_ledger(self.asked.settings.tolerance)
-                        .map(|()| None)?,
+                    None => None,
                 };
                 let Seen {
                     series,
