@@ -10,6 +10,7 @@
 //! | how much at which multiple of the speed? | [`crank_angle`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
 //! | how do the revolutions differ? | [`synchronous_average`], [`crank_waterfall`](mod@crank_waterfall), [`phase_portrait`] |
 //! | what does a measuring chain do? | [`biquad`], [`decimate`], [`noise`] |
+//! | what has it done? | [`nonsynchronous`], [`quantisation`] |
 
 pub mod amplitude_spectrum;
 pub mod angle_resampling;
@@ -26,9 +27,11 @@ mod interpolation;
 mod kaiser;
 pub mod kurtogram;
 pub mod noise;
+pub mod nonsynchronous;
 pub mod order_lines;
 pub mod order_spectrum;
 pub mod phase_portrait;
+pub mod quantisation;
 pub mod spectral_kurtosis;
 pub mod spectral_shape;
 pub mod synchronous_average;
