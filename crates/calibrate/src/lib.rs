@@ -31,10 +31,13 @@ pub mod parameter;
 pub mod prediction;
 pub mod pressure_gap;
 pub mod problem;
+pub mod recorded_sensor;
 pub mod relation;
+pub mod relation_spread;
 pub mod replay;
 pub mod run_condition;
 mod search;
+pub mod sensor_section;
 pub mod throw_alone;
 pub mod transfer;
 

@@ -176,12 +176,12 @@ pub fn columns(machine: &Resolved) -> Vec<String> {
         .collect()
 }
 
-fn names(machine: &Resolved) -> Vec<&str> {
+pub(crate) fn names(machine: &Resolved) -> Vec<&str> {
     let throws = machine.machine.throws.iter();
     throws.map(|t| t.name.as_str()).collect()
 }
 
-fn measurable(machine: &Resolved) -> Vec<Measured> {
+pub(crate) fn measurable(machine: &Resolved) -> Vec<Measured> {
     let throws = 0..machine.machine.throws.len();
     let of_throw = |throw| {
         [

@@ -1,8 +1,11 @@
 //! `crosshead replay`: the runs of a bundle, simulated in place of their recordings.
 
+mod relations;
+
 use crate::{Failure, bundle};
 use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
+use ::calibrate::relation_spread::RelationSpread;
 use ::calibrate::{Observation, Problem, Replay, Run, alignment};
 use calibrate::CrankMotion;
 use clap::Args;
@@ -72,13 +75,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let replays = simulated(&problem, &listed)?;
     write(&arguments.out, &files, &listed, &replays)?;
-    let text = serde_json::to_string_pretty(&told(&listed, &replays)).map_err(Failure::work)?;
+    let possible = relations::Possible::read(arguments.machine.as_deref())?;
+    let spreads = relations::spreads(&problem, &listed, &replays, &possible)?;
+    let told = told(&listed, &replays, &spreads);
+    let text = serde_json::to_string_pretty(&told).map_err(Failure::work)?;
     write_whole(&results, |mut file| {
         file.write_all(text.as_bytes())
             .map_err(recordings::Error::Write)?;
         Ok(file)
     })?;
     summary(&listed, &replays);
+    relations::summary(&listed, &spreads);
     println!("{}", results.display());
     Ok(())
 }
@@ -270,8 +277,8 @@ fn table(
     Table::from_columns(Schema::new(columns)?, data)
 }
 
-fn told(runs: &[Listed], replays: &[Replay]) -> Value {
-    let of_run = |(listed, replay): (&Listed, &Replay)| {
+fn told(runs: &[Listed], replays: &[Replay], spreads: &[Option<RelationSpread>]) -> Value {
+    let of_run = |((listed, replay), spread): ((&Listed, &Replay), &Option<RelationSpread>)| {
         let channels: Map<String, Value> = replay
             .channels
             .iter()
@@ -293,16 +300,19 @@ fn told(runs: &[Listed], replays: &[Replay]) -> Value {
             "crank_angle_difference_rad": replay.angle_difference,
             "misfit": replay.misfit,
             "channels": channels,
+            "relation_spread": spread,
         });
         (listed.run.id.clone(), content)
     };
-    let runs: Map<String, Value> = runs.iter().zip(replays).map(of_run).collect();
+    let all = runs.iter().zip(replays).zip(spreads);
+    let runs: Map<String, Value> = all.map(of_run).collect();
     json!({
         "meaning": {
             "recording_rms": "RMS of the recording about its mean, SI",
             "difference": "RMS of the difference of the crank-angle synchronous means, over recording_rms",
             "noise_floor": "RMS of the noise in the recording's synchronous mean, over recording_rms",
             "misfit": "the same difference, order by order, over the standard deviation of its noise: 1 is noise alone",
+            "relation_spread": "at clearances that the machine is not known at: what each relation that the recordings do not exclude shows, and the least and the greatest of them; null elsewhere",
             "periodic": "false where the simulated motion does not repeat itself; then compare means, not waveforms",
         },
         "runs": runs,

@@ -48,9 +48,9 @@ pub struct Arguments {
     /// Revolutions to leave out before
     #[arg(long, default_value_t = 10)]
     transient: u32,
-    /// Sample rate of the recording
-    #[arg(long, default_value = "10 kHz")]
-    sample_rate: String,
+    /// Sample rate of the recording [default: the machine file's, or 10 kHz]
+    #[arg(long)]
+    sample_rate: Option<String>,
     /// Relative local error of the integration
     #[arg(long, default_value = "1e-9")]
     tolerance: f64,
@@ -135,7 +135,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Failure> {
     let Some(id) = &arguments.case else {
         let noise = stream(arguments.seed, 0, Purpose::Noise);
-        return Ok((read_machine(arguments)?, settings(arguments)?, noise));
+        let machine = read_machine(arguments)?;
+        let settings = settings(arguments, machine.sample_rate)?;
+        return Ok((machine, settings, noise));
     };
     let plan = crate::gen_dataset::read_plan(&arguments.machine)?;
     let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
@@ -179,12 +181,16 @@ fn scalar_of(text: &str) -> Value {
         .unwrap_or_else(|| Value::String(text.to_owned()))
 }
 
-fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
-    let rate =
-        Quantity::<Frequency, AboveZero>::parse(&arguments.sample_rate).map_err(|found| {
+/// The settings of a run; `of_machine` is the machine file's sample rate, Hz.
+fn settings(arguments: &Arguments, of_machine: Option<f64>) -> Result<Settings, Failure> {
+    let asked = arguments.sample_rate.as_ref().map(|text| {
+        Quantity::<Frequency, AboveZero>::parse(text).map_err(|found| {
             let expected = Quantity::<Frequency, AboveZero>::expected();
             Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
-        })?;
+        })
+    });
+    let asked = asked.transpose()?.map(|rate| rate.si());
+    let default = Settings::default();
     let tolerance = arguments.tolerance;
     if !(1e-14..=1e-2).contains(&tolerance) {
         return Err(Failure::input(format!(
@@ -194,9 +200,9 @@ fn settings(arguments: &Arguments) -> Result<Settings, Failure> {
     Ok(Settings {
         transient: Transient::Revolutions(arguments.transient),
         revolutions: arguments.revolutions,
-        sample_rate: rate.si(),
+        sample_rate: asked.or(of_machine).unwrap_or(default.sample_rate),
         tolerance,
-        ..Settings::default()
+        ..default
     })
 }
 

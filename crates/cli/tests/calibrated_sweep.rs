@@ -134,6 +134,20 @@ fn a_sweep_calibrates_first_and_its_bytes_follow_from_the_recordings() {
     let resolved = std::fs::read_to_string(case.path("datasets/worn/sweep.yaml")).unwrap();
     assert!(!resolved.contains("bundle"), "{resolved}");
     assert!(resolved.contains("vary_together"), "{resolved}");
+    // One clearance state excludes no relation to the clearance.
+    assert!(resolved.contains("joints.*.contact.relation"), "{resolved}");
+    // The sensors are those that recorded: 1 % of the signal, 1 kPa, 10 kHz.
+    let path = case.path("datasets/worn/calibration");
+    let results = std::fs::read_to_string(path.join("calibration.json")).unwrap();
+    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let acceleration = &results["noise"]["crosshead_acceleration_m_s2"];
+    let level = acceleration["of_signal"].as_f64().unwrap();
+    assert!((level / 0.01 - 1.0).abs() < 0.1, "{acceleration}");
+    assert_eq!(acceleration["bits"], 16);
+    let range = acceleration["range"].as_f64().unwrap();
+    assert!((range - 2000.0).abs() < 1.0, "{acceleration}");
+    let machine = input::machine_file::read(&path.join("machine.yaml")).unwrap();
+    assert_eq!(machine.resolve().unwrap().sample_rate, Some(10_000.0));
 
     case.generate(&["sweep.yaml", "--threads", "2", "--out", "two"]);
     assert!(one == case.bytes("two"), "two threads give other bytes");

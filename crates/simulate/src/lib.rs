@@ -42,7 +42,7 @@ pub use record::{Error, Record, simulate, simulate_later};
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
-    Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Resonance, Sensor,
+    Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Range, Resonance, Sensor,
 };
 pub use settings::{Settings, Transient};
 pub use task::Asked;

@@ -1,7 +1,7 @@
 //! The recorder's end of the measuring chain: noise, range, resolution.
 
 use crate::record::Record;
-use crate::sensor::{Chain, Measured, Noise, NoiseLevel, Sensor};
+use crate::sensor::{Chain, Measured, Noise, NoiseLevel, Range, Sensor};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use signal::channel::Channel;
@@ -24,7 +24,7 @@ pub fn measure(
             if let Some(noise) = sensor.chain.noise {
                 add_noise(&mut series, noise, random);
             }
-            let digitise = Digitiser::new(sensor);
+            let digitise = Digitiser::new(sensor, &series);
             Channel {
                 name: sensor.measured.column(throws),
                 unit: sensor.measured.unit().to_owned(),
@@ -69,8 +69,14 @@ struct Digitiser {
 }
 
 impl Digitiser {
-    fn new(sensor: &Sensor) -> Self {
+    /// The digitiser of a sensor for this series.
+    fn new(sensor: &Sensor, series: &[f64]) -> Self {
         let Chain { range, bits, .. } = sensor.chain;
+        let largest = || series.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let range = range.map(|range| match range {
+            Range::Fixed(range) => range,
+            Range::Auto => largest(),
+        });
         let angle = sensor.measured == Measured::CrankAngle;
         let codes = bits.map(|bits| f64::from(bits).exp2());
         // An encoder divides the revolution, a converter the span of ± its range.
@@ -112,7 +118,7 @@ impl Digitiser {
 mod tests {
     use super::*;
 
-    fn sensor(measured: Measured, range: Option<f64>, bits: Option<u32>) -> Sensor {
+    fn sensor(measured: Measured, range: Option<Range>, bits: Option<u32>) -> Sensor {
         Sensor {
             measured,
             chain: Chain {
@@ -127,7 +133,10 @@ mod tests {
 
     #[test]
     fn range_and_bits_limit_and_round() {
-        let digitiser = Digitiser::new(&sensor(ACCELERATION, Some(100.0), Some(8)));
+        let digitiser = Digitiser::new(
+            &sensor(ACCELERATION, Some(Range::Fixed(100.0)), Some(8)),
+            &[],
+        );
         assert_eq!(digitiser.read(1e3), 100.0 - 200.0 / 256.0);
         assert_eq!(digitiser.read(-1e3), -100.0);
         assert_eq!(digitiser.read(0.3), 0.0);
@@ -136,7 +145,7 @@ mod tests {
 
     #[test]
     fn an_encoder_never_reads_a_whole_revolution() {
-        let digitiser = Digitiser::new(&sensor(Measured::CrankAngle, None, Some(16)));
+        let digitiser = Digitiser::new(&sensor(Measured::CrankAngle, None, Some(16)), &[]);
         assert_eq!(digitiser.read(TAU * 0.999_999_9), 0.0);
         let plain = Digitiser::new(&sensor(Measured::CrankAngle, None, None));
         assert_eq!(plain.read(TAU - 1e-12), 0.0);

@@ -91,8 +91,8 @@ pub struct Chain {
     pub angle_offset: f64,
     /// Noise added.
     pub noise: Option<Noise>,
-    /// Largest magnitude that is recorded, in the channel's unit; beyond it the record is flat.
-    pub range: Option<f64>,
+    /// What magnitudes are recorded.
+    pub range: Option<Range>,
     /// Resolution of the converter over ± the range, bits.
     pub bits: Option<u32>,
 }
@@ -110,6 +110,15 @@ impl Default for Chain {
             bits: None,
         }
     }
+}
+
+/// Largest magnitude that a recorder holds, in the channel's unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Range {
+    /// The same in every record; beyond it the record is flat.
+    Fixed(f64),
+    /// Set to each record: its own largest magnitude.
+    Auto,
 }
 
 /// A damped second-order resonance with gain 1 at rest.

@@ -34,6 +34,60 @@ pub struct Calibration {
     pub estimates: Vec<Estimate>,
     /// Correlation of each pair of estimates (of their logarithms where they have a ratio).
     pub correlations: Vec<Vec<f64>>,
+    /// How contact parameters follow the clearance: what the recordings do not exclude.
+    pub relations: Relations,
+    /// Whether the model fits the recordings to within their noise, so that there are intervals.
+    pub is_adequate: bool,
+}
+
+/// The relations to the clearance that recordings do not exclude.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Relations {
+    /// Each as the machine file has it, and how likely it is, up to a common factor.
+    pub weights: Vec<(Value, f64)>,
+    /// The joints that have one: path, and the clearance for which their contact was fitted, m.
+    pub joints: Vec<(String, f64)>,
+}
+
+impl Relations {
+    /// Gives the joints of `machine` the first relation where they have none, and their clearance,
+    /// and returns what is drawn as an entry of `vary`. None where there is nothing to draw, or the
+    /// sweep varies it itself.
+    fn drawn(
+        &self,
+        machine: &mut Value,
+        varied: impl Fn(&str) -> bool,
+    ) -> Result<Option<(String, Value)>, Error> {
+        let pattern = match machine["throws"].is_array() {
+            true => "throws.*.joints.*.contact.relation",
+            false => "joints.*.contact.relation",
+        };
+        let path = |joint: &str, key: &str| format!("{joint}.contact.{key}");
+        let own = |(joint, _): &(String, f64)| varied(&path(joint, "relation"));
+        let [(first, _), _, ..] = &self.weights[..] else {
+            return Ok(None);
+        };
+        if self.joints.is_empty() || self.joints.iter().any(own) || varied(pattern) {
+            return Ok(None);
+        }
+        for (joint, clearance) in &self.joints {
+            let stated = path(joint, "at_clearance");
+            if paths::get(machine, &stated)?.is_none() {
+                paths::set(machine, &stated, format!("{clearance} m").into())?;
+            }
+            let relation = path(joint, "relation");
+            if paths::get(machine, &relation)?.is_none() {
+                paths::set(machine, &relation, first.clone())?;
+            }
+        }
+        let (values, weights): (Vec<&Value>, Vec<f64>) = self
+            .weights
+            .iter()
+            .map(|(value, weight)| (value, *weight))
+            .unzip();
+        let choice = json!({"choice": {"values": values, "weights": weights}});
+        Ok(Some((pattern.to_owned(), choice)))
+    }
 }
 
 /// A fitted value.
@@ -148,14 +202,17 @@ impl Sweep {
         let uncertainty = self.calibrate().map(|c| (c.uncertainty, c.undetermined));
         let (uncertainty, undetermined) = uncertainty.unwrap_or_default();
         let varied = |path: &str| self.file.vary.0.iter().any(|(own, _)| own == path);
-        let together = (uncertainty == Uncertainty::Sampled)
-            .then(|| calibration.together(varied))
-            .flatten();
-        let alone = match undetermined {
-            Undetermined::Nominal => Map::new(),
-            Undetermined::Prior => calibration.prior(varied),
-        };
-        self.plan(calibration.machine.clone(), alone, together)
+        let mut machine = calibration.machine.clone();
+        let sampled = uncertainty == Uncertainty::Sampled;
+        let together = sampled.then(|| calibration.together(varied)).flatten();
+        let mut alone = calibration.prior(|path| {
+            let is_open = undetermined == Undetermined::Prior || sampled && is_relation(path);
+            varied(path) || !is_open
+        });
+        if sampled {
+            alone.extend(calibration.relations.drawn(&mut machine, varied)?);
+        }
+        self.plan(machine, alone, together)
     }
 
     /// The plan of this file with `machine` in the place of its calibration, and more variation.
@@ -185,6 +242,11 @@ impl Sweep {
         }
         Plan::new(&document, &self.folder)
     }
+}
+
+/// Whether a value belongs to a relation between clearances, whose nominal exponents are no knowledge.
+fn is_relation(path: &str) -> bool {
+    path.contains(".relation.")
 }
 
 /// The machine section of a bundle as a machine file's tree, at the conditions of the first run.

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
-use sweep::calibration::{Calibration, Estimate, Sweep};
+use sweep::calibration::{Calibration, Estimate, Relations, Sweep};
 use sweep::dataset::{CALIBRATION, Claim, generate_in};
 use sweep::{Case, Error, Existing, Options, Plan};
 
@@ -69,6 +69,8 @@ fn found(sweep: &Sweep) -> Calibration {
             vec![0.0, 1.0, 0.0],
             vec![-0.9, 0.0, 1.0],
         ],
+        relations: Relations::default(),
+        is_adequate: true,
     }
 }
 
@@ -251,4 +253,83 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
     let plain = Sweep::read(&folder.path().join("plain.yaml")).unwrap();
     generate(claim, Existing::Overwrite, &plain.nominal().unwrap()).unwrap();
     assert!(!calibration.exists());
+}
+
+/// Recordings of one clearance state exclude no relation: every case draws one, the same for all
+/// joints, with its weight.
+#[test]
+fn relations_that_the_recordings_do_not_exclude_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let many = SWEEP
+        .replace("joints: [[], [big_end]]", "joints: [[big_end]]")
+        .replace(
+            "speed: [400 rpm, 500 rpm]",
+            "speed: {from: 400 rpm, to: 500 rpm, count: 400}",
+        );
+    let sweep = Sweep::read(&write(folder.path(), &many)).unwrap();
+    let mut calibration = found(&sweep);
+    calibration.relations = Relations {
+        weights: vec![
+            (json!("eq5"), 1.0),
+            (json!("conformal"), 2.0),
+            (json!("constant"), 1.0),
+        ],
+        joints: ["joints.big_end", "joints.small_end"]
+            .map(|joint| (joint.to_owned(), 5e-5))
+            .to_vec(),
+    };
+    let plan = sweep.calibrated(&calibration).unwrap();
+    let relation = |case: &Case, joint: &str| {
+        let path = format!("joints.{joint}.contact.relation");
+        let value = input::paths::get(&case.tree, &path).unwrap();
+        value.and_then(Value::as_str).unwrap().to_owned()
+    };
+    let mut conformal = 0;
+    let mut stiffness = std::collections::BTreeSet::new();
+    for i in 0..plan.cases() {
+        let case = plan.case(i).unwrap();
+        let drawn = relation(&case, "big_end");
+        assert_eq!(drawn, relation(&case, "small_end"));
+        conformal += u32::from(drawn == "conformal");
+        stiffness.insert(drawn);
+    }
+    assert_eq!(stiffness.len(), 3);
+    // 400 draws at 1/2: a standard deviation of 10.
+    assert!((160..240).contains(&conformal), "{conformal}");
+    // The resolved sweep draws the same.
+    let path = folder.path().join("resolved.yaml");
+    fs::write(&path, input::yaml::to_string(plan.sweep()).unwrap()).unwrap();
+    let again = Plan::read(&path).unwrap();
+    assert_eq!(again.case(7).unwrap().tree, plan.case(7).unwrap().tree);
+
+    // A single relation that is left is not drawn, nor one that the sweep varies itself.
+    calibration.relations.weights.truncate(1);
+    let resolved = sweep.calibrated(&calibration).unwrap();
+    assert!(!resolved.sweep()["vary"].to_string().contains("relation"));
+}
+
+/// Exponents that one clearance state cannot tell are drawn between their bounds, even where other
+/// undetermined values keep their nominal ones.
+#[test]
+fn undetermined_exponents_of_a_relation_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SWEEP.replace(", undetermined: prior", "");
+    let sweep = Sweep::read(&write(folder.path(), &text)).unwrap();
+    let mut calibration = found(&sweep);
+    let path = "joints.big_end.contact.relation";
+    let exponents = json!({"stiffness": 0.0, "damping": -0.2});
+    input::paths::set(&mut calibration.machine, path, exponents).unwrap();
+    let at = "joints.big_end.contact.at_clearance";
+    input::paths::set(&mut calibration.machine, at, json!("50 um")).unwrap();
+    calibration.estimates[1] = Estimate {
+        path: format!("{path}.damping"),
+        value: json!(-0.2),
+        bounds: [json!(-1.0), json!(0.5)],
+        logarithmic: false,
+        deviation: None,
+    };
+    let plan = sweep.calibrated(&calibration).unwrap();
+    let uniform = &plan.sweep()["vary"][format!("{path}.damping")]["uniform"];
+    assert_eq!(*uniform, json!([-1.0, 0.5]));
+    assert!(plan.sweep()["vary"].get(DAMPING).is_none());
 }

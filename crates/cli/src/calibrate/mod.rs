@@ -8,7 +8,8 @@ pub mod output;
 pub(crate) mod pictures;
 mod problem;
 mod progress;
-mod relation;
+pub(crate) mod relation;
+mod sensors;
 
 use crate::{Failure, report};
 use ::calibrate::optimiser::Progress;

@@ -1,5 +1,6 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
+use super::sensors::{self, Sensors};
 use super::{Task, gas, relation};
 use crate::Failure;
 use ::calibrate::fit::{Estimate, Fit, FitSettings};
@@ -37,10 +38,12 @@ pub struct Found<'a> {
 /// A file that cannot be written.
 pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    let machine = calibrated(&task.problem, found.fit)?;
+    let sensors = Sensors::of(task, found.fit)?;
+    let machine = calibrated(&task.problem, found.fit, &sensors)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
     let mut results = calibration(found, &task.settings);
     results["relation"] = relation::stated(&task.problem)?;
+    results["noise"] = sensors.results();
     // Where the gas was not fitted it tells nothing new.
     let mut fitted = found.fit.estimates.iter().map(|e| &e.parameter.path);
     if fitted.any(|path| path.contains("cylinder.")) {
@@ -54,12 +57,13 @@ pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure
 }
 
 /// The machine file with what was found, as YAML.
-fn calibrated(problem: &Problem, fit: &Fit) -> Result<String, Failure> {
+fn calibrated(problem: &Problem, fit: &Fit, sensors: &Sensors) -> Result<String, Failure> {
     let mut tree = problem.tree.clone();
     for estimate in fit.estimates.iter().filter(|e| e.interval.is_some()) {
         let written = estimate.parameter.write(&mut tree, estimate.value);
         written.map_err(Failure::work)?;
     }
+    sensors.write(&mut tree)?;
     MachineFile::from_tree(&tree)
         .and_then(|file| file.to_yaml())
         .map_err(Failure::work)
@@ -168,6 +172,7 @@ pub fn summary(results: &Value) {
         );
     }
     gas::summary(&results["gas"]);
+    sensors::summary(&results["noise"]);
     relations(&results["relations"]);
 }
 

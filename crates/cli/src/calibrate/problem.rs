@@ -33,6 +33,9 @@ const ALIGNED: f64 = 1e-5;
 /// tells it better than a recording's other errors.
 const SPEED: f64 = 2e-5;
 
+/// What `calibration.json` holds beyond the fit: one without it is made anew.
+const CONTENT: &str = "sensors";
+
 /// What a calibration works on.
 pub struct Task {
     /// What is fitted to what.
@@ -43,8 +46,19 @@ pub struct Task {
     pub settings: FitSettings,
     /// For each run whether the zero of its crank angle was recorded.
     pub zeroed: Vec<bool>,
+    /// For each run what its recorder told.
+    pub recorders: Vec<Recorder>,
     /// The columns that the machine has.
     columns: Vec<String>,
+}
+
+/// What the recorder of a run told besides the channels.
+#[derive(Clone, Copy, Debug)]
+pub struct Recorder {
+    /// Whether an encoder gave the crank angle.
+    pub has_encoder: bool,
+    /// Whether times or a sample rate are known.
+    pub is_timed: bool,
 }
 
 /// The task that the settings state.
@@ -61,8 +75,10 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     };
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
+    let mut recorders = Vec::new();
     for listed in &bundles {
         let (own, own_zeroed) = listed.runs(settings, &tree)?;
+        recorders.extend(listed.recorders(&own, &tree)?);
         runs.extend(own);
         zeroed.extend(own_zeroed);
     }
@@ -101,6 +117,7 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
         },
         runs,
         zeroed,
+        recorders,
         columns: columns(&resolved),
     };
     task.observe()?;
@@ -152,6 +169,7 @@ impl Task {
             hash.update(text);
         };
         add(env!("CARGO_PKG_VERSION"));
+        add(CONTENT);
         add(&self.problem.tree.to_string());
         let settings = &self.settings;
         add(&format!("{:?} {:?}", settings.optimiser, settings.seed));
@@ -282,6 +300,26 @@ impl Listed {
             run.id = format!("{}{}", self.prefix, run.id);
         }
         Ok((runs, zeroed))
+    }
+}
+
+impl Listed {
+    /// What the recorders of `runs` told.
+    fn recorders(&self, runs: &[Run], tree: &Value) -> Result<Vec<Recorder>, Failure> {
+        let throws = bundle::throws(tree);
+        let mut recorders = Vec::new();
+        for (i, run) in self.bundle.runs.iter().enumerate() {
+            let id = format!("{}{}", self.prefix, run.id);
+            if runs.iter().any(|kept| kept.id == id) {
+                let meanings = bundle::meanings(&self.bundle, i, &throws)?;
+                let any = |wanted: fn(&Meaning) -> bool| meanings.iter().any(wanted);
+                recorders.push(Recorder {
+                    has_encoder: any(|m| matches!(m, Meaning::CrankAngle(_))),
+                    is_timed: run.sample_rate_hz.is_some() || any(|m| matches!(m, Meaning::Time)),
+                });
+            }
+        }
+        Ok(recorders)
     }
 }
 

@@ -55,8 +55,66 @@ fn named(asked: calibration::Relation) -> Relation {
     }
 }
 
+/// The relations that a comparison does not exclude, as a machine file has them, and their weights.
+pub(crate) fn not_excluded(relations: &Value) -> Vec<(Value, f64)> {
+    let left = relations["decision"]["relations"].as_array();
+    let Some(left) = left.filter(|left| !left.is_empty()) else {
+        let named = Relation::ALL.iter().filter(|r| **r != Relation::Fitted);
+        return named
+            .map(|relation| (relation.name().into(), 1.0))
+            .collect();
+    };
+    let compared = relations["compared"].as_array().into_iter().flatten();
+    compared
+        .filter(|compared| left.contains(&compared["relation"]))
+        .map(|compared| {
+            let above = compared["criterion"].as_f64().unwrap_or(0.0);
+            let exponents = compared["exponents"].as_object();
+            let exponents: Map<String, Value> = exponents
+                .into_iter()
+                .flatten()
+                .filter_map(|(path, found)| {
+                    let key = path.rsplit('.').next()?;
+                    Some((key.to_owned(), found["value"].clone()))
+                })
+                .collect();
+            let relation = match exponents.is_empty() {
+                true => compared["relation"].clone(),
+                false => exponents.into(),
+            };
+            (relation, scalar::elementary::exp(-0.5 * above))
+        })
+        .collect()
+}
+
+/// The same without weights, for bounds: fitted exponents stand there with each of them at either end
+/// of its interval, too.
+pub(crate) fn bounds_of_not_excluded(relations: &Value) -> Vec<Value> {
+    let mut all = Vec::new();
+    for (relation, _) in not_excluded(relations) {
+        let compared = relations["compared"].as_array().into_iter().flatten();
+        let intervals = compared.filter_map(|compared| compared["exponents"].as_object());
+        let intervals = intervals.flatten().filter(|_| relation.is_object());
+        let moved: Vec<Value> = intervals
+            .flat_map(|(path, found)| {
+                let key = path.rsplit('.').next().unwrap_or(path);
+                let moved = |end: &str| {
+                    let mut relation = relation.clone();
+                    relation[key] = found[end].clone();
+                    relation
+                };
+                ["low", "high"].map(moved)
+            })
+            .collect();
+        all.push(relation);
+        all.extend(moved);
+    }
+    all
+}
+
 /// What `calibration.json` says of it: for each clear joint the relation and the clearance from
-/// which it leads, as the fit began with them; null where there is none.
+/// which it leads, as the fit began with them; null where there is none. `clearance_m` is its
+/// smallest clearance in the runs.
 ///
 /// # Errors
 /// A clearance that is no length.
@@ -67,6 +125,7 @@ pub fn stated(problem: &Problem) -> Result<Value, Failure> {
         let content = json!({
             "relation": joint.relation(&problem.tree).map_err(Failure::work)?,
             "at_clearance_m": joint.at_clearance(&problem.tree).map_err(Failure::work)?,
+            "clearance_m": joint.clearance,
         });
         by_joint.insert(joint.path, content);
     }

@@ -1,7 +1,7 @@
 //! The calibration that a sweep asks for before its first case.
 
 use crate::Failure;
-use crate::calibrate::{self, Calibrated, Prepared, Settings, output};
+use crate::calibrate::{self, Calibrated, Prepared, Settings, output, relation};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use input::bundle::Bundle;
 use input::{Error, paths};
@@ -9,9 +9,9 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use sweep::calibration::{Calibration, Estimate, Sweep};
+use sweep::calibration::{Calibration, Estimate, Relations, Sweep};
 use sweep::dataset::{CALIBRATION, Claim};
-use sweep::sweep_file::Amount;
+use sweep::sweep_file::{Amount, Uncertainty};
 use sweep::{Existing, Plan};
 
 /// Standard deviations on either side that bound 95 % of a normal distribution.
@@ -82,6 +82,14 @@ fn tell(done: &Calibrated, folder: &Path) {
 
 fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {
     let mut calibration = read(folder)?;
+    let asked = sweep.calibrate();
+    if asked.is_some_and(|asked| asked.uncertainty == Uncertainty::Sampled) {
+        sampled(folder, &calibration)?;
+    }
+    // A relation that the sweep states is what its author knows.
+    if asked.is_some_and(|asked| asked.settings.relation.is_some()) {
+        calibration.relations = Relations::default();
+    }
     if let Some(own) = sweep.machine()? {
         let fitted = |path: &str| calibration.estimates.iter().any(|e| e.path == path);
         let mut machine = calibration.machine.clone();
@@ -92,6 +100,42 @@ fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {
         calibration.machine = machine;
     }
     Ok(sweep.calibrated(&calibration)?)
+}
+
+/// Checks that there are intervals to draw from.
+///
+/// # Errors
+/// A calibration whose model is not adequate: its intervals would be too narrow, and none is stated.
+fn sampled(folder: &Path, calibration: &Calibration) -> Result<(), Failure> {
+    if calibration.is_adequate {
+        return Ok(());
+    }
+    Err(Failure::work(format!(
+        "calibrate.uncertainty: sampled draws from the intervals of the calibration, and {} states \
+         none: its model is not adequate (model_is_adequate is false). Correct what the machine file \
+         has wrong, or use uncertainty: ignored",
+        folder.join(output::RESULTS).display()
+    )))
+}
+
+/// The relations to the clearance that the recordings do not exclude: those that the comparison
+/// leaves, weighted by Schwarz's criterion; where every run has the same clearances, all that have a
+/// name, each as likely. Exponents that were fitted are estimates like others.
+fn relations(results: &Value, machine: &Value) -> Result<Relations, Failure> {
+    let mut joints = Vec::new();
+    for (joint, stated) in results["relation"].as_object().into_iter().flatten() {
+        let own = paths::get(machine, &format!("{joint}.contact.relation"))?;
+        if own.is_some_and(Value::is_object) {
+            return Ok(Relations::default());
+        }
+        let at = stated["at_clearance_m"].as_f64();
+        let clearance = at.or_else(|| stated["clearance_m"].as_f64());
+        joints.extend(clearance.map(|clearance| (joint.clone(), clearance)));
+    }
+    Ok(Relations {
+        weights: relation::not_excluded(&results["relations"]),
+        joints,
+    })
 }
 
 /// What the runs set in the machine file: speed, pressures, clearances. A sweep's own machine keeps
@@ -131,6 +175,8 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
         .into_iter()
         .flatten()
         .filter(|(name, _)| of_machine(name))
+        // Told, but without an interval: neither drawn nor open.
+        .filter(|(_, found)| found["identifiable"] == false || found["low"].is_number())
     {
         for place in paths::matching(&machine, name)? {
             let estimate = estimate(&machine, &place, found);
@@ -146,6 +192,8 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
     let row = |a: &&str| names.iter().map(|b| correlation(a, b)).collect();
     Ok(Calibration {
         correlations: names.iter().map(row).collect(),
+        relations: relations(&results, &machine)?,
+        is_adequate: results["model_is_adequate"] != false,
         machine,
         estimates,
     })

@@ -14,7 +14,9 @@ use scalar::random::{Purpose, stream};
 use serde_json::{Map, Value, json};
 use signal::channel::Channel;
 use signal::crank_angle::CrankAngle;
-use simulate::{ChamberEnd, Measured, Noise, NoiseLevel, Record, Sensor, Settings, Transient};
+use simulate::{
+    ChamberEnd, Measured, Noise, NoiseLevel, Range, Record, Sensor, Settings, Transient,
+};
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -209,8 +211,8 @@ impl Clean {
                 pink_share: PINK,
             });
             sensor.chain.range = match greatest > 0.0 {
-                true => Some(RANGE[1] * greatest),
-                false => Some(RANGE[0]),
+                true => Some(Range::Fixed(RANGE[1] * greatest)),
+                false => Some(Range::Fixed(RANGE[0])),
             };
             sensor.chain.bits = Some(BITS);
             sensor

@@ -13,7 +13,7 @@ mod sensors;
 mod shared;
 
 use crate::error::Error;
-use crate::quantity::{Angle, Length, Positive, Quantity, Speed};
+use crate::quantity::{Angle, Frequency, Length, Positive, Quantity, Speed};
 use crate::yaml::{self, Document};
 use crate::{reader, schema};
 use effects::{EffectSection, Effects};
@@ -62,6 +62,9 @@ pub(crate) struct Sections {
     /// What is measured.
     #[serde(default)]
     sensors: Vec<SensorSection>,
+    /// Sample rate of the recordings where a run says nothing.
+    #[serde(default)]
+    sample_rate: Option<Positive<Frequency>>,
     /// Physics beyond the first model, each effect at most once at its place.
     #[serde(default)]
     effects: Vec<EffectSection>,
@@ -122,6 +125,8 @@ pub struct Resolved {
     pub machine: Machine,
     /// Its sensors.
     pub sensors: Vec<Sensor>,
+    /// Sample rate at which it is recorded, Hz; none where the file states none.
+    pub sample_rate: Option<f64>,
     /// Up to which clearances it is healthy.
     pub normal_clearance: NormalClearance,
     effects: Effects,
@@ -242,6 +247,7 @@ impl Sections {
             speed: self.speed.si(),
             machine,
             sensors,
+            sample_rate: self.sample_rate.map(|rate| rate.si()),
             normal_clearance,
             effects,
         })

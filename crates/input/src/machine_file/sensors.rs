@@ -9,10 +9,11 @@ use crate::quantity::{
 };
 use crate::unit::{self, Dimension};
 use mechanism::Machine;
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use serde::de::{Deserializer, Unexpected, Visitor};
-use simulate::sensor::{self, Chain, Measured, NoiseLevel, Sensor};
+use serde::de::value::StrDeserializer;
+use serde::de::{Deserializer, IntoDeserializer, Unexpected, Visitor};
+use simulate::sensor::{self, Chain, Measured, NoiseLevel, Range, Sensor};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 use std::fmt;
@@ -46,9 +47,10 @@ macro_rules! sensor {
         #[serde(deny_unknown_fields)]
         pub(super) struct $name {
             $( $(#[$field_meta])* $field: $type, )*
-            /// Largest magnitude that is recorded; beyond it the record is flat.
+            /// Largest magnitude that is recorded, beyond which the record is flat; auto for a
+            /// recorder that sets it to the largest magnitude of each record.
             #[serde(default)]
-            range: Option<Positive<$kind>>,
+            range: Option<RangeText<$kind>>,
             /// Resolution of the converter over ± the range.
             #[serde(default)]
             bits: Option<Count<1, 32>>,
@@ -79,7 +81,7 @@ macro_rules! sensor {
                     }),
                     gain: self.gain.map_or(1.0, |gain| gain.get()),
                     noise: self.noise.as_ref().map(Noise::resolve),
-                    range: self.range.map(|range| range.si()),
+                    range: self.range.as_ref().map(|range| range.range),
                     bits: self.bits.map(|bits| bits.get()),
                     ..Chain::default()
                 }
@@ -230,6 +232,59 @@ impl<K: Kind> JsonSchema for Level<K> {
     }
 }
 
+/// The range of a recorder of quantities of kind `K`.
+#[derive(Clone, Debug, PartialEq)]
+struct RangeText<K> {
+    range: Range,
+    kind: PhantomData<K>,
+}
+
+/// The word for a range that is set to each record.
+const AUTO: &str = "auto";
+
+impl<K: Kind> RangeText<K> {
+    fn expected() -> String {
+        format!("{}, or '{AUTO}'", Positive::<K>::expected())
+    }
+}
+
+impl<'de, K: Kind> Deserialize<'de> for RangeText<K> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Text<K>(PhantomData<K>);
+        impl<K: Kind> Visitor<'_> for Text<K> {
+            type Value = RangeText<K>;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(&RangeText::<K>::expected())
+            }
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<RangeText<K>, E> {
+                let range = match text {
+                    AUTO => Range::Auto,
+                    text => {
+                        let text: StrDeserializer<E> = text.into_deserializer();
+                        Range::Fixed(Positive::<K>::deserialize(text)?.si())
+                    }
+                };
+                Ok(RangeText {
+                    range,
+                    kind: PhantomData,
+                })
+            }
+        }
+        deserializer.deserialize_str(Text(PhantomData))
+    }
+}
+
+impl<K: Kind> JsonSchema for RangeText<K> {
+    fn schema_name() -> Cow<'static, str> {
+        format!("Range{}", K::NAME).into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let fixed = text_schema(&Positive::<K>::expected(), false, &[K::EXAMPLE]);
+        json_schema!({"anyOf": [{"const": AUTO}, fixed]})
+    }
+}
+
 /// The sensors on `machine`.
 pub(super) fn resolve(sections: &[SensorSection], machine: &Machine) -> Result<Vec<Sensor>, Error> {
     let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
@@ -286,7 +341,7 @@ impl SensorSection {
             Self::CrankAngle(s) => {
                 let mut chain = s.chain();
                 if chain.bits.is_some() {
-                    chain.range.get_or_insert(TAU);
+                    chain.range.get_or_insert(Range::Fixed(TAU));
                 }
                 (Measured::CrankAngle, chain)
             }

@@ -32,7 +32,7 @@ use simulate::{ExponentSettings, Extent, Settings, Transient};
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Amount, Format, MOST_CASES_A_SHARD, Run, SweepFile, Windows};
+use crate::sweep_file::{Amount, Draw, Format, MOST_CASES_A_SHARD, Run, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use sampler::Sampler;
@@ -80,10 +80,41 @@ pub struct Plan {
     throws: Vec<String>,
     tree: Value,
     blocks: Vec<Block>,
-    vary: Vec<(String, Sampler)>,
+    vary: Vec<Varied>,
     together: Vec<Together>,
     repeats: u64,
     sweep: Value,
+}
+
+/// An unknown that varies by itself.
+#[derive(Clone, Debug)]
+struct Varied {
+    /// Its path as the sweep file has it.
+    written: String,
+    /// The places that get the value that is drawn: several where the path has a `*`.
+    places: Vec<String>,
+    sampler: Sampler,
+}
+
+impl Varied {
+    /// What the sweep file says under `vary`; `machine` is the machine file's tree.
+    fn new(path: &str, draw: &Draw, machine: &Value) -> Result<Self, Error> {
+        let at_path = |e: Error| Error::new(path, e.problem().clone());
+        let places = match path.split('.').any(|part| part == "*") {
+            false => vec![path.to_owned()],
+            true => paths::matching(machine, path).map_err(at_path)?,
+        };
+        let Some(first) = places.first() else {
+            let expected = "a path that stands for a value of the machine file";
+            return Err(Error::found(path, "nothing in the machine file", expected));
+        };
+        let given = paths::get(machine, first).map_err(at_path)?;
+        Ok(Self {
+            written: path.to_owned(),
+            sampler: Sampler::new(draw, given).map_err(|e| e.under(path))?,
+            places,
+        })
+    }
 }
 
 /// Something that a sweep sets or varies.
@@ -187,7 +218,7 @@ impl Plan {
             name: file.name.clone(),
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
-            settings: settings(&file.run)?,
+            settings: settings(&file.run, base.sample_rate)?,
             judgement: judgement(&file.run)?,
             chaos: file.run.chaos.unwrap_or(true),
             windows: file.windows,
@@ -213,11 +244,8 @@ impl Plan {
             plan.blocks.push(block);
         }
         for (path, draw) in &file.vary.0 {
-            let given = paths::get(&plan.tree, path);
-            let given = given.map_err(|e| Error::new(path, e.problem().clone()));
-            let sampler = given.and_then(|g| Sampler::new(draw, g).map_err(|e| e.under(path)));
-            let sampler = sampler.map_err(|e| e.under("vary"))?;
-            plan.vary.push((path.clone(), sampler));
+            let varied = Varied::new(path, draw, &plan.tree);
+            plan.vary.push(varied.map_err(|e| e.under("vary"))?);
         }
         for (position, entry) in file.vary_together.iter().enumerate() {
             let key = format!("vary_together.{position}");
@@ -256,13 +284,16 @@ impl Plan {
         }
     }
 
-    /// What varies: the section of the sweep file, and the path.
+    /// What varies: its key in the sweep file, and each path that it sets.
     fn varied(&self) -> impl Iterator<Item = (String, &str)> {
-        let alone = self.vary.iter();
-        let alone = alone.map(|(path, _)| (String::from("vary"), path.as_str()));
+        let alone = self.vary.iter().flat_map(|varied| {
+            let key = format!("vary.{}", varied.written);
+            let places = varied.places.iter();
+            places.map(move |place| (key.clone(), place.as_str()))
+        });
         let together = self.together.iter().enumerate().flat_map(|(i, together)| {
             let paths = together.paths();
-            paths.map(move |path| (format!("vary_together.{i}.parameters"), path))
+            paths.map(move |path| (format!("vary_together.{i}.parameters.{path}"), path))
         });
         alone.chain(together)
     }
@@ -330,9 +361,11 @@ impl Plan {
         let (block, inside) = self.block_of(point);
         let mut tree = self.tree.clone();
         let mut variation = stream(self.seed, point, Purpose::Variation);
-        for (path, sampler) in &self.vary {
-            let value = sampler.draw(unit(variation.next_u64()));
-            paths::set(&mut tree, path, value)?;
+        for varied in &self.vary {
+            let value = varied.sampler.draw(unit(variation.next_u64()));
+            for place in &varied.places {
+                paths::set(&mut tree, place, value.clone())?;
+            }
         }
         for together in &self.together {
             for (path, value) in together.draw(&mut variation) {
@@ -414,9 +447,7 @@ impl Plan {
 
     /// `error` of a case, at the value of the sweep file that it comes from.
     fn blame(&self, error: Error, keys: Vec<(String, String)>, block: usize, case: u64) -> Error {
-        let varied = self
-            .varied()
-            .map(|(key, path)| (format!("{key}.{path}"), path.to_owned()));
+        let varied = self.varied().map(|(key, path)| (key, path.to_owned()));
         let within = |path: &str, other: &str| {
             let rest = path.strip_prefix(other);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -507,7 +538,8 @@ fn id(sweep: &Value) -> String {
         .collect()
 }
 
-fn settings(run: &Run) -> Result<Settings, Error> {
+/// The settings of a run; `sample_rate` is the machine file's, Hz.
+fn settings(run: &Run, sample_rate: Option<f64>) -> Result<Settings, Error> {
     let default = Settings::default();
     let tolerance = run.tolerance.map_or(default.tolerance, |t| t.get());
     if !(1e-13..=1e-3).contains(&tolerance) {
@@ -530,7 +562,9 @@ fn settings(run: &Run) -> Result<Settings, Error> {
         },
         sample_rate: run
             .sample_rate
-            .map_or(default.sample_rate, |rate| rate.si()),
+            .map(|rate| rate.si())
+            .or(sample_rate)
+            .unwrap_or(default.sample_rate),
         tolerance,
         ..default
     })
@@ -545,7 +579,7 @@ fn judgement(run: &Run) -> Result<Option<Judgement>, Error> {
         settings: ExponentSettings {
             transient: asked.transient.map_or(default.transient, |n| n.get()),
             revolutions: asked.revolutions.get(),
-            tolerance: settings(run)?.tolerance,
+            tolerance: settings(run, None)?.tolerance,
         },
         extent: if asked.spectrum {
             Extent::Spectrum

@@ -28,7 +28,9 @@ pub enum Uncertainty {
     #[default]
     Ignored,
     /// Every case draws its values from their joint distribution: normal in the logarithms of
-    /// positive values, with the intervals and correlations of the calibration, within the bounds.
+    /// positive values, with the intervals and correlations of the calibration, within the bounds;
+    /// and of the relations to the clearance one that the recordings do not exclude, the same for all
+    /// joints. A calibration whose model is not adequate has no intervals, and is an error.
     Sampled,
 }
 

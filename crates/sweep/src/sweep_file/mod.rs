@@ -63,8 +63,8 @@ pub struct SweepFile {
     pub windows: Option<Windows>,
     /// The cases: blocks, one after the other.
     pub cases: Vec<Block>,
-    /// Unknowns that vary at random from case to case, by path in the machine file. What a case
-    /// sets itself is not varied.
+    /// Unknowns that vary at random from case to case, by path in the machine file, in which `*`
+    /// stands for any key: one value for all places. What a case sets itself is not varied.
     #[serde(default)]
     pub vary: Axes<Draw>,
     /// Unknowns that vary together, and not each by itself.
@@ -105,7 +105,7 @@ pub struct Run {
     /// settled; 10 revolutions where it is left out.
     #[serde(default)]
     pub transient: Option<Or<Count<0, 1_000_000>, Settled>>,
-    /// Sample rate of the recordings; 10 kHz where it is left out.
+    /// Sample rate of the recordings; where it is left out, the machine file's, or 10 kHz.
     #[serde(default)]
     pub sample_rate: Option<Positive<Frequency>>,
     /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.

@@ -1,0 +1,322 @@
+//! The measuring chain of a channel as its recordings show it: noise, resolution, range.
+//!
+//! Noise is what does not repeat from revolution to revolution and does not depend on where the crank
+//! stands. Where the motion itself scatters, that is no sensor's noise: only an upper bound is stated
+//! then, with the reason.
+
+use crate::few_revolutions;
+use crate::observation::{Observation, Run};
+use crate::prediction::Prediction;
+use serde::Serialize;
+use signal::angle_resampling::AngleGrid;
+use signal::crank_angle::CrankAngle;
+use signal::nonsynchronous::Nonsynchronous;
+use signal::quantisation::quantisation_step;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// Column of the crank angle.
+pub const CRANK_ANGLE: &str = "crank_angle_rad";
+/// Share of the mean square that has to be the same at every crank angle for it to be noise. The RMS
+/// is then wrong by a tenth at most.
+const STEADY: f64 = 0.8;
+/// Share of a signal's mean square that resampling leaves of what repeats itself.
+const RESAMPLING: f64 = 1e-8;
+/// How many times the least mean square of the runs one may have, in the channel's unit and as a
+/// share of its signal, before it is the motion that scatters.
+const ALIKE: f64 = 4.0;
+/// Below this share of the absolute noise's spread over the runs (standard deviations of logarithms)
+/// the relative one makes the noise a share of the signal.
+const FOLLOWS: f64 = 0.5;
+/// Relative difference below which two steps are one.
+const SAME_STEP: f64 = 1e-3;
+/// Bits that converters have. A lattice tells the step alone; the range is the least that a converter
+/// of one of these has with it.
+const CONVERTERS: [u32; 8] = [8, 10, 12, 14, 16, 18, 20, 24];
+/// Most bits of an encoder.
+const ENCODER: i32 = 24;
+
+/// What the recordings tell of the measuring chain of a channel. What they do not tell is none, with
+/// a reason.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct RecordedSensor {
+    /// RMS of the noise over the runs, SI.
+    pub rms: Option<f64>,
+    /// The same as a share of the signal's RMS, where the noise of the runs follows it.
+    pub of_signal: Option<f64>,
+    /// Share of the noise's mean square that is 1/f.
+    pub pink_share: Option<f64>,
+    /// Upper bound of the RMS where it is none, SI.
+    pub at_most: Option<f64>,
+    /// Why there is no RMS.
+    pub noise_reason: Option<String>,
+    /// Resolution of the converter over ± the range.
+    pub bits: Option<u32>,
+    /// Range of the converter, SI: the least that it can have.
+    pub range: Option<f64>,
+    /// Step of the recorded values, SI; the coarsest of the runs.
+    pub resolution: Option<f64>,
+    /// Why there are no bits or no range.
+    pub range_reason: Option<String>,
+    /// Samples per second; none where the runs differ.
+    pub sample_rate_hz: Option<f64>,
+    /// The runs that the noise was found in.
+    pub runs: Vec<String>,
+}
+
+/// A run as sensors are looked for in it.
+pub struct Look<'a> {
+    /// The recording.
+    pub run: &'a Run,
+    /// What was observed in it.
+    pub observation: &'a Observation,
+    /// What a model that fits it predicts; none where no model does.
+    pub prediction: Option<&'a Prediction>,
+    /// Whether an encoder gave its crank angle.
+    pub has_encoder: bool,
+    /// Whether times or a sample rate are known.
+    pub is_timed: bool,
+}
+
+/// The sensors of the observed channels, and the encoder where there is one, by column.
+pub fn recorded_sensors(looks: &[Look]) -> BTreeMap<String, RecordedSensor> {
+    let mut columns: Vec<&str> = Vec::new();
+    for channel in looks.iter().flat_map(|look| &look.observation.channels) {
+        if !columns.contains(&channel.column.as_str()) {
+            columns.push(&channel.column);
+        }
+    }
+    let rate = sample_rate(looks);
+    let of_column = |column: &&str| {
+        let mut sensor = noise(column, looks);
+        converter(column, looks, &mut sensor);
+        sensor.sample_rate_hz = rate;
+        ((*column).to_owned(), sensor)
+    };
+    let mut sensors: BTreeMap<String, RecordedSensor> = columns.iter().map(of_column).collect();
+    if looks.iter().any(|look| look.has_encoder) {
+        let mut sensor = encoder(looks);
+        sensor.sample_rate_hz = rate;
+        sensors.insert(CRANK_ANGLE.to_owned(), sensor);
+    }
+    sensors
+}
+
+/// The sample rate of the runs, Hz; none where they differ or one's is not known.
+pub fn sample_rate(looks: &[Look]) -> Option<f64> {
+    if !looks.iter().all(|look| look.is_timed) {
+        return None;
+    }
+    let mut rates = looks.iter().map(|look| look.run.sample_rate);
+    let first = rates.next()?;
+    rates
+        .all(|rate| (rate / first - 1.0).abs() < SAME_STEP)
+        .then_some(first)
+}
+
+/// The noise of a channel in a run.
+struct Seen<'a> {
+    run: &'a str,
+    /// Mean squares of the noise, of its 1/f part, and of the signal about its mean.
+    noise: f64,
+    pink: f64,
+    signal: f64,
+    /// What of the noise may be the motion's; none where it is the sensor's.
+    doubt: Option<&'static str>,
+    /// Upper bound of the mean square.
+    at_most: f64,
+}
+
+fn noise(column: &str, looks: &[Look]) -> RecordedSensor {
+    let mut sensor = RecordedSensor::default();
+    let mut failed = None;
+    let mut seen = Vec::new();
+    for look in looks {
+        match seen_in(look, column) {
+            Some(Ok(found)) => seen.push(found),
+            Some(Err(reason)) => failed = Some(reason),
+            None => {}
+        }
+    }
+    mark_unlike(&mut seen);
+    let good: Vec<&Seen> = seen.iter().filter(|seen| seen.doubt.is_none()).collect();
+    if good.is_empty() {
+        let least = seen.iter().map(|seen| seen.at_most);
+        sensor.at_most = least.min_by(f64::total_cmp).map(f64::sqrt);
+        let doubt = seen.iter().find_map(|seen| seen.doubt).map(str::to_owned);
+        sensor.noise_reason = doubt.or(failed);
+        return sensor;
+    }
+    let mean = |of: &dyn Fn(&Seen) -> f64| {
+        good.iter().map(|seen| of(seen)).sum::<f64>() / good.len() as f64
+    };
+    sensor.rms = Some(mean(&|seen| seen.noise).sqrt());
+    sensor.pink_share = Some(mean(&|seen| seen.pink / seen.noise).clamp(0.0, 1.0));
+    let relative = |seen: &Seen| seen.noise / seen.signal;
+    if good.len() > 1 && spread(&good, relative) < FOLLOWS * spread(&good, |seen| seen.noise) {
+        sensor.of_signal = Some(mean(&relative).sqrt());
+    }
+    sensor.runs = good.iter().map(|seen| seen.run.to_owned()).collect();
+    sensor
+}
+
+/// Standard deviation of the logarithm.
+fn spread(seen: &[&Seen], of: impl Fn(&Seen) -> f64) -> f64 {
+    let logarithms: Vec<f64> = seen.iter().map(|seen| of(seen).ln()).collect();
+    let count = logarithms.len() as f64;
+    let mean = logarithms.iter().sum::<f64>() / count;
+    let squares = logarithms.iter().map(|x| (x - mean).powi(2));
+    (squares.sum::<f64>() / count).sqrt()
+}
+
+/// A run that scatters far more than the quietest, in its unit and as a share of its signal, moves so.
+fn mark_unlike(seen: &mut [Seen]) {
+    let least = |of: &dyn Fn(&Seen) -> f64| {
+        let values = seen.iter().filter(|seen| seen.doubt.is_none()).map(of);
+        values.fold(f64::INFINITY, f64::min)
+    };
+    let [noise, share] = [
+        least(&|seen| seen.noise),
+        least(&|seen| seen.noise / seen.signal),
+    ];
+    for seen in seen.iter_mut() {
+        if seen.noise > ALIKE * noise && seen.noise / seen.signal > ALIKE * share {
+            seen.doubt.get_or_insert(SCATTERS);
+        }
+    }
+}
+
+const SCATTERS: &str = "the motion itself differs from revolution to revolution";
+const BELOW: &str = "the noise is below what resampling over the crank angle leaves";
+
+/// The noise of a channel in a run, or why there is none; nothing where the run lacks the channel.
+fn seen_in<'a>(look: &Look<'a>, column: &str) -> Option<Result<Seen<'a>, String>> {
+    let run = look.run;
+    let samples = &run.channels.iter().find(|c| c.column == column)?.samples;
+    let angles = run.crank_angle.as_ref()?;
+    Some(in_samples(angles, samples).map(|(found, signal)| {
+        let step = quantisation_step(samples).unwrap_or(0.0);
+        // Rounding to a step is white noise of its own, which the converter adds again.
+        let white = (found.white - step * step / 12.0).max(0.0);
+        let noise = white + found.pink;
+        let (doubt, at_most) = if noise <= RESAMPLING * signal {
+            (Some(BELOW), RESAMPLING * signal)
+        } else if found.steady_share < STEADY || model_scatters(look, column) {
+            (Some(SCATTERS), noise * found.steady_share)
+        } else {
+            (None, noise)
+        };
+        Seen {
+            run: &run.id,
+            noise,
+            pink: found.pink,
+            signal: (signal - noise).max(f64::MIN_POSITIVE),
+            doubt,
+            at_most,
+        }
+    }))
+}
+
+/// The noise in samples over crank angles, and their mean square about the mean.
+fn in_samples(angles: &[f64], samples: &[f64]) -> Result<(Nonsynchronous, f64), String> {
+    let told = |error: signal::Error| format!("no noise can be told from the signal: {error}");
+    let angle = CrankAngle::from_encoder(angles).map_err(told)?;
+    if few_revolutions::is_short(&angle) {
+        return Err("there are too few revolutions to tell noise from the signal".into());
+    }
+    let grid = AngleGrid::new(&angle, angle.samples_per_revolution().round() as usize);
+    let grid = grid.map_err(told)?;
+    let revolutions = grid.resample(samples).map_err(told)?;
+    let found = Nonsynchronous::of(&revolutions, grid.highest_order()).map_err(told)?;
+    let count = samples.len() as f64;
+    let mean = samples.iter().sum::<f64>() / count;
+    let squares = samples.iter().map(|x| (x - mean).powi(2));
+    Ok((found, squares.sum::<f64>() / count))
+}
+
+/// Whether more than what noise may be wrong by is what the model's own revolutions differ by.
+fn model_scatters(look: &Look, column: &str) -> bool {
+    let Some(prediction) = look.prediction.filter(|prediction| !prediction.periodic) else {
+        return false;
+    };
+    let channels = &look.observation.channels;
+    let Some(i) = channels.iter().position(|c| c.column == column) else {
+        return false;
+    };
+    let scatter = |lines: &signal::order_lines::OrderLines| {
+        let variances = lines.variance.iter().take(channels[i].lines.variance.len());
+        lines.revolutions as f64 * variances.skip(1).sum::<f64>()
+    };
+    scatter(&prediction.lines[i]) > (1.0 - STEADY) * scatter(&channels[i].lines)
+}
+
+/// Steps of the values of a channel, with bits and range where they tell them.
+fn converter(column: &str, looks: &[Look], sensor: &mut RecordedSensor) {
+    let channels = looks.iter().flat_map(|look| &look.run.channels);
+    let samples: Vec<&[f64]> = channels
+        .filter(|channel| channel.column == column)
+        .map(|channel| channel.samples.as_slice())
+        .collect();
+    let steps: Option<Vec<f64>> = samples.iter().map(|x| quantisation_step(x)).collect();
+    let Some(steps) = steps else {
+        sensor.range_reason =
+            Some("the recorded values lie on no lattice that their single precision shows".into());
+        return;
+    };
+    let coarsest = steps.iter().copied().fold(0.0, f64::max);
+    let finest = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    sensor.resolution = Some(coarsest);
+    let magnitude = |x: &[f64]| x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let bits = |most: f64, step: f64| {
+        let covers = |bits: &u32| f64::from(bits - 1).exp2() * step >= most;
+        CONVERTERS.into_iter().find(covers)
+    };
+    let each = samples.iter().zip(&steps);
+    let most = samples.iter().map(|x| magnitude(x)).fold(0.0, f64::max);
+    let same = coarsest / finest - 1.0 < SAME_STEP;
+    let found = match same {
+        true => bits(most, coarsest),
+        false => {
+            let all: Option<Vec<u32>> = each.map(|(x, step)| bits(magnitude(x), *step)).collect();
+            all.and_then(|all| all.into_iter().max())
+        }
+    };
+    let Some(found) = found else {
+        sensor.range_reason =
+            Some("the recorded values are finer than a converter of 24 bits".into());
+        return;
+    };
+    sensor.bits = Some(found);
+    let range = |step: f64| f64::from(found - 1).exp2() * step;
+    match same {
+        true => sensor.range = Some(range(coarsest)),
+        false => {
+            sensor.range_reason = Some(format!(
+                "the recorder set its range to each run, from {:.4} to {:.4}",
+                range(finest),
+                range(coarsest)
+            ));
+        }
+    }
+}
+
+/// An encoder divides the turn.
+fn encoder(looks: &[Look]) -> RecordedSensor {
+    let recorded = looks.iter().filter(|look| look.has_encoder);
+    let steps = recorded.filter_map(|look| quantisation_step(look.run.crank_angle.as_ref()?));
+    let step = steps.min_by(f64::total_cmp);
+    let whole = step.and_then(|step| {
+        let bits = (TAU / step).log2().round();
+        let exact = (TAU / step / bits.exp2() - 1.0).abs() < SAME_STEP;
+        (exact && bits as i32 <= ENCODER).then_some(bits as u32)
+    });
+    let reason = || "its steps are no whole power of two to the turn, or too fine to be seen";
+    RecordedSensor {
+        noise_reason: Some("the step of an encoder is its noise".into()),
+        bits: whole,
+        range: whole.map(|_| TAU),
+        resolution: step,
+        range_reason: whole.is_none().then(|| reason().to_owned()),
+        ..RecordedSensor::default()
+    }
+}

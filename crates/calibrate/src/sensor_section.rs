@@ -1,0 +1,109 @@
+//! What recordings show of sensors, written into a machine file.
+
+use crate::error::Error;
+use crate::problem::{measurable, names};
+use crate::recorded_sensor::RecordedSensor;
+use input::amount::Amount;
+use input::unit;
+use input::{MachineFile, Resolved};
+use serde_json::{Map, Value, json};
+use simulate::{ChamberEnd, Measured};
+use std::collections::BTreeMap;
+
+/// Digits of a written noise: its own accuracy has fewer.
+const DIGITS: i32 = 4;
+
+/// Gives the machine file `tree` the sensors that were `found`, by column, and their sample rate.
+/// What they do not tell stays as the file has it; a channel without a sensor gets one.
+///
+/// # Errors
+/// A machine file that is none.
+pub fn write(
+    tree: &mut Value,
+    found: &BTreeMap<String, RecordedSensor>,
+    sample_rate: Option<f64>,
+) -> Result<(), Error> {
+    let machine = MachineFile::from_tree(tree)?.resolve()?;
+    let throws = names(&machine);
+    let known = measurable(&machine)
+        .into_iter()
+        .chain([Measured::CrankAngle]);
+    let known: Vec<(String, Measured)> = known.map(|m| (m.column(&throws), m)).collect();
+    let mut sections = tree["sensors"].as_array().cloned().unwrap_or_default();
+    for (column, sensor) in found {
+        let Some((_, measured)) = known.iter().find(|(known, _)| known == column) else {
+            continue;
+        };
+        let place = machine.sensors.iter().position(|s| s.measured == *measured);
+        let place = place.unwrap_or_else(|| {
+            sections.push(Value::Object(section(&machine, *measured)));
+            sections.len() - 1
+        });
+        if let Some(section) = sections[place].as_object_mut() {
+            fill(section, sensor, *measured);
+        }
+    }
+    tree["sensors"] = sections.into();
+    if let Some(rate) = sample_rate {
+        tree["sample_rate"] = format!("{} Hz", rounded(rate, 9)).into();
+    }
+    Ok(())
+}
+
+/// A perfect sensor's section.
+fn section(machine: &Resolved, measured: Measured) -> Map<String, Value> {
+    let measure = match measured {
+        Measured::CrossheadAcceleration { .. } => "crosshead_acceleration",
+        Measured::CrossheadLateralAcceleration { .. } => "crosshead_lateral_acceleration",
+        Measured::FrameAcceleration { .. } => "frame_acceleration",
+        Measured::CylinderPressure { .. } => "cylinder_pressure",
+        Measured::CrankAngle => "crank_angle",
+    };
+    let mut section = Map::from_iter([("measure".to_owned(), json!(measure))]);
+    let throw = measured.throw().map(|i| &machine.machine.throws[i].name);
+    if let Some(throw) = throw.filter(|name| !name.is_empty()) {
+        section.insert("throw".into(), json!(throw));
+    }
+    if let Measured::CylinderPressure {
+        end: ChamberEnd::Crank,
+        ..
+    } = measured
+    {
+        section.insert("end".into(), json!("crank"));
+    }
+    section
+}
+
+fn fill(section: &mut Map<String, Value>, sensor: &RecordedSensor, measured: Measured) {
+    let dimension = unit::parse(&format!("1 {}", measured.unit())).ok();
+    let dimension = dimension.map(|measure| measure.dimension);
+    let amount = |si: f64| Amount { si, dimension }.to_value();
+    if let Some(rms) = sensor.rms {
+        let level = match sensor.of_signal {
+            Some(share) => percent(share),
+            None => amount(rounded(rms, DIGITS)),
+        };
+        let mut noise = Map::from_iter([("rms".to_owned(), level)]);
+        if let Some(share) = sensor.pink_share.filter(|share| *share > 0.0) {
+            noise.insert("pink_share".into(), percent(share));
+        }
+        section.insert("noise".into(), noise.into());
+    }
+    let Some(bits) = sensor.bits else { return };
+    // An encoder's range is its turn.
+    if measured != Measured::CrankAngle {
+        let range = sensor.range.map_or("auto".into(), amount);
+        section.insert("range".into(), range);
+    }
+    section.insert("bits".into(), bits.into());
+}
+
+fn percent(share: f64) -> Value {
+    format!("{} %", rounded(100.0 * share, DIGITS)).into()
+}
+
+/// `x` to so many digits.
+fn rounded(x: f64, digits: i32) -> f64 {
+    let text = format!("{x:.*e}", (digits - 1) as usize);
+    text.parse().unwrap_or(x)
+}

@@ -1,0 +1,184 @@
+//! The measuring chain that recordings show, against what it was: recordings of another program with
+//! their truth, and recordings made here.
+
+use calibrate::problem::columns;
+use calibrate::recorded_sensor::{Look, RecordedSensor, recorded_sensors, sample_rate};
+use calibrate::{Channel, Observation, Run, sensor_section};
+use input::bundle::Bundle;
+use input::{MachineFile, machine_file, paths};
+use scalar::random::{Purpose, stream};
+use serde_json::{Value, json};
+use simulate::{Settings, Transient};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+const ACCELERATION: &str = "crosshead_acceleration_m_s2";
+const PRESSURE: &str = "cylinder_pressure_pa";
+
+fn data(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../data")
+        .join(path)
+}
+
+fn sensors(runs: &[Run], columns: &[String]) -> (BTreeMap<String, RecordedSensor>, Option<f64>) {
+    let observed: Vec<Observation> = runs
+        .iter()
+        .map(|run| Observation::of(run, columns).unwrap())
+        .collect();
+    let looks: Vec<Look> = runs
+        .iter()
+        .zip(&observed)
+        .map(|(run, observation)| Look {
+            run,
+            observation,
+            prediction: None,
+            has_encoder: true,
+            is_timed: true,
+        })
+        .collect();
+    (recorded_sensors(&looks), sample_rate(&looks))
+}
+
+fn of_bundle(name: &str) -> (BTreeMap<String, RecordedSensor>, Option<f64>, Value) {
+    let bundle = Bundle::read(&data("recordings").join(name)).unwrap();
+    let mut tree = input::from_bundle(&bundle.machine).unwrap();
+    let runs = cli::bundle::runs(&bundle, &tree, &[]).unwrap();
+    for (path, value) in &runs[0].settings {
+        paths::set(&mut tree, path, value.clone()).unwrap();
+    }
+    let machine = MachineFile::from_tree(&tree).unwrap().resolve().unwrap();
+    let (found, rate) = sensors(&runs, &columns(&machine));
+    (found, rate, tree)
+}
+
+fn near(found: Option<f64>, expected: f64, tolerance: f64) {
+    let found = found.expect("a value");
+    assert!(
+        (found / expected - 1.0).abs() < tolerance,
+        "{found} for {expected}"
+    );
+}
+
+#[test]
+fn noise_of_another_programs_recordings_is_their_truth() {
+    let (found, rate, mut tree) = of_bundle("example-single-stage");
+    let acceleration = &found[ACCELERATION];
+    // truth.yaml: acceleration_rel_rms, 30 % of the power 1/f, 16 bits.
+    near(acceleration.of_signal, 0.029_463_5, 0.03);
+    near(acceleration.pink_share, 0.3, 0.1);
+    assert_eq!(acceleration.bits, Some(16));
+    // The recorder set its range to each run: 512, 1024 and 2048 m/s².
+    assert_eq!(acceleration.range, None);
+    near(acceleration.resolution, 2048.0 / 32768.0, 1e-3);
+    // pressure_rel_range 0.004572, of 0.105 to 0.393 and to 0.3 MPa: by run 1317 or 891 Pa.
+    let pressure = &found[PRESSURE];
+    near(pressure.pink_share, 0.3, 0.1);
+    assert_eq!(pressure.bits, Some(16));
+    near(pressure.range, 1e6, 1e-3);
+    assert_eq!(found["crank_angle_rad"].bits, Some(16));
+    assert_eq!(rate, Some(20_000.0));
+
+    sensor_section::write(&mut tree, &found, rate).unwrap();
+    let machine = MachineFile::from_tree(&tree).unwrap().resolve().unwrap();
+    assert_eq!(machine.sample_rate, Some(20_000.0));
+    let chain = &machine.sensors[0].chain;
+    assert_eq!(chain.range, Some(simulate::Range::Auto));
+    let noise = chain.noise.unwrap();
+    let simulate::NoiseLevel::OfSignal(level) = noise.level else {
+        panic!("{noise:?}");
+    };
+    near(Some(level), 0.029_463_5, 0.03);
+}
+
+/// Run 4 of the second throw scatters from revolution to revolution by 5 % of its RMS (truth.yaml),
+/// its sensor by 2.2 %.
+#[test]
+fn a_run_whose_motion_scatters_is_left_out() {
+    let (found, ..) = of_bundle("example-two-stage");
+    for throw in ["throw1", "throw2"] {
+        let sensor = &found[&format!("{throw}.{ACCELERATION}")];
+        near(sensor.of_signal, 0.022_248_5, 0.03);
+        near(sensor.pink_share, 0.3, 0.15);
+    }
+    let throw2 = &found[&format!("throw2.{ACCELERATION}")];
+    assert_eq!(throw2.runs, ["run01", "run02", "run03"]);
+}
+
+/// A machine of `data/machines` with the sensors of `chain`, recorded at each speed.
+fn recorded(changes: &[(&str, &str)], speeds: &[&str], chain: Value) -> Vec<Run> {
+    let file = machine_file::read(&data("machines/single-stage.yaml")).unwrap();
+    let of_speed = |(i, speed): (usize, &&str)| {
+        let mut tree = file.to_tree().clone();
+        tree["sensors"] = json!([chain, {"measure": "crank_angle", "bits": 16}]);
+        for (path, value) in changes.iter().chain([&("speed", *speed)]) {
+            paths::set(&mut tree, path, Value::from(*value)).unwrap();
+        }
+        let machine = MachineFile::from_tree(&tree).unwrap().resolve().unwrap();
+        let settings = Settings {
+            transient: Transient::Revolutions(20),
+            revolutions: 20,
+            sample_rate: 10_000.0,
+            tolerance: 1e-8,
+            ..Settings::default()
+        };
+        let record =
+            simulate::simulate(&machine.machine, &machine.sensors, &settings, false).unwrap();
+        let mut random = stream(i as u64, 0, Purpose::Noise);
+        let channels = simulate::measure(&record, &machine.sensors, &[""], &mut random);
+        let samples = |i: usize| channels[i].samples.iter().map(|x| f64::from(*x)).collect();
+        Run {
+            id: format!("run{i}"),
+            settings: Vec::new(),
+            speed_rpm: speed.trim_end_matches(" rpm").parse().unwrap(),
+            sample_rate: 10_000.0,
+            crank_angle: Some(samples(1)),
+            channels: vec![Channel {
+                column: channels[0].name.clone(),
+                samples: samples(0),
+            }],
+        }
+    };
+    speeds.iter().enumerate().map(of_speed).collect()
+}
+
+#[test]
+fn noise_of_a_sensor_that_does_not_follow_its_signal_comes_back() {
+    let chain = json!({
+        "measure": "crosshead_acceleration",
+        "noise": {"rms": "5 m/s^2", "pink_share": "40 %"},
+        "range": "1500 m/s^2", "bits": 12,
+    });
+    let worn = [("joints.big_end.clearance", "0.1 mm")];
+    let runs = recorded(&worn, &["350 rpm", "500 rpm", "650 rpm"], chain);
+    let (found, rate) = sensors(&runs, &[ACCELERATION.to_owned()]);
+    let sensor = &found[ACCELERATION];
+    near(sensor.rms, 5.0, 0.05);
+    near(sensor.pink_share, 0.4, 0.15);
+    assert_eq!(sensor.of_signal, None);
+    assert_eq!(sensor.bits, Some(12));
+    near(sensor.range, 1500.0, 1e-3);
+    assert_eq!(rate, Some(10_000.0));
+}
+
+/// With a tenth of the damping wide clearances rattle chaotically (README): what scatters is then no
+/// noise.
+#[test]
+fn scatter_of_a_chaotic_motion_is_no_noise() {
+    let chain = json!({"measure": "crosshead_acceleration", "noise": {"rms": "2 %"}});
+    let chaotic = [
+        ("joints.big_end.clearance", "0.3 mm"),
+        ("joints.small_end.clearance", "0.3 mm"),
+        ("joints.big_end.contact.damping", "2e3 N s/m"),
+        ("joints.small_end.contact.damping", "2e3 N s/m"),
+    ];
+    let runs = recorded(&chaotic, &["500 rpm"], chain);
+    let (found, _) = sensors(&runs, &[ACCELERATION.to_owned()]);
+    let sensor = &found[ACCELERATION];
+    assert_eq!(sensor.rms, None);
+    let reason = sensor.noise_reason.as_deref().unwrap();
+    assert!(reason.contains("the motion itself differs"), "{reason}");
+    assert!(sensor.at_most.is_some_and(|most| most > 0.0));
+    let reason = sensor.range_reason.as_deref().unwrap();
+    assert!(reason.contains("no lattice"), "{reason}");
+}
