@@ -30,9 +30,9 @@ const ALIKE: f64 = 4.0;
 const FOLLOWS: f64 = 0.5;
 /// Relative difference below which two steps are one.
 const SAME_STEP: f64 = 1e-3;
-/// Bits that converters have. A lattice tells the step alone; the range is the least that a converter
-/// of one of these has with it.
-const CONVERTERS: [u32; 8] = [8, 10, 12, 14, 16, 18, 20, 24];
+/// Usual word lengths of recorders. A lattice tells the step alone; the range is the least that one of
+/// these has with it.
+const CONVERTERS: [u32; 4] = [8, 12, 16, 24];
 /// Most bits of an encoder.
 const ENCODER: i32 = 24;
 
