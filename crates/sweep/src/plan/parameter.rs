@@ -46,7 +46,7 @@ impl Parameter {
 pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
     let varied: Vec<&str> = plan.varied().map(|(_, path)| path).collect();
     let set = plan.blocks.iter().flat_map(Block::paths);
-    let mut paths: Vec<&str> = varied.iter().copied().collect();
+    let mut paths = varied.clone();
     paths.extend(set.map(|(path, _)| path));
     let mut seen = std::collections::BTreeSet::new();
     let has_column = |path: &str| {
@@ -62,7 +62,6 @@ pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
         false => Role::Condition,
     };
     let own = paths.iter().map(|path| parameter(plan, path, role(path)));
-    let own: Vec<Parameter> = own.collect();
     let amplitudes = plan.effects.iter().flat_map(|effect| {
         let amplitudes = effect.amplitudes.iter();
         amplitudes.map(move |amplitude| (effect, amplitude))
@@ -73,7 +72,7 @@ pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
         !paths.iter().any(leads_there)
     });
     let others = others.map(|(effect, amplitude)| size(effect, amplitude));
-    own.iter().cloned().chain(others).collect()
+    own.chain(others).collect()
 }
 
 /// How `path` stands in the first case that says what it is.
