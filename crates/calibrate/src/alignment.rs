@@ -1,7 +1,6 @@
-//! The crank angle of a recording that has none: from the pulses of a tacho, or from the speed at
-//! which the recording repeats itself; and its zero from what the model shows.
+//! The crank angle of a recording that has none: from the speed at which the recording repeats itself;
+//! and its zero from what the model shows.
 
-use crate::error::Error;
 use crate::observation::{Observation, Run};
 use crate::prediction::Prediction;
 use rustfft::num_complex::Complex64;
@@ -20,42 +19,6 @@ const REFINEMENTS: usize = 8;
 /// Angles at which the zero is looked for, and refinements of the best.
 const ZEROS: usize = 720;
 const NEWTON: usize = 8;
-
-/// The crank angle at every sample, rad, from pulses that come once per revolution: 0 at the first
-/// pulse, in a straight line from one to the next, and going on as fast at both ends.
-///
-/// A pulse begins where the signal rises through the middle between its least and greatest value,
-/// having been in its lower quarter before.
-///
-/// # Errors
-/// Fewer than two pulses.
-pub fn from_pulses(signal: &[f64]) -> Result<Vec<f64>, Error> {
-    let least = signal.iter().copied().fold(f64::INFINITY, f64::min);
-    let greatest = signal.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let level = |share: f64| least + share * (greatest - least);
-    let mut armed = false;
-    let mut pulses = Vec::new();
-    for (i, x) in signal.iter().enumerate() {
-        if *x < level(0.25) {
-            armed = true;
-        } else if armed && *x >= level(0.5) {
-            armed = false;
-            let before = signal[i - 1];
-            pulses.push(i as f64 - (x - level(0.5)) / (x - before));
-        }
-    }
-    if pulses.len() < 2 {
-        return Err(Error::Pulses(pulses.len()));
-    }
-    let intervals = pulses.len() - 1;
-    let angle = |i: usize| {
-        let at = i as f64;
-        let interval = pulses.partition_point(|p| *p <= at).clamp(1, intervals);
-        let [from, to] = [pulses[interval - 1], pulses[interval]];
-        TAU * ((interval - 1) as f64 + (at - from) / (to - from))
-    };
-    Ok((0..signal.len()).map(angle).collect())
-}
 
 /// The speed, rpm, at which the orders of a run's channels have most power, near the stated one.
 ///
@@ -176,29 +139,6 @@ mod tests {
     use super::*;
     use crate::observation::{Channel, Observed};
     use signal::order_lines::OrderLines;
-
-    #[test]
-    fn pulses_tell_the_angle_between_them() {
-        // A pulse of 5 samples every 100.5 samples, from 30 on.
-        let signal: Vec<f64> = (0..1000)
-            .map(|i| {
-                let since = (f64::from(i) - 30.0).rem_euclid(100.5);
-                if f64::from(i) >= 30.0 && since < 5.0 {
-                    5.0
-                } else {
-                    0.1
-                }
-            })
-            .collect();
-        let angle = from_pulses(&signal).unwrap();
-        for (i, angle) in angle.iter().enumerate() {
-            let truth = TAU * (i as f64 - 29.5) / 100.5;
-            // A pulse is found to a sample.
-            assert!((angle - truth).abs() < TAU / 100.0, "{i}: {angle} {truth}");
-        }
-        assert!(from_pulses(&[0.0; 50]).is_err());
-        assert!(from_pulses(&[]).is_err());
-    }
 
     #[test]
     fn the_speed_is_found_in_the_waveform() {

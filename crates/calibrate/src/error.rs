@@ -40,7 +40,7 @@ pub enum Error {
     },
     /// A channel that was cut off by its range.
     #[error(
-        "run {run}: channel {channel} is clipped: {count} samples in a row stand at its greatest value {value}"
+        "run {run}: channel {channel} is clipped: {count} samples in a row stand at its {limit} value {value}"
     )]
     Clipped {
         /// The run.
@@ -49,12 +49,11 @@ pub enum Error {
         channel: String,
         /// Longest stretch at the limit, samples.
         count: usize,
+        /// Which of its values the limit is: `greatest` or `least`.
+        limit: &'static str,
         /// The limit, SI.
         value: f64,
     },
-    /// A tacho without two pulses.
-    #[error("a tacho tells an angle from two pulses on, and has {0}")]
-    Pulses(usize),
     /// The recorded crank angle and the stated speed contradict each other.
     #[error(
         "run {run}: the speed is stated as {stated:.1} rpm, but the recording turns at {measured:.1} rpm"

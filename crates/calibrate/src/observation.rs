@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 /// Points per revolution over which orders are found.
 pub const POINTS: usize = 1024;
-/// A recording that stands at its greatest value for this many samples is clipped.
+/// A recording that stands at its greatest or least value for this many samples is clipped.
 const CLIPPED: usize = 4;
 /// Relative difference between stated and recorded speed that is a contradiction.
 const SPEED: f64 = 0.02;
@@ -231,8 +231,9 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
     if !channel.column.contains("acceleration") {
         return Ok(());
     }
-    for limit in [f64::max, f64::min] {
-        let value = channel.samples.iter().copied().reduce(limit).unwrap_or(0.0);
+    let limits: [(fn(f64, f64) -> f64, _); 2] = [(f64::max, "greatest"), (f64::min, "least")];
+    for (of, limit) in limits {
+        let value = channel.samples.iter().copied().reduce(of).unwrap_or(0.0);
         let (mut longest, mut count) = (0, 0);
         for x in &channel.samples {
             count = if *x == value { count + 1 } else { 0 };
@@ -243,6 +244,7 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
                 run: run.id.clone(),
                 channel: channel.column.clone(),
                 count: longest,
+                limit,
                 value,
             });
         }

@@ -48,6 +48,12 @@ pub enum Error {
         /// Change from the sample before, rad.
         step_rad: f64,
     },
+    /// A tacho without two pulses.
+    #[error("a tacho tells an angle from two pulses on, and has {got}")]
+    TooFewPulses {
+        /// Pulses found.
+        got: usize,
+    },
     /// The recording does not hold enough whole revolutions.
     #[error("{got:.3} revolutions, but at least {needed} are needed")]
     TooFewRevolutions {

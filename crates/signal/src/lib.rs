@@ -5,9 +5,9 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | how much at which frequency? | [`amplitude_spectrum`](mod@amplitude_spectrum), [`welch`](mod@welch), [`spectral_shape`](mod@spectral_shape), [`windows`] |
+//! | how much at which frequency? | [`amplitude_spectrum`](mod@amplitude_spectrum), [`welch`](mod@welch), [`spectral_shape`](mod@spectral_shape), [`windows`], [`segments`] |
 //! | where are the impacts, and how often? | [`spectral_kurtosis`](mod@spectral_kurtosis), [`kurtogram`](mod@kurtogram), [`envelope`](mod@envelope), [`cepstrum`] |
-//! | how much at which multiple of the speed? | [`crank_angle`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
+//! | how much at which multiple of the speed? | [`crank_angle`], [`tacho`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
 //! | how do the revolutions differ? | [`synchronous_average`], [`crank_waterfall`](mod@crank_waterfall), [`phase_portrait`] |
 //! | what does a measuring chain do? | [`biquad`], [`decimate`], [`noise`] |
 
@@ -29,9 +29,11 @@ pub mod noise;
 pub mod order_lines;
 pub mod order_spectrum;
 pub mod phase_portrait;
+pub mod segments;
 pub mod spectral_kurtosis;
 pub mod spectral_shape;
 pub mod synchronous_average;
+pub mod tacho;
 pub mod welch;
 pub mod windows;
 

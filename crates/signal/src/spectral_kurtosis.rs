@@ -1,6 +1,7 @@
 //! Where in frequency a signal comes in bursts.
 
 use crate::error::Error;
+use crate::segments::Segments;
 use crate::welch::for_each_segment;
 use crate::windows::Window;
 
@@ -32,7 +33,8 @@ pub fn spectral_kurtosis(
     segment: usize,
 ) -> Result<SpectralKurtosis, Error> {
     let mut sums = vec![[0.0; 2]; segment / 2 + 1];
-    let count = for_each_segment(x, sample_rate, window, segment, |spectrum| {
+    let segments = Segments::overlapping(x.len(), segment);
+    let count = for_each_segment(x, sample_rate, window, &segments, |spectrum| {
         for (sums, c) in sums.iter_mut().zip(spectrum) {
             let power = c.norm_sqr();
             sums[0] += power;

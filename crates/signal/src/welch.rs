@@ -3,6 +3,7 @@
 use crate::amplitude_spectrum::{check, sides};
 use crate::error::Error;
 use crate::fft;
+use crate::segments::Segments;
 use crate::windows::Window;
 use rustfft::num_complex::Complex64;
 
@@ -16,13 +17,19 @@ pub struct PowerSpectralDensity {
     pub density: Vec<f64>,
 }
 
-/// The power spectral density (2/(f_s Σw²)) ⟨|Σ w_i (x_i − x̄) e^(−2πi ik/m)|²⟩, without the 2 at
-/// 0 Hz and at the Nyquist frequency: the mean over segments of m = `segment` samples that overlap
-/// by half, each with its own mean taken off. What is left after the last whole segment is not
-/// used. `sample_rate` in Hz.
-///
-/// Source: Welch 1967, "The use of fast Fourier transform for the estimation of power spectra",
-/// IEEE Trans. Audio Electroacoustics 15(2).
+impl PowerSpectralDensity {
+    /// The bins at frequencies up to `highest`, Hz, and no others. Two recordings of one motion agree
+    /// up to a frequency that both resolve, whatever their sample rates.
+    pub fn up_to(mut self, highest: f64) -> Self {
+        // A cast saturates: 0 Hz is left of a negative frequency, all of an infinite one.
+        let bins = ((highest / self.resolution) as usize).saturating_add(1);
+        self.density.truncate(bins);
+        self
+    }
+}
+
+/// The power spectral density over segments of `segment` samples that overlap by half: see
+/// [`welch_over`].
 ///
 /// # Errors
 /// A segment of fewer than two samples or longer than the record, a sample that is not finite, or
@@ -33,8 +40,29 @@ pub fn welch(
     window: Window,
     segment: usize,
 ) -> Result<PowerSpectralDensity, Error> {
+    let segments = Segments::overlapping(x.len(), segment);
+    welch_over(x, sample_rate, window, &segments)
+}
+
+/// The power spectral density (2/(f_s Σw²)) ⟨|Σ w_i (x_i − x̄) e^(−2πi ik/m)|²⟩, without the 2 at
+/// 0 Hz and at the Nyquist frequency: the mean over `segments` of m samples, each with its own mean
+/// taken off. `sample_rate` in Hz.
+///
+/// Source: Welch 1967, "The use of fast Fourier transform for the estimation of power spectra",
+/// IEEE Trans. Audio Electroacoustics 15(2).
+///
+/// # Errors
+/// Segments of fewer than two samples, none, or one that ends beyond the record; a sample that is not
+/// finite, or a sample rate that is not positive.
+pub fn welch_over(
+    x: &[f64],
+    sample_rate: f64,
+    window: Window,
+    segments: &Segments,
+) -> Result<PowerSpectralDensity, Error> {
+    let segment = segments.length;
     let mut sums = vec![0.0; segment / 2 + 1];
-    let count = for_each_segment(x, sample_rate, window, segment, |spectrum| {
+    let count = for_each_segment(x, sample_rate, window, segments, |spectrum| {
         for (sum, c) in sums.iter_mut().zip(spectrum) {
             *sum += c.norm_sqr();
         }
@@ -55,10 +83,11 @@ pub(crate) fn for_each_segment(
     x: &[f64],
     sample_rate: f64,
     window: Window,
-    segment: usize,
+    segments: &Segments,
     mut take: impl FnMut(&[Complex64]),
 ) -> Result<usize, Error> {
     check(x, sample_rate)?;
+    let segment = segments.length;
     if segment < 2 {
         return Err(Error::OutOfRange {
             what: "samples per segment",
@@ -66,25 +95,27 @@ pub(crate) fn for_each_segment(
             allowed: "2 or more",
         });
     }
-    if x.len() < segment {
+    let needed = segment + segments.starts.iter().max().unwrap_or(&0);
+    if x.len() < needed {
         return Err(Error::TooFewSamples {
-            needed: segment,
+            needed,
             got: x.len(),
         });
     }
     let weights = window.weights(segment);
-    let step = segment - segment / 2;
     let mut work = vec![0.0; segment];
-    let mut count = 0;
-    for samples in x.windows(segment).step_by(step) {
+    for start in &segments.starts {
+        let samples = &x[*start..start + segment];
         let mean = samples.iter().sum::<f64>() / segment as f64;
         for ((y, x), w) in work.iter_mut().zip(samples).zip(&weights) {
             *y = (x - mean) * w;
         }
         take(&fft::forward(&mut work));
-        count += 1;
     }
-    Ok(count)
+    match segments.starts.len() {
+        0 => Err(Error::NoFluctuation),
+        count => Ok(count),
+    }
 }
 
 #[cfg(test)]
@@ -103,6 +134,14 @@ mod tests {
         assert_eq!((psd.resolution, psd.density.len()), (10.0, 65));
         for (k, share) in [(15, 1.0 / 6.0), (16, 2.0 / 3.0), (17, 1.0 / 6.0), (18, 0.0)] {
             assert!((psd.density[k] * psd.resolution - 4.5 * share).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn bins_up_to_a_frequency_are_kept() {
+        let psd = || welch(&[1.0, -1.0, 2.0, 0.0], 40.0, Window::Rectangular, 4).unwrap();
+        for (highest, bins) in [(9.0, 1), (10.0, 2), (19.9, 2), (20.0, 3), (f64::INFINITY, 3)] {
+            assert_eq!(psd().up_to(highest).density.len(), bins);
         }
     }
 

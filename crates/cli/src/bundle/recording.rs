@@ -1,10 +1,11 @@
 //! The recording of a run: its channels in SI units, and where its crank stood.
 
-use ::calibrate::{Channel, alignment};
+use ::calibrate::Channel;
 use input::bundle::{self, Bundle};
 use input::bundle_channel::Meaning;
 use recordings::measured::{MeasuredFile, Options};
 use signal::crank_angle::CrankAngle;
+use signal::tacho;
 use std::f64::consts::TAU;
 
 /// Samples that are read at a time.
@@ -46,7 +47,7 @@ pub(super) fn read(
                 crank_angle = Some(wrapped.collect::<Vec<f64>>());
             }
             Meaning::Tacho { at } => {
-                let angle = alignment::from_pulses(&samples().collect::<Vec<f64>>());
+                let angle = tacho::from_pulses(&samples().collect::<Vec<f64>>());
                 let angle = angle.map_err(|e| format!("channel {}: {e}", channel.column))?;
                 let at = at.unwrap_or(0.0);
                 pulses = Some(angle.iter().map(|a| (a + at).rem_euclid(TAU)).collect());
