@@ -24,8 +24,8 @@ mod table;
 
 pub use missing::missing;
 pub use motion::{Motion, motion, motion_definitions};
-pub use reason::Reason;
-pub use row::{Cell, Content, FEWEST_SAMPLES, columns, row};
+pub use reason::{Reason, Remedy};
+pub use row::{Cell, Content, FEWEST_SAMPLES, columns, row, row_with_reasons};
 
 use envelope::Envelope;
 use signal::channel::Channel;
@@ -83,11 +83,21 @@ pub struct Window<'a> {
     pub sample_rate: f64,
     /// Mean speed of the shaft, rpm, if it is known. Used where there is no crank angle.
     pub speed_rpm: Option<f64>,
-    /// Crank angle of each sample in [0, 2π), rad. Without one the speed is taken as constant;
-    /// without either, what is said per revolution, order or crank angle has no value.
-    pub crank_angle: Option<&'a [f32]>,
+    /// Crank angle of each sample. Without one the speed is taken as constant; without either, what
+    /// is said per revolution, order or crank angle has no value.
+    pub crank_angle: Option<CrankAngles<'a>>,
     /// The channels, all as long as the crank angle. One named `crank_angle_rad` is passed over.
     pub channels: &'a [Channel],
+}
+
+/// The crank angle of each sample of a window.
+#[derive(Clone, Copy, Debug)]
+pub struct CrankAngles<'a> {
+    /// In [0, 2π), rad.
+    pub angles: &'a [f32],
+    /// Whether it counts from top dead centre. If not, as with a tacho whose pulse comes anywhere, the
+    /// sectors of the crank angle have no value.
+    pub from_top_dead_centre: bool,
 }
 
 /// The columns that channels give, from their names and units.
@@ -121,10 +131,10 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
             let (revolutions, grid) = (held(&revolutions)?, held(&grid)?);
             Ok(PhasePortrait::new(revolutions, grid, window.sample_rate)?)
         });
-        let shape = LazyCell::new(|| spectral::shape(&x, window.sample_rate));
+        let shape = LazyCell::new(|| spectral::shape(&x, window.sample_rate, held(&grid)));
         let envelope = LazyCell::new(|| Envelope::new(&x, window.sample_rate, held(&grid)?));
         let synchronous = LazyCell::new(|| Ok(SynchronousAverage::new(held(&revolutions)?)?));
-        let sectors = LazyCell::new(|| spectral::sectors(held(&revolutions)?));
+        let sectors = LazyCell::new(|| spectral::sectors(held(&revolutions)?, window));
         row.extend(lines.map(|line| match line.value {
             Value::Statistic(value) => value(&statistics),
             // What is left of a constant after filtering is rounding.

@@ -25,6 +25,9 @@ pub enum Reason {
     /// A feature per revolution, order or crank angle of a shaft whose turning is not known.
     #[error("neither speed nor crank angle is known")]
     NoSpeed,
+    /// A feature of stated crank angles of a shaft whose zero is not known.
+    #[error("where top dead centre is, is not known")]
+    NoTopDeadCentre,
     /// There is no channel but the crank angle.
     #[error("there is no channel to analyse")]
     NoChannel,
@@ -49,4 +52,34 @@ pub enum Reason {
     /// The signal cannot be analysed.
     #[error(transparent)]
     Signal(#[from] signal::Error),
+}
+
+/// What would give a feature its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Remedy {
+    /// The speed of the shaft, or its angle.
+    Speed,
+    /// Where top dead centre is.
+    TopDeadCentre,
+    /// A longer window.
+    LongerWindow,
+    /// A higher sample rate.
+    HigherSampleRate,
+}
+
+impl Reason {
+    /// What would give the feature its value; none where that is the signal's own matter.
+    pub fn remedy(&self) -> Option<Remedy> {
+        use signal::Error as Signal;
+        match self {
+            Self::NoSpeed => Some(Remedy::Speed),
+            Self::NoTopDeadCentre => Some(Remedy::TopDeadCentre),
+            Self::Signal(Signal::TooFewRevolutions { .. } | Signal::TooFewSamples { .. })
+            | Self::Motion(chaos::Error::TooShort { .. }) => Some(Remedy::LongerWindow),
+            Self::BandAboveNyquist { .. } | Self::OrderTooHigh { .. } => {
+                Some(Remedy::HigherSampleRate)
+            }
+            _ => None,
+        }
+    }
 }

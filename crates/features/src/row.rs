@@ -77,6 +77,14 @@ fn text(
 
 /// The row of a window, in the order of [`columns`].
 pub fn row(window: &Window, with_motion: bool) -> Vec<Option<Cell>> {
+    row_with_reasons(window, with_motion).0
+}
+
+/// The row of a window, and for each of its cells why a number is missing.
+pub fn row_with_reasons(
+    window: &Window,
+    with_motion: bool,
+) -> (Vec<Option<Cell>>, Vec<Option<Reason>>) {
     let channels = window.channels.iter();
     let mut defined = definitions(channels.clone().map(|c| (c.name.as_str(), c.unit.as_str())));
     let samples = channels.map(|c| c.samples.len()).min().unwrap_or(0);
@@ -90,16 +98,22 @@ pub fn row(window: &Window, with_motion: bool) -> Vec<Option<Cell>> {
         features(window)
     };
     let number = |value: &Result<f64, Reason>| value.as_ref().ok().map(|v| Cell::Number(*v));
+    let reason = |value: &Result<f64, Reason>| value.as_ref().err().cloned();
     let mut row: Vec<Option<Cell>> = values.iter().map(number).collect();
+    let mut reasons: Vec<Option<Reason>> = values.iter().map(reason).collect();
     if with_motion {
         let motion = motion(window);
+        reasons.push(motion.regime.as_ref().err().cloned());
         row.push(motion.regime.ok().map(|name| Cell::Text(name.to_owned())));
         row.extend(motion.numbers.iter().map(number));
+        reasons.extend(motion.numbers.iter().map(reason));
         let why = motion.numbers.first().and_then(|e| e.as_ref().err());
         row.push(why.map(|reason| Cell::Text(reason.to_string())));
+        reasons.push(None);
         defined.extend(motion_definitions());
         values.extend(motion.numbers);
     }
     row.push(missing(&defined, &values).map(Cell::Text));
-    row
+    reasons.push(None);
+    (row, reasons)
 }

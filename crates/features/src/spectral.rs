@@ -8,8 +8,9 @@ use signal::cepstrum::real_cepstrum;
 use signal::crank_angle::CrankAngle;
 use signal::crank_waterfall::crank_waterfall;
 use signal::order_spectrum::{OrderSpectrum, order_spectrum};
+use signal::segments::Segments;
 use signal::spectral_shape::{SpectralShape, spectral_shape};
-use signal::welch::welch;
+use signal::welch::welch_over;
 use signal::windows;
 
 /// Edges of the frequency bands, Hz: octaves, the first reaching down to 0 and the last up to
@@ -37,8 +38,17 @@ pub(crate) const HIGHEST_ENVELOPE_ORDER: usize = 5;
 /// Sectors of the crank angle, 30° each.
 pub(crate) const SECTORS: usize = 12;
 
-/// Longest segment of the spectrum whose shape is told, in samples.
-const LONGEST_SEGMENT: usize = 2048;
+/// The shape of a spectrum is told up to this frequency, Hz: the last edge of the octave bands, which
+/// are the same for every sample rate. What lies above has a band of its own.
+pub(crate) const SHAPE_TO_HZ: f64 = 2560.0;
+
+/// The share of the sample rate that a recorder's filter against aliasing passes; 0.5 would be the
+/// Nyquist frequency. Recorders sample at 2.5 times their bandwidth or more (2.56 in analysers).
+pub(crate) const PASSED: f64 = 0.4;
+
+/// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm, the lowest
+/// usual speed of process compressors (API 618), so that the lines of faster ones stand apart.
+pub(crate) const SEGMENT_S: f64 = 0.2;
 
 /// Mean squares in the bands. A Hann window keeps the strong low orders from leaking into the
 /// high bands.
@@ -70,8 +80,8 @@ pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
 /// The crank angle of a window: as recorded, or of a constant speed.
 pub(crate) fn crank_angle(window: &Window) -> Result<CrankAngle, Reason> {
     let angle = match window.crank_angle {
-        Some(readings) => {
-            let readings: Vec<f64> = readings.iter().map(|a| f64::from(*a)).collect();
+        Some(crank) => {
+            let readings: Vec<f64> = crank.angles.iter().map(|a| f64::from(*a)).collect();
             CrankAngle::from_encoder(&readings)?
         }
         None => {
@@ -118,18 +128,32 @@ impl Orders {
     }
 }
 
-/// The shape of the Welch spectrum over segments of a power of two, a quarter of the record or
-/// less, so that seven segments or more are averaged.
-pub(crate) fn shape(x: &[f64], sample_rate: f64) -> Result<SpectralShape, Reason> {
-    let quarter = (x.len() / 4).clamp(2, LONGEST_SEGMENT);
-    let segment = 1 << quarter.ilog2();
-    let spectrum = welch(x, sample_rate, windows::Window::Hann, segment)?;
-    Ok(spectral_shape(&spectrum)?)
+/// The shape of the Welch spectrum up to [`SHAPE_TO_HZ`], or to what the sample rate resolves if that
+/// is less: over segments of one revolution where the speed is known, of [`SEGMENT_S`] elsewhere. In
+/// samples their length would make of one motion another shape at another sample rate.
+pub(crate) fn shape(
+    x: &[f64],
+    sample_rate: f64,
+    grid: Result<&AngleGrid, Reason>,
+) -> Result<SpectralShape, Reason> {
+    let segments = match grid {
+        Ok(grid) => Segments::revolutions(x.len(), grid.samples_per_revolution()),
+        Err(Reason::NoSpeed) => {
+            Segments::overlapping(x.len(), (SEGMENT_S * sample_rate).round() as usize)
+        }
+        Err(reason) => return Err(reason),
+    };
+    let spectrum = welch_over(x, sample_rate, windows::Window::Hann, &segments)?;
+    let highest = SHAPE_TO_HZ.min(PASSED * sample_rate);
+    Ok(spectral_shape(&spectrum.up_to(highest))?)
 }
 
-/// RMS per sector of the crank angle over all revolutions.
-pub(crate) fn sectors(x: &Revolutions) -> Result<Vec<f64>, Reason> {
-    Ok(crank_waterfall(x, SECTORS)?.sector_rms())
+/// RMS per sector of the crank angle over all revolutions, where it counts from top dead centre.
+pub(crate) fn sectors(x: &Revolutions, window: &Window) -> Result<Vec<f64>, Reason> {
+    match window.crank_angle {
+        Some(crank) if crank.from_top_dead_centre => Ok(crank_waterfall(x, SECTORS)?.sector_rms()),
+        _ => Err(Reason::NoTopDeadCentre),
+    }
 }
 
 /// The cepstrum over the crank angle at the quefrency of one revolution.

@@ -139,6 +139,16 @@ pub fn unwrap(wrapped: &[f64]) -> Result<Vec<f64>, Error> {
     Ok(unwrapped)
 }
 
+/// Whether readings in [0, 2π), rad, fall on the whole, each step taken the shorter way round: those of
+/// an encoder whose direction is reversed.
+pub fn runs_backwards(wrapped: &[f64]) -> bool {
+    let step = |pair: &[f64]| {
+        let change = pair[1] - pair[0];
+        change - TAU * (change / TAU).round()
+    };
+    wrapped.windows(2).map(step).sum::<f64>() < 0.0
+}
+
 fn check_length(got: usize) -> Result<(), Error> {
     if got < 4 {
         return Err(Error::TooFewSamples { needed: 4, got });
@@ -251,6 +261,16 @@ mod tests {
         assert!((even.position(-0.5 * TAU / 100.0) + 0.5).abs() < 1e-12);
         assert!((even.position(TAU) - 100.0).abs() < 1e-9);
         assert!((even.revolutions() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_reversed_encoder_is_told_from_one_that_slips() {
+        let forward: Vec<f64> = (0..1000).map(|i| shaft(i, 90.0).rem_euclid(TAU)).collect();
+        let backward: Vec<f64> = forward.iter().map(|a| (TAU - a).rem_euclid(TAU)).collect();
+        let mut slips = forward.clone();
+        slips[500] -= 0.3;
+        assert!(!runs_backwards(&forward) && !runs_backwards(&slips));
+        assert!(runs_backwards(&backward));
     }
 
     #[test]

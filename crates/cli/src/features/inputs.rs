@@ -1,8 +1,10 @@
 //! The files that arguments name: single ones, the runs of bundles, the tables of datasets.
 
+use super::shaft;
 use crate::Failure;
-use input::bundle::{Bundle, Joint, Run};
-use recordings::measured::{MeasuredFile, Options};
+use input::bundle::{self, Bundle, Joint, Run};
+use input::bundle_channel::Meaning;
+use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
 use recordings::{Column, Kind, Value};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,12 +18,18 @@ pub(super) struct Input {
     pub(super) speed_rpm: Option<f64>,
     /// Labels that the bundle tells.
     pub(super) labels: Vec<(Column, Value)>,
-    /// Units that the bundle tells, by column.
-    pub(super) units: BTreeMap<String, String>,
+    /// What the bundle says that its columns are, with their units.
+    pub(super) meanings: BTreeMap<String, (Meaning, String)>,
 }
 
 impl Input {
-    /// Opens the file; its channels have the units of the bundle, where it has them.
+    /// What the bundle says of a channel.
+    pub(super) fn meaning(&self, channel: &MeasuredChannel) -> Option<&(Meaning, String)> {
+        let of = |name| self.meanings.get(name);
+        of(&channel.column).or_else(|| of(&channel.name))
+    }
+
+    /// Opens the file.
     pub(super) fn open(&self) -> Result<MeasuredFile, Failure> {
         MeasuredFile::open(&self.path, &self.options).map_err(|error| refused(&self.path, error))
     }
@@ -50,19 +58,36 @@ pub(super) fn refused(path: &Path, error: recordings::Error) -> Failure {
     }
 }
 
-/// All files that `paths` name. `options` are those of the arguments.
-pub(super) fn all(
-    paths: &[PathBuf],
-    options: &Options,
-    speed_rpm: Option<f64>,
-) -> Result<Vec<Input>, Failure> {
+/// What the arguments say of all files.
+#[derive(Clone, Debug)]
+pub(super) struct Said {
+    /// Columns and sample rate.
+    pub(super) options: Options,
+    pub(super) speed_rpm: Option<f64>,
+    pub(super) crank: shaft::Asked,
+}
+
+impl Said {
+    /// The options for a file of which these columns tell where the crank stands.
+    fn options(&self, references: impl Iterator<Item = String>) -> Options {
+        let mut options = self.options.clone();
+        // Without a choice of columns all are read.
+        if !options.columns.is_empty() {
+            options.columns.extend(references);
+        }
+        options
+    }
+}
+
+/// All files that `paths` name.
+pub(super) fn all(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Failure> {
     let mut inputs = Vec::new();
+    let mut beside = Beside::default();
     for path in paths {
         if Bundle::is_at(path) {
             let bundle = Bundle::read(path)?;
-            for (i, run) in bundle.runs.iter().enumerate() {
-                let input = of_run(&bundle, i, run, options, speed_rpm)?;
-                inputs.push(input);
+            for i in 0..bundle.runs.len() {
+                inputs.push(of_run(&bundle, i, said)?);
             }
             continue;
         }
@@ -71,15 +96,50 @@ pub(super) fn all(
         } else {
             vec![path.clone()]
         };
-        inputs.extend(files.into_iter().map(|path| Input {
-            path,
-            options: options.clone(),
-            speed_rpm,
-            labels: Vec::new(),
-            units: BTreeMap::new(),
-        }));
+        for path in files {
+            let input = match beside.run_of(&path)? {
+                Some((bundle, i)) => Input {
+                    path,
+                    ..of_run(bundle, i, said)?
+                },
+                None => Input {
+                    path,
+                    options: said.options(said.crank.bare_column().into_iter()),
+                    speed_rpm: said.speed_rpm,
+                    labels: Vec::new(),
+                    meanings: BTreeMap::new(),
+                },
+            };
+            inputs.push(input);
+        }
     }
     Ok(inputs)
+}
+
+/// The bundles beside files, each read once.
+#[derive(Default)]
+struct Beside(BTreeMap<PathBuf, Option<Bundle>>);
+
+impl Beside {
+    /// The run of a `recordings.yaml` in the file's folder whose recording it is.
+    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize)>, Failure> {
+        let Ok(file) = file.canonicalize() else {
+            return Ok(None);
+        };
+        let Some(folder) = file.parent() else {
+            return Ok(None);
+        };
+        if !self.0.contains_key(folder) {
+            let there = folder.join(bundle::FILE).is_file();
+            let bundle = there.then(|| Bundle::read(folder)).transpose()?;
+            self.0.insert(folder.to_owned(), bundle);
+        }
+        let bundle = self.0.get(folder).and_then(Option::as_ref);
+        Ok(bundle.and_then(|bundle| {
+            let is = |run: &Run| bundle.path_of(run).canonicalize().is_ok_and(|p| p == file);
+            Some((bundle, bundle.runs.iter().position(is)?))
+        }))
+    }
 }
 
 /// The recordings of a dataset, in order.
@@ -103,46 +163,45 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-fn of_run(
-    bundle: &Bundle,
-    index: usize,
-    run: &Run,
-    options: &Options,
-    speed_rpm: Option<f64>,
-) -> Result<Input, Failure> {
+fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Failure> {
+    let run = &bundle.runs[index];
+    let throws = crate::bundle::throws(&bundle.machine);
+    let meanings = crate::bundle::meanings(bundle, index, &throws)?;
     let rate = run.sample_rate_hz.map(|rate| rate.get());
     let wrong = |key: &str, expected: String| {
         let error = input::Error::clash(format!("runs.{index}.{key}"), expected);
         Failure::from(bundle.locate(error))
     };
-    if let (Some(of_run), Some(said)) = (rate, options.sample_rate_hz)
-        && of_run != said
+    if let (Some(of_run), Some(asked)) = (rate, said.options.sample_rate_hz)
+        && of_run != asked
     {
         return Err(wrong(
             "sample_rate_hz",
-            format!("the {said} Hz of --sample-rate"),
+            format!("the {asked} Hz of --sample-rate"),
         ));
     }
-    let columns = if options.columns.is_empty() {
+    let listed = || run.channels.iter().zip(&meanings);
+    let asked = said.crank.bare_column().into_iter();
+    let references = listed().filter(|(_, meaning)| {
+        matches!(meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. })
+    });
+    let references = references.map(|(channel, _)| channel.column.clone());
+    let mut options = said.options(asked.clone().chain(references));
+    if options.columns.is_empty() {
         // The column of time is read in any case, and is no channel.
-        let channels = run.channels.iter().filter(|c| c.unit != "s");
-        channels.map(|c| c.column.clone()).collect()
-    } else {
-        options.columns.clone()
-    };
+        let channels = listed().filter(|(c, meaning)| **meaning != Meaning::Time && c.unit != "s");
+        let columns = channels.map(|(channel, _)| channel.column.clone());
+        options.columns = columns.chain(asked).collect();
+    }
+    options.sample_rate_hz = rate.or(options.sample_rate_hz);
     let speed = run.speed_rpm.map(|speed| speed.get());
     Ok(Input {
         path: bundle.path_of(run),
-        options: Options {
-            columns,
-            sample_rate_hz: rate.or(options.sample_rate_hz),
-        },
-        speed_rpm: speed.or(speed_rpm),
+        options,
+        speed_rpm: speed.or(said.speed_rpm),
         labels: labels(run),
-        units: run
-            .channels
-            .iter()
-            .map(|c| (c.column.clone(), c.unit.clone()))
+        meanings: listed()
+            .map(|(c, meaning)| (c.column.clone(), (meaning.clone(), c.unit.clone())))
             .collect(),
     })
 }

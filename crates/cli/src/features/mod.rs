@@ -1,6 +1,9 @@
 //! `crosshead features`: measured recordings become a table of features.
 
 mod inputs;
+mod output;
+mod shaft;
+mod summary;
 mod table;
 mod units;
 mod warnings;
@@ -10,14 +13,16 @@ use crate::Failure;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use input::quantity::{AboveZero, Frequency, Quantity, Speed};
-use inputs::Input;
-use recordings::formats::parquet::TableWriter;
-use recordings::measured::{MeasuredFile, Options, Recording, Windows};
-use recordings::{Value, WholeFile};
+use ::features::FEWEST_SAMPLES;
+use inputs::{Input, Said};
+use output::{Format, Output};
+use recordings::Value;
+use recordings::measured::{LONGEST_BRIDGED, MeasuredFile, Options, Recording, Windows};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use sweep::in_order::in_order;
+use summary::{Summary, counted};
 use table::{Columns, Job, Layout};
 use window::Asked;
 
@@ -29,14 +34,20 @@ const ROWS_PER_GROUP: usize = 4096;
 #[command(after_help = "\
 FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml) or
 a dataset of gen-dataset. A column of time (t, t_s, time) tells the sample rate. Units stand in the
-columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The crank angle is the column
-crank_angle_rad or crank_angle_deg. Without a unit there are statistics alone; without a speed or a
-crank angle nothing per order or revolution. The column `missing` tells why a value is null,
-`warnings` what looks wrong.
+columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the folder of a file
+says what its channels are: crank angle, tacho, accelerations and pressures with their units.
+
+The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead centre,
+or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without a speed, a
+crank angle or a tacho nothing per order or revolution; without top dead centre no sectors of the
+crank angle. The column `missing` tells why a value is null, `warnings` what looks wrong.
+
+Gaps of up to 4 samples without a number are bridged by straight lines; a longer gap ends a window.
 
 Examples:
   crosshead features bearing.wav --unit '50 m/s^2' --speed '1480 rpm' --out bearing.parquet
   crosshead features log.csv --column 'acc [g]' --window '10 revolutions' --speed '500 rpm' --out log.parquet
+  crosshead features log.csv --tacho keyphasor --top-dead-centre '30 deg' --out log-features.csv
   crosshead features datasets/paper2 my-bundle/ --out features.parquet
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
@@ -56,11 +67,22 @@ pub struct Arguments {
     /// Speed of the crank, where neither a crank angle nor the file tells it
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     speed: Option<String>,
+    /// Crank angle, where its column is not called crank_angle_rad or crank_angle_deg; the unit in
+    /// brackets where the file has none: 'encoder [deg]'
+    #[arg(long, value_name = "COLUMN", conflicts_with = "tacho")]
+    crank_angle: Option<String>,
+    /// Pulses, one per revolution
+    #[arg(long, value_name = "COLUMN")]
+    tacho: Option<String>,
+    /// Reading of the crank angle at top dead centre; with a tacho, how far the crank turns from the
+    /// pulse to there
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    top_dead_centre: Option<String>,
     /// Length of a window: '2 s' or '10 revolutions' [default: the whole file up to 10 s (or
     /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     window: Option<String>,
-    /// The table to write; one that is there is replaced
+    /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
     /// Threads that compute [default: one per core]
@@ -74,6 +96,7 @@ pub struct Arguments {
 /// Wrong arguments, a file that cannot be read (nothing is then written), or a table that cannot
 /// be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let format = Format::of(&arguments.out)?;
     let asked = Asked::parse(arguments.window.as_deref())?;
     let unit = arguments
         .unit
@@ -88,8 +111,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .map(sample_rate)
             .transpose()?,
     };
-    let speed = arguments.speed.as_deref().map(speed_rpm).transpose()?;
-    let inputs = inputs::all(&arguments.files, &options, speed)?;
+    let top_dead_centre = arguments.top_dead_centre.as_deref();
+    let said = Said {
+        options,
+        speed_rpm: arguments.speed.as_deref().map(speed_rpm).transpose()?,
+        crank: shaft::Asked {
+            crank_angle: arguments.crank_angle.clone(),
+            tacho: arguments.tacho.clone(),
+            top_dead_centre: top_dead_centre
+                .map(shaft::parse_top_dead_centre)
+                .transpose()?,
+        },
+    };
+    let inputs = inputs::all(&arguments.files, &said)?;
     refuse_input_as_output(&inputs, &arguments.out)?;
 
     let mut labels = Columns::default();
@@ -99,6 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             input,
             &input.open()?,
             unit.as_ref(),
+            &said.crank,
             &mut labels,
         )?);
     }
@@ -106,9 +141,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let note = unknown_units(&layouts);
     let columns = schema.columns().len();
 
-    let out = WholeFile::create(&arguments.out.with_extension("part"), &arguments.out);
-    let out = out.map_err(Failure::input)?;
-    let mut writer = TableWriter::new(out, &schema, ROWS_PER_GROUP).map_err(Failure::work)?;
+    let mut output = Output::create(&arguments.out, format, &schema)?;
+    let mut summary = Summary::new(columns);
     let cancel = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&cancel);
     ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(Failure::work)?;
@@ -141,23 +175,32 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 return Err(Failure::work("interrupted; nothing was written"));
             }
             bar.inc(1);
-            row.map_or(Ok(()), |row| writer.write(row).map_err(Failure::work))
+            let Some(mut row) = row else { return Ok(()) };
+            summary.add(&mut row);
+            output.write(row.values)
         },
     )?;
     bar.finish_and_clear();
-    let rows = writer.rows();
-    writer
-        .finish()
-        .and_then(WholeFile::commit)
-        .map_err(Failure::work)?;
-    if let Some(note) = note {
-        eprintln!("{note}");
+    output.commit()?;
+    for line in note.into_iter().chain(summary.warnings()) {
+        eprintln!("{line}");
     }
     println!(
-        "{}: {rows} windows, {columns} columns, {} files",
+        "{}: {}, {}, {}",
         arguments.out.display(),
-        inputs.len()
+        counted(summary.rows(), "window"),
+        counted(columns as u64, "column"),
+        counted(inputs.len() as u64, "file"),
     );
+    for line in summary.empty(&schema) {
+        println!("{line}");
+    }
+    if summary.bridged() > 0 {
+        println!(
+            "  {} bridged by lines (gaps of up to {LONGEST_BRIDGED})",
+            counted(summary.bridged() as u64, "missing sample")
+        );
+    }
     if left_out > 0.0 {
         println!("  {left_out:.3} s were too short for a window and are left out");
     }
@@ -300,10 +343,10 @@ fn windows(
     })?;
     let stated = layout.stated_speed(recording.labels())?;
     let mut speed = stated;
-    if let (None, Asked::Revolutions(_), Some(index)) = (stated, asked, layout.crank_angle()) {
+    if let (None, Asked::Revolutions(_)) = (stated, asked) {
         let first = recording.peek().map_err(Failure::input)?;
-        let angle = table::crank_angle_of(first[index], &layout.channels[index]);
-        speed = table::speed_rpm(&angle, rate);
+        let crank = layout.crank(&first).and_then(Result::ok);
+        speed = crank.and_then(|crank| shaft::speed_rpm(&crank, rate).ok());
     }
     let length = asked.length(rate, speed, whole).map_err(wrong)?;
     let current = Current {
@@ -312,7 +355,8 @@ fn windows(
         speed_rpm: stated,
         next: 0,
     };
-    let windows = Windows::new(recording, layout.channels.len(), rate, length);
+    let windows = Windows::new(recording, layout.channels.len(), rate, length)
+        .bridging(layout.bridges(), FEWEST_SAMPLES);
     Ok((windows, current))
 }
 

@@ -1,14 +1,16 @@
 //! The table of features: its columns over all files, and its rows.
 
 use super::inputs::Input;
-use super::units::{CRANK_ANGLE, Scaled, scaled};
+use super::summary::counted;
+use super::shaft::{self, Crank};
+use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
 use crate::Failure;
-use ::features::Cell;
-use recordings::measured::{MeasuredFile, Window};
+use ::features::{Cell, CrankAngles, Reason};
+use input::bundle_channel::Meaning;
+use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
-use signal::crank_angle::CrankAngle;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use sweep::dataset::feature_column;
@@ -102,14 +104,18 @@ impl Layout {
         input: &Input,
         file: &MeasuredFile,
         default_unit: Option<&(f64, String)>,
+        crank: &shaft::Asked,
         labels: &mut Columns,
     ) -> Result<Self, Failure> {
         let shown = input.path.display().to_string();
         let wrong = |reason: String| Failure::input(format!("{shown}: {reason}"));
-        let channels = channels(input, file, default_unit).map_err(wrong)?;
-        let unknown = channels.iter().filter(|c| c.unit.is_empty());
+        let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
+        let reference = shaft::reference(&input.path, file, crank, meaning)?;
+        let channels = channels(input, file, default_unit, reference).map_err(wrong)?;
+        let measured = || channels.iter().filter(|c| c.role == Role::Measured);
+        let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();
-        let names = channels.iter().map(|c| (c.name.as_str(), c.unit.as_str()));
+        let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
         let own = |name: &str| file.labels().iter().position(|c| c.name == name);
         let fixed: BTreeSet<String> = first_columns()
             .into_iter()
@@ -164,25 +170,58 @@ impl Layout {
         }
     }
 
-    pub(super) fn crank_angle(&self) -> Option<usize> {
-        self.channels.iter().position(|c| c.is_crank_angle)
+    /// Where the crank stands at each of these samples of the channels; none without a channel that
+    /// tells it.
+    pub(super) fn crank(&self, samples: &[&[f32]]) -> Option<Result<Crank, signal::Error>> {
+        let mut channels = self.channels.iter().zip(samples);
+        channels.find_map(|(channel, samples)| shaft::crank(samples, channel))
+    }
+
+    /// What a line between two samples of each channel is.
+    pub(super) fn bridges(&self) -> Vec<Bridge> {
+        let bridge = |channel: &Scaled| match channel.role {
+            Role::CrankAngle { .. } => Bridge::Turn((TAU / channel.to_si.scale) as f32),
+            _ => Bridge::Line,
+        };
+        self.channels.iter().map(bridge).collect()
     }
 }
 
-/// The channels of a file in SI, each with a name of its own.
+/// The channels of a file in SI, each with a name of its own. `reference` is the one that tells where
+/// the crank stands.
 fn channels(
     input: &Input,
     file: &MeasuredFile,
     default_unit: Option<&(f64, String)>,
+    reference: Option<(usize, Scaled)>,
 ) -> Result<Vec<Scaled>, String> {
     let mut channels = Vec::new();
-    for channel in file.channels() {
+    for (i, channel) in file.channels().iter().enumerate() {
+        if let Some((at, reference)) = &reference
+            && *at == i
+        {
+            channels.push(reference.clone());
+            continue;
+        }
         let mut channel = channel.clone();
-        if let Some(unit) = input.units.get(&channel.column) {
+        let said = input.meaning(&channel);
+        if let Some((_, unit)) = said {
             channel.unit = Some(unit.clone());
         }
+        let of_crank = matches!(said, Some((Meaning::CrankAngle(_) | Meaning::Tacho { .. }, _)));
+        if of_crank || (reference.is_some() && shaft::is_crank_angle(&channel)) {
+            channels.push(Scaled::reference(Role::Unused, shaft::AS_IT_IS));
+            continue;
+        }
         let mut scaled = scaled(&channel, default_unit)?;
-        let taken = |name: &str| channels.iter().any(|c: &Scaled| c.name == name);
+        if let Some((Meaning::Measured { column, to_si }, _)) = said {
+            scaled.to_si = *to_si;
+            scaled.unit = shaft::unit_of(column).to_owned();
+        }
+        let taken = |name: &str| {
+            let mut measured = channels.iter().filter(|c: &&Scaled| c.role == Role::Measured);
+            measured.any(|c| c.name == name)
+        };
         if taken(&scaled.name) {
             scaled.name = channel.column.clone();
         }
@@ -233,32 +272,48 @@ pub(super) struct Job {
     pub(super) window: Window,
 }
 
+/// A row of the table, and what is to be said of it.
+pub(super) struct Row {
+    pub(super) values: Vec<Value>,
+    /// Why features have no value, by column.
+    pub(super) reasons: Vec<(usize, Reason)>,
+    pub(super) file: String,
+    pub(super) start_s: f64,
+    pub(super) warning: Option<String>,
+    /// Samples that were missing and are bridged.
+    pub(super) bridged: usize,
+}
+
 /// The row of a window in a table of `columns` columns.
-pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
+pub(super) fn row(job: &Job, columns: usize) -> Row {
     let layout = &*job.layout;
-    let channels: Vec<Channel> = layout
-        .channels
-        .iter()
-        .zip(&job.window.channels)
+    let measured = layout.channels.iter().zip(&job.window.channels);
+    let measured = measured.filter(|(channel, _)| channel.role == Role::Measured);
+    let channels: Vec<Channel> = measured
         .map(|(channel, samples)| Channel {
             name: channel.name.clone(),
             unit: channel.unit.clone(),
-            samples: samples.iter().map(|x| in_si(*x, channel)).collect(),
+            samples: samples.iter().map(|x| channel.in_si(*x)).collect(),
         })
         .collect();
-    let samples = channels.first().map_or(0, |c| c.samples.len());
-    let crank_angle = channels.iter().find(|c| c.name == CRANK_ANGLE);
-    let crank_angle = crank_angle.map(|c| c.samples.as_slice());
-    let cells = ::features::row(
+    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let samples = raw.first().map_or(0, |samples| samples.len());
+    let crank = layout.crank(&raw);
+    let known = crank.as_ref().and_then(|crank| crank.as_ref().ok());
+    let (cells, reasons) = ::features::row_with_reasons(
         &::features::Window {
             sample_rate: job.sample_rate_hz,
             speed_rpm: job.speed_rpm,
-            crank_angle,
+            crank_angle: known.map(|crank| CrankAngles {
+                angles: &crank.angles,
+                from_top_dead_centre: crank.from_top_dead_centre,
+            }),
             channels: &channels,
         },
         true,
     );
-    let measured = crank_angle.and_then(|angle| speed_rpm(angle, job.sample_rate_hz));
+    let speed = known.map(|crank| shaft::speed_rpm(crank, job.sample_rate_hz));
+    let measured_rpm = speed.as_ref().and_then(|speed| speed.as_ref().ok().copied());
     let index = match layout.window_label.and_then(|i| job.labels.get(i)) {
         Some(Value::Integer(window)) if job.index == 0 => *window,
         _ => job.index as i64,
@@ -270,7 +325,7 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
         job.window.start_s.into(),
         (samples as f64 / job.sample_rate_hz).into(),
         job.sample_rate_hz.into(),
-        measured.or(job.speed_rpm).into(),
+        measured_rpm.or(job.speed_rpm).into(),
     ];
     for (place, value) in row.iter_mut().zip(first) {
         *place = value;
@@ -290,42 +345,39 @@ pub(super) fn row(job: &Job, columns: usize) -> Vec<Value> {
             Some(Cell::Text(text)) => text.into(),
         };
     }
-    row[columns - 1] = warnings(job, &channels).into();
-    row
-}
-
-/// A sample in SI; crank angles are taken into [0, 2π).
-fn in_si(sample: f32, channel: &Scaled) -> f32 {
-    if channel.factor == 1.0 && !channel.is_crank_angle {
-        return sample;
+    let of_crank = shaft::warning(
+        crank.as_ref(),
+        speed.as_ref(),
+        job.speed_rpm,
+        job.sample_rate_hz,
+    );
+    let warning = warnings(job, &channels, of_crank);
+    row[columns - 1] = warning.clone().into();
+    let reasons = layout.feature_positions.iter().copied().zip(reasons);
+    Row {
+        values: row,
+        reasons: reasons
+            .filter_map(|(column, reason)| Some((column, reason?)))
+            .collect(),
+        file: layout.file.clone(),
+        start_s: job.window.start_s,
+        warning,
+        bridged: job.window.bridged.iter().sum(),
     }
-    let value = f64::from(sample) * channel.factor;
-    if channel.is_crank_angle {
-        value.rem_euclid(TAU) as f32
-    } else {
-        value as f32
-    }
 }
 
-/// The mean speed that the crank angle tells.
-pub(super) fn speed_rpm(crank_angle: &[f32], sample_rate_hz: f64) -> Option<f64> {
-    let readings: Vec<f64> = crank_angle.iter().map(|a| f64::from(*a)).collect();
-    let angle = CrankAngle::from_encoder(&readings).ok()?;
-    Some(60.0 * sample_rate_hz / angle.samples_per_revolution())
-}
-
-/// Samples of a crank angle as the file has them, in [0, 2π).
-pub(super) fn crank_angle_of(samples: &[f32], channel: &Scaled) -> Vec<f32> {
-    samples.iter().map(|x| in_si(*x, channel)).collect()
-}
-
-fn warnings(job: &Job, channels: &[Channel]) -> Option<String> {
+fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<String> {
     let gap = job.window.gap_s;
     let gap = gap.map(|gap| format!("{gap:.6} s are missing before the window"));
+    let bridged = job.layout.channels.iter().zip(&job.window.bridged);
+    let bridged = bridged.filter(|(_, count)| **count > 0).map(|(channel, count)| {
+        let samples = counted(*count as u64, "missing sample");
+        format!("{}: {samples} bridged by a line", channel.name)
+    });
     // Pressures rest at their limits while a valve is open.
     let clipped = channels
         .iter()
-        .filter(|c| c.name != CRANK_ANGLE && c.unit != "Pa")
+        .filter(|c| c.unit != "Pa")
         .filter_map(|channel| {
             let samples = clipped(&channel.samples)?;
             Some(format!(
@@ -333,6 +385,7 @@ fn warnings(job: &Job, channels: &[Channel]) -> Option<String> {
                 channel.name
             ))
         });
-    let all: Vec<String> = gap.into_iter().chain(clipped).collect();
+    let of_crank = gap.into_iter().chain(crank);
+    let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
     (!all.is_empty()).then(|| all.join("; "))
 }

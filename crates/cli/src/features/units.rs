@@ -1,6 +1,7 @@
 //! Units of measured channels: what a file says becomes SI, so that features compare.
 
 use crate::Failure;
+use input::bundle_channel::ToSi;
 use recordings::measured::{MeasuredChannel, stem};
 
 /// Standard gravity, m/s^2 (CGPM 1901). A measured `g` is never a gram.
@@ -12,18 +13,48 @@ const PSI: f64 = 6894.757;
 /// A channel as the features take it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Scaled {
-    /// Name without its unit; `crank_angle_rad` for the crank angle.
+    /// Name without its unit.
     pub(super) name: String,
     /// Unit as the features know it, empty where it is not known.
     pub(super) unit: String,
-    /// Units per unit of the file.
-    pub(super) factor: f64,
-    /// Whether it is the crank angle, which is taken into [0, 2π).
-    pub(super) is_crank_angle: bool,
+    /// How its numbers become those of the unit.
+    pub(super) to_si: ToSi,
+    /// What it is for.
+    pub(super) role: Role,
 }
 
-/// The name of the crank angle's channel.
-pub(super) const CRANK_ANGLE: &str = "crank_angle_rad";
+/// What a channel is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// It has features.
+    Measured,
+    /// It tells where the crank stands, with the reading at top dead centre, rad, if that is known.
+    CrankAngle { top_dead_centre: Option<f64> },
+    /// Its pulses tell it; the angle from a pulse to top dead centre, rad, if that is known.
+    Tacho { top_dead_centre: Option<f64> },
+    /// It tells of the crank too, but another channel is asked.
+    Unused,
+}
+
+impl Scaled {
+    /// The channel that tells where the crank stands.
+    pub(super) fn reference(role: Role, to_si: ToSi) -> Self {
+        Self {
+            name: "crank_angle".to_owned(),
+            unit: "rad".to_owned(),
+            to_si,
+            role,
+        }
+    }
+
+    /// A sample in SI.
+    pub(super) fn in_si(&self, sample: f32) -> f32 {
+        match self.to_si {
+            ToSi { offset: 0.0, scale: 1.0 } => sample,
+            to_si => to_si.of(f64::from(sample)) as f32,
+        }
+    }
+}
 
 /// What `--unit` says of channels without a unit: a unit (`m/s^2`), or how much one unit of the
 /// file is (`100 m/s^2`).
@@ -68,9 +99,13 @@ pub(super) fn scaled(
     Ok(Scaled {
         name: name.to_owned(),
         unit,
-        factor,
-        is_crank_angle: false,
+        to_si: times(factor),
+        role: Role::Measured,
     })
+}
+
+fn times(scale: f64) -> ToSi {
+    ToSi { offset: 0.0, scale }
 }
 
 fn crank_angle(channel: &MeasuredChannel) -> Result<Scaled, String> {
@@ -84,12 +119,10 @@ fn crank_angle(channel: &MeasuredChannel) -> Result<Scaled, String> {
             ));
         }
     };
-    Ok(Scaled {
-        name: CRANK_ANGLE.to_owned(),
-        unit: "rad".to_owned(),
-        factor,
-        is_crank_angle: true,
-    })
+    let role = Role::CrankAngle {
+        top_dead_centre: Some(0.0),
+    };
+    Ok(Scaled::reference(role, times(factor)))
 }
 
 /// SI units per `unit`, and their name. Speeds stay in rpm, as the field has them.
@@ -131,14 +164,13 @@ mod tests {
         ] {
             let found = scaled(&channel(name, unit), None).unwrap();
             assert_eq!(
-                (found.name.as_str(), found.unit.as_str(), found.factor),
+                (found.name.as_str(), found.unit.as_str(), found.to_si.scale),
                 expected
             );
         }
         let angle = scaled(&channel("crank_angle_deg", Some("deg")), None).unwrap();
-        assert!(
-            angle.is_crank_angle && (angle.factor * 180.0 - std::f64::consts::PI).abs() < 1e-15
-        );
+        assert!(matches!(angle.role, Role::CrankAngle { .. }));
+        assert!((angle.to_si.of(180.0) - std::f64::consts::PI).abs() < 1e-15);
         assert!(scaled(&channel("crank_angle", None), None).is_err());
     }
 

@@ -59,7 +59,7 @@ impl Asked {
             (Self::Revolutions(count), Some(speed)) => count * 60.0 / speed * sample_rate_hz,
             (Self::Revolutions(_), None) => {
                 return Err(
-                    "a window in revolutions needs the speed: give --speed, or --window in seconds"
+                    "a window in revolutions needs the speed: give --speed, --tacho or --crank-angle, or --window in seconds"
                         .into(),
                 );
             }

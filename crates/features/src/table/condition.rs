@@ -2,7 +2,7 @@
 //! impacts, what repeats every revolution, and where in the revolution it is.
 
 use super::{Line, MCFADDEN, Unit, Value};
-use crate::spectral::{HIGHEST_ENVELOPE_ORDER, SECTORS};
+use crate::spectral::{HIGHEST_ENVELOPE_ORDER, PASSED, SECTORS, SEGMENT_S, SHAPE_TO_HZ};
 
 const PEETERS: &str = "Peeters 2004, A large set of audio features, IRCAM, 6.1; spectrum: Welch \
     1967, IEEE Trans. Audio Electroacoustics 15, 70";
@@ -14,6 +14,13 @@ const RANDALL: &str = "Randall, Antoni 2011, Mechanical Systems and Signal Proce
 const CEPSTRUM: &str = "Randall 2017, Mechanical Systems and Signal Processing 97, 3; over crank \
     angle, magnitudes not below 1e-4 of the largest";
 const OWN: &str = "crate signal, module crank_waterfall";
+/// Over what the shape of a spectrum is told.
+fn shape_of() -> String {
+    format!(
+        "up to {SHAPE_TO_HZ} Hz ({PASSED} of the sample rate if that is less), in segments of one \
+         revolution ({SEGMENT_S} s where no speed is known)"
+    )
+}
 
 pub(super) fn lines() -> impl Iterator<Item = Line> {
     let envelope = envelope().into_iter();
@@ -45,11 +52,12 @@ fn line(
 }
 
 fn shape() -> [Line; 3] {
+    let of = shape_of();
     [
         line(
             "spectral_centroid",
             Unit::Of("Hz"),
-            "Mean frequency of the power about the mean",
+            format!("Mean frequency of the power {of}"),
             "f̄ = Σ f_k p_k, p_k = S_k/ΣS, S the Welch spectrum",
             PEETERS,
             Value::Shape(|s| s.centroid),
@@ -57,7 +65,7 @@ fn shape() -> [Line; 3] {
         line(
             "spectral_spread",
             Unit::Of("Hz"),
-            "Standard deviation of the power over frequency",
+            format!("Standard deviation over frequency of the power {of}"),
             "√Σ (f_k − f̄)² p_k",
             PEETERS,
             Value::Shape(|s| s.spread),
@@ -65,7 +73,7 @@ fn shape() -> [Line; 3] {
         line(
             "spectral_entropy",
             Unit::Pure,
-            "Entropy of the power over frequency; 0 for a line, 1 for white noise",
+            format!("Entropy over frequency, 0 for a line, 1 for white noise, of the power {of}"),
             "−Σ p_k ln p_k / ln K over K bins",
             INOUYE,
             Value::Shape(|s| s.entropy),
@@ -152,7 +160,7 @@ fn sector(index: usize) -> Line {
     line(
         format!("sector_{:02}_rms", index + 1),
         Unit::OfChannel,
-        format!("RMS at crank angles from {low}° to {high}°, over the whole revolutions"),
+        format!("RMS at crank angles from {low}° to {high}° after top dead centre, over the whole revolutions"),
         "√⟨x(θ)²⟩ over the sector",
         OWN,
         Value::Sector(index),

@@ -7,13 +7,15 @@
 //! a window, whatever the length of the file.
 //!
 //! Samples become float32. A cell without a number becomes NaN: what is made of it is for those
-//! to say who use it.
+//! to say who use it; [`Windows::bridging`] bridges short gaps and splits at long ones.
 
+mod blanks;
 mod clock;
 mod kind;
 mod names;
 mod windows;
 
+pub use blanks::{Bridge, LONGEST_BRIDGED};
 pub use names::stem;
 pub use windows::{Length, Window, Windows};
 

@@ -1,7 +1,9 @@
 //! Recordings cut into windows.
 
+use super::blanks::{self, Bridge};
 use super::Recording;
 use crate::Error;
+use std::collections::VecDeque;
 
 /// How long windows are, in samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +24,8 @@ pub struct Window {
     pub gap_s: Option<f64>,
     /// The samples of each channel.
     pub channels: Vec<Vec<f32>>,
+    /// Samples of each channel that were missing and are bridged by a line ([`Windows::bridging`]).
+    pub bridged: Vec<usize>,
 }
 
 /// The windows of a recording, one after the other. Every stretch between gaps begins anew.
@@ -35,10 +39,21 @@ pub struct Windows {
     first: u64,
     windows: u64,
     gap_s: Option<f64>,
-    /// A gap, and the samples behind it, that belong to the next stretch.
-    ahead: Option<(f64, Vec<Vec<f32>>)>,
+    /// Gaps, and the samples behind each, that belong to the next stretches.
+    ahead: VecDeque<(f64, Vec<Vec<f32>>)>,
     left_out: u64,
     ended: bool,
+    blanks: Option<Blanks>,
+}
+
+/// What is made of samples without a number.
+struct Blanks {
+    /// Of each channel.
+    bridges: Vec<Bridge>,
+    /// Fewest samples of a piece beside a gap that is a window.
+    shortest: usize,
+    /// Whether the stretch begins or ends at such a gap.
+    beside: bool,
 }
 
 impl Windows {
@@ -53,10 +68,23 @@ impl Windows {
             first: 0,
             windows: 0,
             gap_s: None,
-            ahead: None,
+            ahead: VecDeque::new(),
             left_out: 0,
             ended: false,
+            blanks: None,
         }
+    }
+
+    /// Bridges gaps of up to [`LONGEST_BRIDGED`](super::LONGEST_BRIDGED) samples without a number by
+    /// lines, for each channel by its own kind, and ends a stretch at longer ones, as at a gap in time.
+    /// Pieces of fewer than `shortest` samples beside such a gap are left out.
+    pub fn bridging(mut self, bridges: Vec<Bridge>, shortest: usize) -> Self {
+        self.blanks = Some(Blanks {
+            bridges,
+            shortest,
+            beside: false,
+        });
+        self
     }
 
     /// Samples so far that were too few for a window.
@@ -83,18 +111,27 @@ impl Windows {
     fn cut(&mut self, samples: usize) -> Window {
         let start_s = self.stretch_s + self.first as f64 / self.sample_rate_hz;
         let channels = self.buffer.iter_mut();
-        let channels = channels
+        let mut channels: Vec<Vec<f32>> = channels
             .map(|channel| {
                 let rest = channel.split_off(samples);
                 std::mem::replace(channel, rest)
             })
             .collect();
+        let bridged = match &self.blanks {
+            Some(blanks) => channels
+                .iter_mut()
+                .zip(&blanks.bridges)
+                .map(|(channel, kind)| blanks::bridge(channel, *kind))
+                .collect(),
+            None => vec![0; channels.len()],
+        };
         self.first += samples as u64;
         self.windows += 1;
         Window {
             start_s,
             gap_s: self.gap_s.take(),
             channels,
+            bridged,
         }
     }
 
@@ -114,6 +151,8 @@ impl Windows {
             Length::Equal(_) => false,
             Length::UpTo(most) => self.windows == 0 || 2 * left >= most,
         };
+        let piece = self.blanks.as_ref().filter(|blanks| blanks.beside);
+        let enough = enough && piece.is_none_or(|blanks| left >= blanks.shortest);
         if left > 0 && enough {
             return Some(self.cut(left));
         }
@@ -121,10 +160,37 @@ impl Windows {
         None
     }
 
+    /// Ends the stretch at the first gap of the next `samples` that is too long to be bridged, if there
+    /// is one: what follows it belongs to the next stretch.
+    fn split(&mut self, samples: usize) -> bool {
+        let Some(blanks) = &mut self.blanks else {
+            return false;
+        };
+        let next: Vec<&[f32]> = self.buffer.iter().map(|c| &c[..samples]).collect();
+        let Some(gap) = blanks::first_long_gap(&next, blanks.shortest) else {
+            return false;
+        };
+        blanks.beside = true;
+        let behind = self.buffer.iter_mut().map(|channel| {
+            let behind = channel.split_off(gap.end);
+            channel.truncate(gap.start);
+            behind
+        });
+        let behind = behind.collect();
+        let gap_s = gap.len() as f64 / self.sample_rate_hz;
+        self.ahead.push_front((gap_s, behind));
+        true
+    }
+
     /// Begins the stretch after a gap.
     fn begin(&mut self, gap_s: f64, samples: Vec<Vec<f32>>) {
         let read = self.first + self.buffered() as u64;
         self.stretch_s += read as f64 / self.sample_rate_hz + gap_s;
+        // Two gaps without a sample between them are one.
+        let gap_s = match self.gap_s {
+            Some(before) if read == 0 => before + gap_s,
+            _ => gap_s,
+        };
         self.buffer = samples;
         self.first = 0;
         self.windows = 0;
@@ -135,10 +201,16 @@ impl Windows {
         loop {
             let (first, samples) = self.span(self.windows);
             self.skip_to(first);
-            if self.first == first && self.buffered() >= samples {
+            let whole = self.first == first && self.buffered() >= samples;
+            let last = self.ended || !self.ahead.is_empty();
+            let complete = if whole { samples } else { self.buffered() };
+            if (whole || last) && self.split(complete) {
+                continue;
+            }
+            if whole {
                 return Ok(Some(self.cut(samples)));
             }
-            if let Some((gap_s, ahead)) = self.ahead.take() {
+            if let Some((gap_s, ahead)) = self.ahead.pop_front() {
                 let rest = self.rest();
                 self.begin(gap_s, ahead);
                 match rest {
@@ -157,7 +229,7 @@ impl Windows {
             if block.samples == 0 {
                 self.ended = true;
             } else if let Some(gap_s) = block.gap_s {
-                self.ahead = Some((gap_s, read));
+                self.ahead.push_back((gap_s, read));
             } else {
                 for (channel, mut read) in self.buffer.iter_mut().zip(read) {
                     channel.append(&mut read);

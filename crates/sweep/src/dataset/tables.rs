@@ -191,7 +191,10 @@ pub(super) fn features_row(
     let window = features::Window {
         sample_rate: sample_rate_hz,
         speed_rpm: Some(case.operating_point.speed_rpm),
-        crank_angle: crank_angle.map(|c| c.samples.as_slice()),
+        crank_angle: crank_angle.map(|c| features::CrankAngles {
+            angles: &c.samples,
+            from_top_dead_centre: true,
+        }),
         channels,
     };
     let cells = features::row(&window, plan.chaos);
