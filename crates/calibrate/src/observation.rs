@@ -311,4 +311,28 @@ mod tests {
         let repeats = all.each_ref().map(|run| run.repeats_like(&all));
         assert_eq!(repeats, [true, true, true, false]);
     }
+
+    #[test]
+    fn the_limit_at_which_a_channel_is_clipped_is_named() {
+        let clipped = |limits: [f64; 2]| {
+            let wave = (0..100).map(|i| (0.1 * f64::from(i)).sin().clamp(limits[0], limits[1]));
+            let channel = Channel {
+                column: "crosshead_acceleration_m_s2".into(),
+                samples: wave.collect(),
+            };
+            let run = Run {
+                id: "a".into(),
+                settings: Vec::new(),
+                speed_rpm: 600.0,
+                sample_rate: 1000.0,
+                crank_angle: None,
+                channels: Vec::new(),
+            };
+            not_clipped(&run, &channel).unwrap_err().to_string()
+        };
+        let least = clipped([-0.5, 1.0]);
+        assert!(least.ends_with("stand at its least value -0.5"), "{least}");
+        let greatest = clipped([-1.0, 0.5]);
+        assert!(greatest.ends_with("stand at its greatest value 0.5"), "{greatest}");
+    }
 }

@@ -285,8 +285,8 @@ fn what_is_wrong_with_a_signal_stands_beside_its_features() {
         ),
         (
             "holes.csv",
-            "missing",
-            "acc: sample 77 is not a finite number",
+            "warnings",
+            "acc: 1 missing sample bridged by a line",
         ),
         (
             "infinite.csv",
