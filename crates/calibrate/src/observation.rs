@@ -333,6 +333,9 @@ mod tests {
         let least = clipped([-0.5, 1.0]);
         assert!(least.ends_with("stand at its least value -0.5"), "{least}");
         let greatest = clipped([-1.0, 0.5]);
-        assert!(greatest.ends_with("stand at its greatest value 0.5"), "{greatest}");
+        assert!(
+            greatest.ends_with("stand at its greatest value 0.5"),
+            "{greatest}"
+        );
     }
 }

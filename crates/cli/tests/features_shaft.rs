@@ -23,7 +23,8 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 /// The table that is written, what is printed, and what is said beside it.
 fn features(folder: &Path, arguments: &[&str]) -> (Table, String, String) {
     let output = run(folder, &[arguments, &["--out", "out.parquet"]].concat());
-    let [printed, told] = [&output.stdout, &output.stderr].map(|t| String::from_utf8_lossy(t).into());
+    let [printed, told] =
+        [&output.stdout, &output.stderr].map(|t| String::from_utf8_lossy(t).into());
     assert!(output.status.success(), "{arguments:?}: {told}");
     let table = read_table(&folder.join("out.parquet")).unwrap();
     (table, printed, told)
@@ -104,7 +105,10 @@ fn recordings_yaml_says_what_the_channels_are() {
         let order = real(&table, "ch1.order_01_m_s2").unwrap();
         assert!(order > 1.0, "{path}: {order} {missing}");
         let sector = |k: usize| real(&table, &format!("ch1.sector_{k:02}_rms_m_s2")).unwrap();
-        assert!((1..=12).all(|k| k == 2 || sector(k) < 0.5 * sector(2)), "{path}");
+        assert!(
+            (1..=12).all(|k| k == 2 || sector(k) < 0.5 * sector(2)),
+            "{path}"
+        );
         assert!(table.schema().position("tach.mean").is_err());
     }
     // A unit that cannot be one of the channel's is told with its line.
@@ -134,7 +138,11 @@ fn arguments_say_where_the_crank_stands() {
         assert!((real(&table, "speed_rpm").unwrap() - 600.0).abs() < 0.1);
         assert_eq!(real(&table, "ch1.sector_02_rms_m_s2"), None);
         assert!(printed.contains(top), "{printed}");
-        let zero = if reference[0] == "--tacho" { "60 deg" } else { "30 deg" };
+        let zero = if reference[0] == "--tacho" {
+            "60 deg"
+        } else {
+            "30 deg"
+        };
         let (table, printed, _) = of(&[&reference[..], &["--top-dead-centre", zero]].concat());
         let sector = |k: usize| real(&table, &format!("ch1.sector_{k:02}_rms_m_s2")).unwrap();
         assert!((1..=12).all(|k| k == 2 || sector(k) < 0.5 * sector(2)));
@@ -143,9 +151,15 @@ fn arguments_say_where_the_crank_stands() {
     for (arguments, expected) in [
         (["--tacho", "tch"], "no column `tch`"),
         (["--crank-angle", "enc"], "--crank-angle 'enc [deg]'"),
-        (["--top-dead-centre", "30"], "--top-dead-centre: found '30' (no unit)"),
+        (
+            ["--top-dead-centre", "30"],
+            "--top-dead-centre: found '30' (no unit)",
+        ),
     ] {
-        let output = run(folder, &[&["a.csv", "--out", "o.csv"], &arguments[..]].concat());
+        let output = run(
+            folder,
+            &[&["a.csv", "--out", "o.csv"], &arguments[..]].concat(),
+        );
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2));
         assert!(message.contains(expected), "{message}");
@@ -173,7 +187,13 @@ fn short_gaps_are_bridged_and_long_ones_split() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let blank = |gap: std::ops::Range<usize>| {
-        move |i: usize, x: f64| if gap.contains(&i) { String::new() } else { x.to_string() }
+        move |i: usize, x: f64| {
+            if gap.contains(&i) {
+                String::new()
+            } else {
+                x.to_string()
+            }
+        }
     };
     let tacho = ["--unit", "g", "--column", "ch1", "--tacho", "tach"];
     write(folder, "short.csv", 4000, blank(1000..1003));
@@ -218,7 +238,10 @@ fn the_ending_says_what_is_written() {
     assert_eq!(written.lines().count(), 2);
     for (out, expected) in [
         (".", "--out: . is a folder, expected a file"),
-        ("x.xlsx", "--out: found x.xlsx, expected a name that ends in .parquet or .csv"),
+        (
+            "x.xlsx",
+            "--out: found x.xlsx, expected a name that ends in .parquet or .csv",
+        ),
         ("x", "expected a name that ends in .parquet or .csv"),
     ] {
         let output = run(folder, &["a.csv", "--out", out]);

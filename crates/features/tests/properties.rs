@@ -315,7 +315,10 @@ fn sectors_need_top_dead_centre() {
     assert_eq!(sector(Some(unknown)), Err(Reason::NoTopDeadCentre));
     // The speed alone does not tell it either: the first sample stands anywhere.
     assert_eq!(sector(None), Err(Reason::NoTopDeadCentre));
-    assert_eq!(Reason::NoTopDeadCentre.remedy(), Some(Remedy::TopDeadCentre));
+    assert_eq!(
+        Reason::NoTopDeadCentre.remedy(),
+        Some(Remedy::TopDeadCentre)
+    );
 }
 
 /// The transforms keep state per thread; the bits must not show it.

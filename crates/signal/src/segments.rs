@@ -34,7 +34,9 @@ impl Segments {
         let length = per_revolution.round() as usize;
         let step = per_revolution / STEPS as f64;
         let starts = (0..).map(|i| (f64::from(i) * step).round() as usize);
-        let mut starts: Vec<usize> = starts.take_while(|start| start + length <= samples).collect();
+        let mut starts: Vec<usize> = starts
+            .take_while(|start| start + length <= samples)
+            .collect();
         if starts.len() > STEPS {
             starts.truncate(starts.len() / STEPS * STEPS);
         }
@@ -77,7 +79,9 @@ mod tests {
         let spectrum = |from: usize| {
             let x: Vec<f64> = (from..from + 900).map(wave).collect();
             let segments = Segments::revolutions(x.len(), 240.0);
-            welch_over(&x, 240.0, Window::Hann, &segments).unwrap().density
+            welch_over(&x, 240.0, Window::Hann, &segments)
+                .unwrap()
+                .density
         };
         let one = spectrum(0);
         for from in [7, 60, 101, 239] {

@@ -140,7 +140,13 @@ mod tests {
     #[test]
     fn bins_up_to_a_frequency_are_kept() {
         let psd = || welch(&[1.0, -1.0, 2.0, 0.0], 40.0, Window::Rectangular, 4).unwrap();
-        for (highest, bins) in [(9.0, 1), (10.0, 2), (19.9, 2), (20.0, 3), (f64::INFINITY, 3)] {
+        for (highest, bins) in [
+            (9.0, 1),
+            (10.0, 2),
+            (19.9, 2),
+            (20.0, 3),
+            (f64::INFINITY, 3),
+        ] {
             assert_eq!(psd().up_to(highest).density.len(), bins);
         }
     }

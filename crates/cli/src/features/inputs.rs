@@ -182,9 +182,8 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Failure> 
     }
     let listed = || run.channels.iter().zip(&meanings);
     let asked = said.crank.bare_column().into_iter();
-    let references = listed().filter(|(_, meaning)| {
-        matches!(meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. })
-    });
+    let references = listed()
+        .filter(|(_, meaning)| matches!(meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. }));
     let references = references.map(|(channel, _)| channel.column.clone());
     let mut options = said.options(asked.clone().chain(references));
     if options.columns.is_empty() {

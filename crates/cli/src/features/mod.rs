@@ -10,10 +10,10 @@ mod warnings;
 mod window;
 
 use crate::Failure;
+use ::features::FEWEST_SAMPLES;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use input::quantity::{AboveZero, Frequency, Quantity, Speed};
-use ::features::FEWEST_SAMPLES;
 use inputs::{Input, Said};
 use output::{Format, Output};
 use recordings::Value;
@@ -21,8 +21,8 @@ use recordings::measured::{LONGEST_BRIDGED, MeasuredFile, Options, Recording, Wi
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use sweep::in_order::in_order;
 use summary::{Summary, counted};
+use sweep::in_order::in_order;
 use table::{Columns, Job, Layout};
 use window::Asked;
 

@@ -95,8 +95,7 @@ pub(super) fn reference(
         (Some(pulses), _) => Ok(Some(pulses)),
         (None, None) => Ok(None),
         (None, Some(i)) => {
-            let wrong =
-                |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+            let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
             let mut angle = scaled(&channels[i], None).map_err(wrong)?;
             angle.role = Role::CrankAngle {
                 top_dead_centre: asked.top_dead_centre.or(Some(0.0)),
@@ -160,11 +159,7 @@ fn named(
     Err(inputs::refused(path, error))
 }
 
-fn angle_unit(
-    path: &Path,
-    channel: &MeasuredChannel,
-    unit: Option<&str>,
-) -> Result<ToSi, Failure> {
+fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Result<ToSi, Failure> {
     let scale = match unit {
         Some("rad") => 1.0,
         Some("deg" | "°" | "degree" | "degrees") => TAU / 360.0,

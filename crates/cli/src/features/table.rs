@@ -1,8 +1,8 @@
 //! The table of features: its columns over all files, and its rows.
 
 use super::inputs::Input;
-use super::summary::counted;
 use super::shaft::{self, Crank};
+use super::summary::counted;
 use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
 use crate::Failure;
@@ -208,7 +208,10 @@ fn channels(
         if let Some((_, unit)) = said {
             channel.unit = Some(unit.clone());
         }
-        let of_crank = matches!(said, Some((Meaning::CrankAngle(_) | Meaning::Tacho { .. }, _)));
+        let of_crank = matches!(
+            said,
+            Some((Meaning::CrankAngle(_) | Meaning::Tacho { .. }, _))
+        );
         if of_crank || (reference.is_some() && shaft::is_crank_angle(&channel)) {
             channels.push(Scaled::reference(Role::Unused, shaft::AS_IT_IS));
             continue;
@@ -219,7 +222,9 @@ fn channels(
             scaled.unit = shaft::unit_of(column).to_owned();
         }
         let taken = |name: &str| {
-            let mut measured = channels.iter().filter(|c: &&Scaled| c.role == Role::Measured);
+            let mut measured = channels
+                .iter()
+                .filter(|c: &&Scaled| c.role == Role::Measured);
             measured.any(|c| c.name == name)
         };
         if taken(&scaled.name) {
@@ -313,7 +318,9 @@ pub(super) fn row(job: &Job, columns: usize) -> Row {
         true,
     );
     let speed = known.map(|crank| shaft::speed_rpm(crank, job.sample_rate_hz));
-    let measured_rpm = speed.as_ref().and_then(|speed| speed.as_ref().ok().copied());
+    let measured_rpm = speed
+        .as_ref()
+        .and_then(|speed| speed.as_ref().ok().copied());
     let index = match layout.window_label.and_then(|i| job.labels.get(i)) {
         Some(Value::Integer(window)) if job.index == 0 => *window,
         _ => job.index as i64,
@@ -370,10 +377,12 @@ fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<St
     let gap = job.window.gap_s;
     let gap = gap.map(|gap| format!("{gap:.6} s are missing before the window"));
     let bridged = job.layout.channels.iter().zip(&job.window.bridged);
-    let bridged = bridged.filter(|(_, count)| **count > 0).map(|(channel, count)| {
-        let samples = counted(*count as u64, "missing sample");
-        format!("{}: {samples} bridged by a line", channel.name)
-    });
+    let bridged = bridged
+        .filter(|(_, count)| **count > 0)
+        .map(|(channel, count)| {
+            let samples = counted(*count as u64, "missing sample");
+            format!("{}: {samples} bridged by a line", channel.name)
+        });
     // Pressures rest at their limits while a valve is open.
     let clipped = channels
         .iter()

@@ -50,7 +50,10 @@ impl Scaled {
     /// A sample in SI.
     pub(super) fn in_si(&self, sample: f32) -> f32 {
         match self.to_si {
-            ToSi { offset: 0.0, scale: 1.0 } => sample,
+            ToSi {
+                offset: 0.0,
+                scale: 1.0,
+            } => sample,
             to_si => to_si.of(f64::from(sample)) as f32,
         }
     }

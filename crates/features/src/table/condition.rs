@@ -160,7 +160,9 @@ fn sector(index: usize) -> Line {
     line(
         format!("sector_{:02}_rms", index + 1),
         Unit::OfChannel,
-        format!("RMS at crank angles from {low}° to {high}° after top dead centre, over the whole revolutions"),
+        format!(
+            "RMS at crank angles from {low}° to {high}° after top dead centre, over the whole revolutions"
+        ),
         "√⟨x(θ)²⟩ over the sector",
         OWN,
         Value::Sector(index),

@@ -1,7 +1,7 @@
 //! Recordings cut into windows.
 
-use super::blanks::{self, Bridge};
 use super::Recording;
+use super::blanks::{self, Bridge};
 use crate::Error;
 use std::collections::VecDeque;
 
