@@ -72,15 +72,16 @@ impl Block {
 
     /// Paths of the machine file that have an axis of their own, in order.
     pub(super) fn paths(&self) -> Vec<&str> {
-        fn path(target: &Target) -> Option<&str> {
-            match target {
-                Target::Path(path) => Some(path),
-                _ => None,
-            }
+        fn paths(target: &Target) -> impl Iterator<Item = &str> {
+            let paths = match target {
+                Target::Paths(paths) => paths.as_slice(),
+                _ => &[],
+            };
+            paths.iter().map(String::as_str)
         }
         match self {
-            Block::Listed(block) => block.targets().filter_map(path).collect(),
-            Block::Drawn(block) => block.targets().filter_map(path).collect(),
+            Block::Listed(block) => block.targets().flat_map(paths).collect(),
+            Block::Drawn(block) => block.targets().flat_map(paths).collect(),
         }
     }
 }

@@ -32,7 +32,7 @@ use simulate::{ExponentSettings, Extent, Settings, Transient};
 use crate::design::hash::unit;
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Amount, Format, MOST_CASES_A_SHARD, Run, SweepFile, Windows};
+use crate::sweep_file::{Amount, Format, MOST_CASES_A_SHARD, Run, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use sampler::Sampler;
@@ -49,6 +49,8 @@ const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 
 pub struct Plan {
     /// Name of the dataset.
     pub name: String,
+    /// The published study that the cases repeat.
+    pub study: Option<Study>,
     /// SHA-256 of everything that the dataset's bytes depend on, in hexadecimal.
     pub id: String,
     /// What all random numbers follow from.
@@ -185,6 +187,7 @@ impl Plan {
         let sweep = resolved_sweep(document, tree);
         let mut plan = Self {
             name: file.name.clone(),
+            study: file.study,
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run)?,
@@ -431,6 +434,21 @@ impl Plan {
         }
     }
 
+    /// The values that blocks list for `path`.
+    fn listed<'a>(&'a self, path: &'a str) -> impl Iterator<Item = Value> + 'a {
+        let frame = self.frame();
+        let setting = self
+            .blocks
+            .iter()
+            .filter(move |b| b.paths().contains(&path));
+        setting.flat_map(move |block| {
+            let all = block.probes().into_iter();
+            let all = all.flat_map(|case| block.assignments(case, &frame));
+            let own = all.filter(|(other, _)| other == path);
+            own.map(|(_, value)| value).collect::<Vec<_>>()
+        })
+    }
+
     fn find_parameters(&self) -> Vec<Parameter> {
         let mut paths: Vec<&str> = self.varied().map(|(_, path)| path).collect();
         paths.extend(self.blocks.iter().flat_map(Block::paths));
@@ -445,11 +463,13 @@ impl Plan {
         paths.into_iter().map(|path| self.parameter(path)).collect()
     }
 
-    /// How `path` stands in the first case that says what it is.
+    /// How `path` stands in the file and in the cases: a number only if no case has anything else
+    /// there, such as a stiffness by a formula.
     fn parameter(&self, path: &str) -> Parameter {
         let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
         let first = || value(&self.case(0).ok()?.tree);
         let amount = value(&self.tree).or_else(first);
+        let amount = amount.filter(|_| !self.listed(path).any(|v| Amount::of(&v).is_none()));
         let unit = amount.and_then(|a| a.dimension).map(|d| d.to_string());
         let suffix = unit.as_deref().map_or(String::new(), suffix);
         Parameter {
