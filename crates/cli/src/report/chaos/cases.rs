@@ -2,10 +2,11 @@
 
 use crate::Failure;
 use crate::report::dataset::Dataset;
+use crate::report::grid::all_else;
 use crate::report::windows::{Case, Windows};
 use ::report::chaos_page::{CaseChaos, Regime, WindowChaos};
 use recordings::{Kind, Table};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The columns, each a value per window; a column that the table lacks has none at all.
 #[derive(Default)]
@@ -14,6 +15,12 @@ struct Columns {
     true_error: Vec<Option<f64>>,
     true_regime: Vec<Option<String>>,
     true_period: Vec<Option<f64>>,
+    /// What the signal of each of the dataset's sensors says.
+    signals: Vec<FromSignal>,
+}
+
+#[derive(Default)]
+struct FromSignal {
     exponent: Vec<Option<f64>>,
     low: Vec<Option<f64>>,
     high: Vec<Option<f64>>,
@@ -23,7 +30,11 @@ struct Columns {
 
 impl Columns {
     fn read(dataset: &Dataset, windows: &Windows) -> Result<Self, Failure> {
-        let mut columns = Self::default();
+        let channels = dataset.sensors.channels();
+        let mut columns = Self {
+            signals: channels.iter().map(|_| FromSignal::default()).collect(),
+            ..Self::default()
+        };
         for path in &windows.files {
             let file = dataset.table(path)?;
             let there: Vec<(String, Kind)> = file
@@ -41,7 +52,7 @@ impl Columns {
             }
             let table = file.read(&names, 0..file.rows());
             table
-                .and_then(|table| columns.append(&table, &there, dataset.acceleration.as_deref()))
+                .and_then(|table| columns.append(&table, &there, channels))
                 .map_err(|error| dataset.unreadable(path, error))?;
         }
         Ok(columns)
@@ -51,41 +62,23 @@ impl Columns {
         &mut self,
         table: &Table,
         there: &[(String, Kind)],
-        channel: Option<&str>,
+        channels: &[String],
     ) -> Result<(), recordings::Error> {
-        // The features of the signal may be named after the channel that they are of.
-        let find = |name: &str| {
-            let own = channel.map(|channel| format!("{channel}.{name}"));
-            there
-                .iter()
-                .find(|(other, _)| other == name || Some(other) == own.as_ref())
-        };
-        let numbers = |name: &str, into: &mut Vec<Option<f64>>| -> Result<(), recordings::Error> {
-            match find(name) {
-                Some((name, Kind::Integer)) => {
-                    let values = table.values::<i64>(name)?.iter();
-                    into.extend(values.map(|value| value.map(|n| n as f64)));
-                }
-                Some((name, _)) => into.extend_from_slice(table.values::<f64>(name)?),
-                None => {}
-            }
-            Ok(())
-        };
-        numbers("lyapunov_true_per_s", &mut self.true_exponent)?;
-        numbers("lyapunov_true_standard_error_per_s", &mut self.true_error)?;
-        numbers("period_true_revolutions", &mut self.true_period)?;
-        numbers("lyapunov_per_s", &mut self.exponent)?;
-        numbers("lyapunov_low_per_s", &mut self.low)?;
-        numbers("lyapunov_high_per_s", &mut self.high)?;
-        let texts = |name: &str, into: &mut Vec<Option<String>>| -> Result<(), recordings::Error> {
-            if let Some((name, _)) = find(name) {
-                into.extend_from_slice(table.values::<String>(name)?);
-            }
-            Ok(())
-        };
-        texts("regime_true", &mut self.true_regime)?;
-        texts("lyapunov_reason", &mut self.reason)?;
-        texts("regime", &mut self.regime)
+        let reader = Reader { table, there };
+        reader.numbers("lyapunov_true_per_s", &mut self.true_exponent)?;
+        let error = "lyapunov_true_standard_error_per_s";
+        reader.numbers(error, &mut self.true_error)?;
+        reader.numbers("period_true_revolutions", &mut self.true_period)?;
+        reader.texts("regime_true", &mut self.true_regime)?;
+        for (signal, channel) in self.signals.iter_mut().zip(channels) {
+            let named = |name: &str| format!("{channel}.{name}");
+            reader.numbers(&named("lyapunov_per_s"), &mut signal.exponent)?;
+            reader.numbers(&named("lyapunov_low_per_s"), &mut signal.low)?;
+            reader.numbers(&named("lyapunov_high_per_s"), &mut signal.high)?;
+            reader.texts(&named("lyapunov_reason"), &mut signal.reason)?;
+            reader.texts(&named("regime"), &mut signal.regime)?;
+        }
+        Ok(())
     }
 
     /// Exponent from the equations with its standard error.
@@ -98,7 +91,9 @@ impl Columns {
         let period = value(&self.true_period, window).map(|period| period as u32);
         Regime::of(&value(&self.true_regime, window)?, period)
     }
+}
 
+impl FromSignal {
     fn window(&self, window: usize) -> WindowChaos {
         let exponent = || {
             let number = |column| value(column, window);
@@ -114,6 +109,38 @@ impl Columns {
             reason: value(&self.reason, window).unwrap_or_default(),
             regime: regime.and_then(|label| Regime::of(&label, None)),
         }
+    }
+}
+
+/// A table and the names and kinds of some of its columns. One that is not there adds no value.
+struct Reader<'a> {
+    table: &'a Table,
+    there: &'a [(String, Kind)],
+}
+
+impl Reader<'_> {
+    fn kind(&self, name: &str) -> Option<Kind> {
+        let found = self.there.iter().find(|(other, _)| other == name);
+        found.map(|(_, kind)| *kind)
+    }
+
+    fn numbers(&self, name: &str, into: &mut Vec<Option<f64>>) -> Result<(), recordings::Error> {
+        match self.kind(name) {
+            Some(Kind::Integer) => {
+                let values = self.table.values::<i64>(name)?.iter();
+                into.extend(values.map(|value| value.map(|n| n as f64)));
+            }
+            Some(_) => into.extend_from_slice(self.table.values::<f64>(name)?),
+            None => {}
+        }
+        Ok(())
+    }
+
+    fn texts(&self, name: &str, into: &mut Vec<Option<String>>) -> Result<(), recordings::Error> {
+        if self.kind(name).is_some() {
+            into.extend_from_slice(self.table.values::<String>(name)?);
+        }
+        Ok(())
     }
 }
 
@@ -136,8 +163,11 @@ pub(super) fn cases(
         .labels
         .iter()
         .position(|label| label.column == "speed_rpm");
+    let mut points: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     let known = cases.iter().map(|case| {
         let first = case.first;
+        let next = points.len();
+        let point = points.entry(all_else(dataset, windows, first));
         let set = joint_set(dataset, windows, first, by_fault);
         CaseChaos {
             case_id: windows.case_id[first].clone(),
@@ -148,16 +178,43 @@ pub(super) fn cases(
             },
             joints: set,
             speed_rpm: speed.map_or(f64::NAN, |at| windows.labels[at][first]),
+            operating_point: *point.or_insert(next),
             exponent: columns.truth(first),
             regime: columns.true_regime(first),
-            windows: case
-                .windows
-                .iter()
-                .map(|&window| columns.window(window))
-                .collect(),
+            windows: judging(dataset, windows, first).map_or_else(Vec::new, |sensor| {
+                let signal = &columns.signals[sensor];
+                let own = case.windows.iter();
+                own.map(|&window| signal.window(window)).collect()
+            }),
         }
     });
     Ok(known.collect())
+}
+
+/// Which cases are chaotic.
+pub(in crate::report) struct Regimes {
+    columns: Columns,
+}
+
+impl Regimes {
+    /// # Errors
+    /// A table that cannot be read.
+    pub(in crate::report) fn read(dataset: &Dataset, windows: &Windows) -> Result<Self, Failure> {
+        let columns = Columns::read(dataset, windows)?;
+        Ok(Self { columns })
+    }
+
+    /// Whether the case of the window is chaotic by the equations; none where nobody asked them.
+    pub(in crate::report) fn chaotic(&self, window: usize) -> Option<bool> {
+        let regime = self.columns.true_regime(window)?;
+        Some(regime == Regime::Chaotic)
+    }
+}
+
+/// The sensor that judges the window's case: that of its fault.
+fn judging(dataset: &Dataset, windows: &Windows, window: usize) -> Option<usize> {
+    let judging = dataset.sensors.first_of_fault(&windows.fault[window]);
+    judging.map(|(sensor, _)| sensor)
 }
 
 /// The joints that have any clearance.

@@ -21,6 +21,7 @@ pub fn page() -> ChaosPage {
         name: "chaos-map".to_owned(),
         version: "0.1.0".to_owned(),
         seed: 3,
+        claims: true,
         motions: SETS.iter().map(row).collect(),
         shown: "All cases of the first operating point, 500 rpm.".to_owned(),
         bifurcations: vec![bifurcation()],
@@ -113,6 +114,7 @@ fn cases() -> Vec<CaseChaos> {
                 joints: set.to_owned(),
                 clearance_m: millimetres * 1e-3,
                 speed_rpm,
+                operating_point: speed_rpm as usize,
                 exponent: Some([truth, 0.6]),
                 regime: Some(regime),
                 windows: vec![WindowChaos {
