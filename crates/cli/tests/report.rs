@@ -257,6 +257,8 @@ fn chaos_and_features_have_pages_of_their_own() {
         );
         assert_eq!(case.clearance_m, [2e-5, 3e-4][i % 2]);
         assert!(case.regime.is_some());
+        // Four revolutions are too few for an exponent from the signal: the table says why.
+        assert!(!case.windows[0].reason.is_empty());
         assert_eq!(case.joints, ["big_end", "small_end"][i / 2]);
     }
     // Rows are joints and columns clearances, the one that counts as healthy too.
@@ -526,7 +528,7 @@ fn settings_of_the_contacts_are_operating_points() {
                 .collect()
         })
         .collect();
-    let formula = "from eq5, poisson ratio 0.3, youngs modulus 207 GPa";
+    let formula = "from eq5, youngs modulus 207 GPa, poisson ratio 0.3";
     let (light, stiff) = ("2000\u{a0}N s/m", "24 GN/m^1.5");
     assert_eq!(settings[..2], [[light, stiff], [light, formula]]);
     assert_eq!(settings.len(), 4);

@@ -15,12 +15,6 @@ struct Columns {
     true_error: Vec<Option<f64>>,
     true_regime: Vec<Option<String>>,
     true_period: Vec<Option<f64>>,
-    /// What the signal of each of the dataset's sensors says.
-    signals: Vec<FromSignal>,
-}
-
-#[derive(Default)]
-struct FromSignal {
     exponent: Vec<Option<f64>>,
     low: Vec<Option<f64>>,
     high: Vec<Option<f64>>,
@@ -30,11 +24,7 @@ struct FromSignal {
 
 impl Columns {
     fn read(dataset: &Dataset, windows: &Windows) -> Result<Self, Failure> {
-        let channels = dataset.sensors.channels();
-        let mut columns = Self {
-            signals: channels.iter().map(|_| FromSignal::default()).collect(),
-            ..Self::default()
-        };
+        let mut columns = Self::default();
         for path in &windows.files {
             let file = dataset.table(path)?;
             let there: Vec<(String, Kind)> = file
@@ -52,33 +42,24 @@ impl Columns {
             }
             let table = file.read(&names, 0..file.rows());
             table
-                .and_then(|table| columns.append(&table, &there, channels))
+                .and_then(|table| columns.append(&table, &there))
                 .map_err(|error| dataset.unreadable(path, error))?;
         }
         Ok(columns)
     }
 
-    fn append(
-        &mut self,
-        table: &Table,
-        there: &[(String, Kind)],
-        channels: &[String],
-    ) -> Result<(), recordings::Error> {
+    fn append(&mut self, table: &Table, there: &[(String, Kind)]) -> Result<(), recordings::Error> {
         let reader = Reader { table, there };
         reader.numbers("lyapunov_true_per_s", &mut self.true_exponent)?;
         let error = "lyapunov_true_standard_error_per_s";
         reader.numbers(error, &mut self.true_error)?;
         reader.numbers("period_true_revolutions", &mut self.true_period)?;
         reader.texts("regime_true", &mut self.true_regime)?;
-        for (signal, channel) in self.signals.iter_mut().zip(channels) {
-            let named = |name: &str| format!("{channel}.{name}");
-            reader.numbers(&named("lyapunov_per_s"), &mut signal.exponent)?;
-            reader.numbers(&named("lyapunov_low_per_s"), &mut signal.low)?;
-            reader.numbers(&named("lyapunov_high_per_s"), &mut signal.high)?;
-            reader.texts(&named("lyapunov_reason"), &mut signal.reason)?;
-            reader.texts(&named("regime"), &mut signal.regime)?;
-        }
-        Ok(())
+        reader.numbers("lyapunov_per_s", &mut self.exponent)?;
+        reader.numbers("lyapunov_low_per_s", &mut self.low)?;
+        reader.numbers("lyapunov_high_per_s", &mut self.high)?;
+        reader.texts("lyapunov_reason", &mut self.reason)?;
+        reader.texts("regime", &mut self.regime)
     }
 
     /// Exponent from the equations with its standard error.
@@ -91,9 +72,7 @@ impl Columns {
         let period = value(&self.true_period, window).map(|period| period as u32);
         Regime::of(&value(&self.true_regime, window)?, period)
     }
-}
 
-impl FromSignal {
     fn window(&self, window: usize) -> WindowChaos {
         let exponent = || {
             let number = |column| value(column, window);
@@ -181,11 +160,11 @@ pub(super) fn cases(
             operating_point: *point.or_insert(next),
             exponent: columns.truth(first),
             regime: columns.true_regime(first),
-            windows: judging(dataset, windows, first).map_or_else(Vec::new, |sensor| {
-                let signal = &columns.signals[sensor];
-                let own = case.windows.iter();
-                own.map(|&window| signal.window(window)).collect()
-            }),
+            windows: case
+                .windows
+                .iter()
+                .map(|&window| columns.window(window))
+                .collect(),
         }
     });
     Ok(known.collect())
@@ -209,12 +188,6 @@ impl Regimes {
         let regime = self.columns.true_regime(window)?;
         Some(regime == Regime::Chaotic)
     }
-}
-
-/// The sensor that judges the window's case: that of its fault.
-fn judging(dataset: &Dataset, windows: &Windows, window: usize) -> Option<usize> {
-    let judging = dataset.sensors.first_of_fault(&windows.fault[window]);
-    judging.map(|(sensor, _)| sensor)
 }
 
 /// The joints that have any clearance.
