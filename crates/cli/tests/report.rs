@@ -12,6 +12,7 @@ use tempfile::TempDir;
 
 /// Two sets of joints at two clearances, and the ideal machine.
 const GRID: &str = "
+study: paper2
 run: {revolutions: 3, transient: 1, tolerance: 1e-7, chaos: false}
 splits: {train: 100 %}
 cases:
@@ -163,8 +164,8 @@ fn a_grid_is_compared_and_its_claims_are_printed() {
     let printed = String::from_utf8(output.stdout).unwrap();
     let lines: Vec<&str> = printed.lines().collect();
     assert!(lines[0].ends_with("report.html"));
-    // The table of the five cases, then that of the five claims.
-    assert_eq!(lines.len(), 1 + 1 + (2 + 5) + 1 + (2 + 5));
+    // The table of the five cases, then that of the seven claims.
+    assert_eq!(lines.len(), 1 + 1 + (2 + 5) + 1 + (2 + 7));
     assert!(
         lines[6].starts_with("| big end | 0.3 mm | "),
         "{}",
@@ -178,8 +179,11 @@ fn a_grid_is_compared_and_its_claims_are_printed() {
 fn levels_are_those_of_the_recordings() {
     let dataset = Dataset::of(GRID, Format::Parquet);
     let page = cli::report::page(&dataset.path()).unwrap();
-    let Design::Grid(grid) = &page.design else {
+    let Design::Grid(grids) = &page.design else {
         panic!("a grid")
+    };
+    let [grid] = grids.grids.as_slice() else {
+        panic!("one operating point, one sensor")
     };
     assert_eq!(grid.levels.len(), 5);
     let ideal = grid.ideal.as_ref().unwrap();
@@ -190,9 +194,11 @@ fn levels_are_those_of_the_recordings() {
         let count = samples.len() as f64;
         let rms = (samples.iter().map(|a| a * a).sum::<f64>() / count).sqrt();
         let peak = samples.iter().fold(0.0_f64, |peak, a| peak.max(a.abs()));
-        assert!((level.rms_m_s2 / rms - 1.0).abs() < 1e-9);
-        assert!((level.peak_m_s2 / peak - 1.0).abs() < 1e-9);
-        assert!(level.high_rms_m_s2 < level.rms_m_s2 && level.high_share < 0.5);
+        assert!((level.rms.value / rms - 1.0).abs() < 1e-9);
+        assert!((level.peak.value / peak - 1.0).abs() < 1e-9);
+        assert!(level.high_rms.value < level.rms.value && level.high_share < 0.5);
+        // Three revolutions of a motion that repeats itself: the noise, 1 % of the rms.
+        assert!(level.peak.spread > 0.0 && level.peak.spread < 0.05 * peak);
     }
     // v = −r ω (sin θ + λ/2 sin 2θ) of the ideal machine, but for terms in λ³ = 1/125.
     let speed = 500.0 * std::f64::consts::PI / 30.0;
@@ -251,6 +257,8 @@ fn chaos_and_features_have_pages_of_their_own() {
         );
         assert_eq!(case.clearance_m, [2e-5, 3e-4][i % 2]);
         assert!(case.regime.is_some());
+        // Four revolutions are too few for an exponent from the signal: the table says why.
+        assert!(!case.windows[0].reason.is_empty());
         assert_eq!(case.joints, ["big_end", "small_end"][i / 2]);
     }
     // Rows are joints and columns clearances, the one that counts as healthy too.
@@ -363,34 +371,174 @@ fn a_dataset_that_replaces_another_takes_its_page_away() {
     assert!(mine.exists() && figures.count() == 1);
 }
 
-/// The page shows the first throw's crosshead and says so.
-#[test]
-fn of_several_throws_the_first_is_shown() {
+/// The machine of the tests with other throws and sensors, and a sweep of it.
+fn with_sensors(throws: &str, sensors: &str, sweep: &str) -> Dataset {
     let folder = tempfile::tempdir().unwrap();
     let machine = fs::read_to_string(single_stage()).unwrap();
     let (head, _) = machine.split_once("\nsensors:").unwrap();
-    let head = head.replace(
-        "\njoints:",
-        "\nthrows: [{name: front}, {name: rear}]\njoints:",
-    );
-    let sensors = "
-sensors:
-  - {measure: crosshead_acceleration, throw: front}
-  - {measure: crosshead_acceleration, throw: rear}
-";
-    fs::write(folder.path().join("machine.yaml"), head + sensors).unwrap();
-    let sweep = GRID
-        .replace("big_end", "front.big_end")
-        .replace("small_end", "front.small_end");
+    let head = head.replace("\njoints:", &format!("\n{throws}\njoints:"));
+    let sensors = format!("\nsensors:\n{sensors}");
+    fs::write(folder.path().join("machine.yaml"), head + &sensors).unwrap();
     let text = format!("name: small\nmachine: machine.yaml\nseed: 5{sweep}");
     fs::write(folder.path().join("small.yaml"), text).unwrap();
     let dataset = Dataset { folder };
     dataset.generate(Format::Parquet, Existing::Refuse);
+    dataset
+}
+
+/// Faults of either throw, each judged by the sensor of its own; at the other throw's there is
+/// nothing to see of them.
+#[test]
+fn a_fault_is_judged_by_the_sensor_of_its_own_throw() {
+    let sweep = GRID.replace("study: paper2\n", "").replace(
+        "joints: [[], [big_end], [big_end, small_end]]",
+        "joints: [[], [front.small_end], [rear.small_end], [front.small_end, rear.small_end]]",
+    );
+    let throws = "throws: [{name: front}, {name: rear}]";
+    let sensors = "
+  - {measure: crosshead_acceleration, throw: front}
+  - {measure: crosshead_acceleration, throw: rear}
+";
+    let dataset = with_sensors(throws, sensors, &sweep);
+    let output = dataset.report(&[]);
+    assert!(output.status.success());
+    let html = dataset.html();
+    stands_alone(&html);
+    assert!(html.contains("front: front.crosshead_acceleration_m_s2; rear: rear.crosshead_"));
+    assert!(html.contains("No sensor reads the crank angle"));
+    let page = cli::report::page(&dataset.path()).unwrap();
+    let Design::Grid(grids) = &page.design else {
+        panic!("a grid")
+    };
+    let sensors: Vec<&str> = grids.grids.iter().map(|g| g.sensor.as_str()).collect();
+    assert_eq!(
+        sensors,
+        [
+            "front.crosshead acceleration",
+            "rear.crosshead acceleration"
+        ]
+    );
+    for (grid, own) in grids
+        .grids
+        .iter()
+        .zip(["front.small_end", "rear.small_end"])
+    {
+        let sets: Vec<&str> = grid
+            .joint_sets
+            .iter()
+            .map(|set| set.joints.as_str())
+            .collect();
+        assert_eq!(sets, [own, "front.small_end+rear.small_end"]);
+        // Speed given, the throws are alike and do not know of one another: a fault of this throw is
+        // as large as the fault of both, and larger than none.
+        let peak = |at: usize| grid.levels[at].peak;
+        assert_eq!(grid.levels[0].joints, "none");
+        assert!(peak(2).value > 1.2 * peak(0).value, "{:?}", grid.levels);
+        assert!(peak(2).against(peak(4)).is_eq());
+    }
+    // Features by class: two rows of the healthy, one of each fault of one throw.
+    let rows = page
+        .feature_rows
+        .iter()
+        .map(|row| (row.fault.as_str(), row.sensor.as_str()));
+    let (front, rear) = (
+        "front.crosshead_acceleration",
+        "rear.crosshead_acceleration",
+    );
+    let both = "front.small_end+rear.small_end";
+    assert_eq!(
+        rows.collect::<Vec<_>>(),
+        [
+            ("none", front),
+            ("none", rear),
+            ("front.small_end", front),
+            ("rear.small_end", rear),
+            (both, front),
+            (both, rear)
+        ]
+    );
+    // Of a machine that repeats no study nothing is claimed.
+    assert!(
+        !html.contains("study") && !String::from_utf8(output.stdout).unwrap().contains("claim")
+    );
+}
+
+#[test]
+fn a_machine_with_a_frame_sensor_alone_has_figures() {
+    let sensors = "
+  - {measure: frame_acceleration, axis: x}
+  - {measure: crank_angle}
+";
+    let dataset = with_sensors("", sensors, GRID);
     assert!(dataset.report(&[]).status.success());
     let html = dataset.html();
-    assert!(html.contains("Figures show the channel front.crosshead_acceleration_m_s2"));
-    assert!(html.contains("<h3>Clearance in front.big end</h3>"));
-    assert!(html.contains("No sensor reads the crank angle"));
+    assert!(html.contains("Figures show the channel frame_acceleration_x_m_s2"));
+    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 + 1 + 2);
+    let chaos = fs::read_to_string(dataset.path().join("chaos.html")).unwrap();
+    assert!(!chaos.contains("There are no recordings in tables"));
+}
+
+/// Two speeds: both are on the page, and what they differ in stands above them.
+#[test]
+fn every_operating_point_is_on_the_page() {
+    let sweep = GRID.replace("[500 rpm]", "[500 rpm, 400 rpm]");
+    let dataset = Dataset::of(&sweep, Format::Parquet);
+    let output = dataset.report(&[]);
+    assert!(output.status.success());
+    let html = dataset.html();
+    stands_alone(&html);
+    for speed in ["500", "400"] {
+        assert!(
+            html.contains(&format!("<h2>Responses: {speed}\u{a0}rpm, discharge")),
+            "{speed}"
+        );
+        assert!(
+            html.contains(&format!("<summary>{speed}\u{a0}rpm, discharge")),
+            "{speed}"
+        );
+    }
+    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 * (2 + 1 + 2));
+    // The claims have a row for each.
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.contains("| 400 rpm | holds"), "{printed}");
+}
+
+/// A key of the joints is that of every joint that the sweep names, a stiffness by its formula too.
+#[test]
+fn settings_of_the_contacts_are_operating_points() {
+    let sweep = GRID.replace(
+        "speed: [500 rpm]",
+        "contact.damping: [2e3 N s/m, 2e4 N s/m]
+      contact.stiffness:
+        - 24 GN/m^1.5
+        - {from: eq5, youngs_modulus: 207 GPa, poisson_ratio: 0.3}",
+    );
+    let dataset = Dataset::of(&sweep, Format::Parquet);
+    let page = cli::report::page(&dataset.path()).unwrap();
+    let Design::Grid(grids) = &page.design else {
+        panic!("a grid")
+    };
+    let settings: Vec<Vec<&str>> = grids
+        .grids
+        .iter()
+        .map(|grid| {
+            grid.settings
+                .iter()
+                .map(|(_, value)| value.as_str())
+                .collect()
+        })
+        .collect();
+    let formula = "from eq5, youngs modulus 207 GPa, poisson ratio 0.3";
+    let (light, stiff) = ("2000\u{a0}N s/m", "24 GN/m^1.5");
+    assert_eq!(settings[..2], [[light, stiff], [light, formula]]);
+    assert_eq!(settings.len(), 4);
+    assert_eq!(
+        grids.grids[0].settings[0].0,
+        "contact damping (big end, small end)"
+    );
+    for grid in &grids.grids {
+        assert_eq!(grid.levels.len(), 5);
+    }
 }
 
 #[test]

@@ -24,11 +24,13 @@ pub mod dataset_page;
 pub mod features_page;
 pub mod figure;
 pub mod gap_page;
+mod level;
 mod plate;
 mod revolutions;
 mod statistics;
 pub mod text;
 
+pub use level::Level;
 pub use plate::{FigureFile, Rendered};
 
 /// What can go wrong in making a page.

@@ -55,6 +55,31 @@ fn the_papers_runs() {
     assert_eq!(plan.case_id(3), "case-000003");
 }
 
+/// A key of the joints is set in every joint that the sets name, so that cases with clearance in other
+/// joints differ in nothing else; a stiffness by a formula is text, and no number that is missing.
+#[test]
+fn the_papers_runs_at_every_setting_of_the_contact() {
+    let plan = shipped("paper2-sensitivity.yaml");
+    assert_eq!(plan.cases(), 4 * 2 * 2 * (1 + 9));
+    let keys = ["damping", "depth", "stiffness"];
+    let of = |joint: &str| {
+        let own = plan.parameters.iter().filter(|p| p.path.contains(joint));
+        own.map(|p| p.is_number).collect::<Vec<_>>()
+    };
+    assert_eq!(of("big_end"), [true, true, false]);
+    assert_eq!(of("small_end"), [true, true, false]);
+    assert_eq!(plan.parameters.len(), 6);
+    let mut settings = BTreeSet::new();
+    for index in 0..plan.cases() {
+        let tree = plan.case(index).unwrap().tree;
+        let [big, small] = ["big_end", "small_end"]
+            .map(|joint| keys.map(|key| tree["joints"][joint]["contact"][key].to_string()));
+        assert_eq!(big, small, "case {index}");
+        settings.insert(big);
+    }
+    assert_eq!(settings.len(), 16);
+}
+
 #[test]
 fn every_choice_of_the_two_stage_machines_four_joints() {
     let plan = shipped("two-stage.yaml");

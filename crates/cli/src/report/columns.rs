@@ -15,10 +15,10 @@ pub(super) fn columns(dataset: &Dataset) -> Result<Vec<Column>, Failure> {
     let mut features = of_table(dataset, "features")?;
     let labels: Vec<String> = signals.iter().map(|column| column.name.clone()).collect();
     let first = dataset.plan.channels().into_iter().next();
-    let channel = match (&dataset.acceleration, first) {
-        (Some(channel), _) => channel.clone(),
-        (None, Some((name, _))) => name,
-        (None, None) => String::new(),
+    let channel = match (dataset.sensors.channels(), first) {
+        ([channel, ..], _) => channel.clone(),
+        ([], Some((name, _))) => name,
+        ([], None) => String::new(),
     };
     let shown = |name: &str| name.starts_with(&format!("{channel}.")) || !is_feature(dataset, name);
     features.retain(|column| !labels.contains(&column.name) && shown(&column.name));

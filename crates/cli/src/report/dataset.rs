@@ -1,15 +1,13 @@
 //! The folder of a dataset: what it says about itself, and its tables.
 
 use super::labels::{self, Label};
+use super::sensors::Sensors;
 use crate::Failure;
 use ::report::text;
 use recordings::Manifest;
 use recordings::formats::parquet::ParquetFile;
 use std::path::{Path, PathBuf};
 use sweep::Plan;
-
-/// The channel that the page shows.
-const ACCELERATION: &str = "crosshead_acceleration";
 
 /// The channel of the crank angle.
 pub(super) const CRANK_ANGLE: &str = "crank_angle_rad";
@@ -21,9 +19,8 @@ pub(super) struct Dataset {
     pub(super) plan: Plan,
     /// The numbers that both tables say about a case.
     pub(super) labels: Vec<Label>,
-    /// The first crosshead's acceleration, as features are named after it:
-    /// `throw1.crosshead_acceleration`. None where no sensor measures it.
-    pub(super) acceleration: Option<String>,
+    /// The accelerometers that its faults are judged by.
+    pub(super) sensors: Sensors,
 }
 
 impl Dataset {
@@ -36,16 +33,11 @@ impl Dataset {
         }
         let manifest = Manifest::read(&manifest).map_err(Failure::input)?;
         let plan = Plan::read(&folder.join("sweep.yaml")).map_err(Failure::input)?;
-        let channels = plan.channels();
-        let acceleration = channels
-            .iter()
-            .filter_map(|(name, _)| name.strip_suffix("_m_s2"))
-            .find(|name| name.ends_with(ACCELERATION));
         Ok(Self {
             folder: folder.to_owned(),
             manifest,
             labels: labels::of(&plan),
-            acceleration: acceleration.map(str::to_owned),
+            sensors: Sensors::of(&plan),
             plan,
         })
     }
@@ -95,7 +87,7 @@ impl Dataset {
 
     /// Whether the recordings stand in tables that can be read.
     pub(super) fn has_signals(&self) -> bool {
-        self.acceleration.is_some() && !self.files("signals").is_empty()
+        !self.sensors.is_empty() && !self.files("signals").is_empty()
     }
 
     /// Whether a sensor reads the crank angle.
@@ -114,8 +106,8 @@ impl Dataset {
             .files
             .iter()
             .any(|file| file.path.starts_with("mcap/"));
-        match (&self.acceleration, in_mcap) {
-            (None, _) => "No sensor of this dataset measures the crosshead's acceleration.",
+        match (self.sensors.is_empty(), in_mcap) {
+            (true, _) => "No sensor of this dataset measures an acceleration.",
             (_, true) => {
                 "The recordings of this dataset are MCAP files, one per case, for Foxglove and the like; this page is made \
                  from the features alone."
@@ -162,8 +154,8 @@ impl Dataset {
             text::counted(counts.cases as usize, "case"),
             text::counted(self.plan.settings.revolutions as usize, "revolution"),
         );
-        if let (Some(channel), true) = (&self.acceleration, self.has_signals()) {
-            about += &format!(" Figures show the channel {channel}_m_s2, as the sensor reads it.");
+        if self.has_signals() {
+            about += &format!(" {}", self.sensors.in_words());
             if !self.has_crank_angle() {
                 about += " No sensor reads the crank angle: it is counted from the start of each window.";
             }

@@ -11,7 +11,7 @@ use ::report::text;
 const MOST: usize = 16;
 
 /// The first window of the case of each fault whose largest clearance is nearest to the median of
-/// its class.
+/// its class, once for each sensor that judges the fault; of the healthy as the first sensor reads it.
 ///
 /// # Errors
 /// A table that cannot be read.
@@ -29,14 +29,25 @@ pub(super) fn examples(
         let own: Vec<usize> = own.filter(|&w| windows.fault[w] == fault).collect();
         nearest_median(&own, |&w| windows.largest_clearance(dataset, w)).copied()
     };
-    faults
-        .iter()
+    let several = dataset.sensors.channels().len() > 1;
+    let judged = faults.iter().flat_map(|count| {
+        let mut judging = dataset.sensors.of_fault(&count.fault);
+        if count.fault == "none" {
+            judging.truncate(1);
+        }
+        judging.into_iter().map(move |sensor| (count, sensor))
+    });
+    judged
+        .filter_map(|(count, sensor)| Some((count, sensor, of_fault(&count.fault)?)))
         .take(MOST)
-        .filter_map(|count| Some((count, of_fault(&count.fault)?)))
-        .map(|(count, window)| {
-            let recording = Recording::read(dataset, windows, window)?;
+        .map(|(count, sensor, window)| {
+            let recording = Recording::read(dataset, windows, window, sensor)?;
             Ok(ClassExample {
                 fault: count.fault.clone(),
+                sensor: match several {
+                    true => text::words(&dataset.sensors.channels()[sensor]),
+                    false => String::new(),
+                },
                 operating_point: described(dataset, windows, window),
                 response: recording.response()?,
                 spectrum: recording.spectrum()?,

@@ -1,5 +1,6 @@
 //! The features that the page shows: how large the acceleration is, how peaked, how violent.
 
+use super::dataset::Dataset;
 use super::windows::{Windows, numbers};
 use ::report::dataset_page::{FaultCount, Feature, FeatureRow};
 use recordings::Table;
@@ -24,8 +25,8 @@ pub(super) const KURTOSIS: usize = 3;
 
 /// The features of one channel, by window.
 pub(super) struct Measured {
-    /// The channel as features are named after it; none where the dataset has no such channel.
-    channel: Option<String>,
+    /// The channel as features are named after it.
+    channel: String,
     sample_rate_hz: f64,
     /// Values of each of [`SHOWN`]; NaN where one is missing.
     pub(super) shown: Vec<Vec<f64>>,
@@ -36,9 +37,9 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    pub(super) fn new(channel: Option<&str>, sample_rate_hz: f64) -> Self {
+    pub(super) fn new(channel: &str, sample_rate_hz: f64) -> Self {
         Self {
-            channel: channel.map(str::to_owned),
+            channel: channel.to_owned(),
             sample_rate_hz,
             shown: vec![Vec::new(); SHOWN.len()],
             high_rms: Vec::new(),
@@ -46,29 +47,22 @@ impl Measured {
         }
     }
 
-    /// Whether there are any.
-    pub(super) fn is_there(&self) -> bool {
-        self.channel.is_some()
-    }
-
     /// The columns that they are read from.
     pub(super) fn columns(&self) -> Vec<String> {
         let bands = self.bands().into_iter().map(|(_, column)| column);
-        let shown = SHOWN.iter().filter_map(|(name, ..)| self.column(name));
+        let shown = SHOWN.iter().map(|(name, ..)| self.column(name));
         shown.chain(bands).collect()
     }
 
-    fn column(&self, feature: &str) -> Option<String> {
-        Some(format!("{}.{feature}", self.channel.as_ref()?))
+    fn column(&self, feature: &str) -> String {
+        format!("{}.{feature}", self.channel)
     }
 
     /// The lower edge of each band of the table, in Hz, and its column.
     fn bands(&self) -> Vec<(f64, String)> {
-        let prefix = self.channel.iter();
-        let definitions = prefix.flat_map(|channel| {
-            features::definitions([(format!("{channel}_m_s2").as_str(), "m/s^2")])
-        });
-        let bands = definitions.filter_map(|definition| {
+        let column = format!("{}_m_s2", self.channel);
+        let definitions = features::definitions([(column.as_str(), "m/s^2")]);
+        let bands = definitions.into_iter().filter_map(|definition| {
             let (_, rest) = definition.name.split_once(".band_")?;
             let low = rest.split('_').next()?.parse().ok()?;
             Some((low, definition.name))
@@ -92,10 +86,8 @@ impl Measured {
         self.high_rms.extend(high.into_iter().map(f64::sqrt));
         self.variance.extend(variance);
         for (i, (name, ..)) in SHOWN.iter().enumerate() {
-            match self.column(name) {
-                Some(column) => self.shown[i].extend(numbers(table, &column)?),
-                None => self.shown[i].extend(vec![f64::NAN; table.rows()]),
-            }
+            let column = self.column(name);
+            self.shown[i].extend(numbers(table, &column)?);
         }
         Ok(())
     }
@@ -120,29 +112,36 @@ pub(super) fn high_name() -> String {
     format!("rms above {HIGH_FROM_HZ} Hz")
 }
 
-/// Mean and standard deviation of the features over the windows of each fault.
+/// Mean and standard deviation of the features over the windows of each fault, a row for each
+/// sensor that judges it.
 pub(super) fn by_fault(
+    dataset: &Dataset,
     windows: &Windows,
     faults: &[FaultCount],
 ) -> (Vec<Feature>, Vec<FeatureRow>) {
-    if !windows.measured.is_there() {
+    let Some(first) = windows.measured.first() else {
         return (Vec::new(), Vec::new());
-    }
-    let (features, values): (Vec<Feature>, Vec<&[f64]>) =
-        windows.measured.all().into_iter().unzip();
-    let rows = faults.iter().map(|count| {
-        let of_fault = |values: &&[f64]| {
+    };
+    let features = first.all().into_iter().map(|(feature, _)| feature);
+    let row = |count: &FaultCount, sensor: usize| {
+        let values = windows.measured[sensor].all().into_iter();
+        let of_fault = |(_, values): (Feature, &[f64])| {
             let own = values.iter().zip(&windows.fault);
             let own = own.filter(|(_, fault)| **fault == count.fault);
             mean_and_spread(own.map(|(value, _)| *value))
         };
         FeatureRow {
             fault: count.fault.clone(),
+            sensor: dataset.sensors.channels()[sensor].clone(),
             windows: count.windows,
-            values: values.iter().map(of_fault).collect(),
+            values: values.map(of_fault).collect(),
         }
+    };
+    let rows = faults.iter().flat_map(|count| {
+        let judging = dataset.sensors.of_fault(&count.fault).into_iter();
+        judging.map(|sensor| row(count, sensor)).collect::<Vec<_>>()
     });
-    (features, rows.collect())
+    (features.collect(), rows.collect())
 }
 
 /// Mean and standard deviation of the finite values; the latter 0 for a single value.

@@ -1,97 +1,215 @@
 //! Sweeps that compare joints and clearances, all else equal.
 
+use super::chaos::Regimes;
 use super::dataset::Dataset;
 use super::examples::operating_point;
 use super::features::{HIGH_FROM_HZ, PEAK, RMS};
+use super::operating_points::Settings;
 use super::recording::Recording;
 use super::windows::{Case, Windows};
 use crate::Failure;
+use ::report::Level;
 use ::report::dataset_page::{CaseLevel, ClearanceGrid, JointSet, Response};
+use ::report::text;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A case of a grid: clearance of one size in every faulty joint.
+/// At most this many grids have figures: more would not fit on a page that a browser opens at once,
+/// nor their recordings in little memory.
+const MOST_DRAWN: usize = 8;
+/// At most this many grids are on the page at all.
+const MOST_GRIDS: usize = 64;
+
+/// The cases of one place in a grid: clearance of one size in every faulty joint. There are several
+/// where the sweep repeats them.
 struct Point<'a> {
     fault: &'a str,
     clearance_m: f64,
-    case: &'a Case,
+    cases: Vec<&'a Case>,
 }
 
-/// The grid of the first operating point at which several sets of joints have the same several
-/// clearances; none where there is no such point.
+/// The grids of a sweep and how many there are beside these.
+pub(super) struct Grids {
+    pub(super) shown: Vec<ClearanceGrid>,
+    pub(super) left_out: usize,
+}
+
+/// A grid for each sensor and each operating point at which several sets of joints have the same
+/// several clearances; none where there is no such point.
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn grid(
+pub(super) fn grids(
     dataset: &Dataset,
     windows: &Windows,
     cases: &[Case],
-) -> Result<Option<ClearanceGrid>, Failure> {
-    let Some(points) = points(dataset, windows, cases) else {
+    regimes: Option<&Regimes>,
+) -> Result<Option<Grids>, Failure> {
+    let operating_points = operating_points(dataset, windows, cases);
+    let firsts = operating_points
+        .iter()
+        .map(|points| points[0].cases[0].first);
+    let settings = Settings::of(dataset, windows, &firsts.collect::<Vec<_>>());
+    let sensors = dataset.sensors.channels().len();
+    let all: Vec<(usize, usize)> = (0..operating_points.len())
+        .flat_map(|at| (0..sensors.max(1)).map(move |sensor| (at, sensor)))
+        .filter(|(at, sensor)| {
+            let mut clear = operating_points[*at].iter().filter(|p| p.clearance_m > 0.0);
+            clear.any(|point| sensors == 0 || judged(dataset, point, *sensor))
+        })
+        .collect();
+    if all.is_empty() {
         return Ok(None);
-    };
-    let response = |point: &Point| -> Result<Response, Failure> {
-        Recording::read(dataset, windows, point.case.first)?.response()
-    };
-    let ideal = points.iter().find(|point| point.clearance_m == 0.0);
-    let clear = || points.iter().filter(|point| point.clearance_m > 0.0);
-    let mut joint_sets: Vec<JointSet> = Vec::new();
-    if dataset.has_signals() {
-        for point in clear() {
-            let response = (point.clearance_m, response(point)?);
-            match joint_sets.iter_mut().find(|set| set.joints == point.fault) {
-                Some(set) => set.responses.push(response),
-                None => joint_sets.push(JointSet {
-                    joints: point.fault.to_owned(),
-                    responses: vec![response],
-                }),
-            }
-        }
     }
-    let with_signals = ideal.filter(|_| dataset.has_signals());
-    Ok(Some(ClearanceGrid {
-        operating_point: operating_point(dataset, windows, points[0].case.first),
-        ideal: with_signals.map(response).transpose()?,
-        joint_sets,
-        high_from_hz: HIGH_FROM_HZ,
-        levels: if windows.measured.is_there() {
-            let ordered = ideal.into_iter().chain(clear());
-            ordered.map(|point| level(windows, point)).collect()
-        } else {
-            Vec::new()
-        },
+    let mut shown = Vec::new();
+    for &(at, sensor) in all.iter().take(MOST_GRIDS) {
+        let context = Context {
+            dataset,
+            windows,
+            sensor: (sensors > 0).then_some(sensor),
+            draws: dataset.has_signals() && shown.len() < MOST_DRAWN,
+            regimes,
+        };
+        let mut grid = context.grid(&operating_points[at])?;
+        grid.settings = settings.at(at);
+        grid.operating_point = settings.described(&grid.operating_point, at);
+        shown.push(grid);
+    }
+    Ok(Some(Grids {
+        left_out: all.len() - shown.len(),
+        shown,
     }))
 }
 
-/// The cases of the grid in the order of the sweep, each joint set and clearance once.
-fn points<'a>(
+fn judged(dataset: &Dataset, point: &Point, sensor: usize) -> bool {
+    dataset.sensors.of_fault(point.fault).contains(&sensor)
+}
+
+/// What a grid is made from.
+struct Context<'a> {
+    dataset: &'a Dataset,
+    windows: &'a Windows,
+    /// The sensor that it is seen by; none where the dataset has none.
+    sensor: Option<usize>,
+    /// Whether it has figures.
+    draws: bool,
+    regimes: Option<&'a Regimes>,
+}
+
+impl Context<'_> {
+    fn grid(&self, points: &[Point]) -> Result<ClearanceGrid, Failure> {
+        let seen = |point: &&Point| {
+            let sensor = self.sensor;
+            sensor.is_none_or(|sensor| judged(self.dataset, point, sensor))
+        };
+        let ideal = points.iter().find(|point| point.clearance_m == 0.0);
+        let clear = || points.iter().filter(|p| p.clearance_m > 0.0).filter(seen);
+        let mut joint_sets: Vec<JointSet> = Vec::new();
+        let drawn = self.sensor.filter(|_| self.draws);
+        if let Some(sensor) = drawn {
+            for point in clear() {
+                let response = (point.clearance_m, self.response(point, sensor)?);
+                match joint_sets.iter_mut().find(|set| set.joints == point.fault) {
+                    Some(set) => set.responses.push(response),
+                    None => joint_sets.push(JointSet {
+                        joints: point.fault.to_owned(),
+                        responses: vec![response],
+                    }),
+                }
+            }
+        }
+        let levels = match self.sensor {
+            Some(sensor) => {
+                let ordered = ideal.into_iter().chain(clear());
+                let levels = ordered.map(|point| self.level(point, sensor));
+                levels.collect::<Result<_, _>>()?
+            }
+            None => Vec::new(),
+        };
+        Ok(ClearanceGrid {
+            operating_point: operating_point(self.dataset, self.windows, points[0].cases[0].first),
+            settings: Vec::new(),
+            sensor: match (self.sensor, self.dataset.sensors.channels()) {
+                (Some(sensor), channels) if channels.len() > 1 => text::words(&channels[sensor]),
+                _ => String::new(),
+            },
+            ideal: match (ideal, drawn) {
+                (Some(point), Some(sensor)) => Some(self.response(point, sensor)?),
+                _ => None,
+            },
+            joint_sets,
+            high_from_hz: HIGH_FROM_HZ,
+            levels,
+        })
+    }
+
+    fn response(&self, point: &Point, sensor: usize) -> Result<Response, Failure> {
+        Recording::read(self.dataset, self.windows, point.cases[0].first, sensor)?.response()
+    }
+
+    /// The levels of a point over all windows of all its cases. The spread is that over the windows,
+    /// or over the revolutions where there is one window alone and its recording is at hand.
+    fn level(&self, point: &Point, sensor: usize) -> Result<CaseLevel, Failure> {
+        let measured = &self.windows.measured[sensor];
+        let own: Vec<usize> = point
+            .cases
+            .iter()
+            .flat_map(|c| &c.windows)
+            .copied()
+            .collect();
+        let of = |value: &dyn Fn(usize) -> f64| own.iter().map(|&w| value(w)).collect::<Vec<_>>();
+        let high = of(&|w| measured.high_rms[w].powi(2));
+        let variance: f64 = of(&|w| measured.variance[w]).iter().sum();
+        let mut level = CaseLevel {
+            joints: point.fault.to_owned(),
+            clearance_m: point.clearance_m,
+            rms: Level::root_mean(&of(&|w| measured.shown[RMS][w].powi(2))),
+            peak: Level::largest(&of(&|w| measured.shown[PEAK][w])),
+            high_rms: Level::root_mean(&high),
+            high_share: high.iter().sum::<f64>() / variance,
+            chaotic: self.regimes.and_then(|r| r.chaotic(point.cases[0].first)),
+        };
+        if own.len() == 1 && self.dataset.has_signals() {
+            let recording = Recording::read(self.dataset, self.windows, own[0], sensor)?;
+            let spread = recording.spread(HIGH_FROM_HZ)?;
+            level.peak.spread = spread.peak;
+            level.rms.spread = spread.rms;
+            level.high_rms.spread = spread.high_rms;
+        }
+        Ok(level)
+    }
+}
+
+/// The points of each operating point that makes a grid, in the order of the sweep.
+fn operating_points<'a>(
     dataset: &Dataset,
     windows: &'a Windows,
     cases: &'a [Case],
-) -> Option<Vec<Point<'a>>> {
-    let mut by_operating_point: Vec<(Vec<String>, Vec<Point>)> = Vec::new();
+) -> Vec<Vec<Point<'a>>> {
+    let mut by_operating_point: Vec<Vec<Point>> = Vec::new();
     let mut index: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     for case in cases {
         let Some(clearance_m) = common_clearance(dataset, windows, case.first) else {
             continue;
         };
         let key = all_else(dataset, windows, case.first);
-        let at = *index.entry(key.clone()).or_insert_with(|| {
-            by_operating_point.push((key, Vec::new()));
+        let at = *index.entry(key).or_insert_with(|| {
+            by_operating_point.push(Vec::new());
             by_operating_point.len() - 1
         });
-        let points = &mut by_operating_point[at].1;
+        let points = &mut by_operating_point[at];
         let fault = windows.fault[case.first].as_str();
-        let repeated = |p: &Point| p.fault == fault && p.clearance_m == clearance_m;
-        if !points.iter().any(repeated) {
-            points.push(Point {
+        let same = |p: &&mut Point| p.fault == fault && p.clearance_m == clearance_m;
+        match points.iter_mut().find(same) {
+            Some(point) => point.cases.push(case),
+            None => points.push(Point {
                 fault,
                 clearance_m,
-                case,
-            });
+                cases: vec![case],
+            }),
         }
     }
-    let mut all = by_operating_point.into_iter().map(|(_, points)| points);
-    all.find(|points| is_grid(points))
+    by_operating_point.retain(|points| is_grid(points));
+    by_operating_point
 }
 
 /// Whether two sets of joints have two clearances in common.
@@ -135,21 +253,4 @@ pub(super) fn all_else(dataset: &Dataset, windows: &Windows, window: usize) -> V
     let numbers = numbers.map(|(_, values)| format!("{:e}", values[window]));
     let texts = windows.texts.iter().map(|values| values[window].clone());
     numbers.chain(texts).collect()
-}
-
-/// The levels of a case over all its windows.
-fn level(windows: &Windows, point: &Point) -> CaseLevel {
-    let measured = &windows.measured;
-    let own = || point.case.windows.iter();
-    let count = own().count() as f64;
-    let mean = |value: &dyn Fn(usize) -> f64| own().map(|&w| value(w)).sum::<f64>() / count;
-    let high = mean(&|w| measured.high_rms[w].powi(2));
-    CaseLevel {
-        joints: point.fault.to_owned(),
-        clearance_m: point.clearance_m,
-        rms_m_s2: mean(&|w| measured.shown[RMS][w].powi(2)).sqrt(),
-        peak_m_s2: own().map(|&w| measured.shown[PEAK][w]).fold(0.0, f64::max),
-        high_rms_m_s2: high.sqrt(),
-        high_share: high / mean(&|w| measured.variance[w]),
-    }
 }

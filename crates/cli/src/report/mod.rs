@@ -12,14 +12,16 @@ mod gap;
 mod gas;
 mod grid;
 mod labels;
+mod operating_points;
 mod pages;
 mod random;
 mod recording;
+mod sensors;
 mod windows;
 
 use crate::Failure;
 use ::report::chaos_page::ChaosPage;
-use ::report::dataset_page::{DatasetPage, Design};
+use ::report::dataset_page::{ClearanceGrids, DatasetPage, Design};
 use clap::Args;
 use dataset::Dataset;
 use pages::Place;
@@ -52,7 +54,7 @@ pub struct Arguments {
 }
 
 /// Writes the pages, in place of any files of their names, and prints where the first is; with a
-/// grid of clearances also the table of the clearance study's claims.
+/// grid of clearances also its levels, and the claims of the study that the sweep names.
 ///
 /// # Errors
 /// A folder that is no whole dataset, or a page that cannot be made or written.
@@ -91,10 +93,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (place.dataset.clone(), page.render().map_err(Failure::work)?),
     ])?;
     println!("{}", place.dataset.display());
-    if let Design::Grid(grid) = &page.design
-        && !grid.levels.is_empty()
-    {
-        print!("\n{}", grid.claims_markdown());
+    if let Design::Grid(grids) = &page.design {
+        print!("{}", grids.markdown());
     }
     Ok(())
 }
@@ -166,11 +166,19 @@ impl Contents {
         } = self;
         let faults = counts::faults(dataset, windows, cases);
         let examples = examples::examples(dataset, windows, cases, &faults)?;
-        let design = match grid::grid(dataset, windows, cases)? {
-            Some(grid) => Design::Grid(grid),
+        let regimes = match dataset.plan.study {
+            Some(_) => Some(chaos::Regimes::read(dataset, windows)?),
+            None => None,
+        };
+        let design = match grid::grids(dataset, windows, cases, regimes.as_ref())? {
+            Some(grids) => Design::Grid(ClearanceGrids {
+                grids: grids.shown,
+                left_out: grids.left_out,
+                claims: dataset.plan.study.is_some(),
+            }),
             None => Design::Random(random::sweep(dataset, windows, cases, &faults)),
         };
-        let (features, feature_rows) = features::by_fault(windows, &faults);
+        let (features, feature_rows) = features::by_fault(dataset, windows, &faults);
         Ok(DatasetPage {
             name: dataset.plan.name.clone(),
             about: dataset.about(),

@@ -1,9 +1,10 @@
 //! Sweeps drawn at random: how parameters lie, and how features go with clearance.
 
 use super::dataset::Dataset;
-use super::features::{CREST, KURTOSIS, RMS, high_name};
+use super::features::{CREST, KURTOSIS, Measured, RMS, high_name};
 use super::windows::{Case, Windows};
 use ::report::dataset_page::{FaultCount, Histogram, RandomSweep, Scatter};
+use ::report::text;
 
 pub(super) fn sweep(
     dataset: &Dataset,
@@ -36,32 +37,40 @@ fn histograms(dataset: &Dataset, windows: &Windows, cases: &[Case]) -> Vec<Histo
         .collect()
 }
 
-/// Features against the largest clearance, a point for each window.
+/// Features against the largest clearance as each sensor reads them, a point for each window whose
+/// fault the sensor judges.
 fn scatters(dataset: &Dataset, windows: &Windows, faults: &[FaultCount]) -> Vec<Scatter> {
-    if !windows.measured.is_there() {
-        return Vec::new();
-    }
     let clearances: Vec<f64> = (0..windows.count())
         .map(|window| windows.largest_clearance(dataset, window))
         .collect();
-    let scatter = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
-        x: ("largest clearance".to_owned(), "m".to_owned()),
-        y: (name.to_owned(), unit.to_owned()),
-        log_y,
-        classes: faults
-            .iter()
-            .map(|count| {
-                let own = (0..windows.count()).filter(|&w| windows.fault[w] == count.fault);
-                let points = own.map(|w| [clearances[w], values[w]]);
-                (count.fault.clone(), points.collect())
-            })
-            .collect(),
+    let several = dataset.sensors.channels().len() > 1;
+    let of_sensor = |(sensor, measured): (usize, &Measured)| {
+        let judged = |count: &&FaultCount| dataset.sensors.of_fault(&count.fault).contains(&sensor);
+        let place = match several {
+            true => format!(", {}", text::words(&dataset.sensors.channels()[sensor])),
+            false => String::new(),
+        };
+        let scatter = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
+            x: ("largest clearance".to_owned(), "m".to_owned()),
+            y: (format!("{name}{place}"), unit.to_owned()),
+            log_y,
+            classes: faults
+                .iter()
+                .filter(judged)
+                .map(|count| {
+                    let own = (0..windows.count()).filter(|&w| windows.fault[w] == count.fault);
+                    let points = own.map(|w| [clearances[w], values[w]]);
+                    (count.fault.clone(), points.collect())
+                })
+                .collect(),
+        };
+        [
+            scatter("rms", "m/s²", false, &measured.shown[RMS]),
+            scatter(&high_name(), "m/s²", true, &measured.high_rms),
+            scatter("crest factor", "", false, &measured.shown[CREST]),
+            scatter("kurtosis", "", true, &measured.shown[KURTOSIS]),
+        ]
     };
-    let measured = &windows.measured;
-    vec![
-        scatter("rms", "m/s²", false, &measured.shown[RMS]),
-        scatter(&high_name(), "m/s²", true, &measured.high_rms),
-        scatter("crest factor", "", false, &measured.shown[CREST]),
-        scatter("kurtosis", "", true, &measured.shown[KURTOSIS]),
-    ]
+    let sensors = windows.measured.iter().enumerate();
+    sensors.flat_map(of_sensor).collect()
 }

@@ -3,6 +3,7 @@
 use super::dataset::{CRANK_ANGLE, Dataset};
 use super::windows::Windows;
 use crate::Failure;
+use ::report::Level;
 use ::report::dataset_page::{Response, Spectrum};
 use signal::amplitude_spectrum::amplitude_spectrum;
 use signal::angle_resampling::{AngleGrid, Revolutions};
@@ -18,6 +19,17 @@ use std::f64::consts::TAU;
 /// Highest order of the crank's speed in order spectra.
 const HIGHEST_ORDER: usize = 100;
 
+/// Parts of a recording over which the spread of its levels is taken.
+const PARTS: usize = 10;
+
+/// Standard deviations of the levels of a recording from one recording to the next, m/s².
+pub(super) struct Spread {
+    pub(super) peak: f64,
+    pub(super) rms: f64,
+    /// Of the root mean square above a frequency.
+    pub(super) high_rms: f64,
+}
+
 /// One channel of one window, over the crank angle.
 pub(super) struct Recording {
     case_id: String,
@@ -30,8 +42,8 @@ pub(super) struct Recording {
 }
 
 impl Recording {
-    /// Reads the acceleration and the crank angle of a window. A dataset without crank angle is
-    /// taken to run at its mean speed, from angle 0.
+    /// Reads the acceleration that sensor number `sensor` of the dataset's has of a window, and the
+    /// crank angle. A dataset without crank angle is taken to run at its mean speed, from angle 0.
     ///
     /// # Errors
     /// A table that is damaged, lacks the channel, or holds samples that are no motion of a crank.
@@ -39,13 +51,16 @@ impl Recording {
         dataset: &Dataset,
         windows: &Windows,
         window: usize,
+        sensor: usize,
     ) -> Result<Self, Failure> {
         let (file, row) = windows.place[window];
         let path = windows.files[file].replacen("features/", "signals/", 1);
-        let read = Row::read(dataset, &path, row).map_err(|error| match error {
-            Unreadable::Open(failure) => failure,
-            Unreadable::Read(error) => dataset.unreadable(&path, error),
-        })?;
+        let read = Row::read(dataset, &path, row, &dataset.sensors.channels()[sensor]).map_err(
+            |error| match error {
+                Unreadable::Open(failure) => failure,
+                Unreadable::Read(error) => dataset.unreadable(&path, error),
+            },
+        )?;
         let place = || format!("{}: row {row}", dataset.folder.join(&path).display());
         if read.case_id != windows.case_id[window] {
             return Err(Failure::input(format!(
@@ -105,6 +120,36 @@ impl Recording {
             crank_angle_rad: self.angle.angles().to_vec(),
             acceleration_m_s2: self.acceleration.clone(),
             velocity_m_s: self.angle.angles().iter().map(at).collect(),
+        })
+    }
+
+    /// What the levels of another recording of the same machine may differ by, from ten parts of
+    /// this one: each long enough for a motion that repeats itself after a few revolutions.
+    ///
+    /// # Errors
+    /// None in practice: a revolution has a spectrum.
+    pub(super) fn spread(&self, high_from_hz: f64) -> Result<Spread, Failure> {
+        let points = self.revolutions.points_per_revolution();
+        let shaft_hz = self.sample_rate_hz / self.grid.samples_per_revolution();
+        let (mut peaks, mut squares, mut high) = (Vec::new(), Vec::new(), Vec::new());
+        let turns = self.revolutions.count().div_ceil(PARTS).max(1);
+        for part in self.revolutions.samples().chunks_exact(turns * points) {
+            peaks.push(part.iter().fold(0.0_f64, |peak, a| peak.max(a.abs())));
+            squares.push(part.iter().map(|a| a * a).sum::<f64>() / part.len() as f64);
+            let spectrum = amplitude_spectrum(part, points as f64, Window::Rectangular);
+            let spectrum = spectrum.map_err(Failure::work)?;
+            let orders = spectrum.frequencies().zip(&spectrum.amplitude);
+            let above = orders.filter(|(order, _)| order * shaft_hz >= high_from_hz);
+            high.push(
+                above
+                    .map(|(_, amplitude)| 0.5 * amplitude * amplitude)
+                    .sum(),
+            );
+        }
+        Ok(Spread {
+            peak: Level::largest(&peaks).spread,
+            rms: Level::root_mean(&squares).spread,
+            high_rms: Level::root_mean(&high).spread,
         })
     }
 
@@ -232,10 +277,9 @@ enum Unreadable {
 }
 
 impl Row {
-    fn read(dataset: &Dataset, path: &str, row: usize) -> Result<Self, Unreadable> {
+    fn read(dataset: &Dataset, path: &str, row: usize, channel: &str) -> Result<Self, Unreadable> {
         let file = dataset.table(path).map_err(Unreadable::Open)?;
-        let prefix = dataset.acceleration.as_deref().unwrap_or_default();
-        let acceleration = format!("{prefix}_m_s2");
+        let acceleration = format!("{channel}_m_s2");
         let mut names = vec!["case_id", "speed_rpm", "sample_rate_hz", &acceleration];
         let has_angle = dataset.has_crank_angle();
         if has_angle {

@@ -20,7 +20,8 @@ pub(super) struct Windows {
     pub(super) labels: Vec<Vec<f64>>,
     /// Values by window of each parameter that is text.
     pub(super) texts: Vec<Vec<String>>,
-    pub(super) measured: Measured,
+    /// The features of each of the dataset's sensors.
+    pub(super) measured: Vec<Measured>,
 }
 
 impl Windows {
@@ -36,17 +37,23 @@ impl Windows {
             fault: Vec::new(),
             labels: vec![Vec::new(); dataset.labels.len()],
             texts: vec![Vec::new(); texts.len()],
-            measured: Measured::new(
-                dataset.acceleration.as_deref(),
-                dataset.plan.settings.sample_rate,
-            ),
+            measured: dataset
+                .sensors
+                .channels()
+                .iter()
+                .map(|channel| Measured::new(channel, dataset.plan.settings.sample_rate))
+                .collect(),
         };
         for (i, path) in windows.files.clone().iter().enumerate() {
             let file = dataset.table(path)?;
             let mut names = vec!["case_id", "split", "fault"];
             names.extend(dataset.labels.iter().map(|label| label.column.as_str()));
             names.extend(texts.iter().copied());
-            let measured = windows.measured.columns();
+            let measured: Vec<String> = windows
+                .measured
+                .iter()
+                .flat_map(Measured::columns)
+                .collect();
             names.extend(measured.iter().map(String::as_str));
             let table = file.read(&names, 0..file.rows());
             table
@@ -79,7 +86,9 @@ impl Windows {
         for (name, values) in texts.iter().zip(&mut self.texts) {
             values.extend(text(name)?);
         }
-        self.measured.append(table)
+        self.measured
+            .iter_mut()
+            .try_for_each(|measured| measured.append(table))
     }
 
     pub(super) fn count(&self) -> usize {

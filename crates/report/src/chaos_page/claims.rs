@@ -12,34 +12,34 @@ use std::collections::BTreeMap;
 /// difference.
 const HIGHER: f64 = 2.0;
 
-/// What the exponents from the equations say about each claim; empty where there is nothing to
-/// compare.
-pub(super) fn claims(cases: &[CaseChaos]) -> Vec<String> {
+/// How many cases are chaotic, and before it, of a sweep that repeats the study, what the exponents
+/// from the equations say about each claim; empty where there is nothing to compare.
+pub(super) fn claims(cases: &[CaseChaos], study: bool) -> Vec<String> {
     let clear: Vec<&CaseChaos> = cases.iter().filter(|case| case.clearance_m > 0.0).collect();
-    [
-        compared(
-            &larger(&clear),
-            "to the next larger clearance in the same joints at the same speed",
-        ),
-        compared(
-            &more(&clear),
-            "to clearance in more joints, of the same size at the same speed",
-        ),
-        by_joints(&clear),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let steps = study.then(|| {
+        [
+            compared(
+                &larger(&clear),
+                "to the next larger clearance in the same joints, all else equal",
+            ),
+            compared(
+                &more(&clear),
+                "to clearance in more joints, of the same size, all else equal",
+            ),
+        ]
+    });
+    let steps = steps.into_iter().flatten().flatten();
+    steps.chain(by_joints(&clear)).collect()
 }
 
 /// Two cases of which the second is claimed to have the higher exponent.
 type Step<'a> = (&'a CaseChaos, &'a CaseChaos);
 
-/// Every case, and the one with the next larger clearance in the same joints at the same speed.
+/// Every case, and the one with the next larger clearance in the same joints, all else equal.
 fn larger<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
-    let mut alike: BTreeMap<(&str, u64), Vec<&CaseChaos>> = BTreeMap::new();
+    let mut alike: BTreeMap<(&str, usize), Vec<&CaseChaos>> = BTreeMap::new();
     for case in cases {
-        let key = (case.joints.as_str(), case.speed_rpm.to_bits());
+        let key = (case.joints.as_str(), case.operating_point);
         alike.entry(key).or_default().push(case);
     }
     let mut steps = Vec::new();
@@ -51,11 +51,12 @@ fn larger<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
     steps
 }
 
-/// Cases of one clearance and speed: one with clearance in some joints, the other in these and more.
+/// Cases of one clearance, all else equal: one with clearance in some joints, the other in these and
+/// more.
 fn more<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
-    let mut alike: BTreeMap<(u64, u64), BTreeMap<&str, &CaseChaos>> = BTreeMap::new();
+    let mut alike: BTreeMap<(u64, usize), BTreeMap<&str, &CaseChaos>> = BTreeMap::new();
     for case in cases {
-        let key = (case.clearance_m.to_bits(), case.speed_rpm.to_bits());
+        let key = (case.clearance_m.to_bits(), case.operating_point);
         let group = alike.entry(key).or_default();
         group.entry(&case.joints).or_insert(case);
     }
@@ -143,7 +144,7 @@ mod tests {
             case("a+b", 0.1, -3.0, Regime::Periodic(2)),
             case("none", 0.0, -3.0, Regime::Periodic(1)),
         ];
-        let said = claims(&cases);
+        let said = claims(&cases, true);
         assert!(said[0].starts_with("Of 2\u{a0}steps"), "{}", said[0]);
         assert!(said[0].contains("rises in 1 and falls in 0"));
         assert!(said[1].contains("rises in 0 and falls in 1"));
@@ -151,6 +152,11 @@ mod tests {
             said[2],
             "Chaotic by the equations are 2 of 3 with clearance in 1\u{a0}joint, 0 of 1 with clearance in 2\u{a0}joints."
         );
-        assert!(claims(&[CaseChaos::default()]).is_empty());
+        assert!(claims(&[CaseChaos::default()], true).is_empty());
+        // Without the study the count alone, and steps only between cases of one operating point.
+        assert_eq!(claims(&cases, false), said[2..]);
+        let mut apart = cases;
+        apart[1].operating_point = 1;
+        assert!(claims(&apart, true)[0].starts_with("Of 1\u{a0}step "));
     }
 }

@@ -30,6 +30,8 @@ pub struct ChaosPage {
     pub seed: u64,
     /// The machine's joints, in their order.
     pub joints: Vec<String>,
+    /// Whether the sweep repeats the clearance study, so that its claims are held against the cases.
+    pub claims: bool,
     /// The cases whose motion is shown, in rows.
     pub motions: Vec<MotionRow>,
     /// Which cases these are, as a rule.
@@ -126,6 +128,8 @@ pub struct CaseChaos {
     pub clearance_m: f64,
     /// Speed of the crank.
     pub speed_rpm: f64,
+    /// The same number for cases that differ in their clearances alone.
+    pub operating_point: usize,
     /// Largest Lyapunov exponent from the equations and its standard error, 1/s.
     pub exponent: Option<[f64; 2]>,
     /// Regime from the equations.

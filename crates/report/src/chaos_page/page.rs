@@ -60,7 +60,7 @@ impl ChaosPage {
     pub fn render(&self) -> Result<Rendered, Error> {
         let view = View {
             page: self,
-            claims: claims::claims(&self.cases),
+            claims: claims::claims(&self.cases, self.claims),
             sections: sections(self),
             regimes: agreement::regimes(&self.cases),
             table: Table::of(listed(self)),

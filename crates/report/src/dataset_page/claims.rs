@@ -1,122 +1,78 @@
 //! The claims of the clearance study, held against the levels of a grid.
 //!
 //! The study (dynamic analysis of the moving mechanism of the reciprocating compressor with
-//! clearance joints, sections 3 and 5) says: with a larger clearance, and with clearance in more
-//! joints, the acceleration oscillates more violently and has a higher amplitude; and the place
-//! of the clearance matters. Amplitude is read here as the peak, violence as the rms above a
-//! frequency that the ideal motion hardly reaches.
+//! clearance joints, sections 3 to 5) says: with a larger clearance, and with clearance in more
+//! joints, the acceleration oscillates more violently, has a higher amplitude, and is more likely to
+//! be chaotic; and the place of the clearance matters. Amplitude is read here as the peak, violence
+//! as the rms above a frequency that the ideal motion hardly reaches, and chaos from the equations.
 
-use super::ClearanceGrid;
-use crate::{classes, text};
+use super::{CaseLevel, ClearanceGrid};
+use crate::{Level, text};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// A level is higher than another if it exceeds it by more than this factor: less may be the noise
-/// of the sensor.
-const HIGHER: f64 = 1.01;
 /// Places differ if the larger level exceeds the smaller by more than this factor.
 const MATTERS: f64 = 1.1;
 /// At most this many comparisons that go the other way are named.
 const MOST_EXCEPTIONS: usize = 4;
 
-/// How large and how violent the acceleration of one case is.
-#[derive(Clone, Debug)]
-pub struct CaseLevel {
-    /// The joints with clearance as a label; `none` for the ideal machine.
-    pub joints: String,
-    /// Radial clearance in m; 0 for the ideal machine.
-    pub clearance_m: f64,
-    /// Root mean square.
-    pub rms_m_s2: f64,
-    /// Largest absolute value.
-    pub peak_m_s2: f64,
-    /// Root mean square of what lies above [`ClearanceGrid::high_from_hz`].
-    pub high_rms_m_s2: f64,
-    /// Share of the variance that lies above it.
-    pub high_share: f64,
+/// What the levels say about a claim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Holds,
+    HoldsInPart,
+    DoesNotHold,
+    NotTested,
+}
+
+impl Verdict {
+    /// Of so many comparisons, `for_it` of which are as claimed.
+    fn of(for_it: usize, all: usize) -> Self {
+        match for_it {
+            _ if all == 0 => Self::NotTested,
+            0 => Self::DoesNotHold,
+            _ if for_it == all => Self::Holds,
+            _ => Self::HoldsInPart,
+        }
+    }
+
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::HoldsInPart => "holds in part",
+            Self::DoesNotHold => "does not hold",
+            Self::NotTested => "not tested",
+        }
+    }
 }
 
 /// A claim and what the levels say about it.
 pub(super) struct Claim {
-    pub(super) claim: String,
-    pub(super) verdict: &'static str,
+    pub(super) claim: &'static str,
+    pub(super) verdict: Verdict,
+    /// The figures in a word: «4 of 6».
+    pub(super) figures: String,
     pub(super) evidence: String,
 }
 
 /// A level by which cases are compared.
 struct Measure {
     name: String,
-    of: fn(&CaseLevel) -> f64,
+    of: fn(&CaseLevel) -> Level,
 }
 
 /// Two cases of which the second is claimed to have the higher level.
 type Pair<'a> = (&'a CaseLevel, &'a CaseLevel);
 
-impl ClearanceGrid {
-    /// The levels of all cases and the verdicts on the claims, as Markdown tables.
-    pub fn claims_markdown(&self) -> String {
-        let mut out = String::new();
-        let mut row = |cells: &[String]| {
-            let _ = writeln!(out, "| {} |", cells.join(" | "));
-        };
-        let rule = |n: usize, left: usize| {
-            (0..n)
-                .map(|i| if i < left { "---" } else { "--:" }.to_owned())
-                .collect::<Vec<_>>()
-        };
-        row(&self.level_heads());
-        row(&rule(6, 1));
-        for level in &self.levels {
-            row(&level_cells(level));
-        }
-        row(&[]);
-        row(&["claim", "verdict", "evidence"].map(str::to_owned));
-        row(&rule(3, 3));
-        for claim in claims(self) {
-            row(&[claim.claim, claim.verdict.to_owned(), claim.evidence]);
-        }
-        out.replace("|  |\n", "\n").replace('\u{a0}', " ")
-    }
-
-    /// Heads of the columns of the levels.
-    pub(super) fn level_heads(&self) -> [String; 6] {
-        let above = text::quantity(self.high_from_hz, "Hz");
-        [
-            "joints with clearance".to_owned(),
-            "clearance".to_owned(),
-            "peak (m/s²)".to_owned(),
-            "rms (m/s²)".to_owned(),
-            format!("rms above {above} (m/s²)"),
-            format!("energy above {above}"),
-        ]
-    }
-}
-
-/// The cells of a case in the table of levels.
-pub(super) fn level_cells(level: &CaseLevel) -> [String; 6] {
-    let ideal = level.joints == "none";
-    [
-        classes::name(&level.joints),
-        if ideal {
-            "–".to_owned()
-        } else {
-            text::clearance(level.clearance_m)
-        },
-        text::decimal(level.peak_m_s2, 1),
-        text::decimal(level.rms_m_s2, 1),
-        text::decimal(level.high_rms_m_s2, 1),
-        format!("{}\u{a0}%", text::decimal(100.0 * level.high_share, 2)),
-    ]
-}
-
 /// The verdict on each claim.
 pub(super) fn claims(grid: &ClearanceGrid) -> Vec<Claim> {
     let peak = Measure {
         name: "peak".to_owned(),
-        of: |level| level.peak_m_s2,
+        of: |level| level.peak,
     };
     let high = Measure {
         name: format!("rms above {}", text::quantity(grid.high_from_hz, "Hz")),
-        of: |level| level.high_rms_m_s2,
+        of: |level| level.high_rms,
     };
     let (larger, more) = (larger_clearance(&grid.levels), more_joints(&grid.levels));
     vec![
@@ -133,6 +89,18 @@ pub(super) fn claims(grid: &ClearanceGrid) -> Vec<Claim> {
         compared("More joints, higher amplitude", &peak, &more),
         compared("More joints, more violent oscillation", &high, &more),
         place(&grid.levels, &[high, peak]),
+        chaos(
+            "The larger the clearance, the more likely is chaos",
+            &grid.levels,
+            |level| (level.clearance_m * 1e9).round() as u64,
+            |level| text::clearance(level.clearance_m),
+        ),
+        chaos(
+            "More joints, chaos more likely",
+            &grid.levels,
+            |level| level.joints.split('+').count() as u64,
+            |level| text::counted(level.joints.split('+').count(), "joint"),
+        ),
     ]
 }
 
@@ -164,16 +132,9 @@ fn more_joints(levels: &[CaseLevel]) -> Vec<Pair<'_>> {
         .collect()
 }
 
-fn compared(claim: &str, measure: &Measure, pairs: &[Pair]) -> Claim {
-    let (for_it, against): (Vec<Pair>, Vec<Pair>) = pairs
-        .iter()
-        .partition(|(low, high)| (measure.of)(high) > HIGHER * (measure.of)(low));
-    let verdict = match (for_it.len(), against.len()) {
-        (0, 0) => "not tested",
-        (_, 0) => "holds",
-        (0, _) => "does not hold",
-        _ => "holds in part",
-    };
+fn compared(claim: &'static str, measure: &Measure, pairs: &[Pair]) -> Claim {
+    let higher = |(low, high): &&Pair| (measure.of)(high).exceeds((measure.of)(low));
+    let (for_it, others): (Vec<&Pair>, Vec<&Pair>) = pairs.iter().partition(higher);
     let named = |level: &CaseLevel| {
         format!(
             "{} {}",
@@ -181,70 +142,112 @@ fn compared(claim: &str, measure: &Measure, pairs: &[Pair]) -> Claim {
             text::clearance(level.clearance_m)
         )
     };
-    let exceptions: Vec<String> = against
-        .iter()
-        .take(MOST_EXCEPTIONS)
-        .map(|(low, high)| {
-            let [low_level, high_level] =
-                [low, high].map(|level| text::decimal((measure.of)(level), 1));
-            format!(
-                "{} {low_level} but {} {high_level}",
-                named(low),
-                named(high)
-            )
-        })
-        .collect();
-    let mut evidence = format!(
-        "{}: higher in {} of {} comparisons",
-        measure.name,
-        for_it.len(),
-        pairs.len()
-    );
+    let exception = |(low, high): &&Pair| {
+        let [a, b] = [low, high].map(|level| (measure.of)(level));
+        let but = if a.exceeds(b) { "but" } else { "and equally" };
+        let [a, b] = [a, b].map(|level| text::decimal(level.value, 1));
+        format!("{} {a} {but} {} {b}", named(low), named(high))
+    };
+    let exceptions: Vec<String> = others.iter().take(MOST_EXCEPTIONS).map(exception).collect();
+    let figures = format!("{} of {}", for_it.len(), pairs.len());
+    let mut evidence = format!("{}: higher in {figures} comparisons", measure.name);
     if !exceptions.is_empty() {
         let _ = write!(evidence, "; {}", exceptions.join("; "));
     }
-    if against.len() > MOST_EXCEPTIONS {
+    if others.len() > MOST_EXCEPTIONS {
         evidence.push_str("; …");
     }
     Claim {
-        claim: claim.to_owned(),
-        verdict,
+        claim,
+        verdict: Verdict::of(for_it.len(), pairs.len()),
+        figures,
         evidence,
     }
 }
 
 /// Whether cases of one clearance, in equally many but other joints, differ in the first measure.
 fn place(levels: &[CaseLevel], measures: &[Measure; 2]) -> Claim {
-    let ratios = measures.each_ref().map(|measure| {
-        let ratio = |(a, b): &Pair| {
-            let (a, b) = ((measure.of)(a), (measure.of)(b));
-            a.max(b) / a.min(b)
-        };
-        let ratios: Vec<f64> = other_places(levels).iter().map(ratio).collect();
-        ratios
-    });
-    let decisive = &ratios[0];
-    let differ = decisive.iter().filter(|ratio| **ratio > MATTERS).count();
-    let verdict = match differ {
-        _ if decisive.is_empty() => "not tested",
-        0 => "does not hold",
-        all if all == decisive.len() => "holds",
-        _ => "holds in part",
+    let pairs = other_places(levels);
+    let ratio = |measure: &Measure, (a, b): &Pair| {
+        let [a, b] = [a, b].map(|level| (measure.of)(level));
+        let ratio = a.value.max(b.value) / a.value.min(b.value);
+        (ratio, ratio > MATTERS && a.against(b).is_ne())
     };
-    let evidence = measures.iter().zip(&ratios).map(|(measure, ratios)| {
-        let low = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = ratios.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        format!(
-            "{}: one place {} to {} times the other",
-            measure.name,
-            text::number(low, 3),
-            text::number(high, 3)
-        )
-    });
+    let differ = pairs
+        .iter()
+        .filter(|pair| ratio(&measures[0], pair).1)
+        .count();
+    let evidence = measures
+        .iter()
+        .filter(|_| !pairs.is_empty())
+        .map(|measure| {
+            let ratios = pairs.iter().map(|pair| ratio(measure, pair).0);
+            let (low, high) = ratios.fold((f64::INFINITY, 0.0_f64), |(low, high), ratio| {
+                (low.min(ratio), high.max(ratio))
+            });
+            format!(
+                "{}: one place {} to {} times the other",
+                measure.name,
+                text::number(low, 3),
+                text::number(high, 3)
+            )
+        });
     Claim {
-        claim: "The place of the clearance matters".to_owned(),
-        verdict,
+        claim: "The place of the clearance matters",
+        verdict: Verdict::of(differ, pairs.len()),
+        figures: format!("{differ} of {}", pairs.len()),
         evidence: evidence.collect::<Vec<_>>().join("; "),
+    }
+}
+
+/// Whether the share of chaotic cases rises from group to group: in no step it falls, and the last
+/// is above the first.
+fn chaos(
+    claim: &'static str,
+    levels: &[CaseLevel],
+    group: fn(&CaseLevel) -> u64,
+    name: fn(&CaseLevel) -> String,
+) -> Claim {
+    let mut groups: BTreeMap<u64, (String, usize, usize)> = BTreeMap::new();
+    for level in levels.iter().filter(|level| level.joints != "none") {
+        if let Some(chaotic) = level.chaotic {
+            let entry = groups.entry(group(level));
+            let (_, count, all) = entry.or_insert_with(|| (name(level), 0, 0));
+            *count += usize::from(chaotic);
+            *all += 1;
+        }
+    }
+    let share = |(_, count, all): &(String, usize, usize)| *count as f64 / *all as f64;
+    let shares: Vec<f64> = groups.values().map(share).collect();
+    let rises = shares.last() > shares.first();
+    let falls = shares.windows(2).any(|two| two[1] < two[0]);
+    let count: usize = groups.values().map(|(_, count, _)| count).sum();
+    let all: usize = groups.values().map(|(.., all)| all).sum();
+    let each = groups
+        .values()
+        .map(|(name, count, all)| format!("{name} {count} of {all}"));
+    Claim {
+        claim,
+        verdict: match (shares.len(), rises, falls) {
+            (0 | 1, ..) => Verdict::NotTested,
+            (_, true, false) => Verdict::Holds,
+            (_, true, true) => Verdict::HoldsInPart,
+            (_, false, _) => Verdict::DoesNotHold,
+        },
+        figures: match all {
+            0 => "–".to_owned(),
+            _ => {
+                let counts = groups.values().map(|(_, count, _)| count.to_string());
+                counts.collect::<Vec<_>>().join(", ")
+            }
+        },
+        evidence: match all {
+            0 => "the sweep has no exponents from the equations".to_owned(),
+            _ => format!(
+                "chaotic are {count} of {all}: {}",
+                each.collect::<Vec<_>>().join(", ")
+            ),
+        },
     }
 }
 
@@ -263,30 +266,36 @@ fn other_places(levels: &[CaseLevel]) -> Vec<Pair<'_>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::ClearanceGrid;
+    use super::super::{ClearanceGrid, ClearanceGrids};
     use super::*;
 
+    fn level(joints: &str, clearance_m: f64, peak: f64, high_rms: f64) -> CaseLevel {
+        let certain = |value| Level { value, spread: 0.0 };
+        CaseLevel {
+            joints: joints.to_owned(),
+            clearance_m,
+            rms: certain(200.0),
+            peak: certain(peak),
+            high_rms: certain(high_rms),
+            high_share: 0.01,
+            chaotic: None,
+        }
+    }
+
     fn grid(levels: &[(&str, f64, f64, f64)]) -> ClearanceGrid {
-        let level =
-            |&(joints, clearance_m, peak_m_s2, high_rms_m_s2): &(&str, f64, f64, f64)| CaseLevel {
-                joints: joints.to_owned(),
-                clearance_m,
-                rms_m_s2: 200.0,
-                peak_m_s2,
-                high_rms_m_s2,
-                high_share: 0.01,
-            };
+        let levels = levels.iter().map(|&(j, c, p, h)| level(j, c, p, h));
         ClearanceGrid {
-            operating_point: String::new(),
-            ideal: None,
-            joint_sets: Vec::new(),
             high_from_hz: 160.0,
-            levels: levels.iter().map(level).collect(),
+            levels: levels.collect(),
+            ..ClearanceGrid::default()
         }
     }
 
     fn verdicts(grid: &ClearanceGrid) -> Vec<&'static str> {
-        claims(grid).iter().map(|claim| claim.verdict).collect()
+        claims(grid)[..5]
+            .iter()
+            .map(|claim| claim.verdict.words())
+            .collect()
     }
 
     #[test]
@@ -302,7 +311,7 @@ mod tests {
         ]);
         assert_eq!(verdicts(&grid), ["holds"; 5]);
         // One of three steps of clearance, and one of four pairs of joints, now go the other way.
-        grid.levels[6].peak_m_s2 = 340.0;
+        grid.levels[6].peak.value = 340.0;
         assert_eq!(
             verdicts(&grid),
             ["holds in part", "holds", "holds in part", "holds", "holds"]
@@ -319,10 +328,58 @@ mod tests {
              peak: one place 1.17 to 1.25 times the other"
         );
         // A difference that may be noise is none.
-        grid.levels[5].high_rms_m_s2 = 12.05;
+        grid.levels[5].high_rms.value = 12.05;
         assert_eq!(verdicts(&grid)[3], "holds in part");
-        grid.levels[3].high_rms_m_s2 = 10.5;
+        grid.levels[3].high_rms.value = 10.5;
         assert_eq!(verdicts(&grid)[4], "holds in part");
+    }
+
+    /// 15 % more is nothing where two recordings of one machine differ by as much.
+    #[test]
+    fn a_difference_within_the_spread_is_none() {
+        let mut grid = grid(&[("a", 1e-4, 200.0, 10.0), ("a", 2e-4, 230.0, 20.0)]);
+        assert_eq!(verdicts(&grid)[0], "holds");
+        for level in &mut grid.levels {
+            level.peak.spread = 15.0;
+        }
+        let said = &claims(&grid)[0];
+        assert_eq!(said.verdict, Verdict::DoesNotHold);
+        assert!(said.evidence.contains("and equally"), "{}", said.evidence);
+    }
+
+    #[test]
+    fn chaos_is_counted_by_size_and_by_number() {
+        let mut grid = grid(&[
+            ("a", 1e-4, 1.0, 1.0),
+            ("b", 1e-4, 1.0, 1.0),
+            ("a+b", 1e-4, 1.0, 1.0),
+            ("a", 2e-4, 1.0, 1.0),
+            ("b", 2e-4, 1.0, 1.0),
+            ("a+b", 2e-4, 1.0, 1.0),
+        ]);
+        let untested = claims(&grid);
+        assert_eq!(untested[5].verdict, Verdict::NotTested);
+        for (level, chaotic) in grid
+            .levels
+            .iter_mut()
+            .zip([false, false, false, false, true, true])
+        {
+            level.chaotic = Some(chaotic);
+        }
+        let said = claims(&grid);
+        assert_eq!(
+            (said[5].verdict, said[6].verdict),
+            (Verdict::Holds, Verdict::Holds)
+        );
+        assert_eq!(
+            said[5].evidence.replace('\u{a0}', " "),
+            "chaotic are 2 of 6: 0.1 mm 0 of 3, 0.2 mm 2 of 3"
+        );
+        assert_eq!(said[6].figures, "1, 1");
+        for level in &mut grid.levels {
+            level.chaotic = Some(false);
+        }
+        assert_eq!(claims(&grid)[5].verdict, Verdict::DoesNotHold);
     }
 
     #[test]
@@ -334,17 +391,24 @@ mod tests {
 
     #[test]
     fn the_markdown_has_a_row_for_each_case_and_claim() {
-        let markdown = grid(&[("none", 0.0, 100.0, 1.0), ("a+b", 1e-4, 200.0, 10.0)]);
-        let lines: Vec<String> = markdown
-            .claims_markdown()
-            .lines()
-            .map(str::to_owned)
-            .collect();
-        assert_eq!(lines.len(), 2 + 2 + 1 + 2 + 5);
+        let mut grids = ClearanceGrids {
+            grids: vec![grid(&[
+                ("none", 0.0, 100.0, 1.0),
+                ("a+b", 1e-4, 200.0, 10.0),
+            ])],
+            left_out: 0,
+            claims: true,
+        };
+        let markdown = grids.markdown();
+        let lines: Vec<&str> = markdown.lines().collect();
+        assert_eq!(lines.len(), 1 + 2 + 2 + 1 + 2 + 7);
         assert_eq!(
-            lines[3],
+            lines[4],
             "| a + b | 0.1 mm | 200.0 | 200.0 | 10.0 | 1.00 % |"
         );
-        assert_eq!(lines[4], "");
+        assert_eq!(lines[5], "");
+        // Of a machine that is not the study's nothing is claimed.
+        grids.claims = false;
+        assert_eq!(grids.markdown().lines().count(), 1 + 2 + 2);
     }
 }

@@ -2,7 +2,7 @@
 //! study that the shipped sweep repeats (dynamic analysis of the moving mechanism of the
 //! reciprocating compressor with clearance joints, section 3 and 4).
 
-use super::captions::{self, Level};
+use super::captions;
 use super::examples::{PORTRAIT_REVOLUTIONS, portrait};
 use super::page::class_colour;
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
@@ -10,7 +10,7 @@ use crate::classes::{self, HEALTHY};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
 use crate::revolutions::Revolutions;
-use crate::text;
+use crate::{Level, text};
 
 /// At most this many sets of joints are shown, and clearances of each.
 const MOST_SETS: usize = 8;
@@ -101,16 +101,16 @@ fn at_clearance(set: &JointSet, clearance: f64) -> Option<&Response> {
 
 fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     let drawn = by_colour_of_clearance(set);
-    let levels: Vec<Level> = drawn.iter().filter_map(|d| Level::of(d.response)).collect();
     let joints = text::words(&set.joints);
-    let peaks: Vec<f64> = levels.iter().map(|level| level.peak).collect();
-    let rms: Vec<f64> = levels.iter().map(|level| level.rms).collect();
+    let levels = || drawn.iter().filter_map(|d| captions::levels(d.response));
+    let peaks: Vec<Level> = levels().map(|[peak, _]| peak).collect();
+    let rms: Vec<Level> = levels().map(|[_, rms]| rms).collect();
     Plate {
         heading: format!("Clearance in {joints}"),
         caption: format!(
             "Acceleration over one revolution with clearance in {joints}, {}; above all on one pair of axes, below each by \
              itself{}. With the clearance the peak {}, the rms {}. Data: {}.",
-            grid.operating_point,
+            grid.title(),
             ideal_words(grid),
             captions::trend(&peaks, "m/s²"),
             captions::trend(&rms, "m/s²"),
@@ -121,21 +121,19 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
 }
 
 fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Plate {
-    let rms: Vec<(String, f64)> = drawn
-        .iter()
-        .filter_map(|d| Some((d.name.clone(), Level::of(d.response)?.rms)))
-        .collect();
-    let peaks: Vec<(String, f64)> = drawn
-        .iter()
-        .filter_map(|d| Some((d.name.clone(), Level::of(d.response)?.peak)))
-        .collect();
+    let named = |which: usize| -> Vec<(String, Level)> {
+        let levels = drawn.iter();
+        let levels = levels.filter_map(|d| Some((d, captions::levels(d.response)?[which])));
+        levels.map(|(d, level)| (d.name.clone(), level)).collect()
+    };
+    let (peaks, rms) = (named(0), named(1));
     Plate {
         heading: format!("Sets of joints at {}", text::clearance(clearance)),
         caption: format!(
             "Acceleration over one revolution with a clearance of {} in different joints, {}; above all on one pair of axes, \
              below each by itself{}. The peak is {}; the rms is {}. Data: {}.",
             text::clearance(clearance),
-            grid.operating_point,
+            grid.title(),
             ideal_words(grid),
             captions::ends(&peaks, "m/s²"),
             captions::ends(&rms, "m/s²"),
@@ -172,7 +170,7 @@ fn ideal_words(grid: &ClearanceGrid) -> &'static str {
 /// One wide panel with all responses, the most violent at the back, and a panel for each.
 fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
     let mut order: Vec<&Drawn<'_>> = drawn.iter().collect();
-    let peak = |d: &Drawn<'_>| Level::of(d.response).map_or(0.0, |level| level.peak);
+    let peak = |d: &Drawn<'_>| captions::levels(d.response).map_or(0.0, |[peak, _]| peak.value);
     order.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
     let ideal = grid
         .ideal
@@ -232,7 +230,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, {}: a row for each set of joints, the clearance rising from \
              left to right. A closed curve is a motion that repeats with the crank; a band or a cloud is one that does not. \
              Axes are the same in all panels. Data: {}.",
-            grid.operating_point,
+            grid.title(),
             captions::places(rows.iter().flatten().map(|d| d.response)),
         ),
         svg: portraits(panels.collect()),
@@ -250,7 +248,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
             "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer with a clearance of {} in different joints, {}. Axes are the \
              same in all panels. Data: {}.",
             text::clearance(clearance),
-            grid.operating_point,
+            grid.title(),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
         svg: portraits(crate::figure::in_rows(panels, 4)),

@@ -5,7 +5,9 @@ use super::{DatasetPage, Histogram, RandomSweep, Scatter};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::text;
+use crate::statistics::quantile;
+use crate::{Level, text};
+use std::f64::consts::FRAC_PI_2;
 
 const MOST_BINS: usize = 30;
 /// At most this many of each kind of figure.
@@ -122,7 +124,7 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         series: series.collect(),
         ..Panel::default()
     };
-    let medians: Vec<(String, f64)> = scatter
+    let medians: Vec<(String, Level)> = scatter
         .classes
         .iter()
         .filter_map(|(fault, points)| {
@@ -147,10 +149,16 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+/// The median of the finite values. Its standard error is √(π/2) σ/√n (normal values), σ being the
+/// distance between the quartiles over 1.349.
+fn median(values: impl Iterator<Item = f64>) -> Option<Level> {
+    let values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    let quartile = |part| quantile(&values, part);
+    let deviation = (quartile(0.75)? - quartile(0.25)?) / 1.349;
+    Some(Level {
+        value: quartile(0.5)?,
+        spread: FRAC_PI_2.sqrt() * deviation / (values.len() as f64).sqrt(),
+    })
 }
 
 #[cfg(test)]

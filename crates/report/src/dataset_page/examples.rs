@@ -35,18 +35,22 @@ pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
 }
 
 fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
-    let level = captions::Level::of(&example.response).map_or_else(String::new, |level| {
-        let (peak, rms) = (
-            text::quantity(level.peak, "m/s²"),
-            text::quantity(level.rms, "m/s²"),
-        );
+    let level = captions::levels(&example.response).map_or_else(String::new, |[peak, rms]| {
         format!(
-            " Peak {peak}, rms {rms}, crest factor {}.",
-            text::number(level.peak / level.rms, 3)
+            " Peak {}, rms {}, crest factor {}.",
+            text::quantity(peak.value, "m/s²"),
+            text::quantity(rms.value, "m/s²"),
+            text::number(peak.value / rms.value, 3)
         )
     });
     Plate {
-        heading: text::capitalised(&classes::name(&example.fault)),
+        heading: match example.sensor.as_str() {
+            "" => text::capitalised(&classes::name(&example.fault)),
+            sensor => format!(
+                "{}, {sensor}",
+                text::capitalised(&classes::name(&example.fault))
+            ),
+        },
         caption: format!(
             "{}: one revolution, the velocity-acceleration portrait of the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, the \
              amplitude spectrum (rms over stretches of two revolutions) and the order spectrum (rms over the \

@@ -10,11 +10,14 @@ mod claims;
 mod comparison;
 mod distributions;
 mod examples;
+mod levels;
 mod page;
+mod settings;
 mod warnings;
 
-pub use claims::CaseLevel;
 pub use warnings::CaseWarning;
+
+use crate::Level;
 
 /// All that the page tells. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
@@ -127,6 +130,8 @@ pub struct Spectrum {
 pub struct ClassExample {
     /// Label of the class.
     pub fault: String,
+    /// The sensor that reads it; empty where the dataset has one.
+    pub sensor: String,
     /// What sets the case apart: «clearance 0.2 mm, 500 rpm».
     pub operating_point: String,
     /// Its signal.
@@ -141,16 +146,31 @@ pub struct ClassExample {
 #[derive(Clone, Debug)]
 pub enum Design {
     /// The same clearances in several sets of joints, all else equal.
-    Grid(ClearanceGrid),
+    Grid(ClearanceGrids),
     /// Drawn at random.
     Random(RandomSweep),
 }
 
-/// Responses by set of joints and clearance.
-#[derive(Clone, Debug)]
+/// The grids of a sweep: one for each operating point and each sensor that judges its faults.
+#[derive(Clone, Debug, Default)]
+pub struct ClearanceGrids {
+    /// The grids, in the order of the sweep.
+    pub grids: Vec<ClearanceGrid>,
+    /// How many more the sweep has.
+    pub left_out: usize,
+    /// Whether the sweep repeats the clearance study, so that its claims are held against the grids.
+    pub claims: bool,
+}
+
+/// Responses by set of joints and clearance, as one sensor reads them.
+#[derive(Clone, Debug, Default)]
 pub struct ClearanceGrid {
     /// What is the same in all cases: «500 rpm, full load».
     pub operating_point: String,
+    /// What sets this operating point apart from the others of the sweep: name and value.
+    pub settings: Vec<(String, String)>,
+    /// The sensor; empty where the dataset has one.
+    pub sensor: String,
     /// The machine without clearance, if the sweep has it.
     pub ideal: Option<Response>,
     /// The sets of joints; none where the recordings are not at hand.
@@ -159,6 +179,25 @@ pub struct ClearanceGrid {
     pub high_from_hz: f64,
     /// The levels of all cases, the ideal machine first.
     pub levels: Vec<CaseLevel>,
+}
+
+/// How large and how violent the acceleration of one case is.
+#[derive(Clone, Debug)]
+pub struct CaseLevel {
+    /// The joints with clearance as a label; `none` for the ideal machine.
+    pub joints: String,
+    /// Radial clearance in m; 0 for the ideal machine.
+    pub clearance_m: f64,
+    /// Root mean square, m/s².
+    pub rms: Level,
+    /// Largest absolute value, m/s².
+    pub peak: Level,
+    /// Root mean square of what lies above [`ClearanceGrid::high_from_hz`], m/s².
+    pub high_rms: Level,
+    /// Share of the variance that lies above it.
+    pub high_share: f64,
+    /// Whether the motion is chaotic by the equations; none where they were not asked.
+    pub chaotic: Option<bool>,
 }
 
 /// The responses with clearance in the same joints.
@@ -217,6 +256,8 @@ pub struct Feature {
 pub struct FeatureRow {
     /// Label of the fault.
     pub fault: String,
+    /// The sensor, as features are named after it.
+    pub sensor: String,
     /// Windows that were averaged.
     pub windows: usize,
     /// Mean and standard deviation of each feature, in the order of [`DatasetPage::features`].

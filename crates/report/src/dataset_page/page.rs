@@ -2,9 +2,10 @@
 
 use super::claims::{self, Claim};
 use super::examples::{self, MOST_EXAMPLES};
+use super::levels;
 use super::{
-    CaseLevel, CaseWarning, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount,
-    FeatureRow, ParameterRange, comparison, distributions,
+    CaseLevel, CaseWarning, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design, FailedCase,
+    FaultCount, FeatureRow, ParameterRange, comparison, distributions,
 };
 use crate::figure::Colour;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
@@ -15,11 +16,14 @@ use askama::Template;
 const MOST_FAULTS: usize = 200;
 const MOST_FAILED: usize = 100;
 const MOST_COLUMNS: usize = 500;
+/// Figures of further grids are left out where all would take more bytes than this: a page of five
+/// million bytes opens at once on a telephone.
+const MOST_FIGURE_BYTES: usize = 4_000_000;
 
 /// A part of the page that holds figures.
 struct Gallery<'a> {
-    id: &'static str,
-    heading: &'static str,
+    id: String,
+    heading: String,
     introduction: &'static str,
     /// What is shown of how much; empty where all is shown.
     left_out: String,
@@ -72,22 +76,6 @@ pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
 }
 
 fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
-    let examples = examples::plates(page);
-    let (id, heading, introduction, plates) = match &page.design {
-        Design::Grid(grid) => (
-            "responses",
-            "Responses by joint and clearance",
-            "The same machine at the same operating point, with different clearances in different joints. Each line over \
-             crank angle is the last complete revolution of its recording; peak and rms are those of the whole recording.",
-            comparison::plates(page, grid),
-        ),
-        Design::Random(sweep) => (
-            "distributions",
-            "Distributions",
-            "The cases of this dataset are drawn at random. This is how their parameters lie, and how features go with them.",
-            distributions::plates(page, sweep),
-        ),
-    };
     let left_out = if page.examples.len() > MOST_EXAMPLES {
         format!(
             "Shown are the first {MOST_EXAMPLES} of {} classes.",
@@ -96,26 +84,72 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
     } else {
         String::new()
     };
-    vec![
-        Gallery {
-            id: "examples",
-            heading: "An example of each class",
-            introduction: "One recording from each class of fault, as the sensors give it.",
-            left_out,
-            nothing: &page.no_examples,
-            first: 1,
-            plates: examples,
-        },
-        Gallery {
-            id,
-            heading,
-            introduction,
+    let mut galleries = vec![Gallery {
+        id: "examples".to_owned(),
+        heading: "An example of each class".to_owned(),
+        introduction: "One recording from each class of fault, as the sensors give it.",
+        left_out,
+        nothing: &page.no_examples,
+        first: 1,
+        plates: examples::plates(page),
+    }];
+    match &page.design {
+        Design::Grid(grids) => galleries.extend(responses(page, grids)),
+        Design::Random(sweep) => galleries.push(Gallery {
+            id: "distributions".to_owned(),
+            heading: "Distributions".to_owned(),
+            introduction: "The cases of this dataset are drawn at random. This is how their parameters lie, and how features \
+                           go with them.",
             left_out: String::new(),
             nothing: &page.no_examples,
-            first: 1 + page.examples.len().min(MOST_EXAMPLES),
-            plates,
+            first: 1,
+            plates: distributions::plates(page, sweep),
+        }),
+    }
+    let mut number = 1;
+    for gallery in &mut galleries {
+        gallery.first = number;
+        number += gallery.plates.len();
+    }
+    galleries
+}
+
+/// A gallery for each grid, as far as their figures fit on the page.
+fn responses<'a>(page: &'a DatasetPage, grids: &ClearanceGrids) -> Vec<Gallery<'a>> {
+    let mut bytes = 0;
+    let mut drawn = Vec::new();
+    for (at, grid) in grids.grids.iter().enumerate() {
+        let plates = comparison::plates(page, grid);
+        bytes += plates.iter().map(|plate| plate.svg.len()).sum::<usize>();
+        if at > 0 && (plates.is_empty() || bytes > MOST_FIGURE_BYTES) {
+            break;
+        }
+        drawn.push((grid, plates));
+    }
+    let (shown, all) = (drawn.len(), grids.grids.len() + grids.left_out);
+    let gallery = |(at, (grid, plates)): (usize, (&ClearanceGrid, Vec<Plate>))| Gallery {
+        id: match at {
+            0 => "responses".to_owned(),
+            at => format!("responses-{}", at + 1),
         },
-    ]
+        heading: match all {
+            1 => "Responses by joint and clearance".to_owned(),
+            _ => format!("Responses: {}", grid.title()),
+        },
+        introduction: "The same machine at the same operating point, with different clearances in different joints. Each line \
+                       over crank angle is the last complete revolution of its recording; peak and rms are those of the whole \
+                       recording.",
+        left_out: match shown {
+            _ if at > 0 || shown == all => String::new(),
+            _ => format!(
+                "Figures show the first {shown} of {all} operating points and sensors; the levels of the others stand below."
+            ),
+        },
+        nothing: &page.no_examples,
+        first: 1,
+        plates,
+    };
+    drawn.into_iter().enumerate().map(gallery).collect()
 }
 
 fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
@@ -158,16 +192,33 @@ impl View<'_> {
         &self.page.faults[..self.page.faults.len().min(MOST_FAULTS)]
     }
 
-    /// The grid, if the design is one whose levels are known.
-    fn levels(&self) -> Option<&ClearanceGrid> {
+    /// The grids, if the design has any.
+    fn grids(&self) -> Option<&ClearanceGrids> {
         match &self.page.design {
-            Design::Grid(grid) if !grid.levels.is_empty() => Some(grid),
-            _ => None,
+            Design::Grid(grids) => Some(grids),
+            Design::Random(_) => None,
         }
     }
 
+    /// The grids whose levels are known.
+    fn with_levels(&self) -> Vec<&ClearanceGrid> {
+        let grids = self.grids().into_iter().flat_map(|grids| &grids.grids);
+        grids.filter(|grid| !grid.levels.is_empty()).collect()
+    }
+
+    /// The grids, if there are claims to hold against them.
+    fn claimed(&self) -> Option<&ClearanceGrids> {
+        self.grids().filter(|grids| !grids.tested().is_empty())
+    }
+
     fn level_cells(level: &CaseLevel) -> [String; 6] {
-        claims::level_cells(level)
+        levels::level_cells(level)
+    }
+
+    /// Whether rows of features are told apart by their sensors.
+    fn has_sensors(&self) -> bool {
+        let rows = &self.page.feature_rows;
+        rows.iter().any(|row| row.sensor != rows[0].sensor)
     }
 
     fn claims(grid: &ClearanceGrid) -> Vec<Claim> {
@@ -230,6 +281,10 @@ impl View<'_> {
             text::number(range.high * factor, 4),
             unit.to_owned(),
         ]
+    }
+
+    fn sensor(row: &FeatureRow) -> String {
+        text::words(&row.sensor)
     }
 
     fn count(n: &usize) -> String {

@@ -52,6 +52,7 @@ fn the_numbers_of_the_table_and_of_the_scatter_are_those_of_the_cases() {
         regime: Some(regime),
     };
     let case = CaseChaos {
+        operating_point: 0,
         case_id: "case-000007".to_owned(),
         joints: "big_end".to_owned(),
         clearance_m: 2e-4,

@@ -83,9 +83,10 @@ fn a_grid_has_the_figures_of_the_study_and_says_what_they_show() {
 #[test]
 fn a_peak_that_falls_is_not_said_to_rise() {
     let mut page = datasets::grid();
-    let Design::Grid(grid) = &mut page.design else {
+    let Design::Grid(grids) = &mut page.design else {
         panic!("a grid")
     };
+    let grid = &mut grids.grids[0];
     let levels = [(1e-4, 900.0), (3e-4, 500.0), (2e-4, 700.0)];
     grid.joint_sets = vec![JointSet {
         joints: "main".to_owned(),
@@ -105,6 +106,67 @@ fn a_peak_that_falls_is_not_said_to_rise() {
     }];
     let html = page.render().unwrap().html;
     assert!(html.contains("the peak falls at every step from 900\u{a0}m/s² to 500\u{a0}m/s²"));
+}
+
+/// 82.3 to 82.3 is no rise, whatever the digits behind.
+#[test]
+fn a_peak_that_stays_is_not_said_to_rise() {
+    let mut page = datasets::grid();
+    let Design::Grid(grids) = &mut page.design else {
+        panic!("a grid")
+    };
+    let levels = [(1e-4, 82.31), (2e-4, 82.33), (3e-4, 82.34)];
+    let response = |peak: f64| Response {
+        acceleration_m_s2: vec![0.0, peak, 0.0],
+        crank_angle_rad: vec![0.1, 0.2, 0.3],
+        ..Response::default()
+    };
+    grids.grids[0].joint_sets = vec![JointSet {
+        joints: "main".to_owned(),
+        responses: levels.map(|(c, peak)| (c, response(peak))).into(),
+    }];
+    let html = page.render().unwrap().html;
+    assert!(!html.contains("rises at every step"));
+    assert!(html.contains("the peak stays the same within its spread, 82.3\u{a0}m/s²"));
+}
+
+/// Every operating point has its figures and its levels, and what it is stands above them.
+#[test]
+fn all_operating_points_are_on_the_page() {
+    let mut page = datasets::grid();
+    let Design::Grid(grids) = &mut page.design else {
+        panic!("a grid")
+    };
+    let mut other = grids.grids[0].clone();
+    other.operating_point = "650 rpm".to_owned();
+    grids.grids[0].settings = vec![("speed".to_owned(), "500 rpm".to_owned())];
+    other.settings = vec![("speed".to_owned(), "650 rpm".to_owned())];
+    grids.grids.push(other);
+    let html = page.render().unwrap().html;
+    links_lead_somewhere(&html);
+    for said in [
+        "<h2>Responses: 500 rpm</h2>",
+        "<h2>Responses: 650 rpm</h2>",
+        "<summary>650 rpm</summary>",
+        "holds in 2 of 2, in part in 0, not in 0",
+        "<td>650 rpm</td><td>holds (6 of 6)</td>",
+    ] {
+        assert!(html.contains(said), "{said}");
+    }
+}
+
+/// A dataset that repeats no study is not held against one.
+#[test]
+fn claims_stand_on_the_page_of_the_study_alone() {
+    let mut page = datasets::grid();
+    assert!(page.render().unwrap().html.contains("id=\"claims\""));
+    let Design::Grid(grids) = &mut page.design else {
+        panic!("a grid")
+    };
+    grids.claims = false;
+    let html = page.render().unwrap().html;
+    assert!(!html.contains("study") || !html.contains("id=\"claims\""));
+    assert!(html.contains("id=\"levels\""));
 }
 
 #[test]
@@ -151,7 +213,8 @@ fn a_page_without_data_is_a_page() {
         ..datasets::grid()
     };
     let mut none = empty.clone();
-    if let Design::Grid(grid) = &mut none.design {
+    if let Design::Grid(grids) = &mut none.design {
+        let grid = &mut grids.grids[0];
         grid.ideal = None;
         grid.joint_sets = vec![JointSet {
             joints: String::new(),
@@ -202,7 +265,8 @@ fn the_largest_dataset_has_a_page_of_bounded_size() {
         };
         100_000
     ];
-    if let Design::Grid(grid) = &mut page.design {
+    if let Design::Grid(grids) = &mut page.design {
+        let grid = &mut grids.grids[0];
         grid.ideal = Some(response());
         let set = JointSet {
             joints: "main".to_owned(),
@@ -211,6 +275,8 @@ fn the_largest_dataset_has_a_page_of_bounded_size() {
                 .collect(),
         };
         grid.joint_sets = vec![set; 15];
+        grids.grids = vec![grids.grids[0].clone(); 2];
+        grids.left_out = 1000;
     }
     let html = page.render().unwrap().html;
     assert!(html.len() < LARGEST, "{} bytes", html.len());

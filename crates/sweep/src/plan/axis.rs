@@ -2,6 +2,7 @@
 
 use input::{Error, paths};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 use crate::labels::Joint;
 
@@ -20,8 +21,8 @@ pub(super) enum Target {
     ClearanceOf { joint: usize },
     /// Suction and discharge pressure of every throw.
     Load,
-    /// Anything else.
-    Path(String),
+    /// One value at each of these paths: at one, or at the same key of several joints.
+    Paths(Vec<String>),
 }
 
 /// One axis of a block.
@@ -46,11 +47,16 @@ pub(super) struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// What the axis `name` at `key` of the sweep file sets; `sets` tells whether the block has an
-    /// axis `joints`.
-    pub(super) fn target(&self, name: &str, sets: bool, key: &str) -> Result<Target, Error> {
+    /// What the axis `name` at `key` of the sweep file sets; `sets` are those of the axis `joints`
+    /// beside it, where there is one.
+    pub(super) fn target(
+        &self,
+        name: &str,
+        sets: Option<&[JointSet]>,
+        key: &str,
+    ) -> Result<Target, Error> {
         match name {
-            "clearance" if sets => Ok(Target::Clearance),
+            "clearance" if sets.is_some() => Ok(Target::Clearance),
             "clearance" => Err(Error::found(
                 key,
                 "a clearance without joints",
@@ -58,15 +64,41 @@ impl Frame<'_> {
             )),
             "load" => Ok(Target::Load),
             path => {
+                if let Some(paths) = self.below_joints(path, sets.unwrap_or_default()) {
+                    return Ok(Target::Paths(paths.map_err(|e| e.under(key))?));
+                }
                 let found = paths::get(self.machine, path);
                 found.map_err(|e| Error::new(key, self.with_short_names(e).problem().clone()))?;
                 let joint = self.joints.iter().position(|j| j.clearance_path == path);
                 Ok(match joint {
-                    Some(joint) if sets => Target::ClearanceOf { joint },
-                    _ => Target::Path(path.to_owned()),
+                    Some(joint) if sets.is_some() => Target::ClearanceOf { joint },
+                    _ => Target::Paths(vec![path.to_owned()]),
                 })
             }
         }
+    }
+
+    /// The paths of a key such as `contact.damping` in every joint that any of the sets names; none
+    /// where its first part is no key of a joint. All these joints have the value in every case, so
+    /// that cases with clearance in different joints stay comparable.
+    fn below_joints(&self, key: &str, sets: &[JointSet]) -> Option<Result<Vec<String>, Error>> {
+        let named = sets.iter().flatten().collect::<BTreeSet<_>>();
+        let sections: Vec<&str> = named
+            .into_iter()
+            .filter_map(|&joint| self.joints[joint].clearance_path.strip_suffix("clearance"))
+            .collect();
+        let first = key.split('.').next().unwrap_or_default();
+        let known = |section: &&str| paths::get(self.machine, &format!("{section}{first}")).is_ok();
+        if sections.is_empty() || !sections.iter().all(known) {
+            return None;
+        }
+        let paths = sections.into_iter().map(|section| {
+            let path = format!("{section}{key}");
+            let found = paths::get(self.machine, &path);
+            found.map_err(|e| Error::new("", e.problem().clone()))?;
+            Ok(path)
+        });
+        Some(paths.collect())
     }
 
     /// An unknown first part of a path may have been meant as `clearance` or `load`, too.
@@ -130,7 +162,9 @@ impl Frame<'_> {
             }
             Target::ClearanceOf { .. } => {}
             Target::Load => self.assign_load(value, assignments),
-            Target::Path(path) => assignments.push((path.clone(), value.clone())),
+            Target::Paths(paths) => {
+                assignments.extend(paths.iter().map(|path| (path.clone(), value.clone())));
+            }
         }
     }
 
@@ -190,7 +224,7 @@ impl Target {
         match self {
             Target::Clearance => set.iter().any(|joint| !own.contains(joint)),
             Target::ClearanceOf { joint } => set.contains(joint),
-            Target::Load | Target::Path(_) => true,
+            Target::Load | Target::Paths(_) => true,
         }
     }
 }

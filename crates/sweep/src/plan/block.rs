@@ -82,15 +82,20 @@ impl Block {
     /// Paths of the machine file that have an axis of their own, in order, each with values that
     /// show what it goes through.
     pub(super) fn paths(&self) -> Vec<(&str, Vec<Value>)> {
-        fn path((target, values): (&Target, Vec<Value>)) -> Option<(&str, Vec<Value>)> {
-            match target {
-                Target::Path(path) => Some((path, values)),
-                _ => None,
-            }
+        fn paths(
+            (target, values): (&Target, Vec<Value>),
+        ) -> impl Iterator<Item = (&str, Vec<Value>)> {
+            let paths = match target {
+                Target::Paths(paths) => paths.as_slice(),
+                _ => &[],
+            };
+            paths
+                .iter()
+                .map(move |path| (path.as_str(), values.clone()))
         }
         match self {
-            Block::Listed(block) => block.targets().filter_map(path).collect(),
-            Block::Drawn(block) => block.targets().filter_map(path).collect(),
+            Block::Listed(block) => block.targets().flat_map(paths).collect(),
+            Block::Drawn(block) => block.targets().flat_map(paths).collect(),
         }
     }
 }

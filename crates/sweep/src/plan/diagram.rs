@@ -54,7 +54,7 @@ impl Diagram {
                 set.map_err(|e| e.under("joints").under(&key))?
             }
         };
-        let sets = file.joints.is_some();
+        let sets = file.joints.as_ref().map(|_| std::slice::from_ref(&set));
         let mut axes = Vec::new();
         for (name, value) in &file.set.0 {
             let key = format!("{key}.set.{name}");
@@ -190,9 +190,14 @@ impl Diagram {
     }
 }
 
-/// What `name` at `key` of the sweep file sets; `sets` tells whether the diagram has `joints`.
-fn target(name: &str, sets: bool, key: &str, frame: &Frame) -> Result<Target, Error> {
-    if name == "clearance" && !sets {
+/// What `name` at `key` of the sweep file sets; `sets` is that of its `joints`, if any.
+fn target(
+    name: &str,
+    sets: Option<&[JointSet]>,
+    key: &str,
+    frame: &Frame,
+) -> Result<Target, Error> {
+    if name == "clearance" && sets.is_none() {
         let expected = "joints beside it, e.g. 'joints: [big_end]'";
         return Err(Error::found(key, "a clearance without joints", expected));
     }
@@ -200,8 +205,9 @@ fn target(name: &str, sets: bool, key: &str, frame: &Frame) -> Result<Target, Er
 }
 
 /// What the parameter sets.
-fn parameter(file: &Bifurcation, set: &[usize], frame: &Frame) -> Result<Target, Error> {
-    match target(&file.path, file.joints.is_some(), "path", frame)? {
+fn parameter(file: &Bifurcation, set: &JointSet, frame: &Frame) -> Result<Target, Error> {
+    let sets = file.joints.as_ref().map(|_| std::slice::from_ref(set));
+    match target(&file.path, sets, "path", frame)? {
         Target::Load => {
             let expected = "the path of one number, e.g. cylinder.discharge";
             Err(Error::found("path", "load", expected))

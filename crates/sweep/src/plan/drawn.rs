@@ -48,9 +48,9 @@ impl Drawn {
         let mut axes = Vec::new();
         for (name, draw) in block.axes.others() {
             let key = format!("{key}.{name}");
-            let target = frame.target(name, joints.is_some(), &key)?;
+            let target = frame.target(name, joints.map(|_| sets.as_slice()), &key)?;
             let given = match &target {
-                Target::Path(path) => paths::get(frame.machine, path)?,
+                Target::Paths(paths) => common_value(frame, paths)?,
                 _ => None,
             };
             let values = Sampler::new(draw, given).map_err(|e| e.under(&key))?;
@@ -169,6 +169,22 @@ impl Drawn {
             Design::Random => random::point(seed, index, dimensions.end),
         }
     }
+}
+
+/// The value of the machine file that all these paths have; none where they differ, so that nothing
+/// is drawn about one joint's value for another.
+fn common_value<'a>(
+    frame: &Frame<'a>,
+    paths: &[String],
+) -> Result<Option<&'a serde_json::Value>, Error> {
+    let mut values = paths.iter().map(|path| paths::get(frame.machine, path));
+    let first = values.next().transpose()?.flatten();
+    for value in values {
+        if value? != first {
+            return Ok(None);
+        }
+    }
+    Ok(first)
 }
 
 /// The sets of joints that a draw chooses from, and how likely each is.

@@ -219,7 +219,7 @@ fn read(
     let mut read = Vec::new();
     for (name, levels) in axes.others() {
         let key = format!("{key}.{name}");
-        let target = frame.target(name, joints.is_some(), &key)?;
+        let target = frame.target(name, joints.map(|_| sets.as_slice()), &key)?;
         let values = Levels::new(levels).map_err(|e| e.under(&key))?;
         if let (Target::Load, Levels::List(loads)) = (&target, &values) {
             each(loads, |load| frame.check_load(load)).map_err(|e| e.under(&key))?;

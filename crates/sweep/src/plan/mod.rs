@@ -43,7 +43,7 @@ use crate::design::hash::unit;
 use crate::effects::VariedEffect;
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Format, MOST_CASES_A_SHARD, SweepFile, Windows};
+use crate::sweep_file::{Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use settings::{check_windows, judgement, settings, shares};
@@ -62,6 +62,8 @@ const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 
 pub struct Plan {
     /// Name of the dataset.
     pub name: String,
+    /// The published study that the cases repeat.
+    pub study: Option<Study>,
     /// SHA-256 of everything that the dataset's bytes depend on, in hexadecimal.
     pub id: String,
     /// What all random numbers follow from.
@@ -189,6 +191,7 @@ impl Plan {
         let sweep = resolved_sweep(document, tree);
         let mut plan = Self {
             name: file.name.clone(),
+            study: file.study,
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run, base.sample_rate)?,
@@ -451,6 +454,21 @@ impl Plan {
                 Error::new(format!("cases.{block}"), Problem::Other(problem))
             }
         }
+    }
+
+    /// The values that blocks list for `path`.
+    pub(super) fn listed<'a>(&'a self, path: &'a str) -> impl Iterator<Item = Value> + 'a {
+        let frame = self.frame();
+        let setting = self
+            .blocks
+            .iter()
+            .filter(move |b| b.paths().iter().any(|(own, _)| *own == path));
+        setting.flat_map(move |block| {
+            let all = block.probes().into_iter();
+            let all = all.flat_map(|case| block.assignments(case, &frame));
+            let own = all.filter(|(other, _)| other == path);
+            own.map(|(_, value)| value).collect::<Vec<_>>()
+        })
     }
 }
 

@@ -75,11 +75,13 @@ pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
     own.chain(others).collect()
 }
 
-/// How `path` stands in the first case that says what it is.
+/// How `path` stands in the file and in the first case that says what it is: a number only if no case has
+/// anything else there, such as a stiffness by a formula.
 fn parameter(plan: &Plan, path: &str, role: Role) -> Parameter {
     let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
     let first = || value(&plan.case_before_splits(0).ok()?.tree);
     let amount = value(&plan.tree).or_else(first);
+    let amount = amount.filter(|_| !plan.listed(path).any(|v| Amount::of(&v).is_none()));
     let unit = amount.and_then(|a| a.dimension).map(|d| d.to_string());
     let suffix = unit.as_deref().map_or(String::new(), suffix);
     Parameter {

@@ -47,8 +47,8 @@ pub enum Design {
 }
 
 /// What is set, in the order of the file: `joints` (which joints have the clearance), `clearance`,
-/// `load` (suction and discharge pressure), or any path of the machine file (`speed`,
-/// `joints.big_end.contact.damping`).
+/// `load` (suction and discharge pressure), a key of a joint (`contact.damping`: that of every joint
+/// that `joints` names), or any path of the machine file (`speed`, `joints.big_end.contact.damping`).
 #[derive(Clone, Debug)]
 pub struct Axes<T>(pub Vec<(String, T)>);
 
@@ -101,7 +101,7 @@ impl<T: JsonSchema> JsonSchema for Axes<T> {
         let values = generator.subschema_for::<T>();
         json_schema!({
             "type": "object",
-            "description": "joints, clearance, load, or paths of the machine file, and their values",
+            "description": "joints, clearance, load, keys of the joints such as contact.damping, or paths of the machine file, and their values",
             "additionalProperties": values,
         })
     }

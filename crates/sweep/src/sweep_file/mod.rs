@@ -39,6 +39,10 @@ pub struct SweepFile {
     /// Name of the dataset, and of its folder where `--out` names none: a letter or digit, then
     /// letters, digits, `-`, `_`, `.` and spaces.
     pub name: String,
+    /// The published study that the cases repeat: the pages hold its claims against them. None
+    /// where it is left out, and no page then speaks of any study.
+    #[serde(default)]
+    pub study: Option<Study>,
     /// The machine: path of its file, from the folder of this one, or the machine itself. With
     /// `calibrate` it may be left out: it is then the machine section of the bundle, at the
     /// conditions of its first run.
@@ -196,6 +200,15 @@ impl Default for Splits {
             test: Quantity::new(0.15),
         }
     }
+}
+
+/// A published study whose claims are known to this program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Study {
+    /// "Dynamic analysis of the moving mechanism of the reciprocating compressor with clearance
+    /// joints": the same clearances at the big end, at the small end and at both.
+    Paper2,
 }
 
 /// Format of the recordings. Features are always a Parquet table.

@@ -2,10 +2,11 @@
 
 use crate::Failure;
 use crate::report::dataset::Dataset;
+use crate::report::grid::all_else;
 use crate::report::windows::{Case, Windows};
 use ::report::chaos_page::{CaseChaos, Regime, WindowChaos};
 use recordings::{Kind, Table};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The columns, each a value per window; a column that the table lacks has none at all.
 #[derive(Default)]
@@ -41,51 +42,24 @@ impl Columns {
             }
             let table = file.read(&names, 0..file.rows());
             table
-                .and_then(|table| columns.append(&table, &there, dataset.acceleration.as_deref()))
+                .and_then(|table| columns.append(&table, &there))
                 .map_err(|error| dataset.unreadable(path, error))?;
         }
         Ok(columns)
     }
 
-    fn append(
-        &mut self,
-        table: &Table,
-        there: &[(String, Kind)],
-        channel: Option<&str>,
-    ) -> Result<(), recordings::Error> {
-        // The features of the signal may be named after the channel that they are of.
-        let find = |name: &str| {
-            let own = channel.map(|channel| format!("{channel}.{name}"));
-            there
-                .iter()
-                .find(|(other, _)| other == name || Some(other) == own.as_ref())
-        };
-        let numbers = |name: &str, into: &mut Vec<Option<f64>>| -> Result<(), recordings::Error> {
-            match find(name) {
-                Some((name, Kind::Integer)) => {
-                    let values = table.values::<i64>(name)?.iter();
-                    into.extend(values.map(|value| value.map(|n| n as f64)));
-                }
-                Some((name, _)) => into.extend_from_slice(table.values::<f64>(name)?),
-                None => {}
-            }
-            Ok(())
-        };
-        numbers("lyapunov_true_per_s", &mut self.true_exponent)?;
-        numbers("lyapunov_true_standard_error_per_s", &mut self.true_error)?;
-        numbers("period_true_revolutions", &mut self.true_period)?;
-        numbers("lyapunov_per_s", &mut self.exponent)?;
-        numbers("lyapunov_low_per_s", &mut self.low)?;
-        numbers("lyapunov_high_per_s", &mut self.high)?;
-        let texts = |name: &str, into: &mut Vec<Option<String>>| -> Result<(), recordings::Error> {
-            if let Some((name, _)) = find(name) {
-                into.extend_from_slice(table.values::<String>(name)?);
-            }
-            Ok(())
-        };
-        texts("regime_true", &mut self.true_regime)?;
-        texts("lyapunov_reason", &mut self.reason)?;
-        texts("regime", &mut self.regime)
+    fn append(&mut self, table: &Table, there: &[(String, Kind)]) -> Result<(), recordings::Error> {
+        let reader = Reader { table, there };
+        reader.numbers("lyapunov_true_per_s", &mut self.true_exponent)?;
+        let error = "lyapunov_true_standard_error_per_s";
+        reader.numbers(error, &mut self.true_error)?;
+        reader.numbers("period_true_revolutions", &mut self.true_period)?;
+        reader.texts("regime_true", &mut self.true_regime)?;
+        reader.numbers("lyapunov_per_s", &mut self.exponent)?;
+        reader.numbers("lyapunov_low_per_s", &mut self.low)?;
+        reader.numbers("lyapunov_high_per_s", &mut self.high)?;
+        reader.texts("lyapunov_reason", &mut self.reason)?;
+        reader.texts("regime", &mut self.regime)
     }
 
     /// Exponent from the equations with its standard error.
@@ -117,6 +91,38 @@ impl Columns {
     }
 }
 
+/// A table and the names and kinds of some of its columns. One that is not there adds no value.
+struct Reader<'a> {
+    table: &'a Table,
+    there: &'a [(String, Kind)],
+}
+
+impl Reader<'_> {
+    fn kind(&self, name: &str) -> Option<Kind> {
+        let found = self.there.iter().find(|(other, _)| other == name);
+        found.map(|(_, kind)| *kind)
+    }
+
+    fn numbers(&self, name: &str, into: &mut Vec<Option<f64>>) -> Result<(), recordings::Error> {
+        match self.kind(name) {
+            Some(Kind::Integer) => {
+                let values = self.table.values::<i64>(name)?.iter();
+                into.extend(values.map(|value| value.map(|n| n as f64)));
+            }
+            Some(_) => into.extend_from_slice(self.table.values::<f64>(name)?),
+            None => {}
+        }
+        Ok(())
+    }
+
+    fn texts(&self, name: &str, into: &mut Vec<Option<String>>) -> Result<(), recordings::Error> {
+        if self.kind(name).is_some() {
+            into.extend_from_slice(self.table.values::<String>(name)?);
+        }
+        Ok(())
+    }
+}
+
 fn value<T: Clone>(column: &[Option<T>], window: usize) -> Option<T> {
     column.get(window).cloned().flatten()
 }
@@ -136,8 +142,11 @@ pub(super) fn cases(
         .labels
         .iter()
         .position(|label| label.column == "speed_rpm");
+    let mut points: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     let known = cases.iter().map(|case| {
         let first = case.first;
+        let next = points.len();
+        let point = points.entry(all_else(dataset, windows, first));
         let set = joint_set(dataset, windows, first, by_fault);
         CaseChaos {
             case_id: windows.case_id[first].clone(),
@@ -148,6 +157,7 @@ pub(super) fn cases(
             },
             joints: set,
             speed_rpm: speed.map_or(f64::NAN, |at| windows.labels[at][first]),
+            operating_point: *point.or_insert(next),
             exponent: columns.truth(first),
             regime: columns.true_regime(first),
             windows: case
@@ -158,6 +168,26 @@ pub(super) fn cases(
         }
     });
     Ok(known.collect())
+}
+
+/// Which cases are chaotic.
+pub(in crate::report) struct Regimes {
+    columns: Columns,
+}
+
+impl Regimes {
+    /// # Errors
+    /// A table that cannot be read.
+    pub(in crate::report) fn read(dataset: &Dataset, windows: &Windows) -> Result<Self, Failure> {
+        let columns = Columns::read(dataset, windows)?;
+        Ok(Self { columns })
+    }
+
+    /// Whether the case of the window is chaotic by the equations; none where nobody asked them.
+    pub(in crate::report) fn chaotic(&self, window: usize) -> Option<bool> {
+        let regime = self.columns.true_regime(window)?;
+        Some(regime == Regime::Chaotic)
+    }
 }
 
 /// The joints that have any clearance.

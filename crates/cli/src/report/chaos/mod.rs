@@ -6,6 +6,8 @@ mod motions;
 mod shown;
 mod spectra;
 
+pub(super) use cases::Regimes;
+
 use super::dataset::Dataset;
 use super::windows::{Case, Windows};
 use crate::Failure;
@@ -30,6 +32,7 @@ pub(super) fn page(
         motions: motions::rows(dataset, &known, &shown)?,
         shown: shown.rule,
         bifurcations: bifurcations::diagrams(dataset)?,
+        claims: dataset.plan.study.is_some(),
         spectra: spectra::by_class(dataset, windows, cases, &known)?,
         most_windows: spectra::MOST_WINDOWS,
         cases: known,

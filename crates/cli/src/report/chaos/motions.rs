@@ -32,8 +32,13 @@ pub(super) fn rows(
         .flatten()
         .copied()
         .collect();
-    let throw = throw(dataset);
-    let mut made = side_by_side(&wanted, |i| motion(&dataset.plan, &known[i], throw))?;
+    let mut made = side_by_side(&wanted, |i| {
+        motion(
+            &dataset.plan,
+            &known[i],
+            throw(&dataset.plan, &known[i].joints),
+        )
+    })?;
     let rows = shown.rows.iter().map(|(heading, row)| {
         let motions = row.iter().map(|case| {
             let mut motion = made.remove(&(*case)?)?;
@@ -79,13 +84,11 @@ fn side_by_side(
         .collect()
 }
 
-/// The throw whose crosshead the figures show, from 0: that of the first sensor of its acceleration,
-/// or the first.
-fn throw(dataset: &Dataset) -> usize {
-    let channel = dataset.acceleration.as_deref().unwrap_or_default();
-    let prefix = channel.split_once('.').map_or("", |(throw, _)| throw);
-    let throws = dataset.plan.throws();
-    throws.iter().position(|throw| throw == prefix).unwrap_or(0)
+/// The throw whose crosshead the figures show, from 0: the first of the joints with clearance.
+fn throw(plan: &Plan, joints: &str) -> usize {
+    let named = joints.split('+').filter_map(|joint| joint.split_once('.'));
+    let places = named.filter_map(|(name, _)| plan.throws().iter().position(|throw| throw == name));
+    places.min().unwrap_or(0)
 }
 
 fn motion(plan: &Plan, known: &CaseChaos, throw: usize) -> Result<Motion, Failure> {

@@ -53,7 +53,10 @@ fn of_class(
     let (mut densities, mut envelopes) = (Vec::new(), Vec::new());
     let (mut frequencies, mut orders) = (Vec::new(), Vec::new());
     for &window in own {
-        let recording = Recording::read(dataset, windows, window)?;
+        let Some((sensor, _)) = dataset.sensors.first_of_fault(&windows.fault[window]) else {
+            continue;
+        };
+        let recording = Recording::read(dataset, windows, window, sensor)?;
         let (at, density) = recording.density()?;
         frequencies = at;
         densities.push(density);

@@ -24,6 +24,7 @@ pub fn page() -> ChaosPage {
         joints: ["main", "big_end", "small_end", "guide"]
             .map(str::to_owned)
             .into(),
+        claims: true,
         motions: SETS.iter().map(row).collect(),
         shown: "All cases of the first operating point, 500 rpm.".to_owned(),
         bifurcations: vec![bifurcation()],
@@ -116,6 +117,7 @@ fn cases() -> Vec<CaseChaos> {
                 joints: set.to_owned(),
                 clearance_m: millimetres * 1e-3,
                 speed_rpm,
+                operating_point: speed_rpm as usize,
                 exponent: Some([truth, 0.6]),
                 regime: Some(regime),
                 windows: vec![WindowChaos {

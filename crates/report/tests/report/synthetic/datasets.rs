@@ -1,10 +1,11 @@
 //! Made-up datasets: one on a grid of clearances, one drawn at random.
 
 use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
+use report::Level;
 use report::dataset_page::{
-    CaseLevel, ClassExample, ClearanceGrid, Column, DatasetPage, Design, FailedCase, FaultCount,
-    Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep, Response, Scatter,
-    Spectrum,
+    CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design,
+    FailedCase, FaultCount, Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep,
+    Response, Scatter, Spectrum,
 };
 
 const FAULTS: [(&str, &[&str]); 4] = [
@@ -35,6 +36,7 @@ pub fn grid() -> DatasetPage {
         joint_sets: (1..4).map(set).collect(),
         high_from_hz: 160.0,
         levels: levels(),
+        ..ClearanceGrid::default()
     };
     DatasetPage {
         name: "paper2".to_owned(),
@@ -48,18 +50,27 @@ pub fn grid() -> DatasetPage {
             range("clearance of the big end", "m", 0.0, 3e-4, 4),
             range("clearance of the small end", "m", 0.0, 3e-4, 4),
         ],
-        ..page(Design::Grid(grid))
+        ..page(Design::Grid(ClearanceGrids {
+            grids: vec![grid],
+            left_out: 0,
+            claims: true,
+        }))
     }
 }
 
 fn levels() -> Vec<CaseLevel> {
+    let about = |value: f64| Level {
+        value,
+        spread: 0.005 * value,
+    };
     let level = |fault: usize, clearance_m: f64| CaseLevel {
         joints: FAULTS[fault].0.to_owned(),
         clearance_m,
-        rms_m_s2: 230.0,
-        peak_m_s2: 400.0 + 1e6 * clearance_m * fault as f64,
-        high_rms_m_s2: 2.0 + 5e5 * clearance_m * fault as f64,
+        rms: about(230.0),
+        peak: about(400.0 + 1e6 * clearance_m * fault as f64),
+        high_rms: about(2.0 + 5e5 * clearance_m * fault as f64),
         high_share: 0.05 * fault as f64,
+        chaotic: Some(fault > 1 && clearance_m > 1e-4),
     };
     let clear = (1..4).flat_map(|fault| [1e-4, 2e-4, 3e-4].map(|c| level(fault, c)));
     std::iter::once(level(0, 0.0)).chain(clear).collect()
@@ -169,6 +180,7 @@ fn page(design: Design) -> DatasetPage {
         feature_rows: (0..4)
             .map(|i| FeatureRow {
                 fault: FAULTS[i].0.to_owned(),
+                sensor: "crosshead_acceleration".to_owned(),
                 windows: 40,
                 values: [(233.0, 2.4), (1210.0, 310.0), (5.19, 0.8), (7.7, 2.12)]
                     .map(|(mean, spread)| (mean * (1.0 + 0.2 * i as f64), spread))
@@ -259,6 +271,7 @@ fn example(fault: usize) -> ClassExample {
         .collect();
     ClassExample {
         fault: FAULTS[fault].0.to_owned(),
+        sensor: String::new(),
         operating_point: if fault == 0 {
             "500 rpm"
         } else {
