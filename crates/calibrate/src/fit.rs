@@ -78,12 +78,6 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The coordinates of the estimates.
-    pub fn coordinates(&self) -> Vec<f64> {
-        let estimates = self.estimates.iter();
-        estimates.map(|e| e.parameter.coordinate(e.value)).collect()
-    }
-
     /// Root mean square over runs, those held out or the others; none where there is none.
     pub fn misfit(&self, held_out: bool, of: impl Fn(&RunFit) -> f64) -> Option<f64> {
         let chosen: Vec<f64> = self

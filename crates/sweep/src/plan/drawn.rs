@@ -176,7 +176,7 @@ impl Drawn {
 fn common_value<'a>(
     frame: &Frame<'a>,
     paths: &[String],
-) -> Result<Option<&'a serde_json::Value>, Error> {
+) -> Result<Option<&'a Value>, Error> {
     let mut values = paths.iter().map(|path| paths::get(frame.machine, path));
     let first = values.next().transpose()?.flatten();
     for value in values {
