@@ -12,6 +12,8 @@
 //! cyclostationary linear Gaussian process, which is what slowly changing loads and ringing resonances
 //! are.
 
+use crate::delay::Times;
+use crate::neighbours::Delays;
 use crate::surrogates::{Comparison, phases_randomised_alike, shuffle};
 use rand::SeedableRng;
 use scalar::random::Stream;
@@ -57,8 +59,102 @@ pub(crate) fn determinism(residual: &[f64], per_cycle: usize) -> Option<Comparis
 fn judged(deviations: f64) -> Comparison {
     Comparison {
         deviations,
-        significant: deviations > QUANTILE * (1.0 + 1.0 / SURROGATES as f64).sqrt(),
+        significant: is_clear(deviations),
     }
+}
+
+fn is_clear(deviations: f64) -> bool {
+    deviations > QUANTILE * (1.0 + 1.0 / SURROGATES as f64).sqrt()
+}
+
+/// Whether at some phase the past says nothing of the future: exchanged futures do as well.
+pub(crate) fn chance_enters(residual: &[f64], per_cycle: usize) -> bool {
+    let cycles = (residual.len() / per_cycle).min(MOST_CYCLES);
+    let own = Profile::new(&residual[..cycles * per_cycle], per_cycle);
+    let mut generator = Stream::seed_from_u64(0);
+    let exchanged = own.and_then(|own| least(&own.kept(), || own.exchanged(&mut generator)));
+    !exchanged.is_some_and(is_clear)
+}
+
+/// Halvings of the states of a signal without a drive: so many times two cells stand for the phases.
+const HALVINGS: usize = 3;
+/// Coordinates of such a state, and most states that are compared, each with each of its cell.
+const COORDINATES: usize = 4;
+const MOST_STATES: usize = 4096;
+
+/// Whether there are states of a signal without a known drive from which chance goes on: a cell of alike
+/// states in which those most alike have futures no more alike than others of the cell.
+pub(crate) fn chance_enters_a_cell(signal: &[f64], times: &Times) -> bool {
+    let delays = Delays {
+        signal,
+        dimension: COORDINATES,
+        delay: times.delay,
+    };
+    let count = delays.count().saturating_sub(times.delay).min(MOST_STATES);
+    let mut cells = vec![(0..count).collect::<Vec<usize>>()];
+    for _ in 0..HALVINGS {
+        cells = cells
+            .into_iter()
+            .flat_map(|cell| halves(&delays, cell))
+            .collect();
+    }
+    let mut generator = Stream::seed_from_u64(0);
+    cells.iter().any(|cell| {
+        let future = |index: usize| delays.at(index, COORDINATES);
+        let near: Vec<Option<usize>> = cell
+            .iter()
+            .map(|a| nearest(&delays, *a, cell, times.theiler))
+            .collect();
+        let kept = |order: &[usize]| {
+            let pairs = near
+                .iter()
+                .zip(order)
+                .filter_map(|(near, a)| near.map(|b| (*a, order[b])));
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (a, b) in pairs {
+                let apart = (future(cell[a]) - future(cell[b])).abs();
+                sum -= apart.max(f64::MIN_POSITIVE).ln().max(-30.0);
+                count += 1.0;
+            }
+            sum / f64::max(count, 1.0)
+        };
+        let identity: Vec<usize> = (0..cell.len()).collect();
+        let found = least(&[kept(&identity)], || {
+            let mut order = identity.clone();
+            shuffle(&mut order, &mut generator);
+            Some(vec![kept(&order)])
+        });
+        !found.is_some_and(is_clear)
+    })
+}
+
+/// A cell cut at the median of its widest coordinate.
+fn halves(delays: &Delays, mut cell: Vec<usize>) -> [Vec<usize>; 2] {
+    let spread = |axis: usize| {
+        let values = cell.iter().map(|i| delays.at(*i, axis));
+        let mean = values.clone().sum::<f64>() / cell.len().max(1) as f64;
+        values.map(|x| (x - mean).powi(2)).sum::<f64>()
+    };
+    let widest = (0..COORDINATES)
+        .max_by(|a, b| spread(*a).total_cmp(&spread(*b)))
+        .unwrap_or(0);
+    let middle = cell.len() / 2;
+    if middle > 0 {
+        cell.select_nth_unstable_by(middle, |a, b| {
+            delays.at(*a, widest).total_cmp(&delays.at(*b, widest))
+        });
+    }
+    let upper = cell.split_off(middle);
+    [cell, upper]
+}
+
+/// Place in its cell of the state most like that of index `a`, outside the window of `theiler` samples.
+fn nearest(delays: &Delays, a: usize, cell: &[usize], theiler: usize) -> Option<usize> {
+    (0..cell.len())
+        .filter(|place| cell[*place].abs_diff(a) > theiler)
+        .map(|place| (delays.squared_distance(a, cell[place]), place))
+        .min_by(|x, y| x.0.total_cmp(&y.0))
+        .map(|(_, place)| place)
 }
 
 /// By how many standard deviations among the surrogates the signal's own value is larger, at the phase

@@ -39,16 +39,25 @@ fn main() {
                 100.0 * share
             );
             match found {
+                Ok(e) if e.low <= 0.0 => println!(
+                    "  none given: {:.3} [{:.3} {:.3}]",
+                    e.value / truth,
+                    e.low / truth,
+                    e.high / truth
+                ),
                 Ok(e) => {
                     let inside = e.low <= truth && truth <= e.high;
                     given += 1;
                     covered += u32::from(inside);
                     println!(
-                        "  {:6.3} [{:6.3} {:6.3}]{} {e:?}",
+                        "  {:6.3} [{:6.3} {:6.3}]{} dimension {}, delay {}, noise {:.3}",
                         e.value / truth,
                         e.low / truth,
                         e.high / truth,
-                        if inside { "" } else { " missed" }
+                        if inside { "" } else { " missed" },
+                        e.dimension,
+                        e.delay,
+                        e.noise
                     );
                 }
                 Err(error) => println!("  {error}"),
