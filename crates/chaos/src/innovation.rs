@@ -281,3 +281,29 @@ impl Phase {
         all - near / pairs
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::forced::residual;
+    use crate::test_systems::{Machine, Memory, System, with_noise};
+
+    #[test]
+    fn chance_in_every_cycle_is_not_determinism() {
+        for machine in Machine::ALL {
+            for memory in Memory::ALL {
+                let signal = machine.samples(60, 60, 0.1, memory, 1);
+                let found = determinism(&residual(&signal, 60), 60).unwrap();
+                assert!(!found.significant, "{machine:?} {memory:?} {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_chaotic_oscillator_is_determined_at_every_phase() {
+        // Duffing's oscillator has 20 samples in a period of its drive.
+        let signal = with_noise(&System::Duffing.samples(4000, 1), 0.01, 1);
+        let found = determinism(&residual(&signal, 20), 20).unwrap();
+        assert!(found.significant, "{found:?}");
+    }
+}

@@ -1,11 +1,14 @@
 //! What kind of motion a signal shows.
 //!
 //! Does more than half of the signal repeat itself after one period? Then what is left is judged, as
-//! [`forced`](crate::forced) does: noise, or deterministic and growing (then the motion is chaotic).
-//! Does it nearly repeat itself after other times? Then it is quasi-periodic. Else: is it better
-//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Does the
-//! interval of its exponent lie above 0 (then it is chaotic), or, where it holds 0, that of the rate at
-//! which neighbours part? What is left is undecided.
+//! [`forced`](crate::forced) does: it comes back after other times (then the motion is quasi-periodic), or
+//! chance enters at some phase (then it is periodic), or it is deterministic and grows (then it is
+//! chaotic). Does the signal repeat itself nearly after other times? Then it is quasi-periodic. Does it
+//! repeat itself in its own cycles, whose length differs? Then it is periodic. Else: is it better
+//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Are there states
+//! from which chance goes on (then it is undecided)? Does the exponent's own error leave it above 0 (then
+//! it is chaotic), or, where it holds 0, that of the rate at which neighbours part? What is left is
+//! undecided.
 
 use crate::autocorrelation::autocorrelation;
 use crate::delay::{Times, cycle_starts};
@@ -135,7 +138,8 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
             verdict.exponent = Some(scatter.growth.per(length));
             return Ok(verdict);
         }
-        if repeats || !scatter.is_deterministic() {
+        let chance = !scatter.is_deterministic() && chance_at_a_phase(&cycles, per_cycle);
+        if repeats || chance {
             verdict.regime = Regime::Periodic;
             return Ok(verdict);
         }
@@ -474,6 +478,7 @@ mod tests {
     use super::*;
     use crate::delay::times;
     use crate::test_systems::{Noise, Regular, System, with_noise};
+    use std::f64::consts::TAU;
 
     fn found(signal: &[f64]) -> Verdict {
         verdict(signal, &times(signal).unwrap()).unwrap()
@@ -507,6 +512,56 @@ mod tests {
                 "{} {verdict:?}",
                 system.name()
             );
+        }
+    }
+
+    #[test]
+    fn noise_on_a_short_period_is_not_chaos() {
+        let alternating: Vec<f64> = (0..2000).map(|i| f64::from(i % 2)).collect();
+        let mut x = 0.3;
+        let mut logistic = || {
+            x = 3.5 * x * (1.0 - x);
+            x
+        };
+        (0..2000).for_each(|_| {
+            logistic();
+        });
+        let four: Vec<f64> = (0..4000).map(|_| logistic()).collect();
+        for (signal, share) in [(&alternating, 0.05), (&four, 0.01), (&four, 0.05)] {
+            let verdict = found(&with_noise(signal, share, 1));
+            assert_eq!(verdict.regime, Regime::Periodic, "{share} {verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_circle_map_near_the_golden_rotation_is_quasi_periodic() {
+        let mut angle = 0.1;
+        let signal: Vec<f64> = (0..4000)
+            .map(|_| {
+                angle += 0.606_661_063 - 0.9 / TAU * (TAU * angle).sin();
+                (TAU * angle).sin()
+            })
+            .collect();
+        for share in [0.0, 0.01] {
+            let verdict = found(&with_noise(&signal, share, 1));
+            assert_eq!(verdict.regime, Regime::QuasiPeriodic, "{verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_speed_that_drifts_is_no_chaos() {
+        // 40 cycles, the last 2 % faster than the first.
+        let signal: Vec<f64> = (0..4000)
+            .map(|i| {
+                let t = f64::from(i) / 4000.0;
+                let turned = TAU * 40.0 * (t + 0.01 * t * t);
+                turned.sin() + 0.5 * (2.0 * turned + 1.0).sin() + 0.3 * (5.0 * turned).cos()
+            })
+            .collect();
+        for share in [0.01, 0.05] {
+            let verdict = found(&with_noise(&signal, share, 1));
+            assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
+            assert_eq!(verdict.exponent, None);
         }
     }
 
