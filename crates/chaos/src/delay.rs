@@ -30,7 +30,7 @@ pub fn times(signal: &[f64]) -> Result<Times, Error> {
         .iter()
         .position(|r| *r < (-1.0_f64).exp())
         .unwrap_or(longest);
-    let mean_period = mean_period(signal, mean, 0.2 * deviation);
+    let mean_period = mean_period(signal, mean, BAND * deviation);
     let searched = (2.0 * mean_period).ceil().min(longest as f64) as usize;
     let information = information_minimum(signal, searched.max(2));
     let delay = information
@@ -48,21 +48,39 @@ pub fn times(signal: &[f64]) -> Result<Times, Error> {
     })
 }
 
-fn mean_period(signal: &[f64], mean: f64, band: f64) -> f64 {
-    let mut armed = false;
-    let (mut first, mut last, mut count) = (None, 0, 0_usize);
+/// Distance below and above the mean that a cycle must reach, in standard deviations.
+const BAND: f64 = 0.2;
+
+/// Where each cycle begins, in samples: at the upward crossing of the mean (interpolated) before which
+/// the signal has gone below it by a fifth of its standard deviation and after which it goes above by
+/// as much.
+pub fn cycle_starts(signal: &[f64]) -> Result<Vec<f64>, Error> {
+    let (mean, deviation) = checked(signal)?;
+    Ok(crossings(signal, mean, BAND * deviation))
+}
+
+fn crossings(signal: &[f64], mean: f64, band: f64) -> Vec<f64> {
+    let (mut armed, mut crossed) = (false, 0.0);
+    let mut starts = Vec::new();
     for (i, x) in signal.iter().enumerate() {
         if *x < mean - band {
             armed = true;
-        } else if armed && *x > mean + band {
+        }
+        if i > 0 && signal[i - 1] < mean && *x >= mean {
+            crossed = (i - 1) as f64 + (mean - signal[i - 1]) / (x - signal[i - 1]);
+        }
+        if armed && *x > mean + band {
             armed = false;
-            first.get_or_insert(i);
-            last = i;
-            count += 1;
+            starts.push(crossed);
         }
     }
-    match first {
-        Some(first) if count > 1 => (last - first) as f64 / (count - 1) as f64,
+    starts
+}
+
+fn mean_period(signal: &[f64], mean: f64, band: f64) -> f64 {
+    let starts = crossings(signal, mean, band);
+    match starts[..] {
+        [first, .., last] => (last - first) / (starts.len() - 1) as f64,
         _ => signal.len() as f64 / 10.0,
     }
 }

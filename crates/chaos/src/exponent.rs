@@ -8,9 +8,13 @@
 //! map can follow: corners in the law (Lozi's map), or states that the delay vectors do not hold.
 
 use crate::delay::Times;
+use crate::dimension::unfolding;
+use crate::divergence::rosenstein;
 use crate::error::{Error, checked};
 use crate::errors_in_variables::Model;
 use crate::global_map::{Basis, FIRST_RIDGE, FOLDS, regression, set_target};
+use crate::neighbours::{Delays, LARGEST_DIMENSION};
+use crate::scaling_region::scaling_region;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use scalar::random::Stream;
@@ -50,7 +54,7 @@ const QUANTILE: f64 = 2.093;
 const FEWEST: usize = 300;
 /// Standard error by what noise leaves in curved maps, as a share of the exponent for noise as large
 /// as the signal: about 1 % at 5 % noise on the tinkerbell and the delayed logistic map
-/// (`examples/calibrate.rs`), which the differences between maps do not show.
+/// (`examples/intervals`), which the differences between maps do not show.
 const LEFT_BY_NOISE: f64 = 0.2;
 /// Noise and error of the map, together, from which nothing is said, as a share of the standard
 /// deviation.
@@ -77,6 +81,29 @@ pub struct Exponent {
     pub of_map: f64,
     /// The exponent by the second likeliest embedding.
     pub second: f64,
+    /// Standard error by the differences within the map: over time, between parts and embeddings.
+    pub within: f64,
+    /// Largest difference to what else tells the exponent: maps of the halves of the signal, a coarser
+    /// map, the divergence of neighbours.
+    pub between: f64,
+}
+
+impl Exponent {
+    /// The value with its interval.
+    pub fn growth(&self) -> crate::forced::Growth {
+        crate::forced::Growth {
+            value: self.value,
+            low: self.low,
+            high: self.high,
+        }
+    }
+
+    /// Whether tangents of the map grow (`true`) or shrink; `None` where the map's own error leaves it
+    /// open.
+    pub fn grows(&self) -> Option<bool> {
+        let clear = self.value.abs() > QUANTILE * self.within;
+        clear.then_some(self.value > 0.0)
+    }
 }
 
 /// The largest exponent of a signal.
@@ -133,7 +160,15 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
         .hypot(growth.of_map)
         .hypot((second - growth.mean) / 2.0)
         .hypot(LEFT_BY_NOISE * best.noise * growth.mean);
-    let half = QUANTILE * error;
+    let mut others = of_halves(&best, centres);
+    others.extend(coarser(&best, centres));
+    others.push(second);
+    if let Ok(rate) = divergence_rate(signal, times) {
+        others.push(rate * samples as f64);
+    }
+    let apart = others.iter().map(|other| (other - growth.mean).abs());
+    let between = apart.fold(0.0, f64::max);
+    let half = (QUANTILE * error).hypot(between);
     let each = 1.0 / samples as f64;
     Ok(Exponent {
         value: growth.mean * each,
@@ -145,7 +180,44 @@ pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
         over_time: growth.over_time * each,
         of_map: growth.of_map * each,
         second: second * each,
+        within: error * each,
+        between: between * each,
     })
+}
+
+/// Exponents of maps fitted to either half of the most likely signal.
+fn of_halves(model: &Model, centres: usize) -> Vec<f64> {
+    let (first, last) = model.signal.split_at(model.signal.len() / 2);
+    let of = |half: &[f64]| again(model, half, centres / 2);
+    [first, last].into_iter().filter_map(of).collect()
+}
+
+/// The exponent of a map with half as many centres: how far the resolution of the map decides.
+fn coarser(model: &Model, centres: usize) -> Option<f64> {
+    again(model, &model.signal, centres / 2)
+}
+
+/// The exponent of a map in the same coordinates that is fitted by plain regression to part of a signal
+/// without noise.
+fn again(model: &Model, signal: &[f64], centres: usize) -> Option<f64> {
+    let embedding = Embedding {
+        dimension: model.basis.dimension,
+        delay: model.basis.delay,
+    };
+    let fitted = fitted(signal, signal, embedding, centres, 0)?;
+    Some(Growth::new(&fitted).mean)
+}
+
+/// The rate at which neighbours part in the unfolded attractor, nats per sample.
+fn divergence_rate(signal: &[f64], times: &Times) -> Result<f64, Error> {
+    let delays = Delays {
+        signal,
+        dimension: unfolding(signal, times, LARGEST_DIMENSION - 2)?.dimension(),
+        delay: times.delay,
+    };
+    let steps = (10.0 * times.mean_period).min(signal.len() as f64 / 10.0) as usize;
+    let curve = rosenstein(&delays, times.theiler, steps)?;
+    Ok(scaling_region(&curve, times.delay)?.slope)
 }
 
 /// The signal in units of its standard deviation, as means of so many samples, with a little noise.

@@ -11,16 +11,16 @@
 
 use crate::delay;
 use crate::error::{Error, checked};
-use crate::surrogates::{Comparison, compare, phase_randomised};
-use rand::SeedableRng;
-use scalar::random::Stream;
+use crate::innovation::determinism;
+use crate::surrogates::Comparison;
 
 /// What differs from cycle to cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
     /// Its standard deviation over that of the signal.
     pub share: f64,
-    /// Whether cycles that were alike stay closer than those of noise with the scatter's spectrum.
+    /// Whether cycles that were alike before a phase stay so after it more than by chance, at the phase
+    /// where they do so least.
     pub determinism: Comparison,
     /// Rate at which they part.
     pub growth: Growth,
@@ -101,12 +101,8 @@ pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
     // Two mean periods: about eight delays of a quarter of a period.
     let window = (2.0 * delay::times(&residual)?.mean_period).round() as usize;
     let window = window.clamp(4, per_cycle);
-    let mut generator = Stream::seed_from_u64(0);
     let parting = Parting::new(&residual, per_cycle, window);
-    let determinism = compare(parting.start(), || {
-        let surrogate = phase_randomised(&residual, &mut generator);
-        Some(Parting::new(&surrogate, per_cycle, window).start())
-    });
+    let determinism = determinism(&residual, per_cycle);
     Ok(Scatter {
         share: square.sqrt() / deviation,
         determinism: determinism.unwrap_or(Comparison {
@@ -178,12 +174,6 @@ impl Parting {
             blocks,
             saturation: any / pairs,
         }
-    }
-
-    /// Mean logarithm of the distance right after the windows that were alike, against that of any
-    /// two cycles: near 0 for noise without memory.
-    fn start(&self) -> f64 {
-        self.curve(None)[0] - self.saturation
     }
 
     /// Mean logarithm of the distance at the lags, one block left out.

@@ -14,6 +14,7 @@ mod errors_in_variables;
 pub mod exponent;
 pub mod forced;
 mod global_map;
+mod innovation;
 pub mod local_map;
 pub mod neighbours;
 pub mod recurrence;

@@ -1,19 +1,23 @@
 //! What kind of motion a signal shows.
 //!
 //! Does more than half of the signal repeat itself after one period? Then what is left is judged, as
-//! [`forced`](crate::forced) does: noise, or deterministic and growing (then the motion is chaotic).
-//! Does it nearly repeat itself after other times? Then it is quasi-periodic. Else: is it better
-//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Does the
-//! interval of its exponent lie above 0 (then it is chaotic), or, where it holds 0, that of the rate at
-//! which neighbours part? What is left is undecided.
+//! [`forced`](crate::forced) does: it comes back after other times (then the motion is quasi-periodic), or
+//! chance enters at some phase (then it is periodic), or it is deterministic and grows (then it is
+//! chaotic). Does the signal repeat itself nearly after other times? Then it is quasi-periodic. Does it
+//! repeat itself in its own cycles, whose length differs? Then it is periodic. Else: is it better
+//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Are there states
+//! from which chance goes on (then it is undecided)? Does the exponent's own error leave it above 0 (then
+//! it is chaotic), or, where it holds 0, that of the rate at which neighbours part? What is left is
+//! undecided.
 
 use crate::autocorrelation::autocorrelation;
-use crate::delay::Times;
+use crate::delay::{Times, cycle_starts};
 use crate::dimension::unfolding;
 use crate::divergence::rosenstein;
 use crate::error::{Error, checked};
-use crate::exponent::exponent;
+use crate::exponent::{Exponent, exponent};
 use crate::forced::{FEWEST_CYCLES, Growth, Scatter, residual, scatter};
+use crate::innovation::{self, chance_enters_a_cell};
 use crate::local_map::{Model, local_map};
 use crate::neighbours::{Delays, LARGEST_DIMENSION, Neighbours};
 use crate::scaling_region::{Fit, scaling_region};
@@ -114,18 +118,28 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     };
     let repeats = verdict.recurrence >= REPEATS;
     let period = period(&correlation);
-    let cycles = period.map(|period| at_whole_samples(signal, period));
-    if let Some((cycles, per_cycle)) = cycles
+    let cycles = period.map(|period| whole_cycles(signal, period));
+    if let Some((cycles, per_cycle, length)) = cycles
         && cycles.len() >= FEWEST_CYCLES * per_cycle
     {
-        let scatter = scatter(&cycles, per_cycle)?;
+        let (regime, scatter) = of_scatter(&cycles, per_cycle)?;
         verdict.scatter = Some(scatter);
-        if scatter.is_chaotic() && scatter.share > RESOLVED {
-            verdict.regime = Regime::Chaotic;
-            verdict.exponent = period.map(|period| scatter.growth.per(period));
+        // What the cycles leave comes back, too, after some other time.
+        let left = (1.0 - verdict.recurrence) / scatter.share.powi(2);
+        if left <= 1.0 - REPEATS && scatter.share > RESOLVED {
+            verdict.regime = match regime {
+                Regime::Periodic => Regime::Periodic,
+                _ => Regime::QuasiPeriodic,
+            };
             return Ok(verdict);
         }
-        if repeats || !scatter.is_deterministic() {
+        if regime == Regime::Chaotic && scatter.share > RESOLVED {
+            verdict.regime = Regime::Chaotic;
+            verdict.exponent = Some(scatter.growth.per(length));
+            return Ok(verdict);
+        }
+        let chance = !scatter.is_deterministic() && chance_at_a_phase(&cycles, per_cycle);
+        if repeats || chance {
             verdict.regime = Regime::Periodic;
             return Ok(verdict);
         }
@@ -135,6 +149,9 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
             None => Regime::QuasiPeriodic,
         };
         return Ok(verdict);
+    } else if repeats_but_for_its_speed(signal)? {
+        verdict.regime = Regime::Periodic;
+        return Ok(verdict);
     }
     let predictability = predictability(signal, times)?;
     verdict.predictability = Some(predictability);
@@ -142,24 +159,84 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         verdict.regime = Regime::Stochastic;
         return Ok(verdict);
     }
+    if chance_enters_a_cell(signal, times) {
+        return Ok(verdict);
+    }
     let by_map = match exponent(signal, times) {
-        Ok(exponent) => Some(Growth {
-            value: exponent.value,
-            low: exponent.low,
-            high: exponent.high,
-        }),
+        Ok(exponent) => Some(exponent),
         Err(Error::NoScalingRegion { .. }) => None,
         Err(error) => return Err(error),
     };
     // The map can say nothing, on a coarsely quantised signal for one, where neighbours part clearly.
-    verdict.exponent = match by_map {
-        Some(growth) if growth.low > 0.0 || growth.high < 0.0 => by_map,
-        _ => parting(signal, times).ok().or(by_map),
+    let (growth, grows) = match &by_map {
+        Some(e) if e.grows().is_some() => (Some(e.growth()), e.grows() == Some(true)),
+        _ => {
+            let growth = parting(signal, times)
+                .ok()
+                .or(by_map.as_ref().map(Exponent::growth));
+            (growth, growth.is_some_and(|growth| growth.low > 0.0))
+        }
     };
-    if verdict.exponent.is_some_and(|growth| growth.low > 0.0) {
+    verdict.exponent = growth;
+    if grows {
         verdict.regime = Regime::Chaotic;
+        // Estimates that differ by as much as their value tell that it is positive, not how large.
+        verdict.exponent = growth.filter(|growth| growth.low > 0.0);
     }
     Ok(verdict)
+}
+
+/// Samples of a cycle when its time is measured in the signal's own cycles.
+const WARPED: usize = 32;
+/// How much longer or shorter than the middle one a cycle may be: beyond, half a cycle was missed or
+/// counted twice, and it is not the same cycle at another speed.
+const UNEVEN: f64 = 1.5;
+
+/// Whether the signal repeats itself once time is counted in its own cycles, and what then differs from
+/// cycle to cycle owes nothing to what was: a period that drifts or fluctuates.
+fn repeats_but_for_its_speed(signal: &[f64]) -> Result<bool, Error> {
+    let starts = cycle_starts(signal)?;
+    if starts.len() < FEWEST_CYCLES + 2 {
+        return Ok(false);
+    }
+    let mut lengths: Vec<f64> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    lengths.sort_by(f64::total_cmp);
+    let middle = lengths[lengths.len() / 2];
+    if lengths[0] < middle / UNEVEN || lengths[lengths.len() - 1] > middle * UNEVEN {
+        return Ok(false);
+    }
+    let at = |place: f64| {
+        let (whole, t) = (place as usize, place.fract());
+        signal[whole] + t * (signal[(whole + 1).min(signal.len() - 1)] - signal[whole])
+    };
+    let warped: Vec<f64> = starts
+        .windows(2)
+        .flat_map(|ends| {
+            let step = (ends[1] - ends[0]) / WARPED as f64;
+            (0..WARPED).map(move |i| at(ends[0] + i as f64 * step))
+        })
+        .collect();
+    let (_, deviation) = checked(&warped)?;
+    let rest = residual(&warped, WARPED);
+    let square = rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64;
+    let repeated = square <= (1.0 - KEEPS) * deviation * deviation;
+    Ok(repeated && innovation::chance_enters(&rest, WARPED))
+}
+
+/// The cycles whose scatter is judged, as [`driven_verdict`] does.
+fn of_scatter(signal: &[f64], per_cycle: usize) -> Result<(Regime, Scatter), Error> {
+    let scatter = scatter(signal, per_cycle)?;
+    let rest = unbiased_correlation(&residual(signal, per_cycle));
+    let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
+    let regime = match () {
+        // The scatter itself repeats itself: after several cycles, or after other times.
+        () if recurrence >= REPEATS && period(&rest).is_some() => Regime::Periodic,
+        () if recurrence >= REPEATS => Regime::QuasiPeriodic,
+        () if !scatter.is_deterministic() => Regime::Periodic,
+        () if scatter.is_chaotic() => Regime::Chaotic,
+        () => Regime::Undecided,
+    };
+    Ok((regime, scatter))
 }
 
 /// The rate at which nearest neighbours part, from the straight part of their divergence curve, with
@@ -189,38 +266,82 @@ fn parting(signal: &[f64], times: &Times) -> Result<Growth, Error> {
     })
 }
 
-/// The verdict on a signal of which a drive repeats more than half, with `per_cycle` samples in each of
-/// its cycles; `None` where the drive repeats
-/// less: then [`verdict`] serves.
+/// The verdict on a signal with `per_cycle` samples in each cycle of a drive that repeats more than half
+/// of it; `None` where the drive repeats less: then [`verdict`] serves, and whether chance enters at
+/// some phase of the drive ([`chance_at_a_phase`]).
 pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict>, Error> {
-    let scatter = scatter(signal, per_cycle)?;
+    let (regime, scatter) = of_scatter(signal, per_cycle)?;
     if scatter.share * scatter.share > HALF {
         return Ok(None);
     }
     let rest = unbiased_correlation(&residual(signal, per_cycle));
-    let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
-    let regime = match () {
-        // The scatter itself repeats itself: after several cycles, or after other times.
-        () if recurrence >= REPEATS && period(&rest).is_some() => Regime::Periodic,
-        () if recurrence >= REPEATS => Regime::QuasiPeriodic,
-        () if !scatter.is_deterministic() => Regime::Periodic,
-        () if scatter.is_chaotic() => Regime::Chaotic,
-        () => Regime::Undecided,
-    };
     Ok(Some(Verdict {
         regime,
-        recurrence,
+        recurrence: rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max),
         scatter: Some(scatter),
         predictability: None,
         exponent: (regime == Regime::Chaotic).then(|| scatter.growth.per(per_cycle as f64)),
     }))
 }
 
-/// The signal interpolated (cubic: Keys 1981) to the next whole number of samples in a period, 8 at
-/// the least, and that number.
-fn at_whole_samples(signal: &[f64], period: f64) -> (Vec<f64>, usize) {
-    let per_cycle = period.ceil().max(8.0);
-    let step = period / per_cycle;
+/// Whether at some phase of a drive with `per_cycle` samples in each cycle the past says nothing of what
+/// follows.
+pub fn chance_at_a_phase(signal: &[f64], per_cycle: usize) -> bool {
+    innovation::chance_enters(&residual(signal, per_cycle), per_cycle)
+}
+
+/// Fewest samples of a cycle whose scatter is judged.
+const FEWEST_PER_CYCLE: f64 = 8.0;
+
+/// The signal in cycles of whole numbers of samples, that number, and how long a cycle is in samples of
+/// the signal. Several short periods make a cycle: to interpolate between their samples would make
+/// noise predictable. Where whole cycles end between samples, the signal is interpolated to the next
+/// whole number of them.
+fn whole_cycles(signal: &[f64], period: f64) -> (Vec<f64>, usize, f64) {
+    let fewest = (FEWEST_PER_CYCLE / period).ceil().max(1.0) as usize;
+    // Half a sample at the most over the whole signal.
+    let strays = |length: f64| {
+        let cycles = signal.len() as f64 / length;
+        (length - length.round()).abs() * cycles > 0.5
+    };
+    let multiples = (fewest..2 * fewest.max(2)).map(|count| count as f64 * period);
+    if let Some(length) = multiples.into_iter().find(|length| !strays(*length)) {
+        return (signal.to_vec(), length.round() as usize, length.round());
+    }
+    let length = sharpened(signal, fewest as f64 * period);
+    let per_cycle = length.ceil() as usize;
+    (
+        interpolated(signal, length / per_cycle as f64),
+        per_cycle,
+        length,
+    )
+}
+
+/// The length of a cycle that leaves least to differ from cycle to cycle, among those within a sample of
+/// the given one over the whole signal.
+fn sharpened(signal: &[f64], length: f64) -> f64 {
+    let cycles = (signal.len() as f64 / length).floor();
+    let left = |length: f64| {
+        let per_cycle = length.ceil() as usize;
+        let rest = residual(&interpolated(signal, length / per_cycle as f64), per_cycle);
+        rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64
+    };
+    let mut best = (left(length), length);
+    for reach in [1.0, 0.2] {
+        let middle = best.1;
+        for step in (-5..=5).filter(|step| *step != 0) {
+            let other = middle + f64::from(step) / 5.0 * reach / cycles;
+            let found = left(other);
+            if found < best.0 {
+                best = (found, other);
+            }
+        }
+    }
+    best.1
+}
+
+/// The signal at every `step` samples (cubic: Keys 1981).
+fn interpolated(signal: &[f64], step: f64) -> Vec<f64> {
     let count = ((signal.len() - 3) as f64 / step) as usize;
     let at = |i: usize| {
         let place = 1.0 + i as f64 * step;
@@ -228,7 +349,7 @@ fn at_whole_samples(signal: &[f64], period: f64) -> (Vec<f64>, usize) {
         let [a, b, c, d] = [whole - 1, whole, whole + 1, whole + 2].map(|j| signal[j]);
         b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
     };
-    ((0..count).map(at).collect(), per_cycle as usize)
+    (0..count).map(at).collect()
 }
 
 /// Autocorrelation up to half of the signal, made up for the shrinking overlap.
@@ -357,6 +478,7 @@ mod tests {
     use super::*;
     use crate::delay::times;
     use crate::test_systems::{Noise, Regular, System, with_noise};
+    use std::f64::consts::TAU;
 
     fn found(signal: &[f64]) -> Verdict {
         verdict(signal, &times(signal).unwrap()).unwrap()
@@ -390,6 +512,57 @@ mod tests {
                 "{} {verdict:?}",
                 system.name()
             );
+        }
+    }
+
+    #[test]
+    fn noise_on_a_short_period_is_not_chaos() {
+        let alternating: Vec<f64> = (0..2000).map(|i| f64::from(i % 2)).collect();
+        let mut x = 0.3;
+        let mut logistic = || {
+            x = 3.5 * x * (1.0 - x);
+            x
+        };
+        (0..2000).for_each(|_| {
+            logistic();
+        });
+        let four: Vec<f64> = (0..4000).map(|_| logistic()).collect();
+        for (signal, share) in [(&alternating, 0.05), (&four, 0.01), (&four, 0.05)] {
+            let verdict = found(&with_noise(signal, share, 1));
+            assert_eq!(verdict.regime, Regime::Periodic, "{share} {verdict:?}");
+        }
+    }
+
+    #[test]
+    fn a_circle_map_near_the_golden_rotation_is_no_chaos() {
+        let mut angle = 0.1;
+        let signal: Vec<f64> = (0..4000)
+            .map(|_| {
+                angle += 0.606_661_063 - 0.9 / TAU * (TAU * angle).sin();
+                (TAU * angle).sin()
+            })
+            .collect();
+        for share in [0.0, 0.01] {
+            let verdict = found(&with_noise(&signal, share, 1));
+            assert_ne!(verdict.regime, Regime::Chaotic, "{verdict:?}");
+            assert_eq!(verdict.exponent, None);
+        }
+    }
+
+    #[test]
+    fn a_speed_that_drifts_is_no_chaos() {
+        // 40 cycles, the last 2 % faster than the first.
+        let signal: Vec<f64> = (0..4000)
+            .map(|i| {
+                let t = f64::from(i) / 4000.0;
+                let turned = TAU * 40.0 * (t + 0.01 * t * t);
+                turned.sin() + 0.5 * (2.0 * turned + 1.0).sin() + 0.3 * (5.0 * turned).cos()
+            })
+            .collect();
+        for share in [0.01, 0.05] {
+            let verdict = found(&with_noise(&signal, share, 1));
+            assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
+            assert_eq!(verdict.exponent, None);
         }
     }
 

@@ -23,6 +23,41 @@ pub fn phase_randomised(signal: &[f64], generator: &mut Stream) -> Vec<f64> {
     fourier.backward(spectrum)
 }
 
+/// The signal of a drive with `per_cycle` samples in each cycle, of which the Fourier components over
+/// cycles have their phases drawn anew, by the same angle at every phase of the drive (Prichard and
+/// Theiler 1994): a cyclostationary linear Gaussian signal with the same covariances within and between
+/// cycles. Samples after the last whole cycle are left out.
+pub(crate) fn phases_randomised_alike(
+    signal: &[f64],
+    per_cycle: usize,
+    generator: &mut Stream,
+) -> Vec<f64> {
+    let cycles = signal.len() / per_cycle;
+    let fourier = Fourier::new(cycles);
+    let turns: Vec<Complex<f64>> = (0..=cycles / 2)
+        .map(|_| Complex::from_polar(1.0, generator.random_range(0.0..TAU)))
+        .collect();
+    let mut surrogate = vec![0.0; cycles * per_cycle];
+    for phase in 0..per_cycle {
+        let at_phase = signal.iter().skip(phase).step_by(per_cycle);
+        let series: Vec<f64> = at_phase.take(cycles).copied().collect();
+        let mut spectrum = fourier.forward(&series);
+        // The mean stays, and of an even number of cycles the alternating component: both are real.
+        for (bin, turn) in spectrum
+            .iter_mut()
+            .zip(&turns)
+            .take(cycles.div_ceil(2))
+            .skip(1)
+        {
+            *bin *= turn;
+        }
+        let turned = fourier.backward(spectrum);
+        let places = surrogate.iter_mut().skip(phase).step_by(per_cycle);
+        places.zip(turned).for_each(|(place, x)| *place = x);
+    }
+    surrogate
+}
+
 fn usable(signal: &[f64]) -> bool {
     signal.len() >= 2 && signal.iter().all(|x| x.is_finite())
 }
@@ -65,7 +100,8 @@ pub fn iaaft(signal: &[f64], iterations: usize, generator: &mut Stream) -> Vec<f
     surrogate
 }
 
-fn shuffle(values: &mut [f64], generator: &mut Stream) {
+/// Puts values into an order in which each is as likely as any other.
+pub(crate) fn shuffle<T>(values: &mut [T], generator: &mut Stream) {
     for i in (1..values.len()).rev() {
         values.swap(i, generator.random_range(0..=i));
     }

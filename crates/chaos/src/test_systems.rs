@@ -5,9 +5,11 @@
 //! the equations are evaluated with dual numbers, and the growth of the tangent is averaged.
 
 mod flows;
+mod machines;
 mod noises;
 mod regular;
 
+pub use machines::{Machine, Memory};
 pub use noises::{Noise, with_noise};
 pub use regular::Regular;
 

@@ -18,7 +18,7 @@ use chaos::entropy::{multiscale_entropy, permutation_entropy, sample_entropy};
 use chaos::forced::{FEWEST_CYCLES, Growth};
 use chaos::neighbours::Delays;
 use chaos::recurrence::recurrence;
-use chaos::regime::{Regime, Verdict, driven_verdict, verdict};
+use chaos::regime::{Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};
 use chaos::zero_one::zero_one;
 use signal::angle_resampling::AngleGrid;
 use signal::decimate::Decimator;
@@ -247,6 +247,8 @@ impl Judged {
     fn exponent(self) -> Result<Growth, Reason> {
         match (self.verdict.exponent, self.verdict.regime) {
             (Some(exponent), Regime::Chaotic) => Ok(exponent.per(1.0 / self.sample_rate)),
+            (None, Regime::Chaotic) => Err(Reason::ExponentsDiffer),
+            (_, Regime::Undecided) => Err(Reason::Undecided),
             (_, regime) => Err(Reason::NotChaotic {
                 regime: regime.name(),
             }),
@@ -255,6 +257,7 @@ impl Judged {
 }
 
 fn judged(window: &Window, analysed: &Analysed) -> Result<Judged, Reason> {
+    let mut chance = false;
     if let Ok(angle) = crank_angle(window) {
         let needed = FEWEST_CYCLES;
         let got = angle.revolutions();
@@ -271,9 +274,14 @@ fn judged(window: &Window, analysed: &Analysed) -> Result<Judged, Reason> {
                 zero_one: zero_one(revolutions.samples(), ZERO_ONE_STEP).map_err(Reason::from),
             });
         }
+        chance = chance_at_a_phase(revolutions.samples(), PER_REVOLUTION);
+    }
+    let mut verdict = verdict(&analysed.signal, &analysed.times)?;
+    if chance && verdict.regime == Regime::Chaotic {
+        verdict.regime = Regime::Undecided;
     }
     Ok(Judged {
-        verdict: verdict(&analysed.signal, &analysed.times)?,
+        verdict,
         sample_rate: analysed.sample_rate,
         zero_one: zero_one(&analysed.signal, analysed.times.delay).map_err(Reason::from),
     })

@@ -43,6 +43,14 @@ pub enum Reason {
         /// Name of the regime.
         regime: &'static str,
     },
+    /// The kind of motion is not known.
+    #[error("the kind of motion is undecided")]
+    Undecided,
+    /// The motion is chaotic, but the estimates of its exponent differ by as much as their value.
+    #[error(
+        "the motion is chaotic, but the estimates of its exponent differ by as much as their value"
+    )]
+    ExponentsDiffer,
     /// No two stretches of the signal are alike.
     #[error("no stretches of the signal are alike")]
     NoMatches,

@@ -382,6 +382,12 @@ fn a_knocking_wave_with_noise_is_periodic() {
 }
 
 #[test]
+fn an_undecided_motion_is_not_called_not_chaotic() {
+    let reason = features::Reason::Undecided.to_string();
+    assert_eq!(reason, "the kind of motion is undecided");
+}
+
+#[test]
 fn bad_signals_have_no_motion_and_say_why() {
     let ramp = |n: usize| (0..n).map(|i| (i % 37) as f32).collect::<Vec<f32>>();
     let mut gap = ramp(8000);
