@@ -137,8 +137,8 @@ fn of_joints(problem: &Problem) -> Result<Vec<Doubt>, Error> {
         }
         let mut tree = problem.tree.clone();
         let path = joint.clearance_path();
-        let settings = problem.runs.iter().flat_map(|run| &run.settings);
-        if let Some((_, value)) = settings.filter(|(key, _)| *key == path).next_back() {
+        let mut settings = problem.runs.iter().flat_map(|run| &run.settings);
+        if let Some((_, value)) = settings.rfind(|(key, _)| *key == path) {
             paths::set(&mut tree, &path, value.clone())?;
         }
         doubts.extend(relative(tree, &path, CLEARANCE).map(|doubt| Doubt {

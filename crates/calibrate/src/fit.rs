@@ -58,7 +58,7 @@ impl Optimiser {
 /// A misfit above which the model does not explain the recordings. Intervals follow from the noise, as if it
 /// were all that is left; at 1.5 more than half of the mean square is something else, and what that does to
 /// the parameters nobody knows.
-pub(crate) const ADEQUATE: f64 = 1.5;
+pub const ADEQUATE: f64 = 1.5;
 /// A value this near to a bound, as a share of the range, is at it.
 const AT_BOUND: f64 = 1e-3;
 

@@ -231,9 +231,10 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
     if !channel.column.contains("acceleration") {
         return Ok(());
     }
-    let limits: [(fn(f64, f64) -> f64, _); 2] = [(f64::max, "greatest"), (f64::min, "least")];
-    for (of, limit) in limits {
-        let value = channel.samples.iter().copied().reduce(of).unwrap_or(0.0);
+    let samples = || channel.samples.iter().copied();
+    let extremes = [samples().reduce(f64::max), samples().reduce(f64::min)];
+    for (value, limit) in extremes.into_iter().zip(["greatest", "least"]) {
+        let value = value.unwrap_or(0.0);
         let (mut longest, mut count) = (0, 0);
         for x in &channel.samples {
             count = if *x == value { count + 1 } else { 0 };

@@ -211,7 +211,7 @@ fn a_clearance_is_looked_for_on_a_grid() {
     };
     let fit = calibrate(&problem, &settings, go).unwrap();
     let found = fit.estimates[0].value;
-    println!(
+    eprintln!(
         "{found:.4e} m at misfit {:.3} after {} evaluations",
         misfit(&fit),
         fit.evaluations

@@ -383,7 +383,7 @@ fn a_knocking_wave_with_noise_is_periodic() {
 
 #[test]
 fn an_undecided_motion_is_not_called_not_chaotic() {
-    let reason = features::Reason::Undecided.to_string();
+    let reason = Reason::Undecided.to_string();
     assert_eq!(reason, "the kind of motion is undecided");
 }
 

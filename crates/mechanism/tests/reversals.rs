@@ -94,7 +94,7 @@ fn cylinders() -> impl Strategy<Value = Machine> {
 }
 
 fn harmonics() -> impl Strategy<Value = Vec<(f64, f64)>> {
-    prop::collection::vec((0.0..6.0_f64, 0.0..6.28_f64), 1..4)
+    prop::collection::vec((0.0..6.0_f64, 0.0..std::f64::consts::TAU), 1..4)
 }
 
 /// Follows `machine` and shows each of many equally spaced instants.

@@ -147,7 +147,7 @@ mod tests {
     fn an_encoder_never_reads_a_whole_revolution() {
         let digitiser = Digitiser::new(&sensor(Measured::CrankAngle, None, Some(16)), &[]);
         assert_eq!(digitiser.read(TAU * 0.999_999_9), 0.0);
-        let plain = Digitiser::new(&sensor(Measured::CrankAngle, None, None));
+        let plain = Digitiser::new(&sensor(Measured::CrankAngle, None, None), &[]);
         assert_eq!(plain.read(TAU - 1e-12), 0.0);
         assert!((plain.read(6.0) - 6.0).abs() < 1e-12);
     }

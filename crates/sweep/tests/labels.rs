@@ -124,7 +124,7 @@ fn joints_that_are_faulty_unasked_and_a_single_label_are_warned_of() {
         &[],
         "cases: [{grid: {joints: [[], [guide]], clearance: 0.2 mm, speed: {from: 400 rpm, to: 500 rpm, count: 20}}}]",
     );
-    assert_eq!(fine.census().warnings(), [String::new(); 0]);
+    assert!(fine.census().warnings().is_empty());
 }
 
 #[test]

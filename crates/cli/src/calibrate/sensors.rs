@@ -2,15 +2,12 @@
 
 use super::Task;
 use crate::Failure;
+use ::calibrate::fit::ADEQUATE;
 use ::calibrate::likelihood::Likelihood;
 use ::calibrate::recorded_sensor::{Look, RecordedSensor, recorded_sensors, sample_rate};
 use ::calibrate::{Fit, sensor_section};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-
-/// Misfit up to which a model's own scatter is believed, in standard deviations of the noise: beyond
-/// it the model is not adequate.
-const ADEQUATE: f64 = 1.5;
 
 /// The sensors of the recordings, by column, and their sample rate.
 pub struct Sensors {
@@ -34,7 +31,7 @@ impl Sensors {
             .map(|(i, run)| Look {
                 run,
                 observation: &task.problem.runs[i],
-                prediction: (fit.runs[i].calibrated < ADEQUATE).then_some(&predictions[i]),
+                prediction: (fit.runs[i].calibrated <= ADEQUATE).then_some(&predictions[i]),
                 has_encoder: task.recorders[i].has_encoder,
                 is_timed: task.recorders[i].is_timed,
             })

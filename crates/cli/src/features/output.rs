@@ -35,7 +35,7 @@ impl Format {
 
 /// A table under way.
 pub(super) enum Output {
-    Parquet(TableWriter<WholeFile>),
+    Parquet(Box<TableWriter<WholeFile>>),
     Csv(WholeFile, Table),
 }
 
@@ -43,9 +43,10 @@ impl Output {
     pub(super) fn create(out: &Path, format: Format, schema: &Schema) -> Result<Self, Failure> {
         let file = WholeFile::create(&out.with_extension("part"), out).map_err(Failure::input)?;
         Ok(match format {
-            Format::Parquet => Self::Parquet(
-                TableWriter::new(file, schema, ROWS_PER_GROUP).map_err(Failure::work)?,
-            ),
+            Format::Parquet => {
+                let writer = TableWriter::new(file, schema, ROWS_PER_GROUP);
+                Self::Parquet(Box::new(writer.map_err(Failure::work)?))
+            }
             Format::Csv => Self::Csv(file, Table::new(schema.clone())),
         })
     }

@@ -173,10 +173,7 @@ impl Drawn {
 
 /// The value of the machine file that all these paths have; none where they differ, so that nothing
 /// is drawn about one joint's value for another.
-fn common_value<'a>(
-    frame: &Frame<'a>,
-    paths: &[String],
-) -> Result<Option<&'a Value>, Error> {
+fn common_value<'a>(frame: &Frame<'a>, paths: &[String]) -> Result<Option<&'a Value>, Error> {
     let mut values = paths.iter().map(|path| paths::get(frame.machine, path));
     let first = values.next().transpose()?.flatten();
     for value in values {
