@@ -95,7 +95,7 @@ fn settings() -> FitSettings {
     FitSettings {
         optimiser: Optimiser::LevenbergMarquardt,
         seed: 0,
-        evaluations: 60,
+        evaluations: 600,
         held_out: Vec::new(),
         start: None,
     }

@@ -37,6 +37,7 @@ impl Case {
                 "- id: {id}
   file: {id}/signals.parquet
   speed_rpm: {rpm}
+  sample_rate_hz: 10000
   load: {{suction_pressure_pa: 105000.0, discharge_pressure_pa: 393000.0}}
   joints: {{big_end: {{clearance_m: 0.0001}}, small_end: ideal}}
   channels:

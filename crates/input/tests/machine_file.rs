@@ -131,7 +131,10 @@ fn sensors_and_frame_are_as_written() {
     let [acceleration, pressure, angle, _] = &resolved.sensors[..] else {
         panic!()
     };
-    assert_eq!(acceleration.chain.range, Some(simulate::Range::Fixed(2000.0)));
+    assert_eq!(
+        acceleration.chain.range,
+        Some(simulate::Range::Fixed(2000.0))
+    );
     let noise = acceleration.chain.noise.unwrap();
     assert_eq!(
         (noise.level, noise.pink_share),
@@ -143,7 +146,10 @@ fn sensors_and_frame_are_as_written() {
     );
     assert_eq!(
         (angle.chain.bits, angle.chain.range),
-        (Some(16), Some(simulate::Range::Fixed(std::f64::consts::TAU)))
+        (
+            Some(16),
+            Some(simulate::Range::Fixed(std::f64::consts::TAU))
+        )
     );
     let frame = resolved.machine.frame.unwrap();
     let natural = (frame.stiffness_x / frame.mass).sqrt();

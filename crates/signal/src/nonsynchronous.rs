@@ -216,7 +216,11 @@ mod tests {
         assert!(rattle.steady_share < 0.5, "{}", rattle.steady_share);
         // Every second revolution differs: lines at half orders are no noise.
         let half = found(|i, angle| {
-            let odd = if (i / POINTS).is_multiple_of(2) { 1.0 } else { -1.0 };
+            let odd = if (i / POINTS).is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            };
             noise[i] + odd * (5.0 * angle).sin()
         });
         assert!((half.mean_square() - 1.0).abs() < 0.1, "{half:?}");
