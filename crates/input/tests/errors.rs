@@ -94,9 +94,9 @@ messages! {
     unknown_key: "  length: 600 mm" => "  lenght: 600 mm",
         "m.yaml:5:3: rod.lenght: unknown key; expected one of length, mass, centre_of_mass, inertia; did you mean 'length'?";
     unknown_key_far_from_any: "name: small" => "name: small\ncolour: red",
-        "m.yaml:2:1: colour: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects";
+        "m.yaml:2:1: colour: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
     key_with_a_line_break: "name: small" => "name: small\n\"a\\nb\": 1",
-        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects";
+        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
     misspelt_joint: "  big_end:" => "  big_ned:",
         "m.yaml:18:3: joints.big_ned: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?";
     misspelt_contact_law: "law: impact" => "law: impct",
@@ -254,8 +254,8 @@ fn files_that_hold_nothing() {
         [
             "m.yaml: the file is empty",
             "m.yaml: the file is empty",
-            "m.yaml:1:1: found a list, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects",
-            "m.yaml:1:1: found '500 rpm', expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects",
+            "m.yaml:1:1: found a list, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found '500 rpm', expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
             "m.yaml:3:1: not valid YAML: only single YAML document expected but multiple found"
         ]
     );
@@ -306,7 +306,7 @@ fn paths_that_lead_nowhere() {
             "effects.valve_los: found 'valve_los', expected valve_loss; did you mean 'valve_loss'?",
             "sensors.7: found '7', expected crosshead_acceleration",
             "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, mounting, gain, axis, end; did you mean 'range'?",
-            "unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, effects"
+            "unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects"
         ]
     );
 }

@@ -45,7 +45,7 @@ pub enum Error {
     /// A free crank came to a stop and turns the other way.
     #[error(
         "the crank has stopped and turns back after {revolutions:.1} revolutions, at t = {time:.3} s: its \
-         motor cannot turn the machine at {stated:.4} rpm; raise crank.drive.free.mean_torque or lower the load"
+         motor cannot turn the machine at {stated} rpm; raise crank.drive.free.mean_torque or lower the load"
     )]
     TurnsBack {
         /// Time at which it was found, s.
@@ -57,7 +57,7 @@ pub enum Error {
     },
     /// A free crank runs at another speed than the machine's.
     #[error(
-        "the crank turns at {mean:.4} rpm on average, {:.1} % off the {stated:.4} rpm of the machine, and at \
+        "the crank turns at {mean} rpm on average, {:.1} % off the {stated} rpm of the machine, and at \
          most {:.0} % are allowed: change crank.drive.free.mean_torque to what the load takes, or state the \
          speed that it reaches",
         100.0 * (mean / stated - 1.0).abs(), 100.0 * MOST_SLIP

@@ -22,9 +22,9 @@ pub(crate) struct Run<S: Scalar> {
     hurried: bool,
 }
 
-/// An angular speed, rad/s, as rev/min.
+/// An angular speed, rad/s, as rev/min to four decimals.
 fn rpm(speed: f64) -> f64 {
-    speed * 30.0 / PI
+    (1e4 * speed * 30.0 / PI).round() / 1e4
 }
 
 /// Equally spaced instants at which a run is looked at.
