@@ -264,7 +264,8 @@ fn a_crank_that_turns_back() {
     machine.crankshaft.inertia = 0.2;
     machine.drive = Drive::Free(MotorLine {
         reference_speed: SPEED,
-        mean_torque: 5.0,
+        // It brakes, so that the crank turns back within two revolutions.
+        mean_torque: -100.0,
         slope: 0.0,
     });
     check("turning back", &machine, &["turning back"]);

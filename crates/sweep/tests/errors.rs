@@ -18,7 +18,7 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?",
     ),
     ("", "sweep.yaml:1:1: cases: missing"),
     (
