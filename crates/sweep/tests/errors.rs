@@ -67,7 +67,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      sped: [500 rpm]",
-        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, effects; did you mean 'speed'?",
+        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
     ),
     (
         "cases:\n  - grid:\n      joints.big_ned.contact.damping: [2e4 N s/m]",
@@ -268,6 +268,10 @@ const MISTAKES: &[(&str, &str)] = &[
     (
         "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm, directions: sideways}",
         "sweep.yaml:6:94: bifurcations.0.directions: found 'sideways', expected one of up, down, both",
+    ),
+    (
+        "cases: [{grid: {sample_rate: [5 kHz, 10 kHz]}}]",
+        "sweep.yaml:4:30: cases.0.grid.sample_rate: found sample_rate, expected one rate for all cases, as run.sample_rate, e.g. 10 kHz",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nbifurcations:\n  - {name: a/b, revolutions: 2, steps: 3, path: speed, from: 300 rpm, to: 500 rpm}",

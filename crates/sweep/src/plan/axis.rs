@@ -63,6 +63,12 @@ impl Frame<'_> {
                 "an axis joints beside it, e.g. 'joints: [[], [big_end]]'",
             )),
             "load" => Ok(Target::Load),
+            // A dataset has one sample rate.
+            "sample_rate" => Err(Error::found(
+                key,
+                "sample_rate",
+                "one rate for all cases, as run.sample_rate, e.g. 10 kHz",
+            )),
             path => {
                 if let Some(paths) = self.below_joints(path, sets.unwrap_or_default()) {
                     return Ok(Target::Paths(paths.map_err(|e| e.under(key))?));

@@ -24,6 +24,10 @@ impl Varied {
             false => vec![path.to_owned()],
             true => paths::matching(machine, path).map_err(at_path)?,
         };
+        if path == "sample_rate" {
+            let expected = "one rate for all cases, as run.sample_rate, e.g. 10 kHz";
+            return Err(Error::found(path, path, expected));
+        }
         let Some(first) = places.first() else {
             let expected = "a path that stands for a value of the machine file";
             return Err(Error::found(path, "nothing in the machine file", expected));
