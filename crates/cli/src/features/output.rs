@@ -36,7 +36,7 @@ impl Format {
 /// A table under way.
 pub(super) enum Output {
     Parquet(Box<TableWriter<WholeFile>>),
-    Csv(WholeFile, Table),
+    Csv(Box<(WholeFile, Table)>),
 }
 
 impl Output {
@@ -47,14 +47,14 @@ impl Output {
                 let writer = TableWriter::new(file, schema, ROWS_PER_GROUP);
                 Self::Parquet(Box::new(writer.map_err(Failure::work)?))
             }
-            Format::Csv => Self::Csv(file, Table::new(schema.clone())),
+            Format::Csv => Self::Csv(Box::new((file, Table::new(schema.clone())))),
         })
     }
 
     pub(super) fn write(&mut self, row: Vec<Value>) -> Result<(), Failure> {
         match self {
             Self::Parquet(writer) => writer.write(row),
-            Self::Csv(_, table) => table.push(row),
+            Self::Csv(under_way) => under_way.1.push(row),
         }
         .map_err(Failure::work)
     }
@@ -62,7 +62,10 @@ impl Output {
     pub(super) fn commit(self) -> Result<(), Failure> {
         let file = match self {
             Self::Parquet(writer) => writer.finish(),
-            Self::Csv(file, table) => write_table(file, &table),
+            Self::Csv(under_way) => {
+                let (file, table) = *under_way;
+                write_table(file, &table)
+            }
         };
         file.and_then(WholeFile::commit).map_err(Failure::work)?;
         Ok(())
