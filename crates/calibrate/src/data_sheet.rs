@@ -79,7 +79,7 @@ impl Doubt {
 /// What may be wrong with the data sheet of a problem's machine; what is fitted already is in no doubt.
 ///
 /// # Errors
-/// A machine file that is none.
+/// An invalid machine file.
 pub(crate) fn doubts(problem: &Problem) -> Result<Vec<Doubt>, Error> {
     let mut doubts = of_machine(problem)?;
     doubts.extend(of_joints(problem)?);

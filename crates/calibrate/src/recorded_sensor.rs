@@ -36,8 +36,8 @@ const CONVERTERS: [u32; 4] = [8, 12, 16, 24];
 /// Most bits of an encoder.
 const ENCODER: i32 = 24;
 
-/// What the recordings tell of the measuring chain of a channel. What they do not tell is none, with
-/// a reason.
+/// The measuring chain of a channel, as it is identifiable from the recordings. What is not identifiable is
+/// `None`, with a reason.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RecordedSensor {
     /// RMS of the noise over the runs, SI.
@@ -60,7 +60,7 @@ pub struct RecordedSensor {
     pub range_reason: Option<String>,
     /// Samples per second; none where the runs differ.
     pub sample_rate_hz: Option<f64>,
-    /// The runs that the noise was found in.
+    /// The runs from which the noise is estimated.
     pub runs: Vec<String>,
 }
 

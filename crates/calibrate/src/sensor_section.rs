@@ -17,7 +17,7 @@ const DIGITS: i32 = 4;
 /// What they do not tell stays as the file has it; a channel without a sensor gets one.
 ///
 /// # Errors
-/// A machine file that is none.
+/// An invalid machine file.
 pub fn write(
     tree: &mut Value,
     found: &BTreeMap<String, RecordedSensor>,

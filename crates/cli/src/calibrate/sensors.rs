@@ -45,7 +45,7 @@ impl Sensors {
     /// Gives the machine file `tree` these sensors.
     ///
     /// # Errors
-    /// A machine file that is none.
+    /// An invalid machine file.
     pub fn write(&self, tree: &mut Value) -> Result<(), Failure> {
         sensor_section::write(tree, &self.by_column, self.sample_rate).map_err(Failure::work)
     }

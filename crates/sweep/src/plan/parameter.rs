@@ -41,8 +41,8 @@ impl Parameter {
     }
 }
 
-/// The parameters of `plan`, whose effects are known: what varies, what the blocks set, and how
-/// large the varied effects are, as far as that is none of those.
+/// The parameters of `plan`, whose effects are known: what varies, what the blocks set, and the
+/// amplitudes of varied effects that are not among these.
 pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
     let varied: Vec<&str> = plan.varied().map(|(_, path)| path).collect();
     let set = plan.blocks.iter().flat_map(Block::paths);
