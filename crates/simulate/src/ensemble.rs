@@ -3,13 +3,13 @@
 
 use crate::record::{Error, Record};
 use crate::sampler::observe_lanes;
-use crate::task::{Asked, Task};
+use crate::task::{Asked, Kept, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};
 
 /// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
-/// same bits. Each record becomes what `keep` makes of it as soon as it is there, so that none waits
+/// same bits. A record whose energy does not balance over the revolution after it is an error. Each record becomes what `keep` makes of it as soon as it is there, so that none waits
 /// for the others at its full size; `keep` is told which of `asked` it is of.
 pub fn simulate_together<T>(
     asked: &[Asked],
@@ -28,7 +28,7 @@ pub fn simulate_together<T>(
 }
 
 fn start(asked: Asked) -> Result<Task, Error> {
-    Task::start(asked, 0.0, false)
+    Task::start(asked, 0.0, Kept::CheckedSeries)
 }
 
 /// Which machines can share lanes: those that differ in numbers alone, and of which the same is recorded.

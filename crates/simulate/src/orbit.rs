@@ -203,7 +203,7 @@ impl Orbit<'_> {
                 state[*i].tangent[direction] = *scale;
             }
         }
-        let mut run = Run::resume(lifted, from, &state, self.settings.tolerance);
+        let mut run = Run::resume(lifted, from, &state, self.settings.tolerance, false);
         run.hurry();
         for (i, memory) in run.memory().into_iter().enumerate() {
             if let Some(direction) = direction(stretch.disturbed.len() + i) {

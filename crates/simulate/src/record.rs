@@ -3,7 +3,7 @@
 use crate::penetration::Penetration;
 use crate::sensor::Sensor;
 use crate::settings::{Settings, Unrecordable};
-use crate::task::{Asked, Task};
+use crate::task::{Asked, Kept, Task};
 use crate::trace::Trace;
 use mechanism::Machine;
 
@@ -110,8 +110,9 @@ pub struct Record {
     pub transient: u32,
     /// True where the transient was found to have settled.
     pub settled: bool,
-    /// Energy that the ledger misses over the recorded revolutions, as a share of the energy turned
-    /// over: the run's own measure of its accuracy. Works are integrated where the motion is traced.
+    /// Energy that the ledger misses, as a share of the energy turned over: the run's own measure of its
+    /// accuracy. Over the recorded revolutions where the motion is traced, over the revolution after them
+    /// where many machines run together.
     pub energy_residual: Option<f64>,
     /// Mean speed of the crank over the record and what leads into it, rad/s; negative clockwise.
     pub mean_speed: f64,
@@ -152,7 +153,8 @@ pub fn simulate_later(
         sensors,
         settings,
     };
-    Task::start(asked, delay, traced)?.finish(&mut |_| ())
+    let kept = if traced { Kept::Trace } else { Kept::Series };
+    Task::start(asked, delay, kept)?.finish(&mut |_| ())
 }
 
 /// As [`simulate`] with a trace; `watch` is told after each step which share of the run is done.
@@ -170,5 +172,5 @@ pub fn simulate_watched(
         sensors,
         settings,
     };
-    Task::start(asked, 0.0, true)?.finish(watch)
+    Task::start(asked, 0.0, Kept::Trace)?.finish(watch)
 }

@@ -94,9 +94,16 @@ impl<S: Real> Run<S> {
         }
     }
 
-    /// Goes on where another run, of which these are the numbers, stands.
-    pub(crate) fn resume(machine: Machine<S>, at: &Standing, state: &[S], tolerance: f64) -> Self {
-        let mut run = Self::start(machine, tolerance, false);
+    /// Goes on where another run, of which these are the numbers, stands; with `ledger` the works, four
+    /// zeros at the end of the state, are integrated along.
+    pub(crate) fn resume(
+        machine: Machine<S>,
+        at: &Standing,
+        state: &[S],
+        tolerance: f64,
+        ledger: bool,
+    ) -> Self {
+        let mut run = Self::start(machine, tolerance, ledger);
         *run.dynamics.mode_mut() = lift::constants(&at.mode);
         let longest = LONGEST_STEP * run.revolution;
         run.integrator = Integrator::new(&mut run.dynamics, at.time, state, tolerance, longest);
@@ -434,11 +441,36 @@ impl Run<f64> {
         }
     }
 
+    /// Goes on with the ledger for a revolution from where this run stands, which stays there: what the
+    /// ledger misses, over the energy turned over.
+    ///
+    /// # Errors
+    /// Where that is too much, the gas did more work than it held, or the revolution cannot be integrated.
+    pub(crate) fn audit(&self, tolerance: f64) -> Result<f64, Error> {
+        let at = self.standing();
+        let mut state = at.state.clone();
+        state.extend([0.0; 4]);
+        let machine = self.dynamics.machine().clone();
+        let mut run = Self::resume(machine, &at, &state, tolerance, true);
+        let before = run.ledger();
+        run.turn(1)?;
+        run.balance(&before)
+    }
+
+    /// What the ledger misses since `before`, at least a revolution ago, over the energy turned over.
+    ///
+    /// # Errors
+    /// Where that is too much, or the gas did more work than it held.
+    pub(crate) fn balance(&mut self, before: &Ledger) -> Result<f64, Error> {
+        self.check_gas(before)?;
+        self.residual(before)
+    }
+
     /// What the ledger misses since `before`, over the energy turned over.
     ///
     /// # Errors
     /// Where that is too much.
-    pub(crate) fn residual(&mut self, before: &Ledger) -> Result<f64, Error> {
+    fn residual(&mut self, before: &Ledger) -> Result<f64, Error> {
         let now = self.ledger();
         let [gas, drive, friction, damping] = now.works_since(before);
         let missing = now.energy - before.energy - (gas + drive - friction - damping);
@@ -458,7 +490,7 @@ impl Run<f64> {
     ///
     /// # Errors
     /// Where it has.
-    pub(crate) fn check_gas(&mut self, before: &Ledger) -> Result<(), Error> {
+    fn check_gas(&mut self, before: &Ledger) -> Result<(), Error> {
         let now = self.ledger();
         let Some(held) = before.gas.zip(now.gas).map(|(before, now)| before - now) else {
             return Ok(());

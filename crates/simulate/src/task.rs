@@ -22,12 +22,24 @@ pub struct Asked<'a> {
     pub settings: &'a Settings,
 }
 
+/// What is kept of a run beside its series, and with it over what its energy is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// The series alone, unchecked: for a fit, which runs many machines and keeps none.
+    Series,
+    /// The series alone. The energy is checked over one revolution after the record, so that the record
+    /// itself need not carry the works along.
+    CheckedSeries,
+    /// The motion as well. The energy is checked over the record.
+    Trace,
+}
+
 /// A record under way.
 pub(crate) struct Task<'a> {
     asked: Asked<'a>,
     /// s after the transient.
     delay: f64,
-    traced: bool,
+    kept: Kept,
     pub run: Run<f64>,
     phase: Phase<'a>,
     course: Course,
@@ -50,14 +62,14 @@ struct Recording<'a> {
 
 impl<'a> Task<'a> {
     /// Begins at the start of the machine.
-    pub fn start(asked: Asked<'a>, delay: f64, traced: bool) -> Result<Self, Error> {
+    pub fn start(asked: Asked<'a>, delay: f64, kept: Kept) -> Result<Self, Error> {
         let Settings {
             tolerance,
             transient,
             ..
         } = *asked.settings;
         (asked.settings).check(asked.machine.drive.reference_speed())?;
-        let mut run = Run::start(asked.machine.clone(), tolerance, traced);
+        let mut run = Run::start(asked.machine.clone(), tolerance, kept == Kept::Trace);
         let leaving = Leaving::new(&mut run, transient);
         let next = leaving.next(&run);
         let mut task = Self {
@@ -65,7 +77,7 @@ impl<'a> Task<'a> {
             phase: Phase::Leaving(leaving),
             asked,
             delay,
-            traced,
+            kept,
             run,
         };
         task.head_for(next)?;
@@ -118,14 +130,14 @@ impl<'a> Task<'a> {
             false => planned,
         };
         let recorded = lead..lead + sampling.samples * sampling.factor;
-        let trace = self
-            .traced
+        let traced = self.kept == Kept::Trace;
+        let trace = traced
             .then(|| (Trace::new(machine, sampling.factor), recorded));
         let series = sensors.iter().map(|sensor| sampling.begin(sensor, machine));
         Ok(Recording {
             left,
             start,
-            before: self.traced.then(|| self.run.ledger()),
+            before: traced.then(|| self.run.ledger()),
             from: self.run.crank_and_time(),
             sampler: Sampler::begin(
                 &mut self.run,
@@ -173,9 +185,9 @@ impl<'a> Task<'a> {
                 let run = &mut self.run;
                 let mean_speed = run.mean_speed(from)?;
                 let residual = match before {
-                    Some(before) => {
-                        run.check_gas(&before)?;
-                        Some(run.residual(&before)?)
+                    Some(before) => Some(run.balance(&before)?),
+                    None if self.kept == Kept::CheckedSeries => {
+                        Some(run.audit(self.asked.settings.tolerance)?)
                     }
                     None => None,
                 };

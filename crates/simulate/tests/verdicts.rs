@@ -114,9 +114,34 @@ fn forces_lost_in_rounding_are_an_open_ledger() {
             ("crosshead.mass", "1e30 kg"),
         ],
     );
-    let traced = simulate(&machine.machine, &machine.sensors, &settings(), true);
-    let error = traced.unwrap_err();
-    assert!(matches!(error, Error::EnergyMissing { .. }), "{error}");
+    let settings = settings();
+    let traced = simulate(&machine.machine, &machine.sensors, &settings, true);
+    let asked = Asked {
+        machine: &machine.machine,
+        sensors: &machine.sensors,
+        settings: &settings,
+    };
+    // In a dataset the works are kept along for one revolution, after the record.
+    let together = simulate_together(&[asked, asked], |_, record| record);
+    for record in together.into_iter().chain([traced]) {
+        let error = record.unwrap_err();
+        assert!(matches!(error, Error::EnergyMissing { .. }), "{error}");
+    }
+}
+
+#[test]
+fn a_record_that_is_kept_balances() {
+    let machine = machine("single-stage.yaml", &[("joints.big_end.clearance", "0.2 mm")]);
+    let settings = settings();
+    let asked = Asked {
+        machine: &machine.machine,
+        sensors: &machine.sensors,
+        settings: &settings,
+    };
+    for record in simulate_together(&[asked, asked, asked], |_, record| record) {
+        let missing = record.unwrap().energy_residual.unwrap();
+        assert!(missing != 0.0 && missing.abs() < 1e-7, "{missing:e}");
+    }
 }
 
 #[test]
