@@ -35,6 +35,8 @@ pub enum Optimiser {
     /// leaves more than noise, from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
+    /// What the default begins with, up to the end of its first descent.
+    FirstDescent,
     /// CMA-ES alone.
     CmaEs,
     /// The genetic algorithm alone.
@@ -48,6 +50,7 @@ impl Optimiser {
     pub fn name(self) -> &'static str {
         match self {
             Self::Default => "levenberg-marquardt, cma-es",
+            Self::FirstDescent => "levenberg-marquardt, first descent",
             Self::CmaEs => "cma-es",
             Self::Genetic(_) => "genetic",
             Self::LevenbergMarquardt => "levenberg-marquardt",
@@ -288,6 +291,7 @@ fn search(
     let likelihood = Likelihood::new(problem);
     match settings.optimiser {
         Optimiser::Default => search::search(problem, start, seed, most, watch),
+        Optimiser::FirstDescent => search::first_descent(problem, start, seed, most, watch),
         Optimiser::LevenbergMarquardt => {
             optimiser::levenberg_marquardt(&likelihood, start, search::CHANGE, most, watch)
         }
