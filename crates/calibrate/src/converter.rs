@@ -58,11 +58,16 @@ impl Converter {
     pub(crate) fn of_samples(runs: &[&[f64]]) -> Self {
         let steps: Option<Vec<f64>> = runs.iter().map(|x| quantisation_step(x)).collect();
         let Some(steps) = steps.filter(|steps| !steps.is_empty()) else {
-            return Self::unknown("the recorded values lie on no lattice that is seen in single precision");
+            return Self::unknown(
+                "the recorded values lie on no lattice that is seen in single precision",
+            );
         };
         let resolution = steps.iter().copied().fold(0.0, f64::max);
         let finest = steps.iter().copied().fold(f64::INFINITY, f64::min);
-        let needed = runs.iter().zip(&steps).map(|(x, step)| bits_needed(x, *step));
+        let needed = runs
+            .iter()
+            .zip(&steps)
+            .map(|(x, step)| bits_needed(x, *step));
         let bits_needed = needed.max().unwrap_or(0);
         match resolution / finest - 1.0 < SAME_STEP {
             true => Self::RangeAssumed {
@@ -131,7 +136,12 @@ mod tests {
         // 1 to 2 steps of each whole power of two, and every odd word length between.
         for amplitude in [20.0, 100.0, 700.0, 3000.0] {
             let samples = recorded(amplitude, 0.0625);
-            let Converter::RangeAssumed { resolution, bits_needed, bits, range } = Converter::of_samples(&[&samples])
+            let Converter::RangeAssumed {
+                resolution,
+                bits_needed,
+                bits,
+                range,
+            } = Converter::of_samples(&[&samples])
             else {
                 panic!("{amplitude}");
             };
@@ -146,9 +156,17 @@ mod tests {
 
     #[test]
     fn steps_that_follow_the_signal_are_a_range_set_to_each_run() {
-        let runs = [recorded(400.0, 512.0 / 32768.0), recorded(900.0, 1024.0 / 32768.0)];
+        let runs = [
+            recorded(400.0, 512.0 / 32768.0),
+            recorded(900.0, 1024.0 / 32768.0),
+        ];
         let runs: Vec<&[f64]> = runs.iter().map(Vec::as_slice).collect();
-        let Converter::RangePerRun { resolution, finest, bits } = Converter::of_samples(&runs) else {
+        let Converter::RangePerRun {
+            resolution,
+            finest,
+            bits,
+        } = Converter::of_samples(&runs)
+        else {
             panic!("one step");
         };
         assert_eq!(bits, 16);

@@ -189,7 +189,11 @@ fn descents_that_leave_more_than_noise_correct_nothing() {
     let fit = calibrate(&problem, &settings(), go).unwrap();
     let corrected = correct(&problem, &fit, &settings(), Depth::Descents, go).unwrap();
     assert!(!corrected.tried.is_empty());
-    assert!(corrected.tried.iter().all(|(_, misfit)| *misfit > 1.15), "{:?}", corrected.tried);
+    assert!(
+        corrected.tried.iter().all(|(_, misfit)| *misfit > 1.15),
+        "{:?}",
+        corrected.tried
+    );
     assert!(corrected.corrections.is_empty() && corrected.fit.is_none());
 }
 

@@ -42,7 +42,10 @@ fn where_nothing_is_hidden_it_says_so() {
     // The explained machine has the sensors that recorded.
     let explained = input::machine_file::read(&out.join("machine.yaml")).unwrap();
     let explained = explained.resolve().unwrap();
-    let recorder = input::machine_file::read(&machine).unwrap().resolve().unwrap();
+    let recorder = input::machine_file::read(&machine)
+        .unwrap()
+        .resolve()
+        .unwrap();
     assert_eq!(explained.sample_rate, recorder.sample_rate);
     let acceleration = |sensors: &[simulate::Sensor]| {
         let mut sensors = sensors.iter();

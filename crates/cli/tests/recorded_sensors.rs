@@ -191,7 +191,10 @@ fn scatter_of_a_chaotic_motion_is_no_noise() {
     let Converter::Unknown { converter_reason } = &sensor.converter else {
         panic!("{sensor:?}");
     };
-    assert!(converter_reason.contains("no lattice"), "{converter_reason}");
+    assert!(
+        converter_reason.contains("no lattice"),
+        "{converter_reason}"
+    );
 }
 
 /// A converter of 18 bits over ±1600 m/s² records a machine in good order, which uses a quarter of that.
@@ -200,7 +203,11 @@ fn in_good_order() -> (BTreeMap<String, RecordedSensor>, Option<f64>) {
         "measure": "crosshead_acceleration", "noise": {"rms": "2 m/s^2"},
         "range": "1600 m/s^2", "bits": 18,
     });
-    let runs = recorded(&[("joints.big_end.clearance", "0.1 mm")], &["350 rpm"], chain);
+    let runs = recorded(
+        &[("joints.big_end.clearance", "0.1 mm")],
+        &["350 rpm"],
+        chain,
+    );
     sensors(&runs, &[ACCELERATION.to_owned()])
 }
 
@@ -217,7 +224,9 @@ fn a_worn_machine_is_recorded_in_the_same_steps_and_not_clipped() {
         ("joints.big_end.clearance", "0.4 mm"),
         ("joints.small_end.clearance", "0.4 mm"),
     ];
-    let runs = recorded(&worn, &["650 rpm"], tree["sensors"][0].clone());
+    let mut sections = tree["sensors"].as_array().unwrap().iter();
+    let chain = sections.find(|s| s["measure"] == "crosshead_acceleration");
+    let runs = recorded(&worn, &["650 rpm"], chain.unwrap().clone());
     let samples = &runs[0].channels[0].samples;
     let found = signal::quantisation::quantisation_step(samples);
     near(found, step, 1e-3);
@@ -270,5 +279,9 @@ fn step_is(converter: &Converter, expected: f64) {
     };
     near(Some(resolution), expected, 1e-3);
     assert_eq!(bits, ASSUMED_BITS);
-    near(Some(2.0 * range / f64::from(bits).exp2()), resolution, 1e-12);
+    near(
+        Some(2.0 * range / f64::from(bits).exp2()),
+        resolution,
+        1e-12,
+    );
 }

@@ -3,9 +3,9 @@
 
 use super::Task;
 use crate::Failure;
-use ::calibrate::{Corrected, Depth};
 use ::calibrate::fit::{Fit, FitSettings, Optimiser};
 use ::calibrate::optimiser::Progress;
+use ::calibrate::{Corrected, Depth};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};

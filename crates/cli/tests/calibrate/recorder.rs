@@ -10,7 +10,13 @@ fn times_that_the_bundle_does_not_list_give_the_sample_rate() {
     let untimed = yaml(&columns[1..]).replace("  sample_rate_hz: 20000\n", "");
     assert!(!untimed.contains("t_s") && !untimed.contains("sample_rate"));
     let folder = write(&untimed, &csv(&columns));
-    let arguments = ["bundle", "--out", "out", "--optimiser", "levenberg-marquardt"];
+    let arguments = [
+        "bundle",
+        "--out",
+        "out",
+        "--optimiser",
+        "levenberg-marquardt",
+    ];
     let (status, message) = calibrate(folder.path(), &arguments);
     assert_eq!(status, 0, "{message}");
     let out = folder.path().join("out");
@@ -20,7 +26,11 @@ fn times_that_the_bundle_does_not_list_give_the_sample_rate() {
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     let sensors = page.split("<section id=\"sensors\">").nth(1).unwrap();
     let sensors = sensors.split("</section>").next().unwrap();
-    for said in ["crosshead_acceleration_m_s2", "20\u{202f}000\u{a0}Hz", "assumed ±"] {
+    for said in [
+        "crosshead_acceleration_m_s2",
+        "20\u{202f}000\u{a0}Hz",
+        "assumed ±",
+    ] {
         assert!(sensors.contains(said), "{said} is not in {sensors}");
     }
 }

@@ -44,16 +44,18 @@ pub(super) fn row(sensor: &Sensor) -> [String; 5] {
             finest,
             bits,
         } => (
-            format!("{} to {}", quantity(*finest, unit), quantity(*resolution, unit)),
+            format!(
+                "{} to {}",
+                quantity(*finest, unit),
+                quantity(*resolution, unit)
+            ),
             format!("{bits} bits, range set to each run"),
         ),
         Converter::Encoder { resolution, bits } => (
             quantity(*resolution, unit),
             format!("{bits} bits to the turn"),
         ),
-        Converter::Unknown { reason } => {
-            (String::new(), format!("not identifiable: {reason}"))
-        }
+        Converter::Unknown { reason } => (String::new(), format!("not identifiable: {reason}")),
     };
     let rate = sensor.sample_rate_hz;
     let rate = rate.map_or_else(|| "not known".to_owned(), |hz| quantity(hz, "Hz"));

@@ -111,9 +111,8 @@ pub(super) fn spreads(transfer: &Transfer) -> Vec<Spread> {
 /// Clearances in words.
 fn state(clearances: &[(String, f64)]) -> String {
     let joints = clearances.iter();
-    let joints = joints.map(|(path, metres)| {
-        format!("{} {}", super::words::path(path), text::clearance(*metres))
-    });
+    let joints = joints
+        .map(|(path, metres)| format!("{} {}", super::words::path(path), text::clearance(*metres)));
     text::capitalised(&joints.collect::<Vec<_>>().join(", "))
 }
 

@@ -2,8 +2,8 @@
 
 use super::Uniform;
 use report::calibration_page::{
-    Bounded, CalibrationPage, Chamber, Channel, Converter, Diagram, Estimate, Forecast,
-    Hypothesis, Known, Misfit, Noise, OrderResidual, Phase, Point, Pressure, Run, Sensor, Transfer,
+    Bounded, CalibrationPage, Chamber, Channel, Converter, Diagram, Estimate, Forecast, Hypothesis,
+    Known, Misfit, Noise, OrderResidual, Phase, Point, Pressure, Run, Sensor, Transfer,
 };
 use std::f64::consts::TAU;
 
