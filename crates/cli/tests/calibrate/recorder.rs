@@ -8,7 +8,7 @@ use std::fs;
 fn times_that_the_bundle_does_not_list_give_the_sample_rate() {
     let columns = plain();
     let untimed = yaml(&columns[1..]).replace("  sample_rate_hz: 20000\n", "");
-    assert!(!untimed.contains("t_s") && !untimed.contains("sample_rate"));
+    assert!(!untimed.contains("column: t_s") && !untimed.contains("sample_rate"));
     let folder = write(&untimed, &csv(&columns));
     let arguments = [
         "bundle",
