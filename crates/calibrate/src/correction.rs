@@ -1,4 +1,4 @@
-//! Which value of the data sheet is wrong, where a calibrated machine does not explain its recordings.
+//! Which value of the data sheet is wrong, where a calibrated machine leaves more than noise of its recordings.
 //!
 //! 1. Rank the values in doubt by the misfit that each leaves to first order, with what was fitted adapting to
 //!    it: the residuals' derivative by the value, freed of what the fitted parameters can imitate. That is
@@ -76,21 +76,10 @@ pub struct Corrected {
 /// How thoroughly the value is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// By descents, from a calibration that has not ended. Nothing but noise may be left then, for the search
-    /// might do as well.
+    /// By descents, from a calibration that has not ended.
     Descents,
     /// By a search where the descents leave more than noise.
     Search,
-}
-
-impl Depth {
-    /// The misfit up to which a value explains the recordings.
-    fn explains(self) -> f64 {
-        match self {
-            Self::Descents => search::NOISE,
-            Self::Search => ADEQUATE,
-        }
-    }
 }
 
 /// Looks for the value of the data sheet that keeps the machine from explaining its recordings.
@@ -110,7 +99,11 @@ pub fn correct(
     let mut work = Work {
         problem: &fitted,
         settings,
-        depth,
+        // The search might do as well, or the model is as good already: nothing but noise may be left.
+        explains: match depth == Depth::Descents || fit.model_is_adequate() {
+            true => search::NOISE,
+            false => ADEQUATE,
+        },
         evaluations: 0,
         stopped: false,
     };
@@ -161,7 +154,8 @@ struct Work<'a> {
     /// The problem with the runs that are fitted to.
     problem: &'a Problem,
     settings: &'a FitSettings,
-    depth: Depth,
+    /// The misfit up to which a value explains the recordings.
+    explains: f64,
     evaluations: u64,
     stopped: bool,
 }
@@ -320,7 +314,7 @@ impl Work<'_> {
             .map(|t| (t.doubt.parameter.path.clone(), t.misfit));
         let misfits: Vec<(String, f64)> = misfits.collect();
         let mut explained = Vec::new();
-        let explains = self.depth.explains();
+        let explains = self.explains;
         for trial in tried.into_iter().filter(|trial| trial.misfit <= explains) {
             let added = trial.doubt.added(problem);
             let fit = self.finished(&added, trial.x, watch)?;

@@ -99,6 +99,13 @@ impl Fit {
         self.estimates.iter().map(coordinate).collect()
     }
 
+    /// Whether no more than noise is left. A model may be adequate that leaves more; then a wrong value of the data
+    /// sheet may still have moved the parameters by more than their intervals.
+    pub fn is_at_noise(&self) -> bool {
+        let fitted = self.misfit(false, |run| run.calibrated);
+        self.model_is_adequate() && fitted.is_some_and(|fitted| fitted <= NOISE)
+    }
+
     /// Whether the model explains the recordings: no more than noise is left of the fitted runs, and of those
     /// held out that have the clearances of a fitted one. Runs at other clearances judge the relation between
     /// clearances, not the parameters.

@@ -214,6 +214,45 @@ fn a_wrong_gain_is_found() {
     assert_found(&fit, &corrected, "sensors.0.gain", 1.03, 1e-3);
 }
 
+/// Between the noise and the bound of an adequate model a wrong value has moved the others by more than their
+/// intervals: it is found there too.
+#[test]
+fn a_wrong_gain_is_found_where_the_model_is_adequate() {
+    let gain = json!([{"measure": "crosshead_acceleration", "gain": 1.03}]);
+    let mut problem = problem(machine());
+    problem.runs = recorded(&truth(&[("sensors", gain)]));
+    let descent = |problem: &Problem| calibrate(problem, &settings(), go).unwrap();
+    // The noise at which the wrong gain leaves 1.3 times as much.
+    let scale = (misfit(&descent(&problem)) / 1.3).powi(2);
+    for run in &mut problem.runs {
+        for channel in &mut run.channels {
+            channel.lines.variance.iter_mut().for_each(|v| *v *= scale);
+        }
+    }
+    let fit = descent(&problem);
+    assert!(
+        fit.model_is_adequate() && !fit.is_at_noise(),
+        "{}",
+        misfit(&fit)
+    );
+    let corrected = correct(&problem, &fit, &settings(), Depth::Search, go).unwrap();
+    assert!(
+        corrected.applied,
+        "{:?} {:?}",
+        corrected.tried, corrected.corrections
+    );
+    let first = &corrected.corrections[0].estimate;
+    assert_eq!(first.parameter.path, "sensors.0.gain");
+    let [low, high] = first.interval.unwrap();
+    assert!(low <= 1.03 && 1.03 <= high, "{first:?}");
+    let (_, better) = corrected.fit.as_ref().unwrap();
+    for (estimate, (path, factor)) in better.estimates.iter().zip(CONTACT) {
+        let [low, high] = estimate.interval.unwrap();
+        let value = factor * estimate.parameter.nominal;
+        assert!(low <= value && value <= high, "{path}: {estimate:?}");
+    }
+}
+
 #[test]
 fn a_right_data_sheet_is_left_alone() {
     let runs = recorded(&truth(&[]));

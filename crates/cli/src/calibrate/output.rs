@@ -23,7 +23,7 @@ pub struct Found<'a> {
     pub fit: &'a Fit,
     /// What it comes to at other clearances; none where the search was stopped.
     pub transfer: Option<&'a Transfer>,
-    /// What was looked for in the data sheet; none where the model explains the recordings at once.
+    /// What was looked for in the data sheet; none where no more than noise is left at once.
     pub corrected: Option<&'a Corrected>,
     /// What tells its inputs from others.
     pub fingerprint: &'a str,

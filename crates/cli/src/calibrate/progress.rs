@@ -27,7 +27,7 @@ const ALIGNMENTS: usize = 3;
 pub struct Searched {
     /// The fit.
     pub fit: Fit,
-    /// What was looked for in the data sheet; none where the model explains the recordings at once.
+    /// What was looked for in the data sheet; none where no more than noise is left at once.
     pub corrected: Option<Corrected>,
     /// Evaluations of the model.
     pub evaluations: u64,
@@ -73,7 +73,7 @@ fn looked_up(
 ) -> Result<Searched, Failure> {
     let mut evaluations = fit.evaluations;
     let mut corrected = None;
-    if fit.complete && !fit.model_is_adequate() {
+    if fit.complete && !fit.is_at_noise() {
         let found = correct(task, &fit, depth, cancel)?;
         evaluations += found.evaluations;
         fit.complete &= found.complete;
