@@ -162,6 +162,7 @@ mod tests {
             settings: Vec::new(),
             speed_rpm: 500.0,
             sample_rate: rate,
+            is_timed: true,
             crank_angle: None,
             channels: vec![Channel {
                 column: "x".into(),

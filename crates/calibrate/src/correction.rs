@@ -1,4 +1,4 @@
-//! Which value of the data sheet is wrong, where a calibrated machine does not explain its recordings.
+//! Which value of the data sheet is wrong, where a calibrated machine leaves more than noise of its recordings.
 //!
 //! 1. Rank the values in doubt by the misfit that each leaves to first order, with what was fitted adapting to
 //!    it: the residuals' derivative by the value, freed of what the fitted parameters can imitate. That is
@@ -9,17 +9,22 @@
 //!    at the value that was found times the width that the recordings leave it (Laplace's approximation,
 //!    MacKay 1992).
 //!
+//! This is done twice: by descents alone as soon as the first descent of a calibration has ended above the
+//! noise, for a search that a wrong value leads astray is long and in vain; and thoroughly where the search
+//! has ended above it too.
+//!
 //! A value is corrected where its probability is clear and its interval excludes the stated value. Several
 //! that explain the recordings alike are rivals, and none is corrected.
 
 use crate::data_sheet::{Doubt, doubts};
 use crate::error::Error;
 use crate::fit::{ADEQUATE, Estimate, Fit, FitSettings, Optimiser, calibrate};
-use crate::likelihood::{Likelihood, misfit};
+use crate::likelihood::Likelihood;
 use crate::optimiser::{self, LeastSquares, Progress};
 use crate::problem::Problem;
+use crate::promise::{promises, split};
 use crate::search;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use std::ops::ControlFlow;
 
 /// Values that are fitted, of those that were ranked: the linear ranking may be wrong.
@@ -35,8 +40,6 @@ const CLEAR: f64 = 0.95;
 const RIVAL: f64 = 0.01;
 /// Standard deviations that bound 95 % of a normal distribution.
 const QUANTILE: f64 = 1.959_964;
-/// Singular values below this share of the greatest are rounding.
-const RANK: f64 = 1e-9;
 /// A value whose prior, over its width, moves the residuals by less than this (noise is 1 each) is not felt.
 const FELT: f64 = 1.0;
 
@@ -70,6 +73,15 @@ pub struct Corrected {
     pub complete: bool,
 }
 
+/// How thoroughly the value is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// By descents, from a calibration that has not ended.
+    Descents,
+    /// By a search where the descents leave more than noise.
+    Search,
+}
+
 /// Looks for the value of the data sheet that keeps the machine from explaining its recordings.
 ///
 /// # Errors
@@ -78,6 +90,7 @@ pub fn correct(
     problem: &Problem,
     fit: &Fit,
     settings: &FitSettings,
+    depth: Depth,
     mut watch: impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<Corrected, Error> {
     let held_out = |id: &str| settings.held_out.iter().any(|held| held == id);
@@ -86,6 +99,11 @@ pub fn correct(
     let mut work = Work {
         problem: &fitted,
         settings,
+        // The search might do as well, or the model is as good already: nothing but noise may be left.
+        explains: match depth == Depth::Descents || fit.model_is_adequate() {
+            true => search::NOISE,
+            false => ADEQUATE,
+        },
         evaluations: 0,
         stopped: false,
     };
@@ -99,10 +117,8 @@ pub fn correct(
         tried.push(work.descend(candidate, &mut watch)?);
     }
     tried.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    if tried
-        .first()
-        .is_some_and(|best| best.misfit > search::NOISE)
-    {
+    let above = |best: &Trial| best.misfit > search::NOISE;
+    if depth == Depth::Search && tried.first().is_some_and(above) {
         for trial in tried.iter_mut().take(SEARCHED) {
             work.search(trial, &mut watch)?;
         }
@@ -138,6 +154,8 @@ struct Work<'a> {
     /// The problem with the runs that are fitted to.
     problem: &'a Problem,
     settings: &'a FitSettings,
+    /// The misfit up to which a value explains the recordings.
+    explains: f64,
     evaluations: u64,
     stopped: bool,
 }
@@ -296,7 +314,8 @@ impl Work<'_> {
             .map(|t| (t.doubt.parameter.path.clone(), t.misfit));
         let misfits: Vec<(String, f64)> = misfits.collect();
         let mut explained = Vec::new();
-        for trial in tried.into_iter().filter(|trial| trial.misfit <= ADEQUATE) {
+        let explains = self.explains;
+        for trial in tried.into_iter().filter(|trial| trial.misfit <= explains) {
             let added = trial.doubt.added(problem);
             let fit = self.finished(&added, trial.x, watch)?;
             if fit.model_is_adequate() {
@@ -435,66 +454,4 @@ fn probabilities(explained: &[Explained], count: usize) -> Vec<f64> {
     let weights: Vec<f64> = evidence.iter().map(|e| (e - greatest).exp()).collect();
     let sum: f64 = weights.iter().sum();
     weights.into_iter().map(|weight| weight / sum).collect()
-}
-
-/// The first columns, and the others.
-fn split(jacobian: &DMatrix<f64>, known: usize) -> (DMatrix<f64>, DMatrix<f64>) {
-    let doubted = jacobian.ncols() - known;
-    let part = |first, count| jacobian.columns(first, count).into_owned();
-    (part(0, known), part(known, doubted))
-}
-
-/// What each value in doubt promises to first order, the known parameters adapting: the misfit that it leaves,
-/// and the length of its derivative that they cannot imitate; none for one that is not felt at all.
-fn promises(
-    residuals: &DVector<f64>,
-    known: DMatrix<f64>,
-    doubted: &DMatrix<f64>,
-) -> Vec<Option<(f64, f64)>> {
-    let svd = known.svd(true, false);
-    let least = RANK * svd.singular_values.max();
-    let directions = svd.u.into_iter().flat_map(|u| {
-        let kept = (0..u.ncols()).filter(|i| svd.singular_values[*i] > least);
-        kept.map(|i| u.column(i).into_owned()).collect::<Vec<_>>()
-    });
-    let directions: Vec<DVector<f64>> = directions.collect();
-    let free = |v: DVector<f64>| {
-        let along = directions.iter();
-        along.fold(v, |v, u| {
-            let share = u.dot(&v);
-            v - u * share
-        })
-    };
-    let left = free(residuals.clone());
-    let of = |column: DVector<f64>| {
-        let own = free(column.clone());
-        let length = own.norm();
-        (length > RANK * column.norm()).then(|| {
-            let step = -own.dot(&left) / length.powi(2);
-            let after = &left + &own * step;
-            (misfit(after.as_slice()), length)
-        })
-    };
-    let columns = doubted.column_iter().map(|column| column.into_owned());
-    columns.map(of).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_value_promises_what_the_known_ones_cannot_close() {
-        // The residuals are 3 along the first axis, which is known, and 4 along the second.
-        let residuals = DVector::from_vec(vec![3.0, 4.0, 0.0]);
-        let known = DMatrix::from_column_slice(3, 1, &[2.0, 0.0, 0.0]);
-        let doubted =
-            DMatrix::from_column_slice(3, 3, &[1.0, 1.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
-        let promises = promises(&residuals, known, &doubted);
-        let (misfit, length) = promises[0].unwrap();
-        assert!(misfit < 1e-12 && (length - 1.0).abs() < 1e-12);
-        assert!(promises[1].is_none());
-        let (misfit, _) = promises[2].unwrap();
-        assert!((misfit - 4.0 / 3.0_f64.sqrt()).abs() < 1e-12);
-    }
 }

@@ -35,6 +35,8 @@ pub enum Optimiser {
     /// leaves more than noise, from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
+    /// What the default begins with, up to the end of its first descent.
+    FirstDescent,
     /// CMA-ES alone.
     CmaEs,
     /// The genetic algorithm alone.
@@ -48,6 +50,7 @@ impl Optimiser {
     pub fn name(self) -> &'static str {
         match self {
             Self::Default => "levenberg-marquardt, cma-es",
+            Self::FirstDescent => "levenberg-marquardt, first descent",
             Self::CmaEs => "cma-es",
             Self::Genetic(_) => "genetic",
             Self::LevenbergMarquardt => "levenberg-marquardt",
@@ -94,6 +97,13 @@ impl Fit {
     pub fn coordinates(&self) -> Vec<f64> {
         let coordinate = |e: &Estimate| e.parameter.coordinate(e.value);
         self.estimates.iter().map(coordinate).collect()
+    }
+
+    /// Whether no more than noise is left. A model may be adequate that leaves more; then a wrong value of the data
+    /// sheet may still have moved the parameters by more than their intervals.
+    pub fn is_at_noise(&self) -> bool {
+        let fitted = self.misfit(false, |run| run.calibrated);
+        self.model_is_adequate() && fitted.is_some_and(|fitted| fitted <= NOISE)
     }
 
     /// Whether the model explains the recordings: no more than noise is left of the fitted runs, and of those
@@ -288,6 +298,7 @@ fn search(
     let likelihood = Likelihood::new(problem);
     match settings.optimiser {
         Optimiser::Default => search::search(problem, start, seed, most, watch),
+        Optimiser::FirstDescent => search::first_descent(problem, start, seed, most, watch),
         Optimiser::LevenbergMarquardt => {
             optimiser::levenberg_marquardt(&likelihood, start, search::CHANGE, most, watch)
         }

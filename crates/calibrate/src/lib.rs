@@ -15,6 +15,7 @@
 pub mod alignment;
 pub mod checkpoint;
 pub mod comparison;
+pub mod converter;
 pub mod correction;
 pub mod crank_motion;
 mod data_sheet;
@@ -34,6 +35,7 @@ pub mod parameter;
 pub mod prediction;
 pub mod pressure_gap;
 pub mod problem;
+mod promise;
 pub mod recorded_sensor;
 pub mod relation;
 pub mod relation_spread;
@@ -46,7 +48,7 @@ pub mod transfer;
 pub mod zero;
 
 pub use comparison::{Comparison, compare, compare_models};
-pub use correction::{Corrected, Correction, correct};
+pub use correction::{Corrected, Correction, Depth, correct};
 pub use crank_motion::CrankMotion;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};

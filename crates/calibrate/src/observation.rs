@@ -36,6 +36,9 @@ pub struct Run {
     pub speed_rpm: f64,
     /// Samples per second.
     pub sample_rate: f64,
+    /// Whether the recording has times or a sample rate; if not, `sample_rate` is that of a crank which
+    /// turns evenly at the stated speed.
+    pub is_timed: bool,
     /// Crank angle of every sample in [0, 2π), rad.
     pub crank_angle: Option<Vec<f64>>,
     /// What was measured.
@@ -326,6 +329,7 @@ mod tests {
                 settings: Vec::new(),
                 speed_rpm: 600.0,
                 sample_rate: 1000.0,
+                is_timed: true,
                 crank_angle: None,
                 channels: Vec::new(),
             };

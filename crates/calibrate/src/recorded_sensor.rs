@@ -4,16 +4,16 @@
 //! stands. Where the motion itself scatters, that is no sensor's noise: only an upper bound is stated
 //! then, with the reason.
 
+use crate::converter::Converter;
 use crate::few_revolutions;
 use crate::observation::{Observation, Run};
 use crate::prediction::Prediction;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::nonsynchronous::Nonsynchronous;
 use signal::quantisation::quantisation_step;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 /// Column of the crank angle.
 pub const CRANK_ANGLE: &str = "crank_angle_rad";
@@ -28,18 +28,25 @@ const ALIKE: f64 = 4.0;
 /// Below this share of the absolute noise's spread over the runs (standard deviations of logarithms)
 /// the relative one makes the noise a share of the signal.
 const FOLLOWS: f64 = 0.5;
-/// Relative difference below which two steps are one.
-const SAME_STEP: f64 = 1e-3;
-/// Usual word lengths of recorders. A lattice tells the step alone; the range is the least that one of
-/// these has with it.
-const CONVERTERS: [u32; 4] = [8, 12, 16, 24];
-/// Most bits of an encoder.
-const ENCODER: i32 = 24;
+/// Relative difference below which two sample rates are one.
+const SAME_RATE: f64 = 1e-3;
 
-/// The measuring chain of a channel, as it is identifiable from the recordings. What is not identifiable is
-/// `None`, with a reason.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+/// The measuring chain of a channel, as it is identifiable from the recordings.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordedSensor {
+    /// Its noise.
+    #[serde(flatten)]
+    pub noise: RecordedNoise,
+    /// Its converter.
+    #[serde(flatten)]
+    pub converter: Converter,
+    /// Samples per second; none where the runs differ.
+    pub sample_rate_hz: Option<f64>,
+}
+
+/// The noise of a channel. What is not identifiable is `None`, with a reason.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RecordedNoise {
     /// RMS of the noise over the runs, SI.
     pub rms: Option<f64>,
     /// The same as a share of the signal's RMS, where the noise of the runs follows it.
@@ -50,16 +57,6 @@ pub struct RecordedSensor {
     pub at_most: Option<f64>,
     /// Why there is no RMS.
     pub noise_reason: Option<String>,
-    /// Resolution of the converter over ± the range.
-    pub bits: Option<u32>,
-    /// Range of the converter, SI: the least that it can have.
-    pub range: Option<f64>,
-    /// Step of the recorded values, SI; the coarsest of the runs.
-    pub resolution: Option<f64>,
-    /// Why there are no bits or no range.
-    pub range_reason: Option<String>,
-    /// Samples per second; none where the runs differ.
-    pub sample_rate_hz: Option<f64>,
     /// The runs from which the noise is estimated.
     pub runs: Vec<String>,
 }
@@ -74,8 +71,6 @@ pub struct Look<'a> {
     pub prediction: Option<&'a Prediction>,
     /// Whether an encoder gave its crank angle.
     pub has_encoder: bool,
-    /// Whether times or a sample rate are known.
-    pub is_timed: bool,
 }
 
 /// The sensors of the observed channels, and the encoder where there is one, by column.
@@ -88,15 +83,24 @@ pub fn recorded_sensors(looks: &[Look]) -> BTreeMap<String, RecordedSensor> {
     }
     let rate = sample_rate(looks);
     let of_column = |column: &&str| {
-        let mut sensor = noise(column, looks);
-        converter(column, looks, &mut sensor);
-        sensor.sample_rate_hz = rate;
+        let sensor = RecordedSensor {
+            noise: noise(column, looks),
+            converter: Converter::of_samples(&samples(column, looks)),
+            sample_rate_hz: rate,
+        };
         ((*column).to_owned(), sensor)
     };
     let mut sensors: BTreeMap<String, RecordedSensor> = columns.iter().map(of_column).collect();
-    if looks.iter().any(|look| look.has_encoder) {
-        let mut sensor = encoder(looks);
-        sensor.sample_rate_hz = rate;
+    let mut encoded = looks.iter().filter(|look| look.has_encoder).peekable();
+    if encoded.peek().is_some() {
+        let sensor = RecordedSensor {
+            noise: RecordedNoise {
+                noise_reason: Some("the step of an encoder is its noise".into()),
+                ..RecordedNoise::default()
+            },
+            converter: Converter::of_encoder(encoded.map(|look| look.run)),
+            sample_rate_hz: rate,
+        };
         sensors.insert(CRANK_ANGLE.to_owned(), sensor);
     }
     sensors
@@ -104,13 +108,11 @@ pub fn recorded_sensors(looks: &[Look]) -> BTreeMap<String, RecordedSensor> {
 
 /// The sample rate of the runs, Hz; none where they differ or one's is not known.
 pub fn sample_rate(looks: &[Look]) -> Option<f64> {
-    if !looks.iter().all(|look| look.is_timed) {
-        return None;
-    }
+    let timed = looks.iter().all(|look| look.run.is_timed);
     let mut rates = looks.iter().map(|look| look.run.sample_rate);
-    let first = rates.next()?;
+    let first = rates.next().filter(|_| timed)?;
     rates
-        .all(|rate| (rate / first - 1.0).abs() < SAME_STEP)
+        .all(|rate| (rate / first - 1.0).abs() < SAME_RATE)
         .then_some(first)
 }
 
@@ -127,13 +129,13 @@ struct Seen<'a> {
     at_most: f64,
 }
 
-fn noise(column: &str, looks: &[Look]) -> RecordedSensor {
-    let mut sensor = RecordedSensor::default();
+fn noise(column: &str, looks: &[Look]) -> RecordedNoise {
+    let mut found = RecordedNoise::default();
     let mut failed = None;
     let mut seen = Vec::new();
     for look in looks {
         match seen_in(look, column) {
-            Some(Ok(found)) => seen.push(found),
+            Some(Ok(noise)) => seen.push(noise),
             Some(Err(reason)) => failed = Some(reason),
             None => {}
         }
@@ -142,22 +144,22 @@ fn noise(column: &str, looks: &[Look]) -> RecordedSensor {
     let good: Vec<&Seen> = seen.iter().filter(|seen| seen.doubt.is_none()).collect();
     if good.is_empty() {
         let least = seen.iter().map(|seen| seen.at_most);
-        sensor.at_most = least.min_by(f64::total_cmp).map(f64::sqrt);
+        found.at_most = least.min_by(f64::total_cmp).map(f64::sqrt);
         let doubt = seen.iter().find_map(|seen| seen.doubt).map(str::to_owned);
-        sensor.noise_reason = doubt.or(failed);
-        return sensor;
+        found.noise_reason = doubt.or(failed);
+        return found;
     }
     let mean = |of: &dyn Fn(&Seen) -> f64| {
         good.iter().map(|seen| of(seen)).sum::<f64>() / good.len() as f64
     };
-    sensor.rms = Some(mean(&|seen| seen.noise).sqrt());
-    sensor.pink_share = Some(mean(&|seen| seen.pink / seen.noise).clamp(0.0, 1.0));
+    found.rms = Some(mean(&|seen| seen.noise).sqrt());
+    found.pink_share = Some(mean(&|seen| seen.pink / seen.noise).clamp(0.0, 1.0));
     let relative = |seen: &Seen| seen.noise / seen.signal;
     if good.len() > 1 && spread(&good, relative) < FOLLOWS * spread(&good, |seen| seen.noise) {
-        sensor.of_signal = Some(mean(&relative).sqrt());
+        found.of_signal = Some(mean(&relative).sqrt());
     }
-    sensor.runs = good.iter().map(|seen| seen.run.to_owned()).collect();
-    sensor
+    found.runs = good.iter().map(|seen| seen.run.to_owned()).collect();
+    found
 }
 
 /// Standard deviation of the logarithm.
@@ -250,73 +252,9 @@ fn model_scatters(look: &Look, column: &str) -> bool {
     scatter(&prediction.lines[i]) > (1.0 - STEADY) * scatter(&channels[i].lines)
 }
 
-/// Steps of the values of a channel, with bits and range where they tell them.
-fn converter(column: &str, looks: &[Look], sensor: &mut RecordedSensor) {
+/// The samples of a channel, by run.
+fn samples<'a>(column: &str, looks: &[Look<'a>]) -> Vec<&'a [f64]> {
     let channels = looks.iter().flat_map(|look| &look.run.channels);
-    let samples: Vec<&[f64]> = channels
-        .filter(|channel| channel.column == column)
-        .map(|channel| channel.samples.as_slice())
-        .collect();
-    let steps: Option<Vec<f64>> = samples.iter().map(|x| quantisation_step(x)).collect();
-    let Some(steps) = steps else {
-        sensor.range_reason =
-            Some("the recorded values lie on no lattice that their single precision shows".into());
-        return;
-    };
-    let coarsest = steps.iter().copied().fold(0.0, f64::max);
-    let finest = steps.iter().copied().fold(f64::INFINITY, f64::min);
-    sensor.resolution = Some(coarsest);
-    let magnitude = |x: &[f64]| x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let bits = |most: f64, step: f64| {
-        let covers = |bits: &u32| f64::from(bits - 1).exp2() * step >= most;
-        CONVERTERS.into_iter().find(covers)
-    };
-    let each = samples.iter().zip(&steps);
-    let most = samples.iter().map(|x| magnitude(x)).fold(0.0, f64::max);
-    let same = coarsest / finest - 1.0 < SAME_STEP;
-    let found = match same {
-        true => bits(most, coarsest),
-        false => {
-            let all: Option<Vec<u32>> = each.map(|(x, step)| bits(magnitude(x), *step)).collect();
-            all.and_then(|all| all.into_iter().max())
-        }
-    };
-    let Some(found) = found else {
-        sensor.range_reason =
-            Some("the recorded values are finer than a converter of 24 bits".into());
-        return;
-    };
-    sensor.bits = Some(found);
-    let range = |step: f64| f64::from(found - 1).exp2() * step;
-    match same {
-        true => sensor.range = Some(range(coarsest)),
-        false => {
-            sensor.range_reason = Some(format!(
-                "the recorder set its range to each run, from {:.4} to {:.4}",
-                range(finest),
-                range(coarsest)
-            ));
-        }
-    }
-}
-
-/// An encoder divides the turn.
-fn encoder(looks: &[Look]) -> RecordedSensor {
-    let recorded = looks.iter().filter(|look| look.has_encoder);
-    let steps = recorded.filter_map(|look| quantisation_step(look.run.crank_angle.as_ref()?));
-    let step = steps.min_by(f64::total_cmp);
-    let whole = step.and_then(|step| {
-        let bits = (TAU / step).log2().round();
-        let exact = (TAU / step / bits.exp2() - 1.0).abs() < SAME_STEP;
-        (exact && bits as i32 <= ENCODER).then_some(bits as u32)
-    });
-    let reason = || "its steps are no whole power of two to the turn, or too fine to be seen";
-    RecordedSensor {
-        noise_reason: Some("the step of an encoder is its noise".into()),
-        bits: whole,
-        range: whole.map(|_| TAU),
-        resolution: step,
-        range_reason: whole.is_none().then(|| reason().to_owned()),
-        ..RecordedSensor::default()
-    }
+    let own = channels.filter(|channel| channel.column == column);
+    own.map(|channel| channel.samples.as_slice()).collect()
 }

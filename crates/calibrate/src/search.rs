@@ -78,16 +78,29 @@ pub(crate) fn search(
     watch: Watch,
 ) -> Result<Progress, Error> {
     let mut search = Search::new(problem, start, most, NOISE, watch);
-    let throws = throws_alone(problem)?;
-    let start = match throws.is_empty() {
-        true => search.at_clearances(start),
-        false => search.throw_by_throw(&throws, start, seed)?,
-    };
+    let start = search.begin(start, seed)?;
     search.locally(&start)?;
     search.elsewhere(&start, seed)?;
     if !search.ended() {
         search.globally(seed)?;
     }
+    Ok(search.found())
+}
+
+/// What [`search`] begins with, up to the end of its first descent.
+///
+/// # Errors
+/// Where an optimiser cannot start.
+pub(crate) fn first_descent(
+    problem: &Problem,
+    start: &[f64],
+    seed: u64,
+    most: u64,
+    watch: Watch,
+) -> Result<Progress, Error> {
+    let mut search = Search::new(problem, start, most, NOISE, watch);
+    let start = search.begin(start, seed)?;
+    search.descend(None, &start)?;
     Ok(search.found())
 }
 
@@ -129,6 +142,15 @@ impl<'a, 'w> Search<'a, 'w> {
             || self.left() == 0
             || best < self.wanted
             || self.minima.iter().filter(same).count() >= AGREE
+    }
+
+    /// Where the first descent starts: several throws by themselves first, clearances on a grid.
+    fn begin(&mut self, start: &[f64], seed: u64) -> Result<Vec<f64>, Error> {
+        let throws = throws_alone(self.problem)?;
+        match throws.is_empty() {
+            true => Ok(self.at_clearances(start)),
+            false => self.throw_by_throw(&throws, start, seed),
+        }
     }
 
     /// From `start` each throw by itself, as far as that takes it, with an equal share of the

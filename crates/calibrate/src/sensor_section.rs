@@ -1,5 +1,6 @@
 //! What recordings show of sensors, written into a machine file.
 
+use crate::converter::{Converter, whole_bits};
 use crate::error::Error;
 use crate::problem::{measurable, names};
 use crate::recorded_sensor::RecordedSensor;
@@ -7,7 +8,7 @@ use input::amount::Amount;
 use input::unit;
 use input::{MachineFile, Resolved};
 use serde_json::{Map, Value, json};
-use simulate::{ChamberEnd, Measured};
+use simulate::{ChamberEnd, Measured, Range};
 use std::collections::BTreeMap;
 
 /// Digits of a written noise: its own accuracy has fewer.
@@ -39,8 +40,13 @@ pub fn write(
             sections.push(Value::Object(section(&machine, *measured)));
             sections.len() - 1
         });
+        let chain = machine.sensors.get(place).map(|sensor| &sensor.chain);
+        let stated = chain.and_then(|chain| match chain.range {
+            Some(Range::Fixed(range)) => Some(range),
+            Some(Range::Auto) | None => None,
+        });
         if let Some(section) = sections[place].as_object_mut() {
-            fill(section, sensor, *measured);
+            fill(section, sensor, *measured, stated);
         }
     }
     tree["sensors"] = sections.into();
@@ -74,25 +80,48 @@ fn section(machine: &Resolved, measured: Measured) -> Map<String, Value> {
     section
 }
 
-fn fill(section: &mut Map<String, Value>, sensor: &RecordedSensor, measured: Measured) {
+/// Fills a section; `stated` is the range that it has, SI.
+fn fill(
+    section: &mut Map<String, Value>,
+    sensor: &RecordedSensor,
+    measured: Measured,
+    stated: Option<f64>,
+) {
     let dimension = unit::parse(&format!("1 {}", measured.unit())).ok();
     let dimension = dimension.map(|measure| measure.dimension);
     let amount = |si: f64| Amount { si, dimension }.to_value();
-    if let Some(rms) = sensor.rms {
-        let level = match sensor.of_signal {
+    let noise = &sensor.noise;
+    if let Some(rms) = noise.rms {
+        let level = match noise.of_signal {
             Some(share) => percent(share),
             None => amount(rounded(rms, DIGITS)),
         };
-        let mut noise = Map::from_iter([("rms".to_owned(), level)]);
-        if let Some(share) = sensor.pink_share.filter(|share| *share > 0.0) {
-            noise.insert("pink_share".into(), percent(share));
+        let mut content = Map::from_iter([("rms".to_owned(), level)]);
+        if let Some(share) = noise.pink_share.filter(|share| *share > 0.0) {
+            content.insert("pink_share".into(), percent(share));
         }
-        section.insert("noise".into(), noise.into());
+        section.insert("noise".into(), content.into());
     }
-    let Some(bits) = sensor.bits else { return };
-    // An encoder's range is its turn.
-    if measured != Measured::CrankAngle {
-        let range = sensor.range.map_or("auto".into(), amount);
+    let (range, bits) = match sensor.converter {
+        Converter::RangeAssumed {
+            resolution,
+            bits_needed,
+            bits,
+            range,
+        } => {
+            // A stated range stays where the recorded values fit into it in whole bits.
+            let of_stated = stated.and_then(|range| whole_bits(2.0 * range, resolution));
+            match of_stated.filter(|bits| *bits >= bits_needed) {
+                Some(bits) => (None, bits),
+                None => (Some(amount(range)), bits),
+            }
+        }
+        Converter::RangePerRun { bits, .. } => (Some("auto".into()), bits),
+        // The range of an encoder is its turn.
+        Converter::Encoder { bits, .. } => (None, bits),
+        Converter::Unknown { .. } => return,
+    };
+    if let Some(range) = range {
         section.insert("range".into(), range);
     }
     section.insert("bits".into(), bits.into());

@@ -4,7 +4,9 @@ use calibrate::fit::{Fit, FitSettings, Optimiser};
 use calibrate::observation::Observed;
 use calibrate::prediction::predict;
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;
-use calibrate::{Corrected, CrankMotion, Observation, Parameter, Problem, calibrate, correct};
+use calibrate::{
+    Corrected, CrankMotion, Depth, Observation, Parameter, Problem, calibrate, correct,
+};
 use input::paths;
 use mechanism::drive::GivenSpeed;
 use serde_json::{Value, json};
@@ -114,7 +116,7 @@ fn corrected(runs: Vec<Observation>, stated: &[(&str, Value)]) -> (Fit, Correcte
     let mut problem = problem(tree);
     problem.runs = runs;
     let fit = calibrate(&problem, &settings(), go).unwrap();
-    let corrected = correct(&problem, &fit, &settings(), go).unwrap();
+    let corrected = correct(&problem, &fit, &settings(), Depth::Search, go).unwrap();
     (fit, corrected)
 }
 
@@ -160,6 +162,41 @@ fn a_wrong_mass_is_found() {
     assert_found(&fit, &corrected, "crosshead.mass", 18.0, 0.02);
 }
 
+/// What the default search begins with is enough: it need not end before the data sheet is looked at.
+#[test]
+fn a_wrong_mass_is_found_where_the_first_descent_ends() {
+    let mut tree = machine();
+    tree["crosshead"]["mass"] = json!("18.54 kg");
+    let mut problem = problem(tree);
+    problem.runs = recorded(&truth(&[]));
+    let settings = FitSettings {
+        optimiser: Optimiser::FirstDescent,
+        ..settings()
+    };
+    let fit = calibrate(&problem, &settings, go).unwrap();
+    let corrected = correct(&problem, &fit, &settings, Depth::Descents, go).unwrap();
+    assert_found(&fit, &corrected, "crosshead.mass", 18.0, 0.02);
+}
+
+/// Two values are wrong: none of them by itself explains the recordings, and descents claim nothing.
+#[test]
+fn descents_that_leave_more_than_noise_correct_nothing() {
+    let mut tree = machine();
+    tree["crosshead"]["mass"] = json!("18.54 kg");
+    tree["rod"]["length"] = json!("0.606 m");
+    let mut problem = problem(tree);
+    problem.runs = recorded(&truth(&[]));
+    let fit = calibrate(&problem, &settings(), go).unwrap();
+    let corrected = correct(&problem, &fit, &settings(), Depth::Descents, go).unwrap();
+    assert!(!corrected.tried.is_empty());
+    assert!(
+        corrected.tried.iter().all(|(_, misfit)| *misfit > 1.15),
+        "{:?}",
+        corrected.tried
+    );
+    assert!(corrected.corrections.is_empty() && corrected.fit.is_none());
+}
+
 #[test]
 fn a_late_channel_is_found() {
     let late = json!([{"measure": "crosshead_acceleration", "delay": "0.2 ms"}]);
@@ -177,6 +214,45 @@ fn a_wrong_gain_is_found() {
     assert_found(&fit, &corrected, "sensors.0.gain", 1.03, 1e-3);
 }
 
+/// Between the noise and the bound of an adequate model a wrong value has moved the others by more than their
+/// intervals: it is found there too.
+#[test]
+fn a_wrong_gain_is_found_where_the_model_is_adequate() {
+    let gain = json!([{"measure": "crosshead_acceleration", "gain": 1.03}]);
+    let mut problem = problem(machine());
+    problem.runs = recorded(&truth(&[("sensors", gain)]));
+    let descent = |problem: &Problem| calibrate(problem, &settings(), go).unwrap();
+    // The noise at which the wrong gain leaves 1.3 times as much.
+    let scale = (misfit(&descent(&problem)) / 1.3).powi(2);
+    for run in &mut problem.runs {
+        for channel in &mut run.channels {
+            channel.lines.variance.iter_mut().for_each(|v| *v *= scale);
+        }
+    }
+    let fit = descent(&problem);
+    assert!(
+        fit.model_is_adequate() && !fit.is_at_noise(),
+        "{}",
+        misfit(&fit)
+    );
+    let corrected = correct(&problem, &fit, &settings(), Depth::Search, go).unwrap();
+    assert!(
+        corrected.applied,
+        "{:?} {:?}",
+        corrected.tried, corrected.corrections
+    );
+    let first = &corrected.corrections[0].estimate;
+    assert_eq!(first.parameter.path, "sensors.0.gain");
+    let [low, high] = first.interval.unwrap();
+    assert!(low <= 1.03 && 1.03 <= high, "{first:?}");
+    let (_, better) = corrected.fit.as_ref().unwrap();
+    for (estimate, (path, factor)) in better.estimates.iter().zip(CONTACT) {
+        let [low, high] = estimate.interval.unwrap();
+        let value = factor * estimate.parameter.nominal;
+        assert!(low <= value && value <= high, "{path}: {estimate:?}");
+    }
+}
+
 #[test]
 fn a_right_data_sheet_is_left_alone() {
     let runs = recorded(&truth(&[]));
@@ -185,7 +261,7 @@ fn a_right_data_sheet_is_left_alone() {
     let fit = calibrate(&problem, &settings(), go).unwrap();
     assert!(fit.model_is_adequate());
     // Even where it is asked for, a value that may be the stated one is no correction.
-    let corrected = correct(&problem, &fit, &settings(), go).unwrap();
+    let corrected = correct(&problem, &fit, &settings(), Depth::Search, go).unwrap();
     assert!(
         corrected.corrections.is_empty(),
         "{:?}",

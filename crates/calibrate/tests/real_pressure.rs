@@ -44,6 +44,7 @@ fn problem(fitted: &[(&str, Option<[f64; 2]>)]) -> (Problem, Vec<Run>) {
                 settings: input::run_settings(&run.section, &tree).unwrap(),
                 speed_rpm: 300.0,
                 sample_rate: 3600.0,
+                is_timed: false,
                 crank_angle: Some(rows.iter().map(|row| row[0].to_radians()).collect()),
                 channels: vec![Channel {
                     column: column.to_owned(),

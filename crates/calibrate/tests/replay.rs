@@ -71,6 +71,7 @@ fn recorded(machine: &str, changes: &[(&str, &str)], delay: f64) -> (Problem, Ru
         settings: Vec::new(),
         speed_rpm: mean_speed_rpm(&angle),
         sample_rate: SAMPLE_RATE,
+        is_timed: true,
         crank_angle: Some(angle),
         channels: channels.collect(),
     };

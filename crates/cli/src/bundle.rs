@@ -56,6 +56,7 @@ pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Ru
             settings,
             speed_rpm: recording.speed_rpm,
             sample_rate: recording.sample_rate,
+            is_timed: recording.is_timed,
             crank_angle: recording.crank_angle,
             channels: recording.channels,
         })

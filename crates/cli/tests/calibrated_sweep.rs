@@ -144,9 +144,13 @@ fn a_sweep_calibrates_first_and_its_bytes_follow_from_the_recordings() {
     let acceleration = &results["noise"]["crosshead_acceleration_m_s2"];
     let level = acceleration["of_signal"].as_f64().unwrap();
     assert!((level / 0.01 - 1.0).abs() < 0.1, "{acceleration}");
-    assert_eq!(acceleration["bits"], 16);
-    let range = acceleration["range"].as_f64().unwrap();
-    assert!((range - 2000.0).abs() < 1.0, "{acceleration}");
+    // 16 bits over ±2000 m/s²: the step is identifiable.
+    let step = acceleration["resolution"].as_f64().unwrap();
+    assert!(
+        (step / (4000.0 / 65536.0) - 1.0).abs() < 1e-3,
+        "{acceleration}"
+    );
+    assert_eq!(acceleration["converter"], "range_assumed");
     let machine = input::machine_file::read(&path.join("machine.yaml")).unwrap();
     assert_eq!(machine.resolve().unwrap().sample_rate, Some(10_000.0));
 

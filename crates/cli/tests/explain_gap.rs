@@ -39,6 +39,14 @@ fn where_nothing_is_hidden_it_says_so() {
     }
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("nothing is missing"));
+    // The explained machine has the sensors that recorded.
+    let explained = input::machine_file::read(&out.join("machine.yaml")).unwrap();
+    assert_eq!(explained.resolve().unwrap().sample_rate, Some(10_000.0));
+    let sensor = &gap["noise"]["crosshead_acceleration_m_s2"];
+    assert!(
+        sensor["rms"].is_number() && sensor["resolution"].is_number(),
+        "{sensor}"
+    );
 
     let again = crosshead(&arguments);
     assert_eq!(again.status.code(), Some(2));

@@ -1,6 +1,7 @@
 //! The measuring chain that recordings show, against what it was: recordings of another program with
 //! their truth, and recordings made here.
 
+use calibrate::converter::{ASSUMED_BITS, Converter};
 use calibrate::problem::columns;
 use calibrate::recorded_sensor::{Look, RecordedSensor, recorded_sensors, sample_rate};
 use calibrate::{Channel, Observation, Run, sensor_section};
@@ -34,7 +35,6 @@ fn sensors(runs: &[Run], columns: &[String]) -> (BTreeMap<String, RecordedSensor
             observation,
             prediction: None,
             has_encoder: true,
-            is_timed: true,
         })
         .collect();
     (recorded_sensors(&looks), sample_rate(&looks))
@@ -65,18 +65,27 @@ fn noise_of_another_programs_recordings_is_their_truth() {
     let (found, rate, mut tree) = of_bundle("example-single-stage");
     let acceleration = &found[ACCELERATION];
     // truth.yaml: acceleration_rel_rms, 30 % of the power 1/f, 16 bits.
-    near(acceleration.of_signal, 0.029_463_5, 0.03);
-    near(acceleration.pink_share, 0.3, 0.1);
-    assert_eq!(acceleration.bits, Some(16));
+    near(acceleration.noise.of_signal, 0.029_463_5, 0.03);
+    near(acceleration.noise.pink_share, 0.3, 0.1);
     // The recorder set its range to each run: 512, 1024 and 2048 m/s².
-    assert_eq!(acceleration.range, None);
-    near(acceleration.resolution, 2048.0 / 32768.0, 1e-3);
+    let Converter::RangePerRun {
+        resolution,
+        finest,
+        bits,
+    } = acceleration.converter
+    else {
+        panic!("{acceleration:?}");
+    };
+    assert_eq!(bits, 16);
+    near(Some(resolution), 2048.0 / 32768.0, 1e-3);
+    near(Some(finest), 512.0 / 32768.0, 1e-3);
     // pressure_rel_range 0.004572, of 0.105 to 0.393 and to 0.3 MPa: by run 1317 or 891 Pa.
     let pressure = &found[PRESSURE];
-    near(pressure.pink_share, 0.3, 0.1);
-    assert_eq!(pressure.bits, Some(16));
-    near(pressure.range, 1e6, 1e-3);
-    assert_eq!(found["crank_angle_rad"].bits, Some(16));
+    near(pressure.noise.pink_share, 0.3, 0.1);
+    // 16 bits over ±1 MPa, of which 15 are used.
+    step_is(&pressure.converter, 1e6 / 32768.0);
+    let encoder = &found["crank_angle_rad"].converter;
+    assert!(matches!(encoder, Converter::Encoder { bits: 16, .. }));
     assert_eq!(rate, Some(20_000.0));
 
     sensor_section::write(&mut tree, &found, rate).unwrap();
@@ -98,11 +107,11 @@ fn a_run_whose_motion_scatters_is_left_out() {
     let (found, ..) = of_bundle("example-two-stage");
     for throw in ["throw1", "throw2"] {
         let sensor = &found[&format!("{throw}.{ACCELERATION}")];
-        near(sensor.of_signal, 0.022_248_5, 0.03);
-        near(sensor.pink_share, 0.3, 0.15);
+        near(sensor.noise.of_signal, 0.022_248_5, 0.03);
+        near(sensor.noise.pink_share, 0.3, 0.15);
     }
     let throw2 = &found[&format!("throw2.{ACCELERATION}")];
-    assert_eq!(throw2.runs, ["run01", "run02", "run03"]);
+    assert_eq!(throw2.noise.runs, ["run01", "run02", "run03"]);
 }
 
 /// A machine of `data/machines` with the sensors of `chain`, recorded at each speed.
@@ -132,6 +141,7 @@ fn recorded(changes: &[(&str, &str)], speeds: &[&str], chain: Value) -> Vec<Run>
             settings: Vec::new(),
             speed_rpm: speed.trim_end_matches(" rpm").parse().unwrap(),
             sample_rate: 10_000.0,
+            is_timed: true,
             crank_angle: Some(samples(1)),
             channels: vec![Channel {
                 column: channels[0].name.clone(),
@@ -153,11 +163,10 @@ fn noise_of_a_sensor_that_does_not_follow_its_signal_comes_back() {
     let runs = recorded(&worn, &["350 rpm", "500 rpm", "650 rpm"], chain);
     let (found, rate) = sensors(&runs, &[ACCELERATION.to_owned()]);
     let sensor = &found[ACCELERATION];
-    near(sensor.rms, 5.0, 0.05);
-    near(sensor.pink_share, 0.4, 0.15);
-    assert_eq!(sensor.of_signal, None);
-    assert_eq!(sensor.bits, Some(12));
-    near(sensor.range, 1500.0, 1e-3);
+    near(sensor.noise.rms, 5.0, 0.05);
+    near(sensor.noise.pink_share, 0.4, 0.15);
+    assert_eq!(sensor.noise.of_signal, None);
+    step_is(&sensor.converter, 3000.0 / 4096.0);
     assert_eq!(rate, Some(10_000.0));
 }
 
@@ -175,10 +184,104 @@ fn scatter_of_a_chaotic_motion_is_no_noise() {
     let runs = recorded(&chaotic, &["500 rpm"], chain);
     let (found, _) = sensors(&runs, &[ACCELERATION.to_owned()]);
     let sensor = &found[ACCELERATION];
-    assert_eq!(sensor.rms, None);
-    let reason = sensor.noise_reason.as_deref().unwrap();
+    assert_eq!(sensor.noise.rms, None);
+    let reason = sensor.noise.noise_reason.as_deref().unwrap();
     assert!(reason.contains("the motion itself differs"), "{reason}");
-    assert!(sensor.at_most.is_some_and(|most| most > 0.0));
-    let reason = sensor.range_reason.as_deref().unwrap();
-    assert!(reason.contains("no lattice"), "{reason}");
+    assert!(sensor.noise.at_most.is_some_and(|most| most > 0.0));
+    let Converter::Unknown { converter_reason } = &sensor.converter else {
+        panic!("{sensor:?}");
+    };
+    assert!(
+        converter_reason.contains("no lattice"),
+        "{converter_reason}"
+    );
+}
+
+/// A converter of 18 bits over ±1600 m/s² records a machine in good order, which uses a quarter of that.
+fn in_good_order() -> (BTreeMap<String, RecordedSensor>, Option<f64>) {
+    let chain = json!({
+        "measure": "crosshead_acceleration", "noise": {"rms": "2 m/s^2"},
+        "range": "1600 m/s^2", "bits": 18,
+    });
+    let runs = recorded(
+        &[("joints.big_end.clearance", "0.1 mm")],
+        &["350 rpm"],
+        chain,
+    );
+    sensors(&runs, &[ACCELERATION.to_owned()])
+}
+
+#[test]
+fn a_worn_machine_is_recorded_in_the_same_steps_and_not_clipped() {
+    let (found, rate) = in_good_order();
+    let step = 3200.0 / 262_144.0;
+    step_is(&found[ACCELERATION].converter, step);
+    let file = machine_file::read(&data("machines/single-stage.yaml")).unwrap();
+    let mut tree = file.to_tree().clone();
+    tree["sensors"] = json!([]);
+    sensor_section::write(&mut tree, &found, rate).unwrap();
+    let worn = [
+        ("joints.big_end.clearance", "0.4 mm"),
+        ("joints.small_end.clearance", "0.4 mm"),
+    ];
+    let mut sections = tree["sensors"].as_array().unwrap().iter();
+    let chain = sections.find(|s| s["measure"] == "crosshead_acceleration");
+    let runs = recorded(&worn, &["650 rpm"], chain.unwrap().clone());
+    let samples = &runs[0].channels[0].samples;
+    let found = signal::quantisation::quantisation_step(samples);
+    near(found, step, 1e-3);
+    let largest = samples.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    // Four times what a machine in good order shows, and no two samples at a limit.
+    assert!(largest > 800.0, "{largest}");
+    let at_largest = samples.iter().filter(|x| x.abs() == largest).count();
+    assert_eq!(at_largest, 1);
+}
+
+/// What the recordings do not tell stays as the machine file has it.
+#[test]
+fn a_stated_range_stays_where_its_bits_are_whole() {
+    let (found, rate) = in_good_order();
+    for (range, expected) in [
+        ("1600 m/s^2", (1600.0, 18)),
+        ("3200 m/s^2", (3200.0, 19)),
+        // Not with this step, and less than what was recorded.
+        ("1500 m/s^2", (f64::NAN, ASSUMED_BITS)),
+        ("100 m/s^2", (f64::NAN, ASSUMED_BITS)),
+    ] {
+        let file = machine_file::read(&data("machines/single-stage.yaml")).unwrap();
+        let mut tree = file.to_tree().clone();
+        let stated = json!({"measure": "crosshead_acceleration", "range": range, "bits": 8});
+        tree["sensors"] = json!([stated]);
+        sensor_section::write(&mut tree, &found, rate).unwrap();
+        let machine = MachineFile::from_tree(&tree).unwrap().resolve().unwrap();
+        let chain = &machine.sensors[0].chain;
+        assert_eq!(chain.bits, Some(expected.1), "{range}");
+        let Some(simulate::Range::Fixed(written)) = chain.range else {
+            panic!("{chain:?}");
+        };
+        match expected.0.is_nan() {
+            true => assert!(written > 1e5, "{range}: {written}"),
+            false => assert_eq!(written, expected.0),
+        }
+    }
+}
+
+/// A step that all runs have, over an assumed range.
+fn step_is(converter: &Converter, expected: f64) {
+    let Converter::RangeAssumed {
+        resolution,
+        bits,
+        range,
+        ..
+    } = *converter
+    else {
+        panic!("{converter:?}");
+    };
+    near(Some(resolution), expected, 1e-3);
+    assert_eq!(bits, ASSUMED_BITS);
+    near(
+        Some(2.0 * range / f64::from(bits).exp2()),
+        resolution,
+        1e-12,
+    );
 }

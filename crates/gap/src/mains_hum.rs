@@ -235,6 +235,7 @@ mod tests {
             settings: Vec::new(),
             speed_rpm,
             sample_rate: rate,
+            is_timed: true,
             crank_angle: Some(angles),
             channels: vec![Channel {
                 column: COLUMN.into(),

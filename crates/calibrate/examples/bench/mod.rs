@@ -193,6 +193,7 @@ fn noisy(clean: &Clean, seed: u64, index: u64) -> Result<Run, Box<dyn Error>> {
         settings: clean.settings.clone(),
         speed_rpm: clean.speed_rpm,
         sample_rate: SAMPLE_RATE,
+        is_timed: true,
         crank_angle: Some(angle.iter().map(|x| (x / count).floor() * count).collect()),
         channels,
     })

@@ -18,6 +18,8 @@ const ANY_SPEED: f64 = 60.0;
 pub(super) struct Recording {
     pub(super) speed_rpm: f64,
     pub(super) sample_rate: f64,
+    /// Whether the bundle or the file states the sample rate, or has times.
+    pub(super) is_timed: bool,
     /// In [0, 2π), rad; its zero is not known where it comes from a tacho without an angle.
     pub(super) crank_angle: Option<Vec<f64>>,
     pub(super) channels: Vec<Channel>,
@@ -94,6 +96,7 @@ pub(super) fn read(
     Ok(Recording {
         speed_rpm,
         sample_rate,
+        is_timed: series.sample_rate.is_some(),
         crank_angle,
         channels,
     })

@@ -9,7 +9,7 @@ pub(crate) mod pictures;
 mod problem;
 mod progress;
 pub(crate) mod relation;
-mod sensors;
+pub(crate) mod sensors;
 
 use crate::{Failure, interrupt, report};
 use ::calibrate::meter::Meter;
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if done.reused {
         println!("nothing has changed since this was found:");
     }
-    output::summary(&done.results);
+    output::summary(&done.results)?;
     println!("{}", done.machine.display());
     println!("{}", out.join(report::PAGE).display());
     if done.results["complete"] == false {
@@ -179,18 +179,16 @@ impl Prepared {
         let checkpoint = earlier::checkpoint(&out, existing, &fingerprint)?;
         task.problem.meter = Meter::with_checkpoint(checkpoint);
         let start = Instant::now();
-        let mut fit = progress::search(&mut task, cancel)?;
-        let mut evaluations = fit.evaluations;
-        let mut corrected = None;
-        if fit.complete && !fit.model_is_adequate() {
-            let mut found = progress::correct(&task, &fit, cancel)?;
-            evaluations += found.evaluations;
-            if let Some((problem, better)) = found.fit.take() {
-                task.problem = problem;
-                fit = better;
-            }
-            fit.complete &= found.complete;
-            corrected = Some(found);
+        let progress::Searched {
+            mut fit,
+            mut corrected,
+            evaluations,
+        } = progress::search(&mut task, cancel)?;
+        if let Some((problem, better)) = corrected.as_mut().and_then(|found| found.fit.take()) {
+            task.problem = problem;
+            let complete = fit.complete;
+            fit = better;
+            fit.complete &= complete;
         }
         let watch = |_: &Progress| match cancel.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),

@@ -1,6 +1,6 @@
 //! What a calibration leaves: `calibration.json`, `machine.yaml`, and a summary.
 
-use super::sensors::{self, Sensors};
+use super::sensors::{self, Fitted, Sensors};
 use super::{Task, gas, relation};
 use crate::Failure;
 use ::calibrate::fit::{Estimate, Fit, FitSettings};
@@ -23,7 +23,7 @@ pub struct Found<'a> {
     pub fit: &'a Fit,
     /// What it comes to at other clearances; none where the search was stopped.
     pub transfer: Option<&'a Transfer>,
-    /// What was looked for in the data sheet; none where the model explains the recordings at once.
+    /// What was looked for in the data sheet; none where no more than noise is left at once.
     pub corrected: Option<&'a Corrected>,
     /// What tells its inputs from others.
     pub fingerprint: &'a str,
@@ -40,12 +40,18 @@ pub struct Found<'a> {
 /// A file that cannot be written.
 pub fn write(folder: &Path, task: &Task, found: &Found) -> Result<Value, Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    let sensors = Sensors::of(task, found.fit)?;
+    let sensors = Sensors::of(&Fitted {
+        problem: &task.problem,
+        x: &found.fit.coordinates(),
+        misfits: found.fit.runs.iter().map(|run| run.calibrated).collect(),
+        runs: &task.runs,
+        encoded: &task.encoded,
+    })?;
     let machine = calibrated(&task.problem, found.fit, &sensors)?;
     write_file(&folder.join(MACHINE), machine.as_bytes())?;
     let mut results = calibration(found, &task.settings);
     results["relation"] = relation::stated(&task.problem)?;
-    results["noise"] = sensors.results();
+    results["noise"] = sensors.results()?;
     // Where the gas was not fitted it tells nothing new.
     let mut fitted = found.fit.estimates.iter().map(|e| &e.parameter.path);
     if fitted.any(|path| path.contains("cylinder.")) {
@@ -176,7 +182,10 @@ fn corrections(corrected: &Corrected) -> Vec<Value> {
 }
 
 /// Prints what was found: the content of `calibration.json`.
-pub fn summary(results: &Value) {
+///
+/// # Errors
+/// Content that this program has not written.
+pub fn summary(results: &Value) -> Result<(), Failure> {
     if results["complete"] == false {
         println!("stopped; the best so far:");
     }
@@ -219,8 +228,9 @@ pub fn summary(results: &Value) {
         );
     }
     gas::summary(&results["gas"]);
-    sensors::summary(&results["noise"]);
+    sensors::summary(&sensors::read(&results["noise"]).map_err(Failure::work)?);
     relations(&results["relations"]);
+    Ok(())
 }
 
 /// Prints which values of the data sheet were looked at because the model was wrong, and what came of it.

@@ -34,7 +34,7 @@ const ALIGNED: f64 = 1e-5;
 const SPEED: f64 = 2e-5;
 
 /// What `calibration.json` holds beyond the fit: one without it is made anew.
-const CONTENT: &str = "sensors";
+const CONTENT: &str = "converters";
 
 /// What a calibration works on.
 pub struct Task {
@@ -46,19 +46,10 @@ pub struct Task {
     pub settings: FitSettings,
     /// For each run whether the zero of its crank angle was recorded.
     pub zeroed: Vec<bool>,
-    /// For each run what its recorder told.
-    pub recorders: Vec<Recorder>,
+    /// For each run whether an encoder gave the crank angle.
+    pub encoded: Vec<bool>,
     /// The columns that the machine has.
     columns: Vec<String>,
-}
-
-/// What the recorder of a run told besides the channels.
-#[derive(Clone, Copy, Debug)]
-pub struct Recorder {
-    /// Whether an encoder gave the crank angle.
-    pub has_encoder: bool,
-    /// Whether times or a sample rate are known.
-    pub is_timed: bool,
 }
 
 /// The task that the settings state.
@@ -75,12 +66,16 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
     };
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
-    let mut recorders = Vec::new();
+    let mut encoded = Vec::new();
     for listed in &bundles {
-        let (own, own_zeroed) = listed.runs(settings, &tree)?;
-        recorders.extend(listed.recorders(&own, &tree)?);
-        runs.extend(own);
-        zeroed.extend(own_zeroed);
+        for (run, meanings) in listed.runs(settings, &tree)? {
+            let any = |wanted: fn(&Meaning) -> bool| meanings.iter().any(wanted);
+            zeroed.push(any(|m| {
+                matches!(m, Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) })
+            }));
+            encoded.push(any(|m| matches!(m, Meaning::CrankAngle(_))));
+            runs.push(run);
+        }
     }
     let free = tree["crank"]["drive"]["free"].is_object();
     for run in &mut runs {
@@ -117,7 +112,7 @@ pub fn task(settings: &Settings) -> Result<Task, Failure> {
         },
         runs,
         zeroed,
-        recorders,
+        encoded,
         columns: columns(&resolved),
     };
     task.observe()?;
@@ -207,8 +202,8 @@ impl Task {
         }
         for run in &self.runs {
             add(&format!(
-                "{} {:?} {} {}",
-                run.id, run.settings, run.speed_rpm, run.sample_rate
+                "{} {:?} {} {} {}",
+                run.id, run.settings, run.speed_rpm, run.sample_rate, run.is_timed
             ));
             for channel in &run.channels {
                 add(&channel.column);
@@ -299,8 +294,8 @@ fn bundles(settings: &Settings) -> Result<Vec<Listed>, Failure> {
 }
 
 impl Listed {
-    /// The runs, and whether the zero of each one's crank angle was recorded.
-    fn runs(&self, settings: &Settings, tree: &Value) -> Result<(Vec<Run>, Vec<bool>), Failure> {
+    /// The runs, each with what its channels are.
+    fn runs(&self, settings: &Settings, tree: &Value) -> Result<Vec<(Run, Vec<Meaning>)>, Failure> {
         let known: Vec<&str> = self.bundle.runs.iter().map(|run| run.id.as_str()).collect();
         let named = settings.calibration.leave_out.iter();
         let own = named.filter_map(|id| id.strip_prefix(&self.prefix));
@@ -309,45 +304,14 @@ impl Listed {
             let error = input::Error::unknown_name("leave_out", unknown, &known);
             return Err((settings.locate)(error).into());
         }
-        let mut runs = bundle::runs(&self.bundle, tree, &own)?;
         let throws = bundle::throws(tree);
-        let mut zeroed = Vec::new();
-        for (i, run) in self.bundle.runs.iter().enumerate() {
-            if own.contains(&run.id) {
-                continue;
-            }
-            let meanings = bundle::meanings(&self.bundle, i, &throws)?;
-            zeroed.push(meanings.iter().any(|meaning| {
-                matches!(
-                    meaning,
-                    Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) }
-                )
-            }));
-        }
-        for run in &mut runs {
+        let kept = (0..known.len()).filter(|i| !own.iter().any(|id| id == known[*i]));
+        let runs = bundle::runs(&self.bundle, tree, &own)?;
+        let runs = runs.into_iter().zip(kept).map(|(mut run, i)| {
             run.id = format!("{}{}", self.prefix, run.id);
-        }
-        Ok((runs, zeroed))
-    }
-}
-
-impl Listed {
-    /// What the recorders of `runs` told.
-    fn recorders(&self, runs: &[Run], tree: &Value) -> Result<Vec<Recorder>, Failure> {
-        let throws = bundle::throws(tree);
-        let mut recorders = Vec::new();
-        for (i, run) in self.bundle.runs.iter().enumerate() {
-            let id = format!("{}{}", self.prefix, run.id);
-            if runs.iter().any(|kept| kept.id == id) {
-                let meanings = bundle::meanings(&self.bundle, i, &throws)?;
-                let any = |wanted: fn(&Meaning) -> bool| meanings.iter().any(wanted);
-                recorders.push(Recorder {
-                    has_encoder: any(|m| matches!(m, Meaning::CrankAngle(_))),
-                    is_timed: run.sample_rate_hz.is_some() || any(|m| matches!(m, Meaning::Time)),
-                });
-            }
-        }
-        Ok(recorders)
+            Ok((run, bundle::meanings(&self.bundle, i, &throws)?))
+        });
+        runs.collect()
     }
 }
 

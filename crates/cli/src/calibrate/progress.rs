@@ -3,9 +3,9 @@
 
 use super::Task;
 use crate::Failure;
-use ::calibrate::Corrected;
 use ::calibrate::fit::{Fit, FitSettings, Optimiser};
 use ::calibrate::optimiser::Progress;
+use ::calibrate::{Corrected, Depth};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,26 +23,80 @@ const CORRECTING: &str = "{spinner} the model is wrong: values of the data sheet
 /// the search proper, which a wrong zero would send far away.
 const ALIGNMENTS: usize = 3;
 
-/// Searches the best fit until `cancel` is set.
+/// What has come of a task.
+pub struct Searched {
+    /// The fit.
+    pub fit: Fit,
+    /// What was looked for in the data sheet; none where no more than noise is left at once.
+    pub corrected: Option<Corrected>,
+    /// Evaluations of the model.
+    pub evaluations: u64,
+}
+
+/// Searches the best fit until `cancel` is set, and where that leaves more than noise the value of the data
+/// sheet that is wrong. By default that is looked for as soon as the first descent has ended, before the search
+/// goes on: what both evaluate is in the checkpoint.
 ///
 /// # Errors
 /// Where the machine cannot be simulated.
-pub fn search(task: &mut Task, cancel: &AtomicBool) -> Result<Fit, Failure> {
+pub fn search(task: &mut Task, cancel: &AtomicBool) -> Result<Searched, Failure> {
+    let mut spent = 0;
+    if task.settings.optimiser == Optimiser::Default {
+        let first = fitted(task, Optimiser::FirstDescent, cancel)?;
+        let searched = looked_up(task, first, Depth::Descents, cancel)?;
+        let ended = !searched.fit.complete;
+        let corrected = searched.corrected.as_ref();
+        if ended || corrected.is_some_and(|c| c.fit.is_some() || !c.corrections.is_empty()) {
+            return Ok(searched);
+        }
+        spent = corrected.map_or(0, |corrected| corrected.evaluations);
+    }
+    let fit = fitted(task, task.settings.optimiser, cancel)?;
+    let mut searched = looked_up(task, fit, Depth::Search, cancel)?;
+    searched.evaluations += spent;
+    Ok(searched)
+}
+
+fn fitted(task: &mut Task, optimiser: Optimiser, cancel: &AtomicBool) -> Result<Fit, Failure> {
     let bar = bar(task.settings.evaluations, FITTING);
-    let found = aligned(task, cancel, &bar);
+    let found = aligned(task, optimiser, cancel, &bar);
     bar.finish_and_clear();
     found
 }
 
+/// A fit with what comes of the data sheet where it does not explain the recordings.
+fn looked_up(
+    task: &Task,
+    mut fit: Fit,
+    depth: Depth,
+    cancel: &AtomicBool,
+) -> Result<Searched, Failure> {
+    let mut evaluations = fit.evaluations;
+    let mut corrected = None;
+    if fit.complete && !fit.is_at_noise() {
+        let found = correct(task, &fit, depth, cancel)?;
+        evaluations += found.evaluations;
+        fit.complete &= found.complete;
+        corrected = Some(found);
+    }
+    Ok(Searched {
+        fit,
+        corrected,
+        evaluations,
+    })
+}
+
 /// Looks for the value of the data sheet that keeps the model from explaining the recordings, until `cancel`
 /// is set.
-///
-/// # Errors
-/// Where the machine cannot be simulated.
-pub fn correct(task: &Task, fit: &Fit, cancel: &AtomicBool) -> Result<Corrected, Failure> {
+fn correct(
+    task: &Task,
+    fit: &Fit,
+    depth: Depth,
+    cancel: &AtomicBool,
+) -> Result<Corrected, Failure> {
     let bar = bar(task.settings.evaluations, CORRECTING);
     let watch = |progress: &Progress| told(&bar, 0, cancel, progress);
-    let corrected = ::calibrate::correct(&task.problem, fit, &task.settings, watch);
+    let corrected = ::calibrate::correct(&task.problem, fit, &task.settings, depth, watch);
     bar.finish_and_clear();
     corrected.map_err(Failure::work)
 }
@@ -72,7 +126,12 @@ fn told(
     }
 }
 
-fn aligned(task: &mut Task, cancel: &AtomicBool, bar: &ProgressBar) -> Result<Fit, Failure> {
+fn aligned(
+    task: &mut Task,
+    optimiser: Optimiser,
+    cancel: &AtomicBool,
+    bar: &ProgressBar,
+) -> Result<Fit, Failure> {
     let mut settings = task.settings.clone();
     settings.optimiser = Optimiser::LevenbergMarquardt;
     let mut spent = 0;
@@ -97,7 +156,7 @@ fn aligned(task: &mut Task, cancel: &AtomicBool, bar: &ProgressBar) -> Result<Fi
             break;
         }
     }
-    settings.optimiser = task.settings.optimiser;
+    settings.optimiser = optimiser;
     fit(task, &settings, cancel, bar, spent)
 }
 

@@ -1,13 +1,30 @@
 //! The measuring chain as the recordings show it: `noise` of `calibration.json`, and a summary.
 
-use super::Task;
 use crate::Failure;
+use ::calibrate::converter::Converter;
 use ::calibrate::fit::ADEQUATE;
 use ::calibrate::likelihood::Likelihood;
-use ::calibrate::recorded_sensor::{Look, RecordedSensor, recorded_sensors, sample_rate};
-use ::calibrate::{Fit, sensor_section};
-use serde_json::{Value, json};
+use ::calibrate::recorded_sensor::{
+    Look, RecordedNoise, RecordedSensor, recorded_sensors, sample_rate,
+};
+use ::calibrate::{Problem, Run, sensor_section};
+use serde::Deserialize;
+use serde_json::Value;
 use std::collections::BTreeMap;
+
+/// A model that was fitted to recordings.
+pub struct Fitted<'a> {
+    /// The model, with what was observed in the runs.
+    pub problem: &'a Problem,
+    /// Its parameters' coordinates.
+    pub x: &'a [f64],
+    /// What it leaves of each run, in units of the noise.
+    pub misfits: Vec<f64>,
+    /// The runs as they were recorded.
+    pub runs: &'a [Run],
+    /// For each run whether an encoder gave the crank angle.
+    pub encoded: &'a [bool],
+}
 
 /// The sensors of the recordings, by column, and their sample rate.
 pub struct Sensors {
@@ -16,24 +33,22 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    /// Those that the recordings of `task` show, whose machine was fitted.
+    /// Those that the recordings show.
     ///
     /// # Errors
     /// A run that cannot be simulated.
-    pub fn of(task: &Task, fit: &Fit) -> Result<Self, Failure> {
-        let x: Vec<f64> = fit.coordinates();
-        let predictions = Likelihood::new(&task.problem).predictions(&x);
+    pub fn of(model: &Fitted) -> Result<Self, Failure> {
+        let predictions = Likelihood::new(model.problem).predictions(model.x);
         let predictions = predictions.map_err(Failure::work)?;
-        let looks: Vec<Look> = task
+        let looks: Vec<Look> = model
             .runs
             .iter()
             .enumerate()
             .map(|(i, run)| Look {
                 run,
-                observation: &task.problem.runs[i],
-                prediction: (fit.runs[i].calibrated <= ADEQUATE).then_some(&predictions[i]),
-                has_encoder: task.recorders[i].has_encoder,
-                is_timed: task.recorders[i].is_timed,
+                observation: &model.problem.runs[i],
+                prediction: (model.misfits[i] <= ADEQUATE).then_some(&predictions[i]),
+                has_encoder: model.encoded[i],
             })
             .collect();
         Ok(Self {
@@ -51,35 +66,70 @@ impl Sensors {
     }
 
     /// What `calibration.json` says of them.
-    pub fn results(&self) -> Value {
-        json!(self.by_column)
+    ///
+    /// # Errors
+    /// None that is known.
+    pub fn results(&self) -> Result<Value, Failure> {
+        serde_json::to_value(&self.by_column).map_err(Failure::work)
     }
 }
 
-/// Prints the sensors: the content of `noise` of `calibration.json`.
-pub fn summary(results: &Value) {
-    for (column, sensor) in results.as_object().into_iter().flatten() {
-        let number = |key: &str| sensor[key].as_f64();
-        let text = |key: &str| sensor[key].as_str().unwrap_or_default();
-        let noise = match (number("rms"), number("at_most")) {
-            (Some(rms), _) => {
-                let share = number("of_signal");
-                let share = share.map_or(String::new(), |s| {
-                    format!(", {:.2} % of its signal", 100.0 * s)
-                });
-                let pink = 100.0 * number("pink_share").unwrap_or(0.0);
-                format!("noise {rms:.3e} rms{share}, {pink:.0} % of it 1/f")
-            }
-            (None, Some(most)) => format!(
-                "noise unknown, at most {most:.3e} rms: {}",
-                text("noise_reason")
-            ),
-            (None, None) => format!("noise unknown: {}", text("noise_reason")),
-        };
-        let bits = match sensor["bits"].as_u64() {
-            Some(bits) => format!("{bits} bits"),
-            None => format!("no bits: {}", text("range_reason")),
-        };
-        println!("sensor {column}: {noise}; {bits}");
+/// The sensors that a file of results has, by column; none where it has no such section.
+///
+/// # Errors
+/// A section that this program has not written, in words.
+pub(crate) fn read(noise: &Value) -> Result<BTreeMap<String, RecordedSensor>, serde_json::Error> {
+    match noise {
+        Value::Null => Ok(BTreeMap::new()),
+        noise => BTreeMap::deserialize(noise),
+    }
+}
+
+/// Prints the sensors.
+pub fn summary(sensors: &BTreeMap<String, RecordedSensor>) {
+    for (column, sensor) in sensors {
+        println!(
+            "sensor {column}: {}; {}",
+            noise(&sensor.noise),
+            converter(&sensor.converter)
+        );
+    }
+}
+
+fn noise(found: &RecordedNoise) -> String {
+    let reason = found.noise_reason.as_deref().unwrap_or_default();
+    match (found.rms, found.at_most) {
+        (Some(rms), _) => {
+            let share = found.of_signal.map_or(String::new(), |share| {
+                format!(", {:.2} % of its signal", 100.0 * share)
+            });
+            let pink = 100.0 * found.pink_share.unwrap_or(0.0);
+            format!("noise {rms:.3e} rms{share}, {pink:.0} % of it 1/f")
+        }
+        (None, Some(most)) => format!("noise unknown, at most {most:.3e} rms: {reason}"),
+        (None, None) => format!("noise unknown: {reason}"),
+    }
+}
+
+fn converter(found: &Converter) -> String {
+    match found {
+        Converter::RangeAssumed {
+            resolution,
+            bits_needed,
+            bits,
+            range,
+        } => format!(
+            "steps of {resolution:.3e}, {bits_needed} bits or more; its range is not identifiable, \
+             {bits} bits are assumed, or {range:.3e}"
+        ),
+        Converter::RangePerRun {
+            resolution,
+            finest,
+            bits,
+        } => format!(
+            "steps of {finest:.3e} to {resolution:.3e}, {bits} bits over a range set to each run"
+        ),
+        Converter::Encoder { bits, .. } => format!("{bits} bits to the turn"),
+        Converter::Unknown { converter_reason } => format!("no bits: {converter_reason}"),
     }
 }

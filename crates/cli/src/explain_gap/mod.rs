@@ -5,6 +5,7 @@ mod progress;
 mod words;
 
 use crate::calibrate::arguments::read;
+use crate::calibrate::sensors::{Fitted, Sensors};
 use crate::calibrate::{Settings, pictures, task};
 use crate::{Failure, interrupt, replay, report};
 use ::calibrate::pressure_gap::pressure_gaps_of;
@@ -88,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         document: document.as_ref(),
     };
     let results = into_folder(&asked, out, &cancel)?;
-    output::summary(&results);
+    output::summary(&results)?;
     println!("{}", out.join(output::MACHINE).display());
     println!("{}", out.join(report::PAGE).display());
     Ok(())
@@ -169,8 +170,15 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
     let compared = ::calibrate::compare_models(models, &task.runs).map_err(Failure::work)?;
     pictures::write(out, &compared)?;
     let gas = pressure_gaps_of(models, &task.runs).map_err(Failure::work)?;
+    let sensors = Sensors::of(&Fitted {
+        problem: &after.problem,
+        x: &after.x,
+        misfits: after.by_run.clone(),
+        runs: &task.runs,
+        encoded: &task.encoded,
+    })?;
     let seconds = start.elapsed().as_secs_f64();
-    let results = output::write(out, &explanation, &effort, &gas, seconds)?;
+    let results = output::write(out, &explanation, &effort, &gas, &sensors, seconds)?;
     report::write_gap(out, &out.join(report::PAGE))?;
     std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;
     Ok(results)

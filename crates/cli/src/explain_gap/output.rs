@@ -3,6 +3,7 @@
 use super::words;
 use crate::Failure;
 use crate::calibrate::output::{told, write_file};
+use crate::calibrate::sensors::{self, Sensors};
 use calibrate::fit::Estimate;
 use calibrate::pressure_gap::PressureGap;
 use gap::{Candidate, Effort, Explanation, Found, Tried};
@@ -27,10 +28,12 @@ pub fn write(
     explanation: &Explanation,
     effort: &Effort,
     gas: &[PressureGap],
+    sensors: &Sensors,
     seconds: f64,
 ) -> Result<Value, Failure> {
     let model = &explanation.explained;
-    let tree = tree(explanation, |_| true)?;
+    let mut tree = tree(explanation, |_| true)?;
+    sensors.write(&mut tree)?;
     let machine = MachineFile::from_tree(&tree)
         .and_then(|file| file.to_yaml())
         .map_err(Failure::work)?;
@@ -92,6 +95,7 @@ pub fn write(
         "next_recording": explanation.next_recording,
         "missing_force": explanation.missing_force,
         "refused": explanation.refused.iter().map(|tried| rival(tried, None)).collect::<Vec<_>>(),
+        "noise": sensors.results()?,
         "cost": effort.journal.spent(),
         "seconds": seconds,
         "runs": runs,
@@ -222,7 +226,10 @@ fn rival(tried: &Tried, found: Option<&Found>) -> Value {
 }
 
 /// Prints what was found: the content of `gap.json`.
-pub fn summary(results: &Value) {
+///
+/// # Errors
+/// Content that this program has not written.
+pub fn summary(results: &Value) -> Result<(), Failure> {
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let word = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     println!("{}", word(&results["verdict"]));
@@ -274,4 +281,6 @@ pub fn summary(results: &Value) {
             rival["evidence"]["misfit"]
         );
     }
+    sensors::summary(&sensors::read(&results["noise"]).map_err(Failure::work)?);
+    Ok(())
 }

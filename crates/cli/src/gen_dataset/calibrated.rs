@@ -35,7 +35,7 @@ pub fn plan(
         .calibration(prepared.is_done())
         .map_err(super::failed)?;
     let done = prepared.finish(cancel)?;
-    tell(&done, &folder);
+    tell(&done, &folder)?;
     if done.results["complete"] == false {
         return Err(Failure::work(format!(
             "stopped during the calibration, before the first case; {} has the best so far, and \
@@ -72,12 +72,12 @@ fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
     calibrate::prepare(&settings, &folder, calibrate::Existing::Renew)
 }
 
-fn tell(done: &Calibrated, folder: &Path) {
+fn tell(done: &Calibrated, folder: &Path) -> Result<(), Failure> {
     match done.reused {
         true => println!("calibrated before, and nothing has changed since:"),
         false => println!("calibrated into {}:", folder.display()),
     }
-    output::summary(&done.results);
+    output::summary(&done.results)
 }
 
 fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {

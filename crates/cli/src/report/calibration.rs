@@ -4,10 +4,13 @@ use super::gas;
 use crate::Failure;
 use crate::calibrate::output::{MACHINE, RESULTS};
 use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
+use crate::calibrate::sensors;
+use ::calibrate::converter;
+use ::calibrate::recorded_sensor::RecordedSensor;
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::report::calibration_page::{
-    Bounded, CalibrationPage, Channel, Correction, Estimate, Forecast, Hypothesis, Known, Misfit,
-    OrderResidual, Point, Run, Transfer,
+    Bounded, CalibrationPage, Channel, Converter, Correction, Estimate, Forecast, Hypothesis,
+    Known, Misfit, Noise, OrderResidual, Point, Run, Sensor, Transfer,
 };
 use input::paths;
 use input::unit::{self, Dimension};
@@ -73,6 +76,7 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
         correlations: parameters.iter().map(|(path, _)| row(path)).collect(),
         parameters: estimates,
         runs: runs(folder, &results, ["nominal", "calibrated"])?,
+        sensors: results.sensors()?,
         gas: gas::chambers(folder, &results.content["gas"])?,
         transfer: transfer(&results.content),
     })
@@ -136,6 +140,12 @@ impl<'a> Results<'a> {
         all.into_iter().flatten().map(of).collect()
     }
 
+    fn sensors(&self) -> Result<Vec<Sensor>, Failure> {
+        let found = sensors::read(&self.content["noise"])
+            .map_err(|error| self.wrong("noise", &format!("the sensors by column ({error})")))?;
+        Ok(found.into_iter().map(sensor).collect())
+    }
+
     fn estimate(&self, path: &str, content: &Value, tree: &Value) -> Result<Estimate, Failure> {
         let number = |key: &str| self.number(content, &format!("parameters.{path}.{key}"), key);
         let identifiable = content["identifiable"] == true;
@@ -152,6 +162,52 @@ impl<'a> Results<'a> {
             at_bound: content["at_bound"] == true,
             reason: content["reason"].as_str().unwrap_or_default().to_owned(),
         })
+    }
+}
+
+/// A measuring chain as the page has it.
+fn sensor((column, found): (String, RecordedSensor)) -> Sensor {
+    let reason = found.noise.noise_reason.unwrap_or_default();
+    Sensor {
+        column,
+        noise: match (found.noise.rms, found.noise.at_most) {
+            (Some(rms), _) => Noise::Known {
+                rms,
+                of_signal: found.noise.of_signal,
+                pink_share: found.noise.pink_share.unwrap_or(0.0),
+            },
+            (None, Some(rms)) => Noise::AtMost { rms, reason },
+            (None, None) => Noise::Unknown { reason },
+        },
+        converter: match found.converter {
+            converter::Converter::RangeAssumed {
+                resolution,
+                bits_needed,
+                bits,
+                range,
+            } => Converter::RangeAssumed {
+                resolution,
+                bits_needed,
+                bits,
+                range,
+            },
+            converter::Converter::RangePerRun {
+                resolution,
+                finest,
+                bits,
+            } => Converter::RangePerRun {
+                resolution,
+                finest,
+                bits,
+            },
+            converter::Converter::Encoder { resolution, bits } => {
+                Converter::Encoder { resolution, bits }
+            }
+            converter::Converter::Unknown { converter_reason } => Converter::Unknown {
+                reason: converter_reason,
+            },
+        },
+        sample_rate_hz: found.sample_rate_hz,
     }
 }
 

@@ -5,6 +5,7 @@
 mod ends;
 mod example_run;
 mod input;
+mod recorder;
 
 use ::input::bundle::Bundle;
 use cli::bundle;

@@ -9,6 +9,7 @@ mod gas;
 pub(crate) mod misfits;
 mod page;
 mod parameters;
+mod sensors;
 mod transfers;
 pub(crate) mod verdict;
 pub(crate) mod waveforms;
@@ -46,6 +47,8 @@ pub struct CalibrationPage {
     pub correlations: Vec<Vec<f64>>,
     /// The runs.
     pub runs: Vec<Run>,
+    /// The measuring chains that the recordings show.
+    pub sensors: Vec<Sensor>,
     /// The gas of each chamber whose pressure was recorded.
     pub gas: Vec<Chamber>,
     /// What the relations between clearances come to, where that was asked.
@@ -122,6 +125,82 @@ pub struct Correction {
     pub misfit: f64,
     /// Whether the calibrated machine has it.
     pub applied: bool,
+}
+
+/// The measuring chain of a channel, values in the channel's SI unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensor {
+    /// Name of its column: `crosshead_acceleration_m_s2`.
+    pub column: String,
+    /// Its noise.
+    pub noise: Noise,
+    /// Its converter.
+    pub converter: Converter,
+    /// Samples per second, where they are known and the runs agree.
+    pub sample_rate_hz: Option<f64>,
+}
+
+/// Noise of a measuring chain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Noise {
+    /// Its root mean square.
+    Known {
+        /// RMS.
+        rms: f64,
+        /// The same as a share of the signal's RMS, where it follows that.
+        of_signal: Option<f64>,
+        /// Share of its mean square that is 1/f.
+        pink_share: f64,
+    },
+    /// An upper bound of it alone.
+    AtMost {
+        /// RMS.
+        rms: f64,
+        /// Why there is no more.
+        reason: String,
+    },
+    /// It is not identifiable.
+    Unknown {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// Converter of a measuring chain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Converter {
+    /// One step in all runs, which tells no range.
+    RangeAssumed {
+        /// The step.
+        resolution: f64,
+        /// Bits that the recorded values need.
+        bits_needed: u32,
+        /// Bits that are assumed.
+        bits: u32,
+        /// Range that is assumed.
+        range: f64,
+    },
+    /// The range is set to each record.
+    RangePerRun {
+        /// The coarsest step.
+        resolution: f64,
+        /// The finest step.
+        finest: f64,
+        /// Bits.
+        bits: u32,
+    },
+    /// An encoder.
+    Encoder {
+        /// Step of the angle.
+        resolution: f64,
+        /// Bits to the turn.
+        bits: u32,
+    },
+    /// Neither step nor range is identifiable.
+    Unknown {
+        /// Why.
+        reason: String,
+    },
 }
 
 /// A misfit before and after.

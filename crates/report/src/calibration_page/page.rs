@@ -1,8 +1,8 @@
 //! The page itself.
 
 use super::{
-    CalibrationPage, Correction, Estimate, Hypothesis, Known, Phase, Transfer, corrections, gas,
-    misfits, parameters, transfers, verdict, waveforms, words,
+    CalibrationPage, Correction, Estimate, Hypothesis, Known, Phase, Sensor, Transfer, corrections,
+    gas, misfits, parameters, sensors, transfers, verdict, waveforms, words,
 };
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
@@ -127,6 +127,18 @@ impl View<'_> {
 
     fn correction(correction: &Correction) -> [String; 5] {
         corrections::row(correction)
+    }
+
+    fn column(sensor: &Sensor) -> String {
+        text::capitalised(&words::column(&sensor.column).0)
+    }
+
+    fn sensor(sensor: &Sensor) -> [String; 5] {
+        sensors::row(sensor)
+    }
+
+    fn spreads(transfer: &Transfer) -> Vec<transfers::Spread> {
+        transfers::spreads(transfer)
     }
 
     fn none_untold(&self) -> &'static str {

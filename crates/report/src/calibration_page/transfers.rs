@@ -63,6 +63,59 @@ pub(super) fn exponents(hypothesis: &Hypothesis) -> String {
     said.join("; ")
 }
 
+/// What a run shows at other clearances, over the relations that the recordings do not exclude.
+pub(super) struct Spread {
+    /// The clearances.
+    pub state: String,
+    /// The run.
+    pub run: String,
+    /// The channel.
+    pub channel: String,
+    /// Least and greatest peak, the 95 % intervals of each relation included.
+    pub peak: [String; 2],
+}
+
+/// The spread of each run, set of clearances and channel. Where the recordings have no say, all relations
+/// that have a name are possible.
+pub(super) fn spreads(transfer: &Transfer) -> Vec<Spread> {
+    let possible = |f: &&Forecast| match transfer.left.is_empty() {
+        true => f.relation != "fitted",
+        false => transfer.left.contains(&f.relation),
+    };
+    let mut ranges: Vec<(&Forecast, &str, [f64; 2])> = Vec::new();
+    for forecast in transfer.forecasts.iter().filter(possible) {
+        for (column, peak, _) in &forecast.peaks {
+            let [low, high] = peak.interval.unwrap_or([peak.value; 2]);
+            let same = |(other, c, _): &&mut (&Forecast, &str, [f64; 2])| {
+                let state = (&other.run, &other.clearances);
+                c == column && state == (&forecast.run, &forecast.clearances)
+            };
+            match ranges.iter_mut().find(same) {
+                Some((.., range)) => *range = [range[0].min(low), range[1].max(high)],
+                None => ranges.push((forecast, column, [low, high])),
+            }
+        }
+    }
+    let spread = |(forecast, column, range): (&Forecast, &str, [f64; 2])| {
+        let (channel, unit) = super::words::column(column);
+        Spread {
+            state: state(&forecast.clearances),
+            run: forecast.run.clone(),
+            channel,
+            peak: range.map(|peak| super::verdict::quantity(peak, unit)),
+        }
+    };
+    ranges.into_iter().map(spread).collect()
+}
+
+/// Clearances in words.
+fn state(clearances: &[(String, f64)]) -> String {
+    let joints = clearances.iter();
+    let joints = joints
+        .map(|(path, metres)| format!("{} {}", super::words::path(path), text::clearance(*metres)));
+    text::capitalised(&joints.collect::<Vec<_>>().join(", "))
+}
+
 /// A picture for each set of clearances.
 pub(super) fn plates(page: &CalibrationPage) -> Vec<Plate> {
     let Some(transfer) = &page.transfer else {
@@ -104,12 +157,8 @@ fn plate(transfer: &Transfer, state: &[(String, f64)]) -> Plate {
     let panels = columns
         .iter()
         .map(|column| panel(transfer, &forecasts, &runs, column));
-    let joints: Vec<String> = state
-        .iter()
-        .map(|(path, metres)| format!("{} {}", super::words::path(path), text::clearance(*metres)))
-        .collect();
     Plate {
-        heading: text::capitalised(&joints.join(", ")),
+        heading: self::state(state),
         caption: "Greatest acceleration within a revolution at this clearance, under each relation, with the 95 % interval that the \
                   calibrated parameters leave. A grey ring is a recording. Where the relations' bars lie apart, a recording at \
                   this clearance would tell which of them holds."
@@ -170,6 +219,35 @@ fn panel(transfer: &Transfer, forecasts: &[&Forecast], runs: &[&str], column: &s
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_spread_is_over_the_relations_that_are_left() {
+        let of = |relation: &str, value: f64| Forecast {
+            run: "run01".into(),
+            relation: relation.into(),
+            clearances: vec![("joints.big_end".into(), 2e-4)],
+            peaks: vec![(
+                "crosshead_acceleration_m_s2".into(),
+                Bounded {
+                    value,
+                    interval: Some([value - 10.0, value + 10.0]),
+                },
+                None,
+            )],
+        };
+        let mut transfer = Transfer {
+            forecasts: vec![of("eq5", 500.0), of("constant", 700.0), of("fitted", 900.0)],
+            ..Transfer::default()
+        };
+        let peaks = |transfer: &Transfer| {
+            let spreads = spreads(transfer);
+            assert_eq!(spreads.len(), 1);
+            spreads[0].peak.clone()
+        };
+        assert_eq!(peaks(&transfer), ["490\u{a0}m/s²", "710\u{a0}m/s²"]);
+        transfer.left = vec!["fitted".into()];
+        assert_eq!(peaks(&transfer), ["890\u{a0}m/s²", "910\u{a0}m/s²"]);
+    }
 
     #[test]
     fn the_decision_names_what_the_recordings_leave() {

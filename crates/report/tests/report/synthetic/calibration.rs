@@ -2,8 +2,8 @@
 
 use super::Uniform;
 use report::calibration_page::{
-    Bounded, CalibrationPage, Chamber, Channel, Diagram, Estimate, Forecast, Hypothesis, Known,
-    Misfit, OrderResidual, Phase, Point, Pressure, Run, Transfer,
+    Bounded, CalibrationPage, Chamber, Channel, Converter, Diagram, Estimate, Forecast, Hypothesis,
+    Known, Misfit, Noise, OrderResidual, Phase, Point, Pressure, Run, Sensor, Transfer,
 };
 use std::f64::consts::TAU;
 
@@ -48,6 +48,21 @@ pub fn page() -> CalibrationPage {
             .map(|i| (0..count).map(|j| correlation(i, j)).collect())
             .collect(),
         runs,
+        sensors: vec![Sensor {
+            column: "crosshead_acceleration_m_s2".into(),
+            noise: Noise::Known {
+                rms: 4.78,
+                of_signal: Some(0.02),
+                pink_share: 0.3,
+            },
+            converter: Converter::RangeAssumed {
+                resolution: 0.0625,
+                bits_needed: 14,
+                bits: 24,
+                range: 524_288.0,
+            },
+            sample_rate_hz: Some(20_000.0),
+        }],
         gas: vec![chamber()],
         transfer: Some(transfer()),
     }
