@@ -182,9 +182,12 @@ const PART: usize = 4;
 /// Most by which a cycle is longer or shorter than the last, as a share of it.
 const CHANGE: f64 = 0.05;
 
+/// How much longer or shorter than the first a cycle may become: beyond, part of a cycle was taken for it.
+const UNEVEN: f64 = 1.5;
+
 /// The signal in its own cycles, whose length changes slowly: each begins where the samples that follow
-/// are most like the mean of the cycles before. `None` where no cycle comes back at the start, or
-/// there are fewer cycles than can be judged.
+/// are most like the mean of the cycles before. `None` where no cycle comes back at the start, where
+/// they become too uneven, or where there are fewer than can be judged.
 pub(crate) fn of_changing_length(signal: &[f64]) -> Option<Cycles> {
     let part = similarity(&signal[..signal.len() / PART]);
     let found: Vec<(f64, f64)> = peaks(&part, part.len() - 1).collect();
@@ -210,6 +213,9 @@ pub(crate) fn of_changing_length(signal: &[f64]) -> Option<Cycles> {
         let likeness = |length: f64| correlation(&sum, &cycle(start + length, length));
         let next = closest(length, reach, likeness);
         length = next;
+        if length > UNEVEN * first || length < first / UNEVEN {
+            return None;
+        }
         starts.push(start + length);
         let next = cycle(start + length, length);
         sum.iter_mut().zip(next).for_each(|(sum, x)| *sum += x);
