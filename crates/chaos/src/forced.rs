@@ -11,7 +11,7 @@
 
 use crate::delay;
 use crate::error::{Error, checked};
-use crate::innovation::determinism;
+use crate::innovation::{determinism, is_ordinary};
 use crate::surrogates::Comparison;
 
 /// What differs from cycle to cycle.
@@ -30,6 +30,11 @@ impl Scatter {
     /// Whether it is deterministic.
     pub fn is_deterministic(&self) -> bool {
         self.determinism.significant
+    }
+
+    /// Whether at some phase it is what chance, or a linear process, makes.
+    pub fn is_chance(&self) -> bool {
+        is_ordinary(self.determinism.deviations)
     }
 
     /// Whether it is deterministic and grows.

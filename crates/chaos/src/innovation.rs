@@ -35,6 +35,9 @@ const MOST_CYCLES: usize = 256;
 /// more value from that many: each phase must differ for itself.
 const SURROGATES: usize = 20;
 const QUANTILE: f64 = 3.579;
+/// The one-sided 5 % quantile: a signal that differs from its surrogates by less at some phase is one of
+/// them. Between both quantiles it is left open.
+const ORDINARY: f64 = 1.729;
 /// Surrogates after which a signal that is no better than their mean at some phase is given up.
 const FIRST: usize = 5;
 
@@ -65,6 +68,11 @@ fn judged(deviations: f64) -> Comparison {
 
 fn is_clear(deviations: f64) -> bool {
     deviations > QUANTILE * (1.0 + 1.0 / SURROGATES as f64).sqrt()
+}
+
+/// Whether a signal differs from its surrogates as little as they do from each other.
+pub(crate) fn is_ordinary(deviations: f64) -> bool {
+    deviations < ORDINARY * (1.0 + 1.0 / SURROGATES as f64).sqrt()
 }
 
 /// Whether at some phase the past says nothing of the future: exchanged futures do as well.

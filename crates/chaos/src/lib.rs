@@ -5,6 +5,7 @@
 pub mod autocorrelation;
 pub mod classical;
 pub mod correlation_dimension;
+mod cycles;
 pub mod delay;
 pub mod dimension;
 pub mod divergence;

@@ -1,6 +1,7 @@
 //! Local polynomial maps: what the next value is near a delay vector, and its derivatives.
 
-use crate::neighbours::{Delays, Neighbour};
+use crate::global_map::Linear;
+use crate::neighbours::{Delays, Neighbour, Neighbours};
 use nalgebra::{DMatrix, DVector};
 
 /// How a local map is fitted.
@@ -42,6 +43,19 @@ pub fn local_map(
     neighbours: &[Neighbour],
     model: &Model,
 ) -> Option<LocalMap> {
+    fitted(delays, index, neighbours, model, &|index| {
+        delays.at(index, delays.dimension)
+    })
+}
+
+/// The same for another value that follows each vector.
+fn fitted(
+    delays: &Delays,
+    index: usize,
+    neighbours: &[Neighbour],
+    model: &Model,
+    following: &dyn Fn(usize) -> f64,
+) -> Option<LocalMap> {
     let (m, unknowns) = (delays.dimension, model.unknowns());
     let near = &neighbours[..model.neighbours.min(neighbours.len())];
     let radius = near.last().map(|n| n.distance).filter(|r| *r > 0.0)?;
@@ -49,7 +63,7 @@ pub fn local_map(
     let mut right = DVector::<f64>::zeros(unknowns);
     let mut row = vec![1.0; unknowns];
     let mut weights = 0.0;
-    let here = delays.at(index, m);
+    let here = following(index);
     for n in near {
         for axis in 0..m {
             row[1 + axis] = (delays.at(n.index, axis) - delays.at(index, axis)) / radius;
@@ -64,7 +78,7 @@ pub fn local_map(
             }
         }
         let weight = (1.0 - (n.distance / (1.01 * radius)).powi(3)).powi(3);
-        let target = delays.at(n.index, m) - here;
+        let target = following(n.index) - here;
         weights += weight;
         for a in 0..unknowns {
             let scaled = weight * row[a];
@@ -87,10 +101,73 @@ pub fn local_map(
     })
 }
 
+/// Neighbours tried for each unknown of a linear map, and vectors at which they are.
+const PER_UNKNOWN: [usize; 4] = [2, 4, 8, 16];
+const TRIALS: usize = 300;
+/// Ridge of the linear maps.
+const RIDGE: f64 = 1e-3;
+
+/// Linear maps to the next sample along a signal, each fitted without the vector itself and what is
+/// within `theiler` samples of it (Eckmann and Ruelle 1985). The number of neighbours is the one that
+/// predicts best. `None` where vectors coincide, or the signal is too short.
+pub(crate) fn along(
+    signal: &[f64],
+    dimension: usize,
+    delay: usize,
+    theiler: usize,
+) -> Option<Linear> {
+    let delays = Delays {
+        signal,
+        dimension,
+        delay,
+    };
+    let rows = signal.len().checked_sub(delays.span() + 1)?;
+    let next = |row: usize| signal[row + delays.span() + 1];
+    let search = Neighbours::new(&delays, rows, theiler)?;
+    let at = |row: usize, neighbours: usize| {
+        let model = Model {
+            dimension,
+            neighbours,
+            quadratic: false,
+            ridge: RIDGE,
+        };
+        fitted(
+            &delays,
+            row,
+            &search.nearest(row, neighbours),
+            &model,
+            &next,
+        )
+    };
+    let error = |neighbours: usize| {
+        let trials = (0..rows).step_by(rows.div_ceil(TRIALS));
+        let squares = trials.map(|row| Some((at(row, neighbours)?.value - next(row)).powi(2)));
+        squares.sum::<Option<f64>>()
+    };
+    let tried: Option<Vec<(f64, usize)>> = PER_UNKNOWN
+        .iter()
+        .map(|each| each * (dimension + 1))
+        .map(|neighbours| Some((error(neighbours)?, neighbours)))
+        .collect();
+    let (_, neighbours) = tried?.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mut linear = Linear {
+        dimension,
+        delay,
+        values: Vec::with_capacity(rows),
+        slopes: Vec::with_capacity(rows * dimension),
+    };
+    for row in 0..rows {
+        let map = at(row, neighbours)?;
+        linear.values.push(map.value);
+        // The newest coordinate first.
+        linear.slopes.extend(map.slopes.iter().rev());
+    }
+    Some(linear)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::neighbours::Neighbours;
     use crate::test_systems::System;
 
     #[test]

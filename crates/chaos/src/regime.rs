@@ -10,13 +10,13 @@
 //! it is chaotic), or, where it holds 0, that of the rate at which neighbours part? What is left is
 //! undecided.
 
-use crate::autocorrelation::autocorrelation;
-use crate::delay::{Times, cycle_starts};
+use crate::cycles::{self, HALF, period, returns_at_other_times, similarity};
+use crate::delay::Times;
 use crate::dimension::unfolding;
 use crate::divergence::rosenstein;
 use crate::error::{Error, checked};
 use crate::exponent::{Exponent, exponent};
-use crate::forced::{FEWEST_CYCLES, Growth, Scatter, residual, scatter};
+use crate::forced::{Growth, Scatter, residual, scatter};
 use crate::innovation::{self, chance_enters_a_cell};
 use crate::local_map::{Model, local_map};
 use crate::neighbours::{Delays, LARGEST_DIMENSION, Neighbours};
@@ -82,12 +82,9 @@ pub struct Verdict {
 /// Autocorrelation at long lags from which a signal without a period counts as repeating itself.
 /// Noise of 5 % lowers that of a repeating signal to 0.9975.
 const REPEATS: f64 = 0.95;
-/// Least autocorrelation at a period: that of a signal of which half is periodic.
-const HALF: f64 = 0.5;
-/// Share of it that every multiple of the period must keep (of a periodic signal, all), and least
-/// number of multiples.
-const KEEPS: f64 = 0.9;
-const MULTIPLES: usize = 8;
+/// Largest share of the variance that a signal which nearly repeats itself leaves to differ from cycle to
+/// cycle.
+const NEARLY_ALL: f64 = 0.1;
 /// Scatter about a period that was found in the signal itself below which it is put down to
 /// interpolation between samples.
 const RESOLVED: f64 = 0.01;
@@ -107,8 +104,8 @@ const PREDICTOR: Model = Model {
 /// The verdict on a signal.
 pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     checked(signal)?;
-    let correlation = unbiased_correlation(signal);
-    let long = &correlation[signal.len() / 4..];
+    let similarity = similarity(signal);
+    let long = &similarity[signal.len() / 4..];
     let mut verdict = Verdict {
         regime: Regime::Undecided,
         recurrence: long.iter().copied().fold(-1.0, f64::max),
@@ -117,39 +114,25 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         exponent: None,
     };
     let repeats = verdict.recurrence >= REPEATS;
-    let period = period(&correlation);
-    let cycles = period.map(|period| whole_cycles(signal, period));
-    if let Some((cycles, per_cycle, length)) = cycles
-        && cycles.len() >= FEWEST_CYCLES * per_cycle
-    {
-        let (regime, scatter) = of_scatter(&cycles, per_cycle)?;
+    let period = period(&similarity);
+    if repeats && period.is_none_or(|period| returns_at_other_times(&similarity, period)) {
+        verdict.regime = Regime::QuasiPeriodic;
+        return Ok(verdict);
+    }
+    if let Some(cycles) = period.and_then(|period| cycles::of_one_period(signal, period)) {
+        let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
         verdict.scatter = Some(scatter);
-        // What the cycles leave comes back, too, after some other time.
-        let left = (1.0 - verdict.recurrence) / scatter.share.powi(2);
-        if left <= 1.0 - REPEATS && scatter.share > RESOLVED {
-            verdict.regime = match regime {
-                Regime::Periodic => Regime::Periodic,
-                _ => Regime::QuasiPeriodic,
-            };
-            return Ok(verdict);
-        }
         if regime == Regime::Chaotic && scatter.share > RESOLVED {
             verdict.regime = Regime::Chaotic;
-            verdict.exponent = Some(scatter.growth.per(length));
+            verdict.exponent = Some(scatter.growth.per(cycles.length));
             return Ok(verdict);
         }
-        let chance = !scatter.is_deterministic() && chance_at_a_phase(&cycles, per_cycle);
-        if repeats || chance {
+        if repeats || scatter.is_chance() {
             verdict.regime = Regime::Periodic;
             return Ok(verdict);
         }
-    } else if repeats {
-        verdict.regime = match period {
-            Some(_) => Regime::Periodic,
-            None => Regime::QuasiPeriodic,
-        };
-        return Ok(verdict);
-    } else if repeats_but_for_its_speed(signal)? {
+    }
+    if repeats || repeats_but_for_its_speed(signal)? {
         verdict.regime = Regime::Periodic;
         return Ok(verdict);
     }
@@ -186,47 +169,20 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     Ok(verdict)
 }
 
-/// Samples of a cycle when its time is measured in the signal's own cycles.
-const WARPED: usize = 32;
-/// How much longer or shorter than the middle one a cycle may be: beyond, half a cycle was missed or
-/// counted twice, and it is not the same cycle at another speed.
-const UNEVEN: f64 = 1.5;
-
-/// Whether the signal repeats itself once time is counted in its own cycles, and what then differs from
-/// cycle to cycle owes nothing to what was: a period that drifts or fluctuates.
+/// Whether nearly all of the signal repeats itself in its own cycles, whose length changes, and what then
+/// differs from cycle to cycle does not grow out of what was: a speed that drifts or fluctuates.
 fn repeats_but_for_its_speed(signal: &[f64]) -> Result<bool, Error> {
-    let starts = cycle_starts(signal)?;
-    if starts.len() < FEWEST_CYCLES + 2 {
+    let Some(cycles) = cycles::of_changing_length(signal) else {
         return Ok(false);
-    }
-    let mut lengths: Vec<f64> = starts.windows(2).map(|ends| ends[1] - ends[0]).collect();
-    lengths.sort_by(f64::total_cmp);
-    let middle = lengths[lengths.len() / 2];
-    if lengths[0] < middle / UNEVEN || lengths[lengths.len() - 1] > middle * UNEVEN {
-        return Ok(false);
-    }
-    let at = |place: f64| {
-        let (whole, t) = (place as usize, place.fract());
-        signal[whole] + t * (signal[(whole + 1).min(signal.len() - 1)] - signal[whole])
     };
-    let warped: Vec<f64> = starts
-        .windows(2)
-        .flat_map(|ends| {
-            let step = (ends[1] - ends[0]) / WARPED as f64;
-            (0..WARPED).map(move |i| at(ends[0] + i as f64 * step))
-        })
-        .collect();
-    let (_, deviation) = checked(&warped)?;
-    let rest = residual(&warped, WARPED);
-    let square = rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64;
-    let repeated = square <= (1.0 - KEEPS) * deviation * deviation;
-    Ok(repeated && innovation::chance_enters(&rest, WARPED))
+    let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
+    Ok(scatter.share.powi(2) <= NEARLY_ALL && regime != Regime::Chaotic)
 }
 
 /// The cycles whose scatter is judged, as [`driven_verdict`] does.
 fn of_scatter(signal: &[f64], per_cycle: usize) -> Result<(Regime, Scatter), Error> {
     let scatter = scatter(signal, per_cycle)?;
-    let rest = unbiased_correlation(&residual(signal, per_cycle));
+    let rest = similarity(&residual(signal, per_cycle));
     let recurrence = rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max);
     let regime = match () {
         // The scatter itself repeats itself: after several cycles, or after other times.
@@ -274,7 +230,7 @@ pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict
     if scatter.share * scatter.share > HALF {
         return Ok(None);
     }
-    let rest = unbiased_correlation(&residual(signal, per_cycle));
+    let rest = similarity(&residual(signal, per_cycle));
     Ok(Some(Verdict {
         regime,
         recurrence: rest[rest.len() / 2..].iter().copied().fold(-1.0, f64::max),
@@ -288,119 +244,6 @@ pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict
 /// follows.
 pub fn chance_at_a_phase(signal: &[f64], per_cycle: usize) -> bool {
     innovation::chance_enters(&residual(signal, per_cycle), per_cycle)
-}
-
-/// Fewest samples of a cycle whose scatter is judged.
-const FEWEST_PER_CYCLE: f64 = 8.0;
-
-/// The signal in cycles of whole numbers of samples, that number, and how long a cycle is in samples of
-/// the signal. Several short periods make a cycle: to interpolate between their samples would make
-/// noise predictable. Where whole cycles end between samples, the signal is interpolated to the next
-/// whole number of them.
-fn whole_cycles(signal: &[f64], period: f64) -> (Vec<f64>, usize, f64) {
-    let fewest = (FEWEST_PER_CYCLE / period).ceil().max(1.0) as usize;
-    // Half a sample at the most over the whole signal.
-    let strays = |length: f64| {
-        let cycles = signal.len() as f64 / length;
-        (length - length.round()).abs() * cycles > 0.5
-    };
-    let multiples = (fewest..2 * fewest.max(2)).map(|count| count as f64 * period);
-    if let Some(length) = multiples.into_iter().find(|length| !strays(*length)) {
-        return (signal.to_vec(), length.round() as usize, length.round());
-    }
-    let length = sharpened(signal, fewest as f64 * period);
-    let per_cycle = length.ceil() as usize;
-    (
-        interpolated(signal, length / per_cycle as f64),
-        per_cycle,
-        length,
-    )
-}
-
-/// The length of a cycle that leaves least to differ from cycle to cycle, among those within a sample of
-/// the given one over the whole signal.
-fn sharpened(signal: &[f64], length: f64) -> f64 {
-    let cycles = (signal.len() as f64 / length).floor();
-    let left = |length: f64| {
-        let per_cycle = length.ceil() as usize;
-        let rest = residual(&interpolated(signal, length / per_cycle as f64), per_cycle);
-        rest.iter().map(|r| r * r).sum::<f64>() / rest.len() as f64
-    };
-    let mut best = (left(length), length);
-    for reach in [1.0, 0.2] {
-        let middle = best.1;
-        for step in (-5..=5).filter(|step| *step != 0) {
-            let other = middle + f64::from(step) / 5.0 * reach / cycles;
-            let found = left(other);
-            if found < best.0 {
-                best = (found, other);
-            }
-        }
-    }
-    best.1
-}
-
-/// The signal at every `step` samples (cubic: Keys 1981).
-fn interpolated(signal: &[f64], step: f64) -> Vec<f64> {
-    let count = ((signal.len() - 3) as f64 / step) as usize;
-    let at = |i: usize| {
-        let place = 1.0 + i as f64 * step;
-        let (whole, t) = (place as usize, place.fract());
-        let [a, b, c, d] = [whole - 1, whole, whole + 1, whole + 2].map(|j| signal[j]);
-        b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
-    };
-    (0..count).map(at).collect()
-}
-
-/// Autocorrelation up to half of the signal, made up for the shrinking overlap.
-fn unbiased_correlation(signal: &[f64]) -> Vec<f64> {
-    let length = signal.len() as f64;
-    let mut correlation = autocorrelation(signal, signal.len() / 2);
-    for (lag, r) in correlation.iter_mut().enumerate() {
-        *r *= length / (length - lag as f64);
-    }
-    correlation
-}
-
-/// The shortest period in samples at every multiple of which the autocorrelation is high.
-fn period(correlation: &[f64]) -> Option<f64> {
-    let fallen = correlation.iter().position(|r| *r < HALF)?;
-    (fallen.max(1)..correlation.len() / MULTIPLES)
-        .filter(|&lag| correlation[lag] >= correlation[lag - 1].max(correlation[lag + 1]))
-        .map(|lag| peak(correlation, lag))
-        .filter(|(_, height)| *height > HALF)
-        .find_map(|(lag, height)| kept_period(correlation, lag, KEEPS * height))
-}
-
-/// A period, sharpened, if the autocorrelation is at least `kept` at every multiple of it.
-fn kept_period(correlation: &[f64], mut period: f64, kept: f64) -> Option<f64> {
-    let mut multiple = 1.0;
-    // Each multiple found sharpens the period with which the next is looked for.
-    loop {
-        multiple += 1.0;
-        let centre = (multiple * period).round() as usize;
-        if centre + 2 >= correlation.len() {
-            return Some(period);
-        }
-        let highest =
-            (centre - 1..=centre + 1).max_by(|&a, &b| correlation[a].total_cmp(&correlation[b]))?;
-        let (place, height) = peak(correlation, highest);
-        if height < kept {
-            return None;
-        }
-        period = place / multiple;
-    }
-}
-
-/// Place and height of the parabola through the values at `lag` and beside it.
-fn peak(correlation: &[f64], lag: usize) -> (f64, f64) {
-    let [before, here, after] = [lag - 1, lag, lag + 1].map(|i| correlation[i]);
-    let curvature = before - 2.0 * here + after;
-    if curvature >= 0.0 {
-        return (lag as f64, here);
-    }
-    let shift = (0.5 * (before - after) / curvature).clamp(-1.0, 1.0);
-    (lag as f64 + shift, here - 0.25 * (before - after) * shift)
 }
 
 /// Whether the signal is better predicted than its surrogates are (Theiler et al. 1992).
@@ -477,7 +320,7 @@ fn prediction_error(signal: &[f64], times: &Times) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::delay::times;
-    use crate::test_systems::{Noise, Regular, System, with_noise};
+    use crate::test_systems::{Machine, Memory, Noise, Regular, System, with_noise};
     use std::f64::consts::TAU;
 
     fn found(signal: &[f64]) -> Verdict {
@@ -534,18 +377,55 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_map_near_the_golden_rotation_is_no_chaos() {
-        let mut angle = 0.1;
-        let signal: Vec<f64> = (0..4000)
-            .map(|_| {
-                angle += 0.606_661_063 - 0.9 / TAU * (TAU * angle).sin();
-                (TAU * angle).sin()
+    fn a_circle_map_near_the_golden_rotation_is_quasi_periodic() {
+        for length in [1000, 2000, 4000] {
+            let mut angle = 0.1;
+            let signal: Vec<f64> = (0..length)
+                .map(|_| {
+                    angle += 0.606_661_063 - 0.9 / TAU * (TAU * angle).sin();
+                    (TAU * angle).sin()
+                })
+                .collect();
+            for share in [0.0, 0.01] {
+                let verdict = found(&with_noise(&signal, share, 1));
+                assert_eq!(verdict.regime, Regime::QuasiPeriodic, "{verdict:?}");
+                assert_eq!(verdict.exponent, None);
+            }
+        }
+    }
+
+    #[test]
+    fn knocks_of_a_speed_that_drifts_are_no_chaos() {
+        // A ring of 5 samples, struck after 47.3 samples at first and 2 % sooner at the end of 60 cycles.
+        let strikes: Vec<f64> = (0..70)
+            .scan(3.0, |at, k| {
+                let here = *at;
+                *at += 47.3 * (1.0 - 0.02 * f64::from(k) / 60.0);
+                Some(here)
             })
             .collect();
-        for share in [0.0, 0.01] {
-            let verdict = found(&with_noise(&signal, share, 1));
-            assert_ne!(verdict.regime, Regime::Chaotic, "{verdict:?}");
-            assert_eq!(verdict.exponent, None);
+        let ring = |since: f64| (-since / 8.0).exp() * (TAU * since / 5.0).sin();
+        let signal: Vec<f64> = (0..2838)
+            .map(|i| {
+                let struck = strikes.iter().map(|at| f64::from(i) - at);
+                struck.filter(|since| *since >= 0.0).map(ring).sum()
+            })
+            .collect();
+        let verdict = found(&signal);
+        assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
+        assert_eq!(verdict.exponent, None);
+    }
+
+    #[test]
+    fn chance_that_lasts_for_cycles_is_no_chaos_without_a_crank_angle() {
+        for (machine, memory, seed) in [
+            (Machine::ImpactOscillator, Memory::None, 1),
+            (Machine::ImpactOscillator, Memory::Ninety, 1),
+            (Machine::MissingKnock, Memory::Ninety, 1),
+            (Machine::TwoLoads, Memory::Ninety, 3),
+        ] {
+            let verdict = found(&machine.samples(80, 100, 0.1, memory, seed));
+            assert_ne!(verdict.regime, Regime::Chaotic, "{machine:?} {verdict:?}");
         }
     }
 
@@ -563,14 +443,6 @@ mod tests {
             let verdict = found(&with_noise(&signal, share, 1));
             assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
             assert_eq!(verdict.exponent, None);
-        }
-    }
-
-    #[test]
-    fn a_clean_periodic_signal_has_its_period() {
-        for (signal, expected) in [(Regular::Periodic, 20.3), (Regular::KnockTrain, 47.3)] {
-            let found = period(&unbiased_correlation(&signal.samples(2000, 1))).unwrap();
-            assert!((found - expected).abs() < 0.01, "{signal:?} {found}");
         }
     }
 

@@ -3,8 +3,10 @@
 //! ```sh
 //! cargo run --release -p chaos --example intervals              # systems to develop on
 //! cargo run --release -p chaos --example intervals -- held-out  # systems to be judged by
+//! cargo run --release -p chaos --example intervals -- second    # others, likewise
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
+mod second;
 mod systems;
 
 use chaos::test_systems::with_noise;
@@ -18,6 +20,7 @@ fn main() {
     let argument = std::env::args().nth(1).unwrap_or_default();
     let cases = match argument.as_str() {
         "held-out" | "truths" => systems::held_out(),
+        "second" => second::second(),
         _ => systems::development(),
     };
     let (mut given, mut covered, mut all, mut seconds) = (0, 0, 0, 0.0);

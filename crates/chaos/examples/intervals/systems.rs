@@ -10,11 +10,11 @@ pub enum Law {
 
 pub struct Case {
     pub name: &'static str,
-    law: Law,
-    start: State,
-    observed: fn(State) -> f64,
+    pub law: Law,
+    pub start: State,
+    pub observed: fn(State) -> f64,
     /// Time between samples: 1 for a map, a twentieth of the mean period of a flow.
-    interval: f64,
+    pub interval: f64,
 }
 
 /// Samples left out at the start.
@@ -82,7 +82,7 @@ const PER_PERIOD: f64 = 20.0;
 const FINE: f64 = 0.002;
 const FINE_STEPS: usize = 200_000;
 
-fn map(name: &'static str, f: fn(State) -> State, start: State) -> Case {
+pub fn map(name: &'static str, f: fn(State) -> State, start: State) -> Case {
     Case {
         name,
         law: Law::Map(f),
@@ -92,7 +92,7 @@ fn map(name: &'static str, f: fn(State) -> State, start: State) -> Case {
     }
 }
 
-fn flow(name: &'static str, f: fn(State) -> State, start: State) -> Case {
+pub fn flow(name: &'static str, f: fn(State) -> State, start: State) -> Case {
     let mut y = (0..FINE_STEPS / 4).fold(start, |y, _| runge_kutta(f, y, FINE));
     let path: Vec<f64> = (0..FINE_STEPS)
         .map(|_| {
