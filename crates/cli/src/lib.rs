@@ -23,5 +23,6 @@ mod run_progress;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;
+pub mod try_case;
 
 pub use failure::{Failure, finish};

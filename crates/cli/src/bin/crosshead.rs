@@ -38,6 +38,9 @@ enum Verb {
 fn main() -> ExitCode {
     // Output that nobody reads any more ends a program, as everywhere.
     sigpipe::reset();
+    if let Some(tried) = cli::try_case::if_asked() {
+        return tried;
+    }
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Sweep(arguments) => cli::sweep::run(&arguments),

@@ -42,7 +42,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
-    let manifest = match finalize(&output, &plan) {
+    let completed = finalize(&output, &plan);
+    gen_dataset::warn(&output.take_warnings());
+    let manifest = match completed {
         Ok(manifest) => manifest,
         Err(Error::Incomplete { shards, missing }) => {
             println!("{}", ranges(&missing));

@@ -92,7 +92,7 @@ fn write(output: &Output, folder: &str, log: &str) -> Result<(), Error> {
         fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
     }
     match output.store.create_only(&path, log)? {
-        Some(before) if before != log => Err(Error::OtherDeltaTable(output.path(&path))),
+        Some(before) if before != log.as_bytes() => Err(Error::OtherDeltaTable(output.path(&path))),
         _ => Ok(()),
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use input::paths;
 use recordings::{Counts, DatasetCard, FileEntry, Manifest, Subset};
 
+use super::commit::Check;
 use super::diagrams::{self, DiagramTable};
 use super::output::Output;
 use super::parts::{Made, scan};
@@ -29,19 +30,25 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let mut files: Vec<FileEntry> = Vec::new();
     let (mut failed, mut warnings) = (Vec::new(), Vec::new());
     let mut missing = Vec::new();
-    scan(plan, output, 0..plan.parts(), |index, made| {
-        match made {
-            Some(Made::Shard(commit)) => {
-                add(&mut rows, commit.rows);
-                files.extend(commit.files);
-                failed.extend(commit.failed);
-                warnings.extend(commit.warnings);
+    scan(
+        plan,
+        output,
+        0..plan.parts(),
+        Check::Lengths,
+        |index, made| {
+            match made {
+                Some(Made::Shard(commit)) => {
+                    add(&mut rows, commit.rows);
+                    files.extend(commit.files);
+                    failed.extend(commit.failed);
+                    warnings.extend(commit.warnings);
+                }
+                Some(Made::Diagram(commit)) => files.push(commit.file),
+                None => missing.push(index),
             }
-            Some(Made::Diagram(commit)) => files.push(commit.file),
-            None => missing.push(index),
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
     if !missing.is_empty() {
         let shards = plan.parts();
         return Err(Error::Incomplete { shards, missing });

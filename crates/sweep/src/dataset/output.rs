@@ -10,9 +10,10 @@
 //! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
 //! sweep names that folder, and whoever runs it gets a copy.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use input::yaml::Document;
@@ -20,6 +21,7 @@ use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
 use super::commit::text;
+use super::lock::{Lock, lock, lock_shared};
 use super::log::{self, Log};
 use super::store::Store;
 use crate::{Error, Plan};
@@ -51,15 +53,8 @@ pub struct Output {
     pub(super) store: Store,
     pub(super) root: PathBuf,
     pub(super) log: Log,
-    lock: Option<Lock>,
-}
-
-/// A locked file.
-#[derive(Debug)]
-struct Lock {
-    file: File,
-    /// Whether nobody else holds it.
-    alone: bool,
+    pub(super) lock: Option<Lock>,
+    warnings: Mutex<Vec<String>>,
 }
 
 /// Content of `_sweep/plan.json`.
@@ -119,6 +114,7 @@ impl Claim {
             log: Log::default(),
             lock: Some(lock(root)?),
             root: root.to_owned(),
+            warnings: Mutex::default(),
         };
         // What an interrupted process left: nobody else writes here now.
         remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
@@ -147,6 +143,7 @@ impl Claim {
                 root,
                 log: Log::default(),
                 lock: None,
+                warnings: Mutex::default(),
             },
             existing,
             calibrated: false,
@@ -252,14 +249,29 @@ impl Output {
             root: root.to_owned(),
             log: Log::default(),
             lock: None,
+            warnings: Mutex::default(),
         };
         let not_planned = || Error::NotPlanned(root.to_owned());
-        let record = output.store.read(PLAN)?.ok_or_else(not_planned)?;
+        let record = output.store.bytes(PLAN)?.ok_or_else(not_planned)?;
         let sweep = output.store.read(SWEEP)?.ok_or_else(not_planned)?;
         let sweep = Document::parse(&sweep, &output.path(SWEEP).display().to_string())?;
         let plan = Plan::new(&sweep, root)?;
         output.check(&record, &plan)?;
         Ok((output, plan))
+    }
+
+    /// Keeps a warning for whoever asks, once.
+    pub(super) fn warn(&self, text: String) {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        if !warnings.contains(&text) {
+            warnings.push(text);
+        }
+    }
+
+    /// What is wrong with what was there before: damaged records and files, which count as not made.
+    pub fn take_warnings(&self) -> Vec<String> {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut warnings)
     }
 
     /// Where file `path` of the dataset stands.
@@ -343,8 +355,8 @@ impl Output {
     }
 
     /// Checks that `record` is that of `plan`.
-    fn check(&self, record: &str, plan: &Plan) -> Result<(), Error> {
-        let record: PlanRecord = serde_json::from_str(record).map_err(|e| Error::Damaged {
+    fn check(&self, record: &[u8], plan: &Plan) -> Result<(), Error> {
+        let record: PlanRecord = serde_json::from_slice(record).map_err(|e| Error::Damaged {
             path: self.path(PLAN),
             reason: e.to_string(),
         })?;
@@ -356,15 +368,6 @@ impl Output {
             found: record.plan_id,
             expected: plan.id.clone(),
         })
-    }
-}
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        if self.alone {
-            // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
-            let _ = self.file.set_len(0);
-        }
     }
 }
 
@@ -410,59 +413,5 @@ fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Erro
             source: error,
         }),
         _ => Ok(()),
-    }
-}
-
-/// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
-fn lock(root: &Path) -> Result<Lock, Error> {
-    let (mut file, unwritable) = lock_file(root)?;
-    match file.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => return Err(in_use(root, file)),
-        Err(TryLockError::Error(source)) => return Err(unwritable(source)),
-    }
-    let mut sign = || {
-        file.set_len(0)?;
-        file.seek(SeekFrom::Start(0))?;
-        write!(file, "process {}", std::process::id())
-    };
-    sign().map_err(unwritable)?;
-    Ok(Lock { file, alone: true })
-}
-
-/// Locks `_sweep/lock` together with others; nothing where the file system knows no locks, because
-/// the records of a dataset do not need them.
-fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
-    let (file, unwritable) = lock_file(root)?;
-    match file.try_lock_shared() {
-        Ok(()) => Ok(Some(Lock { file, alone: false })),
-        Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
-        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
-        Err(TryLockError::Error(source)) => Err(unwritable(source)),
-    }
-}
-
-fn lock_file(root: &Path) -> Result<(File, impl Fn(io::Error) -> Error), Error> {
-    let path = root.join("_sweep/lock");
-    let mut options = OpenOptions::new();
-    let options = options.read(true).write(true).create(true).truncate(false);
-    let file = options.open(&path);
-    let unwritable = move |source| Error::Unwritable {
-        path: path.clone(),
-        source,
-    };
-    Ok((file.map_err(&unwritable)?, unwritable))
-}
-
-fn in_use(root: &Path, mut lock: File) -> Error {
-    let mut by = String::new();
-    let _ = lock.read_to_string(&mut by);
-    Error::InUse {
-        path: root.to_owned(),
-        by: if by.is_empty() {
-            "one that makes a shard".into()
-        } else {
-            by
-        },
     }
 }

@@ -6,7 +6,7 @@ use recordings::formats::parquet::TableWriter;
 use recordings::{CaseWarning, Column, FailedCase, FileEntry, Kind, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
-use super::commit::Commit;
+use super::commit::{Check, Commit, Found, Standing};
 use super::output::Output;
 use super::store::NewFile;
 use super::tables::Tables;
@@ -114,8 +114,8 @@ impl<'a> ShardWriter<'a> {
     }
 
     /// Finishes the files and says so. Where another process did so meanwhile, its files stay, and
-    /// must be the same.
-    pub(super) fn commit(self, plan: &Plan) -> Result<(), Error> {
+    /// must be the same; but for those of a result that this one stands against.
+    pub(super) fn commit(self, plan: &Plan, retried: bool) -> Result<(), Error> {
         let mut commit = self.commit;
         let mut files = Vec::new();
         for part in self
@@ -131,13 +131,56 @@ impl<'a> ShardWriter<'a> {
             files.push(file);
         }
         commit.files.sort_by(|a, b| a.path.cmp(&b.path));
-        if commit.compare(self.output, plan)? {
-            return Ok(());
+        publish(&commit, files, self.output, plan, retried)
+    }
+}
+
+/// Gives the files of a shard their names, and then writes its record, as far as no other result
+/// stands.
+fn publish(
+    commit: &Commit,
+    files: Vec<NewFile>,
+    output: &Output,
+    plan: &Plan,
+    retried: bool,
+) -> Result<(), Error> {
+    let place = || {
+        files
+            .into_iter()
+            .try_for_each(|file| file.commit().map(|_| ()))
+    };
+    // Who may replace another's files, or may be replaced, does so alone.
+    let mut alone = commit.has_deaths();
+    loop {
+        let _committing = output.committing(alone)?;
+        let before = match Commit::find(output, plan, commit.shard, Check::Sums)? {
+            Found::Made(before) => before,
+            Found::Damaged => {
+                place()?;
+                return commit.replace(output);
+            }
+            Found::Nothing => {
+                place()?;
+                let Some(before) = commit.create(output, plan)? else {
+                    return Ok(());
+                };
+                // It was written meanwhile, from the same files.
+                return match commit.against(&before, retried) {
+                    Standing::Same | Standing::Before => Ok(()),
+                    Standing::New => commit.replace(output),
+                    Standing::Differ => Err(commit.differs(&before)?),
+                };
+            }
+        };
+        match commit.against(&before, retried) {
+            Standing::Same | Standing::Before => return Ok(()),
+            Standing::Differ => return Err(commit.differs(&before)?),
+            Standing::New if alone => {
+                place()?;
+                return commit.replace(output);
+            }
+            Standing::New => alone = true,
         }
-        for file in files {
-            file.commit()?;
-        }
-        commit.write(self.output)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use recordings::FailedCase;
 
-use super::attempts;
+use super::attempts::{self, Attended};
+use super::commit::Check;
 use super::output::Output;
 use super::parts::{Made, scan};
 use crate::{Error, Plan};
@@ -12,9 +13,8 @@ use crate::{Error, Plan};
 pub struct Status {
     /// Numbers of the shards that are not finished; bifurcation diagrams follow the shards.
     pub missing: Vec<u64>,
-    /// Those of them that a process is at work on, or was when it ended without a word, and how
-    /// many such processes there are.
-    pub attempts: Vec<(u64, u64)>,
+    /// The processes at those of them that have any.
+    pub attempts: Vec<(u64, Attended)>,
     /// Cases in finished shards.
     pub cases: u64,
     /// Those of them that failed.
@@ -23,10 +23,10 @@ pub struct Status {
     pub complete: bool,
 }
 
-/// How far the sweep has got.
+/// How far the sweep has got. Damaged records count as not made; [`Output::take_warnings`] names them.
 ///
 /// # Errors
-/// Where a record cannot be read.
+/// Where the storage cannot be read.
 pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
     let mut status = Status {
         missing: Vec::new(),
@@ -35,22 +35,25 @@ pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
         failed: Vec::new(),
         complete: output.store.length("manifest.json")?.is_some(),
     };
-    let attempts = attempts::counts(output)?;
-    scan(plan, output, 0..plan.parts(), |index, made| {
-        match made {
-            Some(Made::Shard(commit)) => {
-                let [start, end] = commit.cases;
-                status.cases += end - start;
-                status.failed.extend(commit.failed);
+    scan(
+        plan,
+        output,
+        0..plan.parts(),
+        Check::Lengths,
+        |index, made| {
+            match made {
+                Some(Made::Shard(commit)) => {
+                    let [start, end] = commit.cases;
+                    status.cases += end - start;
+                    status.failed.extend(commit.failed);
+                }
+                Some(Made::Diagram(_)) => {}
+                None => status.missing.push(index),
             }
-            Some(Made::Diagram(_)) => {}
-            None => {
-                status.missing.push(index);
-                let count = attempts.get(&index.to_string());
-                status.attempts.extend(count.map(|&count| (index, count)));
-            }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
+    let is_missing = |shard| status.missing.binary_search(&shard).is_ok();
+    status.attempts = attempts::counts(output, is_missing)?.into_iter().collect();
     Ok(status)
 }

@@ -60,6 +60,8 @@ pub fn records(executions: u64) {
         existing: Existing::Refuse,
         threads: 1,
         cancel: &cancel,
+        retry_failed: false,
+        trial: None,
     };
     generate(&plan, &root, &options, &runner, &mut ()).unwrap();
     let whole = RECORDS.map(|name| fs::read_to_string(root.join(name)).unwrap());

@@ -1,12 +1,14 @@
 //! A dataset in a folder: hard links make records that are created once.
 
-use std::fs::{self, File};
+use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use recordings::{FileRecord, WholeFile};
 use sha2::{Digest, Sha256};
 
+use super::Holder;
 use super::temporary::temporary;
 use crate::Error;
 
@@ -35,9 +37,9 @@ impl Folder {
         )?)
     }
 
-    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<Vec<u8>>, Error> {
         let destination = self.path(path);
-        if let Some(before) = self.read(path)? {
+        if let Some(before) = self.bytes(path)? {
             return Ok(Some(before));
         }
         // Written whole under a name of its own, and then linked, which fails where a file stands.
@@ -50,14 +52,43 @@ impl Folder {
         self.remove(&staged)?;
         match linked {
             Ok(()) => Ok(None),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => self.read(path),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => self.bytes(path),
             Err(error) => Err(failed("create", &destination, error)),
         }
     }
 
-    pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+    /// The lock is taken before the file has its name, so that nobody sees it without; it is none
+    /// where the file system knows no locks.
+    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
+        let (temporary, path) = (self.path(&temporary(path)), self.path(path));
+        let mut file =
+            File::create(&temporary).map_err(|error| failed("create", &temporary, error))?;
+        let locked = file.try_lock().is_ok();
+        let written = file.write_all(content.as_bytes());
+        let placed = written.and_then(|()| fs::rename(&temporary, &path));
+        placed.map_err(|error| failed("write", &path, error))?;
+        Ok(locked.then_some(file))
+    }
+
+    pub(super) fn holder(&self, path: &str) -> Result<Option<Holder>, Error> {
         let path = self.path(path);
-        found("read", &path, fs::read_to_string(&path))
+        let file = found("read", &path, File::open(&path))?;
+        Ok(file.map(|file| match file.try_lock_shared() {
+            Ok(()) => Holder::Ended,
+            Err(TryLockError::WouldBlock) => Holder::AtWork,
+            Err(TryLockError::Error(_)) => Holder::Unknown,
+        }))
+    }
+
+    pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
+        let path = self.path(path);
+        let modified = fs::metadata(&path).and_then(|found| found.modified());
+        found("read", &path, modified)
+    }
+
+    pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
+        let path = self.path(path);
+        found("read", &path, fs::read(&path))
     }
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
