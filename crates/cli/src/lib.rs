@@ -24,5 +24,6 @@ pub mod schema;
 pub mod simulate;
 pub mod sweep;
 pub mod try_case;
+pub mod verify;
 
 pub use failure::{Failure, finish};

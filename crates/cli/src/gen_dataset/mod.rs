@@ -297,7 +297,8 @@ pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f
         "{}: {} cases, {rows} rows, {} files, {:.1} MB in {seconds:.1} s",
         out.display(),
         manifest.counts.cases,
-        manifest.files.len() + 1,
+        // With the manifest and SHA256SUMS.
+        manifest.files.len() + 2,
         bytes as f64 / 1e6
     );
     let census = Census::of(plan, manifest);

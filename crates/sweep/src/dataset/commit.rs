@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::output::Output;
+use super::store::Store;
 use crate::{Error, Plan};
 
 /// A finished shard.
@@ -306,7 +307,7 @@ fn find<T>(
         Err(reason) => return damaged(name, format!("is damaged ({reason})")),
     };
     for file in files(&commit) {
-        if let Some(fault) = fault(output, file, check)? {
+        if let Some(fault) = fault(&output.store, file, check)? {
             return damaged(&file.path, fault.to_string());
         }
     }
@@ -315,11 +316,11 @@ fn find<T>(
 
 /// What is wrong with a file, if anything is.
 pub(super) fn fault(
-    output: &Output,
+    store: &Store,
     file: &FileEntry,
     check: Check,
 ) -> Result<Option<Damage>, Error> {
-    let (expected, store) = (file.bytes, &output.store);
+    let expected = file.bytes;
     match store.length(&file.path)? {
         None => return Ok(Some(Damage::Missing)),
         Some(found) if found != expected => return Ok(Some(Damage::Length { found, expected })),
@@ -358,9 +359,24 @@ pub enum Damage {
         /// The rows that the manifest says.
         expected: u64,
     },
+    /// A table whose footer cannot be read.
+    #[error("is no Parquet file")]
+    Table,
     /// No record has it.
     #[error("is in no record of this dataset, and readers of its folder read it too")]
     Extra,
+    /// `SHA256SUMS` is not that of the manifest: one of them was changed.
+    #[error("does not agree with manifest.json: one of the two was changed")]
+    Sums,
+    /// The counts of the manifest contradict its files or failures.
+    #[error("its counts are not those of its files and failures")]
+    Counts,
+    /// The manifest has a file twice.
+    #[error("has a file twice")]
+    Twice,
+    /// The manifest names a file outside of the dataset.
+    #[error("lies outside of the dataset and is not read")]
+    Outside,
 }
 
 /// A record as it is written.
@@ -372,7 +388,8 @@ pub(super) fn text(record: &impl Serialize) -> Result<String, Error> {
     Ok(json + "\n")
 }
 
-fn checksum(text: &str) -> String {
+/// SHA-256 of a text, in hexadecimal.
+pub(super) fn checksum(text: &str) -> String {
     let digest = Sha256::digest(text.as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -6,9 +6,15 @@
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use super::output::Output;
 use crate::Error;
+
+/// So long is waited for a process that tidies up.
+const MOMENT: Duration = Duration::from_secs(2);
 
 /// A locked file.
 #[derive(Debug)]
@@ -48,7 +54,15 @@ pub(super) fn lock(root: &Path) -> Result<Lock, Error> {
 /// the records of a dataset do not need them.
 pub(super) fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
     let (file, unwritable) = open(root, "_sweep/lock")?;
-    match file.try_lock_shared() {
+    // Whoever tidies up holds it for a moment.
+    let begun = Instant::now();
+    let locked = loop {
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) if begun.elapsed() < MOMENT => thread::sleep(MOMENT / 20),
+            tried => break tried,
+        }
+    };
+    match locked {
         Ok(()) => Ok(Some(Lock { file, alone: false })),
         Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
@@ -81,10 +95,34 @@ fn in_use(root: &Path, mut lock: File) -> Error {
     }
 }
 
+/// Does `work` while no other process holds the lock of the dataset at `root`, of which this process
+/// holds `own`; nothing where another one does, or where there are no locks.
+pub(super) fn alone(
+    root: &Path,
+    own: &Mutex<Option<Lock>>,
+    work: impl FnOnce() -> Result<(), Error>,
+) -> Result<(), Error> {
+    let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
+    if own.as_ref().is_some_and(|lock| lock.alone) {
+        return work();
+    }
+    // A lock held together with others does not become one held alone in one step.
+    *own = None;
+    let (file, _) = open(root, "_sweep/lock")?;
+    let done = match file.try_lock() {
+        Ok(()) => work(),
+        Err(_) => Ok(()),
+    };
+    drop(file);
+    *own = lock_shared(root)?;
+    done
+}
+
 impl Output {
     /// Whether nobody else writes to this dataset.
     pub(super) fn is_alone(&self) -> bool {
-        self.lock.as_ref().is_some_and(|lock| lock.alone)
+        let lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
+        lock.as_ref().is_some_and(|lock| lock.alone)
     }
 
     /// Waits until nobody commits a shard, or until nobody does so `alone`; none where one process

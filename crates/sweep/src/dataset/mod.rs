@@ -1,7 +1,9 @@
 //! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
 
+mod adopt;
 mod attempts;
 mod case_rows;
+mod clear;
 mod commit;
 mod delta;
 mod diagrams;
@@ -17,17 +19,19 @@ mod status;
 mod store;
 mod tables;
 mod trial;
+mod verify;
 
 pub use attempts::Attended;
 pub use commit::{Commit, Damage};
 pub use delta::{DeltaTable, export_delta};
 pub use diagrams::{run_diagrams, sample_diagram};
-pub use finalize::{finalize, verify};
+pub use finalize::{finalize, finalize_verified};
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};
 pub use tables::{Tables, feature_column};
 pub use trial::{Trial, try_here};
+pub use verify::{Fault, Verified, damage, verify};
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! The folder that a dataset is written to.
 //!
 //! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
-//! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
+//! `sweep.yaml`, `SHA256SUMS`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `attempts/` who is at work on which shard, `logs/` what each process did and
 //! when, `tmp/` holds files that are being written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
 //! or by any number that make a shard each. The operating system unlocks it when a process ends,
@@ -14,7 +14,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
 
 use input::yaml::Document;
 use recordings::Manifest;
@@ -24,6 +23,7 @@ use super::commit::text;
 use super::lock::{Lock, lock, lock_shared};
 use super::log::{self, Log};
 use super::store::Store;
+use super::{attempts, delta, diagrams};
 use crate::{Error, Plan};
 
 /// What to do with a folder that has something in it.
@@ -53,7 +53,7 @@ pub struct Output {
     pub(super) store: Store,
     pub(super) root: PathBuf,
     pub(super) log: Log,
-    pub(super) lock: Option<Lock>,
+    pub(super) lock: Mutex<Option<Lock>>,
     warnings: Mutex<Vec<String>>,
 }
 
@@ -68,26 +68,21 @@ struct PlanRecord {
     diagrams: u64,
 }
 
-const PLAN: &str = "_sweep/plan.json";
+pub(super) const PLAN: &str = "_sweep/plan.json";
 const SWEEP: &str = "sweep.yaml";
-/// What each process leaves alone in `_sweep/tmp` unless it is alone: younger files may be under way.
-const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-
-/// What a dataset has at its top, apart from `_sweep`.
-const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
-const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
-const WORK: [&str; 4] = [
+pub(super) const SUMS: &str = "SHA256SUMS";
+pub(super) const MANIFEST: &str = "manifest.json";
+/// What a dataset has in its folder, apart from `_sweep`.
+pub(super) const FOLDERS: [&str; 4] = ["signals", "features", "mcap", diagrams::FOLDER];
+pub(super) const FILES: [&str; 4] = ["README.md", SWEEP, SUMS, MANIFEST];
+pub(super) const WORK: [&str; 4] = [
     "_sweep/commits",
-    "_sweep/attempts",
+    attempts::FOLDER,
     log::FOLDER,
     "_sweep/tmp",
 ];
 /// The folder of the calibration that a dataset begins with.
 pub const CALIBRATION: &str = "calibration";
-/// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
-const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
-const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
-
 impl Claim {
     /// Locks the folder `root`.
     ///
@@ -112,7 +107,7 @@ impl Claim {
         let output = Output {
             store,
             log: Log::default(),
-            lock: Some(lock(root)?),
+            lock: Mutex::new(Some(lock(root)?)),
             root: root.to_owned(),
             warnings: Mutex::default(),
         };
@@ -142,7 +137,7 @@ impl Claim {
                 store,
                 root,
                 log: Log::default(),
-                lock: None,
+                lock: Mutex::default(),
                 warnings: Mutex::default(),
             },
             existing,
@@ -172,9 +167,9 @@ impl Claim {
         Ok(self.output.path(CALIBRATION))
     }
 
-    /// Whether a dataset has been begun here.
+    /// Whether a dataset has been begun here, or a finished one was copied here.
     fn begun(&self) -> bool {
-        self.output.path(PLAN).exists()
+        self.output.path(PLAN).exists() || self.output.is_published()
     }
 
     /// Makes the folder ready for the dataset of `plan`.
@@ -199,7 +194,14 @@ impl Claim {
         } else if !begun && !has_it {
             output.clear_calibration()?;
         }
+        let published = output.is_published();
+        if published {
+            output.check_published(plan)?;
+        }
         output.record(plan)?;
+        if published {
+            output.adopt(plan)?;
+        }
         if let Some(from) = plan.calibrated.as_ref().filter(|_| !has_it) {
             output.copy_calibration(from)?;
         }
@@ -234,7 +236,7 @@ impl Output {
     pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
         let (mut output, plan) = Self::look(root)?;
         if output.store.folder().is_some() {
-            output.lock = lock_shared(root)?;
+            output.lock = Mutex::new(lock_shared(root)?);
         }
         Ok((output, plan))
     }
@@ -248,14 +250,12 @@ impl Output {
             store: Store::at(root)?,
             root: root.to_owned(),
             log: Log::default(),
-            lock: None,
+            lock: Mutex::default(),
             warnings: Mutex::default(),
         };
         let not_planned = || Error::NotPlanned(root.to_owned());
         let record = output.store.bytes(PLAN)?.ok_or_else(not_planned)?;
-        let sweep = output.store.read(SWEEP)?.ok_or_else(not_planned)?;
-        let sweep = Document::parse(&sweep, &output.path(SWEEP).display().to_string())?;
-        let plan = Plan::new(&sweep, root)?;
+        let plan = output.plan_of_sweep()?;
         output.check(&record, &plan)?;
         Ok((output, plan))
     }
@@ -279,64 +279,6 @@ impl Output {
         self.store.path(path)
     }
 
-    /// Removes what crashes left a day ago or earlier.
-    ///
-    /// # Errors
-    /// Where it cannot be removed.
-    pub(super) fn tidy(&self) -> Result<(), Error> {
-        let Some(folder) = self.store.folder() else {
-            return Ok(());
-        };
-        let Ok(entries) = fs::read_dir(folder.join("_sweep/tmp")) else {
-            return Ok(());
-        };
-        for entry in entries.flatten() {
-            let modified = entry.metadata().and_then(|found| found.modified()).ok();
-            let age = modified.and_then(|time| time.elapsed().ok());
-            if age.is_some_and(|age| age > DAY) {
-                remove(&entry.path(), |path| fs::remove_file(path))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Removes a dataset, and nothing else; its calibration stays where that is asked for.
-    fn clear(&self, keep_calibration: bool) -> Result<(), Error> {
-        // The manifest goes first: without it the folder is not a complete dataset.
-        for file in FILES.into_iter().rev().chain([PLAN]).chain(PAGES) {
-            remove(&self.path(file), |path| fs::remove_file(path))?;
-        }
-        for folder in FOLDERS.into_iter().chain(WORK) {
-            remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
-        }
-        self.clear_figures()?;
-        if !keep_calibration {
-            self.clear_calibration()?;
-        }
-        WORK.iter().try_for_each(|folder| make(&self.path(folder)))
-    }
-
-    fn clear_calibration(&self) -> Result<(), Error> {
-        remove(&self.path(CALIBRATION), |path| fs::remove_dir_all(path))
-    }
-
-    /// Removes the figures of a report; whatever else is in their folder stays.
-    fn clear_figures(&self) -> Result<(), Error> {
-        let folder = self.path("figures");
-        let Ok(entries) = fs::read_dir(&folder) else {
-            return Ok(());
-        };
-        for entry in entries.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            if name.ends_with(".svg") && FIGURES.iter().any(|start| name.starts_with(start)) {
-                remove(&entry.path(), |path| fs::remove_file(path))?;
-            }
-        }
-        // A folder that still has something in it is not removed.
-        let _ = fs::remove_dir(&folder);
-        Ok(())
-    }
-
     /// Writes which plan the folder is for, or checks it.
     fn record(&self, plan: &Plan) -> Result<(), Error> {
         let record = PlanRecord {
@@ -346,20 +288,64 @@ impl Output {
             shards: plan.shards(),
             diagrams: plan.diagrams.len() as u64,
         };
-        if let Some(before) = self.store.create_only(PLAN, &text(&record)?)? {
-            self.check(&before, plan)?;
+        let record = text(&record)?;
+        if let Some(before) = self.store.create_only(PLAN, &record)? {
+            match self.check(&before, plan) {
+                // The sweep itself tells which plan it was.
+                Err(Error::DamagedPlan { .. })
+                    if self.plan_of_sweep().is_ok_and(|own| own.id == plan.id) =>
+                {
+                    let path = self.path(PLAN);
+                    self.warn(format!(
+                        "`{}` is damaged: it is written again",
+                        path.display()
+                    ));
+                    self.store.write(PLAN, record.as_bytes())?;
+                }
+                checked => checked?,
+            }
         }
         let sweep = input::yaml::to_string(plan.sweep())?;
         self.store.write(SWEEP, sweep.as_bytes())?;
         Ok(())
     }
 
+    /// Whether it is a finished dataset that came without `_sweep`.
+    fn is_published(&self) -> bool {
+        !self.path(PLAN).exists() && self.path(MANIFEST).exists()
+    }
+
+    /// Checks that a finished dataset that came without `_sweep` is that of `plan`; it stays as it was
+    /// where it is not.
+    fn check_published(&self, plan: &Plan) -> Result<(), Error> {
+        let found = self.plan_of_sweep().map(|own| own.id);
+        if found.as_ref().is_ok_and(|found| *found == plan.id) {
+            return Ok(());
+        }
+        remove(&self.path("_sweep"), |path| fs::remove_dir_all(path))?;
+        Err(Error::OtherPlan {
+            path: self.root.clone(),
+            found: found.unwrap_or_else(|_| "unknown".into()),
+            expected: plan.id.clone(),
+        })
+    }
+
+    /// The plan of the `sweep.yaml` that stands there.
+    pub(super) fn plan_of_sweep(&self) -> Result<Plan, Error> {
+        let not_planned = || Error::NotPlanned(self.root.clone());
+        let sweep = self.store.read(SWEEP)?.ok_or_else(not_planned)?;
+        let sweep = Document::parse(&sweep, &self.path(SWEEP).display().to_string())?;
+        Ok(Plan::new(&sweep, &self.root)?)
+    }
+
     /// Checks that `record` is that of `plan`.
     fn check(&self, record: &[u8], plan: &Plan) -> Result<(), Error> {
-        let record: PlanRecord = serde_json::from_slice(record).map_err(|e| Error::Damaged {
-            path: self.path(PLAN),
-            reason: e.to_string(),
-        })?;
+        let record: PlanRecord =
+            serde_json::from_slice(record).map_err(|e| Error::DamagedPlan {
+                path: self.path(PLAN),
+                reason: e.to_string(),
+                root: self.root.clone(),
+            })?;
         if record.plan_id == plan.id {
             return Ok(());
         }
@@ -399,14 +385,14 @@ fn only_work_files(root: &Path) -> io::Result<bool> {
     Ok(work.exists() && !work.join("plan.json").exists())
 }
 
-fn make(folder: &Path) -> Result<(), Error> {
+pub(super) fn make(folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
         path: folder.to_owned(),
         source,
     })
 }
 
-fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
+pub(super) fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
     match how(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::Unwritable {
             path: path.to_owned(),
@@ -414,4 +400,18 @@ fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Erro
         }),
         _ => Ok(()),
     }
+}
+
+/// Files among the data that `known` does not know, by path: readers take them for data too.
+pub(super) fn strays(store: &Store, known: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
+    let mut strays = Vec::new();
+    for folder in FOLDERS {
+        let names = store.names(folder)?.into_iter();
+        let paths = names
+            .filter(|name| name != delta::FOLDER)
+            .map(|name| format!("{folder}/{name}"));
+        strays.extend(paths.filter(|path| !known(path)));
+    }
+    strays.sort();
+    Ok(strays)
 }

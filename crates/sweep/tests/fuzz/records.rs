@@ -85,7 +85,7 @@ pub fn records(executions: u64) {
 
 fn look(root: &Path) -> Result<String, Error> {
     let (output, plan) = Output::look(root)?;
-    let status = status(&output, &plan)?;
+    let status = status(&output, &plan, false)?;
     let manifest = finalize(&output, &plan)?;
     Ok(format!(
         "{} cases, {} files",

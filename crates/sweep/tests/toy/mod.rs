@@ -16,7 +16,7 @@ pub const SWEEP: &str = "
 name: test
 machine: single-stage.yaml
 seed: 3
-run: {revolutions: 4, transient: 2, sample_rate: 1 kHz}
+run: {revolutions: 4, transient: 2, sample_rate: 1 kHz, chaos: false}
 repeats: 2
 windows: {count: 2, revolutions: 2}
 cases:

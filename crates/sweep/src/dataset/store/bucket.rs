@@ -5,6 +5,7 @@
 
 use std::future::{Future, poll_fn};
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::Arc;
@@ -106,6 +107,13 @@ impl Bucket {
         let key = self.key(path);
         let head = self.found("read", path, || self.objects.head(&key))?;
         Ok(head.map(|object| object.last_modified.into()))
+    }
+
+    pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
+        let key = self.key(path);
+        let part = self.persist(|| self.objects.get_range(&key, range.clone()));
+        let part = part.map_err(|error| failed("read", &self.path(path), &error))?;
+        Ok(part.to_vec())
     }
 
     pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {

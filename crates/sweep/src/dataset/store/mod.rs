@@ -9,6 +9,7 @@ mod temporary;
 
 use std::fs::File;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -152,6 +153,15 @@ impl Store {
             let error = io::Error::new(io::ErrorKind::InvalidData, "it is not valid UTF-8");
             failed("read", &self.path(path), error)
         })
+    }
+
+    /// Some bytes of what stands at `path`, which must have them.
+    pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
+        match self {
+            Self::Folder(store) => store.range(path, range),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.range(path, range),
+        }
     }
 
     /// Length and checksum of what stands at `path`, if something does.
