@@ -19,6 +19,12 @@ pub(crate) fn command(root: &Path, case: u64) -> Option<Command> {
     Some(command)
 }
 
+#[allow(clippy::exit)] // The simulation cannot be stopped otherwise.
+fn end_with_parent() -> ! {
+    let _ = io::copy(&mut io::stdin(), &mut io::sink());
+    process::exit(0)
+}
+
 /// Tries a case if this process was called to; a program does this before anything else.
 pub fn if_asked() -> Option<ExitCode> {
     let arguments: Vec<OsString> = env::args_os().skip(1).collect();
@@ -30,10 +36,7 @@ pub fn if_asked() -> Option<ExitCode> {
     }
     let case = case.to_str()?.parse().ok()?;
     // Whoever asked holds the other end: when that closes, nobody waits for the outcome.
-    thread::spawn(|| {
-        let _ = io::copy(&mut io::stdin(), &mut io::sink());
-        process::exit(0)
-    });
+    thread::spawn(|| end_with_parent());
     let tried = try_here(Path::new(root), case, &simulate_cases);
     Some(crate::finish(tried.map_err(crate::gen_dataset::failed)))
 }

@@ -9,6 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use sweep::dataset::{Failure, Output, status};
 use sweep::{Case, Error, Existing, Options, Recording, generate};
 use toy::{CASES, SWEEP, assert_same, each, options, plan, record, run};
@@ -19,6 +20,13 @@ const DEADLY: u64 = 9;
 fn deadly(case: &Case) -> Result<Recording, Failure> {
     assert_ne!(case.index, DEADLY, "the process ends");
     record(case)
+}
+
+/// One test at a time: a process that another test just started holds a copy of every lock until it
+/// runs its own program.
+fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A shell that does `script`.
@@ -46,6 +54,7 @@ fn resume(cancel: &AtomicBool) -> Options<'_> {
 
 #[test]
 fn a_case_fails_by_the_end_of_its_own_process() {
+    let _alone = alone();
     for (end, reason) in [
         ("kill -ABRT $$", "its process ended by SIGABRT (signal 6)"),
         ("kill -SEGV $$", "its process ended by SIGSEGV (signal 11)"),
@@ -90,6 +99,7 @@ fn a_case_fails_by_the_end_of_its_own_process() {
 
 #[test]
 fn a_signal_from_outside_fails_no_case() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [whole, root] = ["whole", "set"].map(|name| folder.path().join(name));
     run(&plan(SWEEP), &whole, Existing::Refuse, 2).unwrap();
@@ -126,6 +136,7 @@ fn nothing_is_tried(_: &Path, _: u64) -> Option<Command> {
 
 #[test]
 fn processes_at_work_are_no_reason_to_try_a_case() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [whole, root] = ["whole", "set"].map(|name| folder.path().join(name));
     let plan = plan(SWEEP);
@@ -174,6 +185,7 @@ fn processes_at_work_are_no_reason_to_try_a_case() {
 
 #[test]
 fn a_case_with_rows_stands_against_one_that_died() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [whole, root] = ["whole", "set"].map(|name| folder.path().join(name));
     let plan = plan(SWEEP);
@@ -237,6 +249,7 @@ fn a_case_with_rows_stands_against_one_that_died() {
 
 #[test]
 fn a_case_that_failed_is_tried_again_where_that_is_asked_for() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let [whole, root] = ["whole", "set"].map(|name| folder.path().join(name));
     let plan = plan(SWEEP);
