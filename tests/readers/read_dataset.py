@@ -315,6 +315,12 @@ def check_manifest(folder):
         same(len(content), entry["bytes"], f"{entry['path']}: size")
         same(hashlib.sha256(content).hexdigest(), entry["sha256"], f"{entry['path']}: sha256")
     listed = {entry["path"] for entry in manifest["files"]} | {"manifest.json"}
+    if (folder / "SHA256SUMS").exists():
+        sums = dict(reversed(line.split("  ", 1)) for line in (folder / "SHA256SUMS").read_text().splitlines())
+        expected = {entry["path"]: entry["sha256"] for entry in manifest["files"]}
+        expected["manifest.json"] = hashlib.sha256((folder / "manifest.json").read_bytes()).hexdigest()
+        same(sums, expected, "SHA256SUMS")
+        listed.add("SHA256SUMS")
     present = {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
     # The pages are made from the dataset afterwards: nobody has to list them.
     pages = {"report.html", "chaos.html", "features.html"}

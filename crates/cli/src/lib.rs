@@ -23,5 +23,7 @@ mod run_progress;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;
+pub mod try_case;
+pub mod verify;
 
 pub use failure::{Failure, finish};

@@ -84,6 +84,8 @@ impl Dataset {
             existing,
             threads: 2,
             cancel: &AtomicBool::new(false),
+            retry_failed: false,
+            trial: None,
         };
         let plan = plan.with_format(format);
         generate(&plan, &self.path(), &options, &simulate_cases, &mut ()).unwrap();

@@ -42,4 +42,4 @@ pub use error::Error;
 pub use manifest::{CaseWarning, Counts, FailedCase, FileEntry, Manifest};
 pub use schema::{Column, Kind, Role, Schema};
 pub use table::{Cell, Data, Table, Value};
-pub use whole_file::{FileRecord, WholeFile};
+pub use whole_file::{FileRecord, WholeFile, sync_folder};

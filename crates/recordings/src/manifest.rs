@@ -67,6 +67,9 @@ pub struct FailedCase {
     pub reason: String,
     /// The command that runs this case alone.
     pub command: String,
+    /// Whether the process that simulated it died, where the others end with a reason of their own.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub died: bool,
 }
 
 impl FailedCase {

@@ -114,9 +114,12 @@ impl Drop for WholeFile {
     }
 }
 
-/// A rename is on the disk once its folder is.
+/// Hands the folder of `file` to the disk: a new name, by a rename or a link, is there once its folder is.
+///
+/// # Errors
+/// When the folder cannot be synced.
 #[cfg(unix)]
-fn sync_folder(file: &Path) -> Result<(), Error> {
+pub fn sync_folder(file: &Path) -> Result<(), Error> {
     let folder = match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -128,7 +131,7 @@ fn sync_folder(file: &Path) -> Result<(), Error> {
 
 /// Folders cannot be opened here, and the file system orders renames itself.
 #[cfg(not(unix))]
-fn sync_folder(_: &Path) -> Result<(), Error> {
+pub fn sync_folder(_: &Path) -> Result<(), Error> {
     Ok(())
 }
 

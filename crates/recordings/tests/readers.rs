@@ -278,6 +278,7 @@ impl Dataset {
                 case_id: "case-5".into(),
                 reason: "the step is too small at 0.25 s".into(),
                 command: "crosshead simulate machine.yaml".into(),
+                died: false,
             }],
             warnings: vec![CaseWarning {
                 case_id: "case-6".into(),

@@ -31,6 +31,8 @@ fn dataset(c: &mut Criterion) {
                 existing: Existing::Overwrite,
                 threads: 1,
                 cancel: &AtomicBool::new(false),
+                retry_failed: false,
+                trial: None,
             };
             generate(&plan, folder.path(), &options, &simulate_cases, &mut ()).is_ok()
         });

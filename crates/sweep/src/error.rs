@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::dataset::Fault;
 use crate::ranges::ranges;
 
 /// What can go wrong with a sweep. A case that fails is not among it: it stands in the manifest,
@@ -127,8 +128,21 @@ pub enum Error {
     /// A file of the dataset could not be read or written.
     #[error(transparent)]
     File(#[from] recordings::Error),
-    /// The work files of the dataset are damaged.
-    #[error("`{}` is damaged ({reason}): --overwrite starts afresh", path.display())]
+    /// The record of the plan is damaged.
+    #[error(
+        "`{}` is damaged ({reason}): the same sweep, by `gen-dataset SWEEP.yaml --out {} --resume` or \
+         `crosshead sweep plan`, writes it again; finished shards stay", path.display(), root.display()
+    )]
+    DamagedPlan {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+        /// The dataset.
+        root: PathBuf,
+    },
+    /// What says which calibration was copied to a bucket is damaged.
+    #[error("`{}` is damaged ({reason}): remove it and plan the same sweep again", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -158,19 +172,21 @@ pub enum Error {
         /// Those that are missing; at least one.
         missing: Vec<u64>,
     },
-    /// A file of a dataset is not the one that was written.
+    /// Files of a dataset are not those that were written.
     #[error(
-        "`{}` was changed (checksum {}, not {}): remove it, and its shard is made again",
-        path.display(), short(found), short(expected)
+        "{} files of `{}` are not as they were written; --resume, or `sweep shard` of its shard, makes \
+         a file of data again, and `sweep finalize` writes the others again:{}",
+        faults.len(), path.display(), lines(faults)
     )]
-    Changed {
-        /// The file.
+    Faults {
+        /// The dataset.
         path: PathBuf,
-        /// Checksum of what stands there, or why there is none.
-        found: String,
-        /// Checksum of what was written.
-        expected: String,
+        /// All of them; at least one.
+        faults: Vec<Fault>,
     },
+    /// A folder or bucket without the manifest of a dataset.
+    #[error("`{}` holds no finished dataset: it has no manifest.json", .0.display())]
+    NoManifest(PathBuf),
     /// The user wanted it to stop after the cases.
     #[error(
         "stopped; all cases and {done} of {diagrams} bifurcation diagrams are finished, and \
@@ -212,6 +228,7 @@ impl Error {
                 | Error::OtherPlan { .. }
                 | Error::NotPlanned(_)
                 | Error::NotFinalized(_)
+                | Error::NoManifest(_)
                 | Error::OtherDeltaTable(_)
                 | Error::NoOverwrite(_)
                 | Error::NoCalibration(_)
@@ -223,6 +240,11 @@ impl Error {
                 | Error::Unwritable { .. }
         )
     }
+}
+
+/// A line for each.
+fn lines(faults: &[Fault]) -> String {
+    faults.iter().map(|fault| format!("\n  {fault}")).collect()
 }
 
 /// The start of a checksum, as people compare it.

@@ -58,6 +58,8 @@ fn run(plan: &Plan, root: &Path, threads: usize, stop_after: u64) -> Result<(), 
         existing: Existing::Resume,
         threads,
         cancel: &cancel,
+        retry_failed: false,
+        trial: None,
     };
     let mut progress = StopAfter(stop_after, &cancel);
     generate(plan, root, &options, &simulate_cases, &mut progress).map(|_| ())

@@ -198,6 +198,8 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
             existing,
             threads: 1,
             cancel: &cancel,
+            retry_failed: false,
+            trial: None,
         };
         generate_in(claim, plan, &options, &silent, &mut ())
     };

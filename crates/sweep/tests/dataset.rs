@@ -1,131 +1,14 @@
 //! Plans become datasets, with a cheap runner in place of the simulation.
 
-use input::yaml::Document;
-use rand::Rng;
+mod toy;
+
 use recordings::Manifest;
-use signal::channel::Channel;
-use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::SeqCst};
-use sweep::dataset::{Failure, Output};
-use sweep::{Case, Error, Existing, Options, Plan, Progress, Recording, generate};
-
-const SWEEP: &str = "
-name: test
-machine: single-stage.yaml
-seed: 3
-run: {revolutions: 4, transient: 2, sample_rate: 1 kHz}
-repeats: 2
-windows: {count: 2, revolutions: 2}
-cases:
-  - grid:
-      joints: [[], [big_end], [big_end, small_end]]
-      clearance: [0.1 mm, 0.2 mm]
-      speed: [400 rpm, 500 rpm]
-  - random:
-      count: 5
-      axes: {cylinder.discharge: {uniform: [0.3 MPa, 0.4 MPa]}}
-vary:
-  joints.big_end.contact.damping: {lognormal: {factor: 1.5}}
-splits: {train: 60 %, test: 40 %}
-shard_size: 7
-";
-
-/// 2 × (2 + 4 + 4 + 5).
-const CASES: u64 = 30;
-
-fn machines() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines")
-}
-
-fn plan(text: &str) -> Plan {
-    let document = Document::parse(text, "sweep.yaml").unwrap();
-    Plan::new(&document, &machines()).unwrap()
-}
-
-/// Channels that depend on the case: its speed, its clearances and its own noise.
-fn record(case: &Case) -> Result<Recording, Failure> {
-    let mut noise = case.noise();
-    let rate = case.settings.sample_rate;
-    let period = std::f64::consts::TAU / case.resolved.speed;
-    let samples = (f64::from(case.settings.revolutions) * period * rate).ceil() as usize;
-    let wear: f64 = case.labels.clearances_m.iter().sum();
-    let sensors = case.resolved.sensors.iter();
-    let channels = sensors.map(|sensor| Channel {
-        name: sensor.measured.column(&[""]),
-        unit: sensor.measured.unit().into(),
-        samples: (0..samples)
-            .map(|i| {
-                let turn = i as f64 / rate / period;
-                let angle = turn.fract() * std::f64::consts::TAU;
-                let hiss = f64::from(noise.next_u32()) / f64::from(u32::MAX) - 0.5;
-                match sensor.measured.unit() {
-                    "rad" => angle as f32,
-                    _ => (angle.sin() + 1e4 * wear * hiss) as f32,
-                }
-            })
-            .collect(),
-    });
-    Ok(Recording {
-        motion: None,
-        warnings: Vec::new(),
-        sample_rate_hz: rate,
-        channels: channels.collect(),
-    })
-}
-
-/// A runner that takes cases one by one.
-fn each<F>(of_case: F) -> impl Fn(&[Case]) -> Vec<Result<Recording, Failure>> + Sync
-where
-    F: Fn(&Case) -> Result<Recording, Failure> + Sync,
-{
-    move |cases| cases.iter().map(&of_case).collect()
-}
-
-fn options(existing: Existing, threads: usize, cancel: &AtomicBool) -> Options<'_> {
-    Options {
-        existing,
-        threads,
-        cancel,
-    }
-}
-
-fn run(plan: &Plan, root: &Path, existing: Existing, threads: usize) -> Result<Manifest, Error> {
-    let cancel = AtomicBool::new(false);
-    generate(
-        plan,
-        root,
-        &options(existing, threads, &cancel),
-        &each(record),
-        &mut (),
-    )
-}
-
-/// Every file below `root` but for the logs, by path.
-fn files(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![root.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.extend((!path.ends_with("_sweep/logs")).then_some(path));
-            } else {
-                let name = path.strip_prefix(root).unwrap().to_owned();
-                found.insert(name, fs::read(path).unwrap());
-            }
-        }
-    }
-    found
-}
-
-fn assert_same(a: &Path, b: &Path) {
-    let (a, b) = (files(a), files(b));
-    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
-    let differ: Vec<_> = a.keys().filter(|name| a[*name] != b[*name]).collect();
-    assert!(differ.is_empty(), "{differ:?}");
-}
+use sweep::dataset::Output;
+use sweep::{Case, Error, Existing, Plan, Progress, generate};
+use toy::{CASES, SWEEP, assert_same, each, files, options, plan, record, run};
 
 #[test]
 fn threads_and_repetition_change_no_byte() {
@@ -311,35 +194,6 @@ fn shards_are_of_equal_size_and_part_of_the_plan() {
         message.contains("5000000 a shard, and 1000000"),
         "{message}"
     );
-}
-
-#[test]
-fn a_case_that_its_process_ends_with_is_found_and_left_out() {
-    let folder = tempfile::tempdir().unwrap();
-    let root = folder.path().join("set");
-    let plan = plan(SWEEP);
-    let deadly = |case: &Case| {
-        assert_ne!(case.index, 9, "the process ends");
-        record(case)
-    };
-    let cancel = AtomicBool::new(false);
-    let resume = options(Existing::Resume, 2, &cancel);
-    let attempt = || generate(&plan, &root, &resume, &each(deadly), &mut ());
-    let mut ended = 0;
-    let manifest = loop {
-        match std::panic::catch_unwind(std::panic::AssertUnwindSafe(attempt)) {
-            Ok(made) => break made.unwrap(),
-            Err(_) => ended += 1,
-        }
-        assert!(ended < 10);
-    };
-    assert_eq!(ended, 6);
-    assert_eq!(manifest.failed.len(), 1);
-    assert_eq!(manifest.failed[0].case_id, "case-000009");
-    let reason = "the process ended without a word, three times";
-    assert_eq!(manifest.failed[0].reason, reason);
-    let rows: u64 = manifest.counts.rows.values().flat_map(|f| f.values()).sum();
-    assert_eq!(rows, 2 * (CASES - 1));
 }
 
 #[test]

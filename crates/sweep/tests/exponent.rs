@@ -29,6 +29,8 @@ fn a_sweep_that_asks_for_exponents_has_them() {
         existing: Existing::Refuse,
         threads: 2,
         cancel: &AtomicBool::new(false),
+        retry_failed: false,
+        trial: None,
     };
     generate(&plan, folder.path(), &options, &simulate_cases, &mut ()).unwrap();
     for name in ["signals", "features"] {

@@ -21,6 +21,8 @@ enum Verb {
     Simulate(cli::simulate::Arguments),
     /// Compute the features of recordings, measured or simulated
     Features(cli::features::Arguments),
+    /// Tell whether the files of a finished dataset are those that were written
+    Verify(cli::verify::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
     Report(cli::report::Arguments),
     /// Fit a machine's parameters to recordings of it
@@ -38,11 +40,15 @@ enum Verb {
 fn main() -> ExitCode {
     // Output that nobody reads any more ends a program, as everywhere.
     sigpipe::reset();
+    if let Some(tried) = cli::try_case::if_asked() {
+        return tried;
+    }
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Sweep(arguments) => cli::sweep::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),
         Verb::Features(arguments) => cli::features::run(&arguments),
+        Verb::Verify(arguments) => cli::verify::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Calibrate(arguments) => cli::calibrate::run(&arguments),
         Verb::ExplainGap(arguments) => cli::explain_gap::run(&arguments),

@@ -6,6 +6,9 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // Output that nobody reads any more ends a program, as everywhere.
     sigpipe::reset();
+    if let Some(tried) = cli::try_case::if_asked() {
+        return tried;
+    }
     cli::finish(cli::gen_dataset::run(&Program::parse().arguments))
 }
 

@@ -2,7 +2,7 @@
 
 mod calibrated;
 
-use crate::{Failure, interrupt};
+use crate::{Failure, interrupt, try_case};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use recordings::{CaseWarning, FailedCase, Manifest};
@@ -27,6 +27,7 @@ Examples:
   gen-dataset pipelines/paper2.yaml
   gen-dataset pipelines/bearing-faults.yaml --out faults --threads 8
   gen-dataset pipelines/bearing-faults.yaml --out faults --resume
+  gen-dataset pipelines/bearing-faults.yaml --out faults --resume --retry-failed
   gen-dataset pipelines/bearing-faults.yaml --dry-run
 
 Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the arguments are wrong.")]
@@ -45,6 +46,9 @@ pub struct Arguments {
     /// Go on with a dataset that was interrupted
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
+    /// Make the shards with failed cases again, whatever these failed of
+    #[arg(long, requires = "resume")]
+    retry_failed: bool,
     /// Replace a dataset that is there
     #[arg(long)]
     overwrite: bool,
@@ -87,6 +91,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         existing,
         threads,
         cancel: &cancel,
+        retry_failed: arguments.retry_failed,
+        trial: Some(&try_case::command),
     };
     let started = Instant::now();
     let claim = || claim(&sweep, nominal, &out, existing, &cancel);
@@ -224,6 +230,10 @@ impl Progress for Bar {
         self.show(cases, finished, "cases");
     }
 
+    fn warning(&mut self, text: &str) {
+        warn(&[text.to_owned()]);
+    }
+
     fn case_done(&mut self, _case: u64, failed: bool) {
         let Some(bar) = &self.bar else { return };
         bar.inc(1);
@@ -287,7 +297,8 @@ pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f
         "{}: {} cases, {rows} rows, {} files, {:.1} MB in {seconds:.1} s",
         out.display(),
         manifest.counts.cases,
-        manifest.files.len() + 1,
+        // With the manifest and SHA256SUMS.
+        manifest.files.len() + 2,
         bytes as f64 / 1e6
     );
     let census = Census::of(plan, manifest);

@@ -6,8 +6,11 @@ use crate::Failure;
 use ::report::text;
 use recordings::Manifest;
 use recordings::formats::parquet::ParquetFile;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use sweep::Plan;
+use sweep::dataset::damage;
 
 /// The channel of the crank angle.
 pub(super) const CRANK_ANGLE: &str = "crank_angle_rad";
@@ -21,6 +24,8 @@ pub(super) struct Dataset {
     pub(super) labels: Vec<Label>,
     /// The accelerometers that its faults are judged by.
     pub(super) sensors: Sensors,
+    /// Tables that were compared with their checksums.
+    compared: Mutex<BTreeSet<String>>,
 }
 
 impl Dataset {
@@ -39,6 +44,7 @@ impl Dataset {
             labels: labels::of(&plan),
             sensors: Sensors::of(&plan),
             plan,
+            compared: Mutex::default(),
         })
     }
 
@@ -55,18 +61,18 @@ impl Dataset {
     /// Opens a table that the manifest lists.
     ///
     /// # Errors
-    /// A file that is not there, is damaged, or is not as long as the manifest says.
+    /// A file that is not there, or is not the one that was written.
     pub(super) fn table(&self, path: &str) -> Result<ParquetFile, Failure> {
         let place = self.folder.join(path);
         let listed = self.manifest.files.iter().find(|file| file.path == path);
-        if let (Some(entry), Ok(found)) = (listed, place.metadata())
-            && entry.bytes != found.len()
+        let mut compared = self.compared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(entry) = listed
+            && compared.insert(path.to_owned())
+            && let Some(damage) = damage(&self.folder, entry).map_err(Failure::work)?
         {
             return Err(Failure::input(format!(
-                "{}: {} bytes where the manifest has {}: the file is damaged",
+                "{} {damage}: `crosshead verify` names all such files",
                 place.display(),
-                found.len(),
-                entry.bytes
             )));
         }
         ParquetFile::open(&place).map_err(Failure::input)

@@ -15,7 +15,7 @@ Example:
 
 signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
 of Parquet see no difference, but for polars, which reads features/*.parquet and no longer the folder.
-Doing it again changes nothing.
+Every table is compared with its checksum first. Doing it again changes nothing.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {

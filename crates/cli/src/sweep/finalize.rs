@@ -7,7 +7,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 use sweep::Error;
-use sweep::dataset::{Output, finalize, verify};
+use sweep::dataset::{Output, finalize, finalize_verified};
 use sweep::ranges::ranges;
 
 /// Arguments of `sweep finalize`.
@@ -24,7 +24,7 @@ Exit status: 0 the dataset is complete; 1 the work failed; 2 the input or the ar
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
-    /// Compare every file with its checksum
+    /// Compare every file with its checksum before anything is written; what stands there stays
     #[arg(long)]
     verify: bool,
     /// Submit what is missing again to Slurm, as the finalising job of `sweep submit` does
@@ -42,7 +42,12 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
-    let manifest = match finalize(&output, &plan) {
+    let completed = match arguments.verify {
+        true => finalize_verified(&output, &plan),
+        false => finalize(&output, &plan),
+    };
+    gen_dataset::warn(&output.take_warnings());
+    let manifest = match completed {
         Ok(manifest) => manifest,
         Err(Error::Incomplete { shards, missing }) => {
             println!("{}", ranges(&missing));
@@ -55,9 +60,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Err(error) => return Err(gen_dataset::failed(error)),
     };
-    if arguments.verify {
-        verify(&output, &manifest).map_err(gen_dataset::failed)?;
-    }
     let seconds = started.elapsed().as_secs_f64();
     gen_dataset::summarise(&plan, &manifest, &arguments.url, seconds);
     if let Some(text) =

@@ -48,7 +48,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         plan = plan.with_shards(shards).map_err(gen_dataset::failed)?;
     }
     gen_dataset::warn(&plan.census().mistakes());
-    claim.open(&plan).map_err(gen_dataset::failed)?;
+    let output = claim.open(&plan).map_err(gen_dataset::failed)?;
+    gen_dataset::warn(&output.take_warnings());
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",
         out.display(),

@@ -2,7 +2,7 @@
 
 use super::index;
 use crate::gen_dataset::{self, Bar};
-use crate::{Failure, interrupt};
+use crate::{Failure, interrupt, try_case};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -35,6 +35,9 @@ pub struct Arguments {
     /// Threads that simulate [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
+    /// Make the shard again if cases of it failed, whatever these failed of
+    #[arg(long)]
+    retry_failed: bool,
 }
 
 /// Makes the shard.
@@ -53,6 +56,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         existing: Existing::Resume,
         threads: gen_dataset::threads(arguments.threads),
         cancel: &cancel,
+        retry_failed: arguments.retry_failed,
+        trial: Some(&try_case::command),
     };
     let started = Instant::now();
     let mut bar = Bar::default();

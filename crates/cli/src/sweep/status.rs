@@ -13,13 +13,19 @@ use sweep::ranges::ranges;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
-  crosshead sweep status /scratch/faults")]
+  crosshead sweep status /scratch/faults
+
+Records are read, and the lengths of files. With --verify the files are read too, which takes long.
+What is damaged counts as not made, and is named as a warning.")]
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
     /// Folder of the jobs' scripts, as it was given to `sweep submit`
     #[arg(long, value_name = "DIR")]
     scripts: Option<PathBuf>,
+    /// Compare every file with its checksum
+    #[arg(long)]
+    verify: bool,
     /// As JSON, for programs
     #[arg(long)]
     json: bool,
@@ -31,13 +37,17 @@ pub struct Arguments {
 /// Nothing planned, or records that cannot be read.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let found = status(&output, &plan).map_err(gen_dataset::failed)?;
+    let found = status(&output, &plan, arguments.verify).map_err(gen_dataset::failed)?;
+    gen_dataset::warn(&output.take_warnings());
     let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
     let jobs = jobs.map_or_else(|_| Vec::new(), |jobs| jobs.under_way());
     let made = plan.parts() - found.missing.len() as u64;
     if arguments.json {
         let attempts = found.attempts.iter();
-        let attempts = attempts.map(|(shard, count)| json!({"shard": shard, "attempts": count}));
+        let attempts = attempts.map(|(shard, at)| {
+            let (at_work, ended) = (at.at_work, at.ended);
+            json!({"shard": shard, "attempts": at_work + ended, "at_work": at_work, "ended": ended})
+        });
         let value = json!({
             "plan_id": plan.id,
             "name": plan.name,
@@ -73,8 +83,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !found.missing.is_empty() {
         println!("missing: {}", ranges(&found.missing));
     }
-    for (shard, count) in found.attempts {
-        println!("shard {shard}: {count} processes at work, or ended without a word");
+    for (shard, at) in found.attempts {
+        let (at_work, ended) = (at.at_work, at.ended);
+        println!("shard {shard}: {at_work} processes at work, {ended} ended without a result");
     }
     for job in jobs {
         println!("Slurm job {job}");

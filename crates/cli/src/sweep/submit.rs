@@ -51,7 +51,9 @@ enum Engine {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref())?;
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let missing = status(&output, &plan).map_err(gen_dataset::failed)?.missing;
+    let missing = status(&output, &plan, false)
+        .map_err(gen_dataset::failed)?
+        .missing;
     match arguments.engine {
         Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
     }

@@ -1,5 +1,6 @@
 //! Cases become rows: they are run, cut into windows and summed up, all on one thread.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -8,6 +9,7 @@ use recordings::{FailedCase, Value};
 use signal::channel::Channel;
 
 use super::tables::{features_row, labels, signals_row};
+use super::trial::Death;
 use super::{Failure, Recording, Runner};
 use crate::Plan;
 use crate::plan::Case;
@@ -34,16 +36,23 @@ pub(super) enum Signals {
     Mcap(Vec<u8>),
 }
 
-/// Runs these cases of `plan`. `sweep_yaml` goes into MCAP files.
+/// The cases whose processes died when they were tried.
+pub(super) type Dead = BTreeMap<u64, Death>;
+
+/// Runs these cases of `plan` but for those of `dead`. `sweep_yaml` goes into MCAP files.
 pub(super) fn run_cases(
     plan: &Plan,
     cases: Range<u64>,
+    dead: &Dead,
     runner: &Runner,
     sweep_yaml: &str,
 ) -> Vec<Result<CaseRows, FailedCase>> {
     let planned: Vec<Result<Case, Failure>> = cases
         .clone()
-        .map(|index| plan.case(index).map_err(Failure::from))
+        .map(|index| match dead.get(&index) {
+            Some(death) => Err(Failure::from(death.clone())),
+            None => plan.case(index).map_err(Failure::from),
+        })
         .collect();
     let whole: Vec<Case> = planned.iter().flatten().cloned().collect();
     let mut recordings = runner(&whole).into_iter();
@@ -60,11 +69,12 @@ pub(super) fn run_cases(
 }
 
 /// Case `index`, which failed.
-pub(super) fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
+fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
     let case_id = plan.case_id(index);
     FailedCase {
         reason: failure.to_string(),
         command: format!("crosshead simulate sweep.yaml --case {case_id}"),
+        died: failure.is::<Death>(),
         case_id,
     }
 }

@@ -13,10 +13,13 @@ use super::diagrams::{self, DiagramTable};
 use super::output::Output;
 use super::store::failed;
 use super::tables::Tables;
+use super::verify::faults_of;
 use crate::{Error, Plan};
 
-/// The first version of a table.
-const LOG: &str = "_delta_log/00000000000000000000.json";
+/// The log of a Delta table, beside its files.
+pub(super) const FOLDER: &str = "_delta_log";
+/// Its first version, which is the only one here.
+pub(super) const VERSION: &str = "00000000000000000000.json";
 
 /// A Delta table of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,14 +32,23 @@ pub struct DeltaTable {
     pub rows: u64,
 }
 
-/// Makes each folder of Parquet files of a finished dataset a Delta table. Doing it again changes
-/// nothing.
+/// Makes each folder of Parquet files of a finished dataset a Delta table, if all of them are as they
+/// were written. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where the dataset has no manifest yet, the log of another table stands there, or it cannot be
+/// Where a file is damaged, the dataset has no manifest yet, the log of another table stands there, or it cannot be
 /// written.
 pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Error> {
     let manifest = manifest(output)?;
+    let listed = manifest
+        .files
+        .iter()
+        .filter(|file| file.path.ends_with(".parquet"));
+    let faults = faults_of(&output.store, listed, &mut |_| {})?;
+    if !faults.is_empty() {
+        let path = output.root.clone();
+        return Err(Error::Faults { path, faults });
+    }
     let tables = Tables::new(plan)?;
     let diagrams = DiagramTable::new(plan)?;
     let tables = [
@@ -85,14 +97,14 @@ fn rows(files: &[(&str, &FileEntry)]) -> u64 {
 
 /// Writes a log, or compares it with the one that is there.
 fn write(output: &Output, folder: &str, log: &str) -> Result<(), Error> {
-    let path = format!("{folder}/{LOG}");
+    let path = format!("{folder}/{FOLDER}/{VERSION}");
     if output.store.folder().is_some()
         && let Some(folder) = output.path(&path).parent()
     {
         fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
     }
     match output.store.create_only(&path, log)? {
-        Some(before) if before != log => Err(Error::OtherDeltaTable(output.path(&path))),
+        Some(before) if before != log.as_bytes() => Err(Error::OtherDeltaTable(output.path(&path))),
         _ => Ok(()),
     }
 }

@@ -11,7 +11,7 @@ use recordings::{Column, FileEntry, Kind, Schema, Value};
 use simulate::bifurcation::{Chunk, Machines, Walk};
 use simulate::poincare::{Joint, Revolution, ThrowPoint};
 
-use super::commit::DiagramCommit;
+use super::commit::{Check, DiagramCommit, Found};
 use super::output::Output;
 use super::tables::prefixed;
 use super::{Failure, Options, Progress, pool};
@@ -37,7 +37,8 @@ pub fn run_diagrams(
 ) -> Result<(), Error> {
     let mut pending: Vec<&Diagram> = Vec::new();
     for diagram in &plan.diagrams {
-        if DiagramCommit::read(output, plan, &diagram.name)?.is_none() {
+        let found = DiagramCommit::find(output, plan, &diagram.name, Check::Resume)?;
+        if found.made().is_none() {
             pending.push(diagram);
         }
     }
@@ -214,7 +215,9 @@ impl DiagramTable {
         diagram: &Diagram,
         rows: Vec<Vec<Value>>,
     ) -> Result<(), Error> {
-        let path = format!("{FOLDER}/{}.parquet", diagram.name);
+        let name = &diagram.name;
+        let before = DiagramCommit::find(output, plan, name, Check::Sums)?;
+        let path = format!("{FOLDER}/{name}.parquet");
         let file = output.store.create(&path)?;
         let mut table = TableWriter::new(file, &self.schema, ROWS_PER_GROUP)?;
         for row in rows {
@@ -231,7 +234,10 @@ impl DiagramTable {
                 rows: Some(rows),
             },
         };
-        commit.write(output, &diagram.name)
+        match before {
+            Found::Damaged => commit.replace(output, name),
+            Found::Nothing | Found::Made(_) => commit.create(output, plan, name),
+        }
     }
 }
 

@@ -1,13 +1,16 @@
 //! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
 
+mod adopt;
 mod attempts;
 mod case_rows;
+mod clear;
 mod commit;
 mod delta;
 mod diagrams;
 mod finalize;
 mod judged;
 mod kept;
+mod lock;
 mod log;
 mod output;
 mod parts;
@@ -15,15 +18,20 @@ mod shard;
 mod status;
 mod store;
 mod tables;
+mod trial;
+mod verify;
 
-pub use commit::Commit;
+pub use attempts::Attended;
+pub use commit::{Commit, Damage};
 pub use delta::{DeltaTable, export_delta};
 pub use diagrams::{run_diagrams, sample_diagram};
-pub use finalize::{finalize, verify};
+pub use finalize::{finalize, finalize_verified};
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};
 pub use tables::{Tables, feature_column};
+pub use trial::{Trial, try_here};
+pub use verify::{Fault, Verified, damage, verify};
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -38,10 +46,12 @@ use crate::in_order::in_order;
 use crate::plan::MOST_CASES;
 use crate::{Case, Error, Plan};
 use attempts::Attempts;
-use case_rows::{failed, run_cases};
+use case_rows::{Dead, run_cases};
+use commit::Check;
 use log::Pace;
 use parts::scan;
 use shard::ShardWriter;
+use trial::try_cases;
 
 /// What a simulated case gives: the channels of the machine's sensors, in their order.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +81,8 @@ const TOGETHER: u64 = 32;
 pub trait Progress {
     /// Cases of the sweep, and how many of them were finished before.
     fn begins(&mut self, _cases: u64, _finished: u64) {}
+    /// Something is wrong with what was there before.
+    fn warning(&mut self, _text: &str) {}
     /// A case is done.
     fn case_done(&mut self, _case: u64, _failed: bool) {}
     /// Values of all bifurcation diagrams, and how many of them were finished before.
@@ -90,6 +102,17 @@ pub struct Options<'a> {
     pub threads: usize,
     /// Once true, nothing new is started and [`Error::Cancelled`] is handed back.
     pub cancel: &'a AtomicBool,
+    /// Whether finished shards with failed cases, for whatever reason they failed, are made again.
+    pub retry_failed: bool,
+    /// Tries a case in a process of its own, where several processes ended without a result; without
+    /// it, such a case is not found.
+    pub trial: Option<&'a Trial<'a>>,
+}
+
+impl Options<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
 }
 
 /// Runs the sweep and writes its dataset to the folder `root`.
@@ -125,10 +148,21 @@ pub fn generate_in(
     plan.check_size()?;
     let output = claim.open(plan)?;
     let mut pending = Vec::new();
-    scan(plan, &output, 0..plan.shards(), |shard, made| {
-        pending.extend(made.is_none().then_some(shard));
-        Ok(())
-    })?;
+    scan(
+        plan,
+        &output,
+        0..plan.shards(),
+        Check::Resume,
+        |shard, made| {
+            let finished = made.is_some_and(|made| made.is_finished(options));
+            pending.extend((!finished).then_some(shard));
+            Ok(())
+        },
+    )?;
+    output
+        .take_warnings()
+        .iter()
+        .for_each(|text| progress.warning(text));
     let unfinished = cases_of(plan, &pending);
     progress.begins(plan.cases(), plan.cases() - unfinished);
     output.logged("gen-dataset", || {
@@ -138,8 +172,8 @@ pub fn generate_in(
     })
 }
 
-/// Runs the shards `pending` of a sweep. Those that several processes ended in come first, case by
-/// case.
+/// Runs the shards `pending` of a sweep, in ascending order. Suspect ones come first, each by itself:
+/// their cases are tried before they are run.
 ///
 /// # Errors
 /// Where a file cannot be written, or a shard comes out differently than it did before.
@@ -151,6 +185,7 @@ pub fn run_shards(
     runner: &Runner,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
+    let attempts = Attempts::new(output);
     let mut shards = Shards {
         plan,
         output,
@@ -161,6 +196,7 @@ pub fn run_shards(
         sweep_yaml: input::yaml::to_string(plan.sweep())?,
         done: plan.shards() - pending.len() as u64,
         pace: Pace::new(cases_of(plan, pending)),
+        attempts: &attempts,
     };
     if !pending.is_empty() {
         let (id, threads) = (&plan.id[..12], options.threads);
@@ -169,13 +205,15 @@ pub fn run_shards(
             "plan {id}: {cases} cases in {shards} shards, on {threads} threads"
         ));
     }
-    let counts = attempts::counts(output)?;
-    let in_vain = |shard: &u64| attempts::are_too_many(counts.get(&shard.to_string()));
-    let (slow, fast): (Vec<u64>, Vec<u64>) = pending.iter().partition(|shard| in_vain(shard));
-    for shard in slow {
-        shards.one_by_one(shard, &counts)?;
-    }
-    shards.side_by_side(&fast)
+    attempts.kept_alive(|| {
+        let suspects = shards.suspects(pending)?;
+        for (shard, cases) in &suspects {
+            shards.with_care(*shard, cases)?;
+        }
+        let others = pending.iter().filter(|shard| !suspects.contains_key(shard));
+        let others: Vec<u64> = others.copied().collect();
+        shards.side_by_side(&others, TOGETHER, &Dead::new())
+    })
 }
 
 /// What running shards takes.
@@ -190,6 +228,7 @@ struct Shards<'a> {
     /// Finished shards.
     done: u64,
     pace: Pace,
+    attempts: &'a Attempts<'a>,
 }
 
 impl Shards<'_> {
@@ -197,8 +236,50 @@ impl Shards<'_> {
         check_cancelled(self.plan, self.options, self.done)
     }
 
-    /// Runs shards on all threads.
-    fn side_by_side(&mut self, pending: &[u64]) -> Result<(), Error> {
+    /// The cases that are tried before they are run, by shard: all those of a suspect shard, and those
+    /// that died before and are made again.
+    fn suspects(&self, pending: &[u64]) -> Result<BTreeMap<u64, Vec<u64>>, Error> {
+        let plan = self.plan;
+        let is_pending = |shard| pending.binary_search(&shard).is_ok();
+        let counts = attempts::counts(self.output, is_pending)?;
+        let suspect = counts.iter().filter(|(_, count)| count.is_suspect());
+        let mut suspects: BTreeMap<u64, Vec<u64>> = suspect
+            .map(|(&shard, _)| (shard, plan.shard(shard).collect()))
+            .collect();
+        if !self.options.retry_failed {
+            return Ok(suspects);
+        }
+        for &shard in pending {
+            let before = Commit::read(self.output, plan, shard, Check::Lengths)?;
+            let failed = before.map_or_else(Vec::new, |commit| commit.failed);
+            let died = |case: &u64| {
+                let id = plan.case_id(*case);
+                failed.iter().any(|case| case.died && case.case_id == id)
+            };
+            let died: Vec<u64> = plan.shard(shard).filter(died).collect();
+            if !died.is_empty() {
+                suspects.entry(shard).or_insert(died);
+            }
+        }
+        Ok(suspects)
+    }
+
+    /// Tries `cases` of a shard one by one, and then runs all of them that do not end their processes,
+    /// each by itself, so that they take the least memory.
+    fn with_care(&mut self, shard: u64, cases: &[u64]) -> Result<(), Error> {
+        let (plan, output) = (self.plan, self.output);
+        self.attempts.begin(shard)?;
+        output.say(format_args!(
+            "shard {shard}: trying {} cases in processes of their own, because processes ended in it \
+             without a result",
+            cases.len()
+        ));
+        let dead = try_cases(plan, output, shard, cases, self.options, self.done)?;
+        self.side_by_side(&[shard], 1, &dead)
+    }
+
+    /// Runs shards on all threads, at most `most` cases together, but for the cases of `dead`.
+    fn side_by_side(&mut self, pending: &[u64], most: u64, dead: &Dead) -> Result<(), Error> {
         let Self {
             plan,
             output,
@@ -209,13 +290,13 @@ impl Shards<'_> {
             sweep_yaml,
             done,
             pace,
+            attempts,
         } = self;
-        let (plan, output, options) = (*plan, *output, *options);
-        let (threads, cancel) = (options.threads, options.cancel);
-        let together = plan.together(cases_of(plan, pending), threads);
-        let attempts = Attempts::new(output);
+        let (plan, output, options, attempts) = (*plan, *output, *options, *attempts);
+        let threads = options.threads;
+        let together = plan.together(cases_of(plan, pending), threads).min(most);
         let inputs = pending.iter().flat_map(|&shard| {
-            let begun = attempts.begin(&shard.to_string()).err().map(Err);
+            let begun = attempts.begin(shard).err().map(Err);
             output.say(format_args!("shard {shard} begun"));
             let pieces = pieces(plan.shard(shard), together);
             begun
@@ -226,9 +307,9 @@ impl Shards<'_> {
         in_order(
             &pool(threads)?,
             2 * threads.max(1),
-            inputs.take_while(|_| !cancel.load(Ordering::Relaxed)),
+            inputs.take_while(|_| !options.is_cancelled()),
             |piece| match piece {
-                Ok((_, cases)) => run_cases(plan, cases.clone(), *runner, sweep_yaml),
+                Ok((_, cases)) => run_cases(plan, cases.clone(), dead, *runner, sweep_yaml),
                 Err(_) => Vec::new(),
             },
             |piece, rows| {
@@ -248,11 +329,11 @@ impl Shards<'_> {
                     writer = Some(open);
                     return Ok(());
                 }
-                open.commit(plan)?;
+                open.commit(plan, options.retry_failed)?;
                 output.say(format_args!("shard {shard} made; {pace}"));
                 *done += 1;
-                attempts.end(&shard.to_string());
-                Ok::<(), Error>(())
+                attempts.end(shard);
+                attempts::forget(output, |made| made == shard)
             },
         )?;
         // Cancelled before the first case, or between two shards.
@@ -261,45 +342,11 @@ impl Shards<'_> {
             false => Ok(()),
         }
     }
-
-    /// Runs a shard that processes ended in, so that the next one to end tells which case it is.
-    fn one_by_one(&mut self, shard: u64, counts: &BTreeMap<String, u64>) -> Result<(), Error> {
-        let plan = self.plan;
-        let attempts = Attempts::new(self.output);
-        attempts.begin(&shard.to_string())?;
-        self.output.say(format_args!(
-            "shard {shard} begun case by case, because processes ended in it without a word"
-        ));
-        let mut open = ShardWriter::new(self.output, plan, &self.tables, shard)?;
-        for case in plan.shard(shard) {
-            self.check_cancelled()?;
-            let marker = format!("{shard}.{}", plan.case_id(case));
-            let rows = if attempts::are_too_many(counts.get(&marker)) {
-                vec![Err(failed(plan, case, &attempts::REASON.into()))]
-            } else {
-                attempts.begin(&marker)?;
-                let rows = run_cases(plan, case..case + 1, self.runner, &self.sweep_yaml);
-                attempts.end(&marker);
-                rows
-            };
-            for rows in rows {
-                self.progress.case_done(case, rows.is_err());
-                self.pace.add();
-                open.write(rows)?;
-            }
-        }
-        open.commit(plan)?;
-        self.output
-            .say(format_args!("shard {shard} made; {}", self.pace));
-        self.done += 1;
-        attempts.end(&shard.to_string());
-        Ok(())
-    }
 }
 
 fn check_cancelled(plan: &Plan, options: &Options, done: u64) -> Result<(), Error> {
     let shards = plan.shards();
-    match options.cancel.load(Ordering::Relaxed) {
+    match options.is_cancelled() {
         true => Err(Error::Cancelled { done, shards }),
         false => Ok(()),
     }

@@ -1,7 +1,7 @@
 //! The folder that a dataset is written to.
 //!
 //! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
-//! `sweep.yaml`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
+//! `sweep.yaml`, `SHA256SUMS`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
 //! shard K is finished, `attempts/` who is at work on which shard, `logs/` what each process did and
 //! when, `tmp/` holds files that are being written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
 //! or by any number that make a shard each. The operating system unlocks it when a process ends,
@@ -10,18 +10,20 @@
 //! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
 //! sweep names that folder, and whoever runs it gets a copy.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
 
 use input::yaml::Document;
 use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
 use super::commit::text;
+use super::lock::{Lock, lock, lock_shared};
 use super::log::{self, Log};
 use super::store::Store;
+use super::{attempts, delta, diagrams};
 use crate::{Error, Plan};
 
 /// What to do with a folder that has something in it.
@@ -51,15 +53,8 @@ pub struct Output {
     pub(super) store: Store,
     pub(super) root: PathBuf,
     pub(super) log: Log,
-    lock: Option<Lock>,
-}
-
-/// A locked file.
-#[derive(Debug)]
-struct Lock {
-    file: File,
-    /// Whether nobody else holds it.
-    alone: bool,
+    pub(super) lock: Mutex<Option<Lock>>,
+    warnings: Mutex<Vec<String>>,
 }
 
 /// Content of `_sweep/plan.json`.
@@ -73,26 +68,21 @@ struct PlanRecord {
     diagrams: u64,
 }
 
-const PLAN: &str = "_sweep/plan.json";
+pub(super) const PLAN: &str = "_sweep/plan.json";
 const SWEEP: &str = "sweep.yaml";
-/// What each process leaves alone in `_sweep/tmp` unless it is alone: younger files may be under way.
-const DAY: Duration = Duration::from_secs(24 * 60 * 60);
-
-/// What a dataset has at its top, apart from `_sweep`.
-const FOLDERS: [&str; 4] = ["signals", "features", "mcap", "bifurcations"];
-const FILES: [&str; 3] = ["README.md", "sweep.yaml", "manifest.json"];
-const WORK: [&str; 4] = [
+pub(super) const SUMS: &str = "SHA256SUMS";
+pub(super) const MANIFEST: &str = "manifest.json";
+/// What a dataset has in its folder, apart from `_sweep`.
+pub(super) const FOLDERS: [&str; 4] = ["signals", "features", "mcap", diagrams::FOLDER];
+pub(super) const FILES: [&str; 4] = ["README.md", SWEEP, SUMS, MANIFEST];
+pub(super) const WORK: [&str; 4] = [
     "_sweep/commits",
-    "_sweep/attempts",
+    attempts::FOLDER,
     log::FOLDER,
     "_sweep/tmp",
 ];
 /// The folder of the calibration that a dataset begins with.
 pub const CALIBRATION: &str = "calibration";
-/// What `crosshead report` makes of a dataset; figures are the SVG files with these beginnings.
-const PAGES: [&str; 3] = ["report.html", "chaos.html", "features.html"];
-const FIGURES: [&str; 2] = ["dataset-", "chaos-"];
-
 impl Claim {
     /// Locks the folder `root`.
     ///
@@ -117,8 +107,9 @@ impl Claim {
         let output = Output {
             store,
             log: Log::default(),
-            lock: Some(lock(root)?),
+            lock: Mutex::new(Some(lock(root)?)),
             root: root.to_owned(),
+            warnings: Mutex::default(),
         };
         // What an interrupted process left: nobody else writes here now.
         remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
@@ -146,7 +137,8 @@ impl Claim {
                 store,
                 root,
                 log: Log::default(),
-                lock: None,
+                lock: Mutex::default(),
+                warnings: Mutex::default(),
             },
             existing,
             calibrated: false,
@@ -175,9 +167,9 @@ impl Claim {
         Ok(self.output.path(CALIBRATION))
     }
 
-    /// Whether a dataset has been begun here.
+    /// Whether a dataset has been begun here, or a finished one was copied here.
     fn begun(&self) -> bool {
-        self.output.path(PLAN).exists()
+        self.output.path(PLAN).exists() || self.output.is_published()
     }
 
     /// Makes the folder ready for the dataset of `plan`.
@@ -202,7 +194,14 @@ impl Claim {
         } else if !begun && !has_it {
             output.clear_calibration()?;
         }
+        let published = output.is_published();
+        if published {
+            output.check_published(plan)?;
+        }
         output.record(plan)?;
+        if published {
+            output.adopt(plan)?;
+        }
         if let Some(from) = plan.calibrated.as_ref().filter(|_| !has_it) {
             output.copy_calibration(from)?;
         }
@@ -237,7 +236,7 @@ impl Output {
     pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
         let (mut output, plan) = Self::look(root)?;
         if output.store.folder().is_some() {
-            output.lock = lock_shared(root)?;
+            output.lock = Mutex::new(lock_shared(root)?);
         }
         Ok((output, plan))
     }
@@ -251,78 +250,33 @@ impl Output {
             store: Store::at(root)?,
             root: root.to_owned(),
             log: Log::default(),
-            lock: None,
+            lock: Mutex::default(),
+            warnings: Mutex::default(),
         };
         let not_planned = || Error::NotPlanned(root.to_owned());
-        let record = output.store.read(PLAN)?.ok_or_else(not_planned)?;
-        let sweep = output.store.read(SWEEP)?.ok_or_else(not_planned)?;
-        let sweep = Document::parse(&sweep, &output.path(SWEEP).display().to_string())?;
-        let plan = Plan::new(&sweep, root)?;
+        let record = output.store.bytes(PLAN)?.ok_or_else(not_planned)?;
+        let plan = output.plan_of_sweep()?;
         output.check(&record, &plan)?;
         Ok((output, plan))
+    }
+
+    /// Keeps a warning for whoever asks, once.
+    pub(super) fn warn(&self, text: String) {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        if !warnings.contains(&text) {
+            warnings.push(text);
+        }
+    }
+
+    /// What is wrong with what was there before: damaged records and files, which count as not made.
+    pub fn take_warnings(&self) -> Vec<String> {
+        let mut warnings = self.warnings.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut warnings)
     }
 
     /// Where file `path` of the dataset stands.
     pub fn path(&self, path: &str) -> PathBuf {
         self.store.path(path)
-    }
-
-    /// Removes what crashes left a day ago or earlier.
-    ///
-    /// # Errors
-    /// Where it cannot be removed.
-    pub(super) fn tidy(&self) -> Result<(), Error> {
-        let Some(folder) = self.store.folder() else {
-            return Ok(());
-        };
-        let Ok(entries) = fs::read_dir(folder.join("_sweep/tmp")) else {
-            return Ok(());
-        };
-        for entry in entries.flatten() {
-            let modified = entry.metadata().and_then(|found| found.modified()).ok();
-            let age = modified.and_then(|time| time.elapsed().ok());
-            if age.is_some_and(|age| age > DAY) {
-                remove(&entry.path(), |path| fs::remove_file(path))?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Removes a dataset, and nothing else; its calibration stays where that is asked for.
-    fn clear(&self, keep_calibration: bool) -> Result<(), Error> {
-        // The manifest goes first: without it the folder is not a complete dataset.
-        for file in FILES.into_iter().rev().chain([PLAN]).chain(PAGES) {
-            remove(&self.path(file), |path| fs::remove_file(path))?;
-        }
-        for folder in FOLDERS.into_iter().chain(WORK) {
-            remove(&self.path(folder), |path| fs::remove_dir_all(path))?;
-        }
-        self.clear_figures()?;
-        if !keep_calibration {
-            self.clear_calibration()?;
-        }
-        WORK.iter().try_for_each(|folder| make(&self.path(folder)))
-    }
-
-    fn clear_calibration(&self) -> Result<(), Error> {
-        remove(&self.path(CALIBRATION), |path| fs::remove_dir_all(path))
-    }
-
-    /// Removes the figures of a report; whatever else is in their folder stays.
-    fn clear_figures(&self) -> Result<(), Error> {
-        let folder = self.path("figures");
-        let Ok(entries) = fs::read_dir(&folder) else {
-            return Ok(());
-        };
-        for entry in entries.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            if name.ends_with(".svg") && FIGURES.iter().any(|start| name.starts_with(start)) {
-                remove(&entry.path(), |path| fs::remove_file(path))?;
-            }
-        }
-        // A folder that still has something in it is not removed.
-        let _ = fs::remove_dir(&folder);
-        Ok(())
     }
 
     /// Writes which plan the folder is for, or checks it.
@@ -334,20 +288,64 @@ impl Output {
             shards: plan.shards(),
             diagrams: plan.diagrams.len() as u64,
         };
-        if let Some(before) = self.store.create_only(PLAN, &text(&record)?)? {
-            self.check(&before, plan)?;
+        let record = text(&record)?;
+        if let Some(before) = self.store.create_only(PLAN, &record)? {
+            match self.check(&before, plan) {
+                // The sweep itself tells which plan it was.
+                Err(Error::DamagedPlan { .. })
+                    if self.plan_of_sweep().is_ok_and(|own| own.id == plan.id) =>
+                {
+                    let path = self.path(PLAN);
+                    self.warn(format!(
+                        "`{}` is damaged: it is written again",
+                        path.display()
+                    ));
+                    self.store.write(PLAN, record.as_bytes())?;
+                }
+                checked => checked?,
+            }
         }
         let sweep = input::yaml::to_string(plan.sweep())?;
         self.store.write(SWEEP, sweep.as_bytes())?;
         Ok(())
     }
 
+    /// Whether it is a finished dataset that came without `_sweep`.
+    fn is_published(&self) -> bool {
+        !self.path(PLAN).exists() && self.path(MANIFEST).exists()
+    }
+
+    /// Checks that a finished dataset that came without `_sweep` is that of `plan`; it stays as it was
+    /// where it is not.
+    fn check_published(&self, plan: &Plan) -> Result<(), Error> {
+        let found = self.plan_of_sweep().map(|own| own.id);
+        if found.as_ref().is_ok_and(|found| *found == plan.id) {
+            return Ok(());
+        }
+        remove(&self.path("_sweep"), |path| fs::remove_dir_all(path))?;
+        Err(Error::OtherPlan {
+            path: self.root.clone(),
+            found: found.unwrap_or_else(|_| "unknown".into()),
+            expected: plan.id.clone(),
+        })
+    }
+
+    /// The plan of the `sweep.yaml` that stands there.
+    pub(super) fn plan_of_sweep(&self) -> Result<Plan, Error> {
+        let not_planned = || Error::NotPlanned(self.root.clone());
+        let sweep = self.store.read(SWEEP)?.ok_or_else(not_planned)?;
+        let sweep = Document::parse(&sweep, &self.path(SWEEP).display().to_string())?;
+        Ok(Plan::new(&sweep, &self.root)?)
+    }
+
     /// Checks that `record` is that of `plan`.
-    fn check(&self, record: &str, plan: &Plan) -> Result<(), Error> {
-        let record: PlanRecord = serde_json::from_str(record).map_err(|e| Error::Damaged {
-            path: self.path(PLAN),
-            reason: e.to_string(),
-        })?;
+    fn check(&self, record: &[u8], plan: &Plan) -> Result<(), Error> {
+        let record: PlanRecord =
+            serde_json::from_slice(record).map_err(|e| Error::DamagedPlan {
+                path: self.path(PLAN),
+                reason: e.to_string(),
+                root: self.root.clone(),
+            })?;
         if record.plan_id == plan.id {
             return Ok(());
         }
@@ -356,15 +354,6 @@ impl Output {
             found: record.plan_id,
             expected: plan.id.clone(),
         })
-    }
-}
-
-impl Drop for Lock {
-    fn drop(&mut self) {
-        if self.alone {
-            // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
-            let _ = self.file.set_len(0);
-        }
     }
 }
 
@@ -396,14 +385,14 @@ fn only_work_files(root: &Path) -> io::Result<bool> {
     Ok(work.exists() && !work.join("plan.json").exists())
 }
 
-fn make(folder: &Path) -> Result<(), Error> {
+pub(super) fn make(folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
         path: folder.to_owned(),
         source,
     })
 }
 
-fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
+pub(super) fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
     match how(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::Unwritable {
             path: path.to_owned(),
@@ -413,56 +402,16 @@ fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Erro
     }
 }
 
-/// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
-fn lock(root: &Path) -> Result<Lock, Error> {
-    let (mut file, unwritable) = lock_file(root)?;
-    match file.try_lock() {
-        Ok(()) => {}
-        Err(TryLockError::WouldBlock) => return Err(in_use(root, file)),
-        Err(TryLockError::Error(source)) => return Err(unwritable(source)),
+/// Files among the data that `known` does not know, by path: readers take them for data too.
+pub(super) fn strays(store: &Store, known: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
+    let mut strays = Vec::new();
+    for folder in FOLDERS {
+        let names = store.names(folder)?.into_iter();
+        let paths = names
+            .filter(|name| name != delta::FOLDER)
+            .map(|name| format!("{folder}/{name}"));
+        strays.extend(paths.filter(|path| !known(path)));
     }
-    let mut sign = || {
-        file.set_len(0)?;
-        file.seek(SeekFrom::Start(0))?;
-        write!(file, "process {}", std::process::id())
-    };
-    sign().map_err(unwritable)?;
-    Ok(Lock { file, alone: true })
-}
-
-/// Locks `_sweep/lock` together with others; nothing where the file system knows no locks, because
-/// the records of a dataset do not need them.
-fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
-    let (file, unwritable) = lock_file(root)?;
-    match file.try_lock_shared() {
-        Ok(()) => Ok(Some(Lock { file, alone: false })),
-        Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
-        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
-        Err(TryLockError::Error(source)) => Err(unwritable(source)),
-    }
-}
-
-fn lock_file(root: &Path) -> Result<(File, impl Fn(io::Error) -> Error), Error> {
-    let path = root.join("_sweep/lock");
-    let mut options = OpenOptions::new();
-    let options = options.read(true).write(true).create(true).truncate(false);
-    let file = options.open(&path);
-    let unwritable = move |source| Error::Unwritable {
-        path: path.clone(),
-        source,
-    };
-    Ok((file.map_err(&unwritable)?, unwritable))
-}
-
-fn in_use(root: &Path, mut lock: File) -> Error {
-    let mut by = String::new();
-    let _ = lock.read_to_string(&mut by);
-    Error::InUse {
-        path: root.to_owned(),
-        by: if by.is_empty() {
-            "one that makes a shard".into()
-        } else {
-            by
-        },
-    }
+    strays.sort();
+    Ok(strays)
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::commit::{Commit, DiagramCommit};
+use super::commit::{Check, Commit, DiagramCommit};
 use super::diagrams::compute;
 use super::output::Output;
 use super::{Options, Progress, Runner, pool, run_shards};
@@ -35,6 +35,19 @@ impl Plan {
     }
 }
 
+impl Part<'_> {
+    /// What it left, if it is finished and its files are as they were written.
+    fn made(&self, plan: &Plan, output: &Output, check: Check) -> Result<Option<Made>, Error> {
+        Ok(match self {
+            Self::Shard(shard) => Commit::read(output, plan, *shard, check)?.map(Made::Shard),
+            Self::Diagram(diagram) => {
+                let found = DiagramCommit::find(output, plan, &diagram.name, check)?;
+                found.made().map(Made::Diagram)
+            }
+        })
+    }
+}
+
 /// What a finished part left.
 pub(super) enum Made {
     /// A shard.
@@ -43,26 +56,34 @@ pub(super) enum Made {
     Diagram(DiagramCommit),
 }
 
-/// Records that are read at a time: on storage that takes its time they would else take long.
-const READERS: usize = 16;
+impl Made {
+    /// Whether there is nothing left to do for it.
+    pub(super) fn is_finished(&self, options: &Options) -> bool {
+        match self {
+            Self::Shard(commit) => commit.failed.is_empty() || !options.retry_failed,
+            Self::Diagram(_) => true,
+        }
+    }
+}
 
-/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished.
+/// Records that are read at a time: on storage that takes its time they would else take long.
+pub(super) const READERS: usize = 16;
+
+/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished or its
+/// record or files are damaged.
 ///
 /// # Errors
-/// The first error of `each`, or a record that cannot be read.
+/// The first error of `each`, or storage that cannot be read.
 pub(super) fn scan(
     plan: &Plan,
     output: &Output,
     indices: Range<u64>,
+    check: Check,
     mut each: impl FnMut(u64, Option<Made>) -> Result<(), Error>,
 ) -> Result<(), Error> {
     let read = |index: &u64| -> Result<Option<Made>, Error> {
         match plan.part(*index) {
-            Some(Part::Shard(shard)) => Ok(Commit::read(output, plan, shard)?.map(Made::Shard)),
-            Some(Part::Diagram(diagram)) => {
-                let commit = DiagramCommit::read(output, plan, &diagram.name)?;
-                Ok(commit.map(Made::Diagram))
-            }
+            Some(part) => part.made(plan, output, check),
             None => Ok(None),
         }
     };
@@ -90,20 +111,22 @@ pub fn run_part(
     progress: &mut dyn Progress,
 ) -> Result<bool, Error> {
     let shards = plan.parts();
-    match plan.part(index).ok_or(Error::NoShard { index, shards })? {
+    let part = plan.part(index).ok_or(Error::NoShard { index, shards })?;
+    let made = part.made(plan, output, Check::Resume)?;
+    for text in output.take_warnings() {
+        progress.warning(&text);
+    }
+    if made.is_some_and(|made| made.is_finished(options)) {
+        return Ok(false);
+    }
+    match part {
         Part::Shard(shard) => {
-            if Commit::read(output, plan, shard)?.is_some() {
-                return Ok(false);
-            }
             progress.begins(plan.shard(shard).count() as u64, 0);
             output.logged(&format!("shard-{shard}"), || {
                 run_shards(plan, output, &[shard], options, runner, progress)
             })?;
         }
         Part::Diagram(diagram) => {
-            if DiagramCommit::read(output, plan, &diagram.name)?.is_some() {
-                return Ok(false);
-            }
             output.logged(&format!("shard-{index}"), || {
                 compute(plan, output, &[diagram], options, progress)
             })?;

@@ -6,7 +6,8 @@ use recordings::formats::parquet::TableWriter;
 use recordings::{CaseWarning, Column, FailedCase, FileEntry, Kind, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
-use super::commit::Commit;
+use super::commit::{Check, Commit, Found, Standing};
+use super::diagrams;
 use super::output::Output;
 use super::store::NewFile;
 use super::tables::Tables;
@@ -21,6 +22,58 @@ const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// Most rows of a group: as many as the writer collects anyway.
 const ROWS_PER_GROUP: f64 = 4096.0;
+
+/// The name of the file of a table with the rows of a split and a shard.
+fn table_name(folder: &str, split: Split, shard: u64, shards: u64) -> String {
+    format!(
+        "{folder}/{}-{shard:05}-of-{shards:05}.parquet",
+        split.name()
+    )
+}
+
+impl Plan {
+    /// The names of the Parquet files of shard `shard`.
+    pub(super) fn tables_of(&self, shard: u64) -> impl Iterator<Item = String> {
+        let folders: &[&str] = match self.format {
+            Format::Parquet => &["signals", "features"],
+            Format::Mcap => &["features"],
+        };
+        let splits = Split::ALL.into_iter().zip(self.shares);
+        let splits = splits.filter(|(_, share)| *share > 0.0);
+        let shards = self.shards();
+        splits.flat_map(move |(split, _)| {
+            let names = folders.iter();
+            names.map(move |folder| table_name(folder, split, shard, shards))
+        })
+    }
+
+    /// Whether a shard or a diagram of this plan writes the file `path`.
+    pub(super) fn names(&self, path: &str) -> bool {
+        let number = |name: &str, mark: char| -> Option<u64> {
+            let digits = name.split_once(mark)?.1;
+            let end = digits.find(|c: char| !c.is_ascii_digit());
+            digits[..end.unwrap_or(digits.len())].parse().ok()
+        };
+        let Some((folder, name)) = path.split_once('/') else {
+            return false;
+        };
+        match folder {
+            "signals" | "features" => number(name, '-').is_some_and(|shard| {
+                shard < self.shards() && self.tables_of(shard).any(|own| own == path)
+            }),
+            "mcap" => number(name, '-').is_some_and(|case| {
+                case < self.cases()
+                    && self.format == Format::Mcap
+                    && *name == format!("{}.mcap", self.case_id(case))
+            }),
+            diagrams::FOLDER => {
+                let mut own = self.diagrams.iter();
+                own.any(|diagram| *name == format!("{}.parquet", diagram.name))
+            }
+            _ => false,
+        }
+    }
+}
 
 /// The files of a shard while its cases come in.
 pub(super) struct ShardWriter<'a> {
@@ -47,8 +100,7 @@ impl<'a> ShardWriter<'a> {
         let splits = Split::ALL.into_iter().zip(plan.shares);
         let splits = || splits.clone().filter(|(_, share)| *share > 0.0);
         let part = |folder: &str, schema: &Schema, split: Split| {
-            let (name, shards) = (split.name(), plan.shards());
-            let path = format!("{folder}/{name}-{shard:05}-of-{shards:05}.parquet");
+            let path = table_name(folder, split, shard, plan.shards());
             let rows_per_group = rows_per_group(schema, plan.samples_per_window());
             let table = TableWriter::new(output.store.create(&path)?, schema, rows_per_group)?;
             Ok::<_, Error>((split, PartFile { path, table }))
@@ -114,8 +166,8 @@ impl<'a> ShardWriter<'a> {
     }
 
     /// Finishes the files and says so. Where another process did so meanwhile, its files stay, and
-    /// must be the same.
-    pub(super) fn commit(self, plan: &Plan) -> Result<(), Error> {
+    /// must be the same; but for those of a result that this one stands against.
+    pub(super) fn commit(self, plan: &Plan, retried: bool) -> Result<(), Error> {
         let mut commit = self.commit;
         let mut files = Vec::new();
         for part in self
@@ -131,13 +183,56 @@ impl<'a> ShardWriter<'a> {
             files.push(file);
         }
         commit.files.sort_by(|a, b| a.path.cmp(&b.path));
-        if commit.compare(self.output, plan)? {
-            return Ok(());
+        publish(&commit, files, self.output, plan, retried)
+    }
+}
+
+/// Gives the files of a shard their names, and then writes its record, as far as no other result
+/// stands.
+fn publish(
+    commit: &Commit,
+    files: Vec<NewFile>,
+    output: &Output,
+    plan: &Plan,
+    retried: bool,
+) -> Result<(), Error> {
+    let place = || {
+        files
+            .into_iter()
+            .try_for_each(|file| file.commit().map(|_| ()))
+    };
+    // Who may replace another's files, or may be replaced, does so alone.
+    let mut alone = commit.has_deaths();
+    loop {
+        let _committing = output.committing(alone)?;
+        let before = match Commit::find(output, plan, commit.shard, Check::Sums)? {
+            Found::Made(before) => before,
+            Found::Damaged => {
+                place()?;
+                return commit.replace(output);
+            }
+            Found::Nothing => {
+                place()?;
+                let Some(before) = commit.create(output, plan)? else {
+                    return Ok(());
+                };
+                // It was written meanwhile, from the same files.
+                return match commit.against(&before, retried) {
+                    Standing::Same | Standing::Before => Ok(()),
+                    Standing::New => commit.replace(output),
+                    Standing::Differ => Err(commit.differs(&before)?),
+                };
+            }
+        };
+        match commit.against(&before, retried) {
+            Standing::Same | Standing::Before => return Ok(()),
+            Standing::Differ => return Err(commit.differs(&before)?),
+            Standing::New if alone => {
+                place()?;
+                return commit.replace(output);
+            }
+            Standing::New => alone = true,
         }
-        for file in files {
-            file.commit()?;
-        }
-        commit.write(self.output)
     }
 }
 

@@ -2,9 +2,11 @@
 
 use recordings::FailedCase;
 
-use super::attempts;
-use super::output::Output;
-use super::parts::{Made, scan};
+use super::attempts::{self, Attended};
+use super::commit::{Check, Damage};
+use super::finalize::Parts;
+use super::output::{Output, strays};
+use super::parts::scan;
 use crate::{Error, Plan};
 
 /// How far a sweep has got.
@@ -12,45 +14,47 @@ use crate::{Error, Plan};
 pub struct Status {
     /// Numbers of the shards that are not finished; bifurcation diagrams follow the shards.
     pub missing: Vec<u64>,
-    /// Those of them that a process is at work on, or was when it ended without a word, and how
-    /// many such processes there are.
-    pub attempts: Vec<(u64, u64)>,
+    /// The processes at those of them that have any.
+    pub attempts: Vec<(u64, Attended)>,
     /// Cases in finished shards.
     pub cases: u64,
     /// Those of them that failed.
     pub failed: Vec<FailedCase>,
-    /// Whether the dataset has its manifest, and so is complete.
+    /// Whether the dataset has its manifest, which agrees with the records, and so is complete.
     pub complete: bool,
 }
 
-/// How far the sweep has got.
+/// How far the sweep has got. Damaged records and files count as not made; they, and files of no shard
+/// of this sweep, are named by [`Output::take_warnings`]. Of files the lengths are compared, and with
+/// `verify` the checksums, for which everything is read.
 ///
 /// # Errors
-/// Where a record cannot be read.
-pub fn status(output: &Output, plan: &Plan) -> Result<Status, Error> {
-    let mut status = Status {
-        missing: Vec::new(),
-        attempts: Vec::new(),
-        cases: 0,
-        failed: Vec::new(),
-        complete: output.store.length("manifest.json")?.is_some(),
+/// Where the storage cannot be read.
+pub fn status(output: &Output, plan: &Plan, verify: bool) -> Result<Status, Error> {
+    let check = match verify {
+        true => Check::Sums,
+        false => Check::Lengths,
     };
-    let attempts = attempts::counts(output)?;
-    scan(plan, output, 0..plan.parts(), |index, made| {
-        match made {
-            Some(Made::Shard(commit)) => {
-                let [start, end] = commit.cases;
-                status.cases += end - start;
-                status.failed.extend(commit.failed);
-            }
-            Some(Made::Diagram(_)) => {}
-            None => {
-                status.missing.push(index);
-                let count = attempts.get(&index.to_string());
-                status.attempts.extend(count.map(|&count| (index, count)));
-            }
-        }
+    let mut parts = Parts::new(plan);
+    scan(plan, output, 0..plan.parts(), check, |index, made| {
+        parts.add(index, made);
         Ok(())
     })?;
-    Ok(status)
+    for path in strays(&output.store, |path| plan.names(path))? {
+        output.warn(format!(
+            "`{}` {}",
+            output.path(&path).display(),
+            Damage::Extra
+        ));
+    }
+    let missing = parts.missing.clone();
+    let is_missing = |shard| missing.binary_search(&shard).is_ok();
+    let attempts = attempts::counts(output, is_missing)?.into_iter().collect();
+    Ok(Status {
+        attempts,
+        cases: parts.cases,
+        failed: parts.failed.clone(),
+        complete: missing.is_empty() && parts.complete(output, plan)?.is_written(output)?,
+        missing,
+    })
 }

@@ -60,6 +60,8 @@ pub fn records(executions: u64) {
         existing: Existing::Refuse,
         threads: 1,
         cancel: &cancel,
+        retry_failed: false,
+        trial: None,
     };
     generate(&plan, &root, &options, &runner, &mut ()).unwrap();
     let whole = RECORDS.map(|name| fs::read_to_string(root.join(name)).unwrap());
@@ -83,7 +85,7 @@ pub fn records(executions: u64) {
 
 fn look(root: &Path) -> Result<String, Error> {
     let (output, plan) = Output::look(root)?;
-    let status = status(&output, &plan)?;
+    let status = status(&output, &plan, false)?;
     let manifest = finalize(&output, &plan)?;
     Ok(format!(
         "{} cases, {} files",

@@ -10,7 +10,7 @@ mod read;
 pub(crate) mod recordings;
 mod write;
 
-pub use read::{ParquetFile, read_table};
+pub use read::{ParquetFile, read_table, rows_of_footer};
 pub use write::{TableWriter, write_table};
 
 #[cfg(test)]

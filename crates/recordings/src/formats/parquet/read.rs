@@ -9,6 +9,8 @@ use parquet::arrow::arrow_reader::{
     ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReader,
     ParquetRecordBatchReaderBuilder,
 };
+use parquet::file::FOOTER_SIZE;
+use parquet::file::metadata::{FooterTail, ParquetMetaDataReader};
 use std::fs::File;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -39,6 +41,31 @@ pub fn read_table(path: &Path) -> Result<Table, Error> {
         .map(|c| c.name.as_str())
         .collect();
     file.read(&names, 0..file.rows)
+}
+
+/// The rows that the footer of a file of `bytes` bytes states; `read` reads a range of it.
+///
+/// # Errors
+/// When it is not a Parquet file, or `read` fails.
+pub fn rows_of_footer<E: std::fmt::Display>(
+    bytes: u64,
+    read: impl Fn(Range<u64>) -> Result<Vec<u8>, E>,
+    path: &Path,
+) -> Result<u64, Error> {
+    let read = |range| read(range).map_err(damaged(path));
+    guarded(path, || {
+        let end = bytes.checked_sub(FOOTER_SIZE as u64);
+        let end = end.ok_or_else(|| damaged(path)("it is too short"))?;
+        let tail: [u8; FOOTER_SIZE] = read(end..bytes)?
+            .try_into()
+            .map_err(|_| damaged(path)("it is too short"))?;
+        let tail = FooterTail::try_new(&tail).map_err(damaged(path))?;
+        let start = end.checked_sub(tail.metadata_length() as u64);
+        let start = start.ok_or_else(|| damaged(path)("its footer is longer than the file"))?;
+        let footer = read(start..end)?;
+        let metadata = ParquetMetaDataReader::decode_metadata(&footer).map_err(damaged(path))?;
+        u64::try_from(metadata.file_metadata().num_rows()).map_err(damaged(path))
+    })
 }
 
 impl ParquetFile {

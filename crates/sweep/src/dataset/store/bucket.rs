@@ -5,10 +5,11 @@
 
 use std::future::{Future, poll_fn};
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use object_store::aws::AmazonS3Builder;
 use object_store::buffered::BufWriter;
@@ -74,7 +75,7 @@ impl Bucket {
         }
     }
 
-    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<Vec<u8>>, Error> {
         let key = self.key(path);
         let put = || {
             let payload = PutPayload::from(content.as_bytes().to_vec());
@@ -84,26 +85,35 @@ impl Bucket {
         match self.persist(put) {
             Ok(_) => Ok(None),
             // Perhaps by this put, whose answer was lost: the content tells.
-            Err(object_store::Error::AlreadyExists { .. }) => self.read(path),
+            Err(object_store::Error::AlreadyExists { .. }) => self.bytes(path),
             Err(error) => Err(failed("create", &self.path(path), &error)),
         }
     }
 
-    pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+    pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
         let key = self.key(path);
-        let text = || async { self.objects.get(&key).await?.bytes().await };
-        let Some(content) = self.found("read", path, text)? else {
-            return Ok(None);
-        };
-        let text = String::from_utf8(content.to_vec());
-        text.map(Some)
-            .map_err(|error| failed("read", &self.path(path), &error))
+        let bytes = || async { self.objects.get(&key).await?.bytes().await };
+        let content = self.found("read", path, bytes)?;
+        Ok(content.map(|content| content.to_vec()))
     }
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
         let key = self.key(path);
         let head = self.found("read", path, || self.objects.head(&key))?;
         Ok(head.map(|object| object.size))
+    }
+
+    pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
+        let key = self.key(path);
+        let head = self.found("read", path, || self.objects.head(&key))?;
+        Ok(head.map(|object| object.last_modified.into()))
+    }
+
+    pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
+        let key = self.key(path);
+        let part = self.persist(|| self.objects.get_range(&key, range.clone()));
+        let part = part.map_err(|error| failed("read", &self.path(path), &error))?;
+        Ok(part.to_vec())
     }
 
     pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {

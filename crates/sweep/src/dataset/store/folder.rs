@@ -1,12 +1,16 @@
-//! A dataset in a folder: hard links make records that are created once.
+//! A dataset in a folder: hard links make records that are created once, or exclusive creation where
+//! there are none.
 
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read, Write};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
-use recordings::{FileRecord, WholeFile};
+use recordings::{FileRecord, WholeFile, sync_folder};
 use sha2::{Digest, Sha256};
 
+use super::Holder;
 use super::temporary::temporary;
 use crate::Error;
 
@@ -35,9 +39,9 @@ impl Folder {
         )?)
     }
 
-    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<Vec<u8>>, Error> {
         let destination = self.path(path);
-        if let Some(before) = self.read(path)? {
+        if let Some(before) = self.bytes(path)? {
             return Ok(Some(before));
         }
         // Written whole under a name of its own, and then linked, which fails where a file stands.
@@ -48,16 +52,52 @@ impl Folder {
         file.commit()?;
         let linked = fs::hard_link(self.path(&staged), &destination);
         self.remove(&staged)?;
-        match linked {
-            Ok(()) => Ok(None),
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => self.read(path),
+        let created = match linked {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                create_exclusively(&destination, content)
+            }
+            linked => linked,
+        };
+        match created {
+            // A link is on the disk once its folder is.
+            Ok(()) => Ok(sync_folder(&destination).map(|()| None)?),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => self.bytes(path),
             Err(error) => Err(failed("create", &destination, error)),
         }
     }
 
-    pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+    /// The lock is taken before the file has its name, so that nobody sees it without; it is none
+    /// where the file system knows no locks.
+    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
+        let (temporary, path) = (self.path(&temporary(path)), self.path(path));
+        let mut file =
+            File::create(&temporary).map_err(|error| failed("create", &temporary, error))?;
+        let locked = file.try_lock().is_ok();
+        let written = file.write_all(content.as_bytes());
+        let placed = written.and_then(|()| fs::rename(&temporary, &path));
+        placed.map_err(|error| failed("write", &path, error))?;
+        Ok(locked.then_some(file))
+    }
+
+    pub(super) fn holder(&self, path: &str) -> Result<Option<Holder>, Error> {
         let path = self.path(path);
-        found("read", &path, fs::read_to_string(&path))
+        let file = found("read", &path, File::open(&path))?;
+        Ok(file.map(|file| match file.try_lock_shared() {
+            Ok(()) => Holder::Ended,
+            Err(TryLockError::WouldBlock) => Holder::AtWork,
+            Err(TryLockError::Error(_)) => Holder::Unknown,
+        }))
+    }
+
+    pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
+        let path = self.path(path);
+        let modified = fs::metadata(&path).and_then(|found| found.modified());
+        found("read", &path, modified)
+    }
+
+    pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
+        let path = self.path(path);
+        found("read", &path, fs::read(&path))
     }
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
@@ -65,9 +105,22 @@ impl Folder {
         Ok(found("read", &path, fs::metadata(&path))?.map(|found| found.len()))
     }
 
+    pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
+        let path = self.path(path);
+        let read = |mut file: File| {
+            let mut bytes = vec![0; (range.end - range.start) as usize];
+            file.seek(SeekFrom::Start(range.start))?;
+            file.read_exact(&mut bytes)?;
+            Ok(bytes)
+        };
+        let bytes = File::open(&path).and_then(read);
+        bytes.map_err(|error| failed("read", &path, error))
+    }
+
     pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {
         let path = self.path(path);
-        if path.is_dir() {
+        // A pipe would be waited for, and a folder is none.
+        if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
             return Ok(None);
         }
         let Some(mut file) = found("read", &path, File::open(&path))? else {
@@ -105,6 +158,14 @@ impl Folder {
         let path = self.path(path);
         found("remove", &path, fs::remove_file(&path)).map(|_| ())
     }
+}
+
+/// Writes a file where none stands, on file systems without hard links (exFAT, some SMB). A crash may
+/// leave it cut short, which readers of records take for none.
+fn create_exclusively(path: &Path, content: &str) -> io::Result<()> {
+    let mut file = File::create_new(path)?;
+    file.write_all(content.as_bytes())?;
+    file.sync_all()
 }
 
 /// What was found at `path`; none where nothing stands there.

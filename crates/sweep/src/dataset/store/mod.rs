@@ -7,8 +7,11 @@ mod folder;
 mod new_file;
 mod temporary;
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use recordings::FileRecord;
 
@@ -19,6 +22,7 @@ use folder::Folder;
 pub(super) use folder::failed;
 pub(super) use new_file::NewFile;
 pub(super) use temporary::process;
+use temporary::temporary;
 
 /// The place of a dataset. Paths in it have `/` between folders.
 #[derive(Debug)]
@@ -28,6 +32,17 @@ pub(super) enum Store {
     /// A prefix of a bucket.
     #[cfg(feature = "s3")]
     Bucket(Bucket),
+}
+
+/// The process that holds a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Holder {
+    /// It runs.
+    AtWork,
+    /// It has ended.
+    Ended,
+    /// There are no locks that would tell.
+    Unknown,
 }
 
 impl Store {
@@ -78,7 +93,7 @@ impl Store {
 
     /// Writes `content` to `path` unless something stands there already, which is then handed back.
     /// Of several processes that try at once one succeeds.
-    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<String>, Error> {
+    pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<Vec<u8>>, Error> {
         match self {
             Self::Folder(store) => store.create_only(path, content),
             #[cfg(feature = "s3")]
@@ -86,12 +101,66 @@ impl Store {
         }
     }
 
+    /// Puts a file of this process, locked until it ends where the place knows locks.
+    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
+        match self {
+            Self::Folder(store) => store.hold(path, content),
+            #[cfg(feature = "s3")]
+            Self::Bucket(_) => self.write(path, content.as_bytes()).map(|_| None),
+        }
+    }
+
+    /// Who holds the file at `path`, if it stands there.
+    pub(super) fn holder(&self, path: &str) -> Result<Option<Holder>, Error> {
+        match self {
+            Self::Folder(store) => store.holder(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(_) => Ok(Some(Holder::Unknown)),
+        }
+    }
+
+    /// When the file at `path` was last written, by the clock of the place.
+    pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
+        match self {
+            Self::Folder(store) => store.modified(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.modified(path),
+        }
+    }
+
+    /// The time by the clock of the place, which no host's need agree with.
+    pub(super) fn now(&self) -> Result<SystemTime, Error> {
+        let path = temporary("clock");
+        self.write(&path, b"")?;
+        let now = self.modified(&path);
+        self.remove(&path)?;
+        Ok(now?.unwrap_or(SystemTime::UNIX_EPOCH))
+    }
+
+    /// What stands at `path`, if something does.
+    pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
+        match self {
+            Self::Folder(store) => store.bytes(path),
+            #[cfg(feature = "s3")]
+            Self::Bucket(store) => store.bytes(path),
+        }
+    }
+
     /// The text at `path`, if something stands there.
     pub(super) fn read(&self, path: &str) -> Result<Option<String>, Error> {
+        let text = self.bytes(path)?.map(String::from_utf8).transpose();
+        text.map_err(|_| {
+            let error = io::Error::new(io::ErrorKind::InvalidData, "it is not valid UTF-8");
+            failed("read", &self.path(path), error)
+        })
+    }
+
+    /// Some bytes of what stands at `path`, which must have them.
+    pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
         match self {
-            Self::Folder(store) => store.read(path),
+            Self::Folder(store) => store.range(path, range),
             #[cfg(feature = "s3")]
-            Self::Bucket(store) => store.read(path),
+            Self::Bucket(store) => store.range(path, range),
         }
     }
 

@@ -1,0 +1,141 @@
+//! Locks of a dataset in a folder: `_sweep/lock`, held by the process at work, by one alone that
+//! makes the whole dataset, or by any number that make a shard each; and `_sweep/commit.lock`, held
+//! while the files of a shard get their names. The operating system unlocks them when a process ends,
+//! however it ends. Buckets know no locks.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::output::Output;
+use crate::Error;
+
+/// So long is waited for a process that tidies up.
+const MOMENT: Duration = Duration::from_secs(2);
+
+/// A locked file.
+#[derive(Debug)]
+pub(super) struct Lock {
+    file: File,
+    /// Whether nobody else holds it.
+    pub(super) alone: bool,
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        if self.alone {
+            // An empty lock file: the folder of a finished dataset is the same whoever wrote it.
+            let _ = self.file.set_len(0);
+        }
+    }
+}
+
+/// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
+pub(super) fn lock(root: &Path) -> Result<Lock, Error> {
+    let (mut file, unwritable) = open(root, "_sweep/lock")?;
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => return Err(in_use(root, file)),
+        Err(TryLockError::Error(source)) => return Err(unwritable(source)),
+    }
+    let mut sign = || {
+        file.set_len(0)?;
+        file.seek(SeekFrom::Start(0))?;
+        write!(file, "process {}", std::process::id())
+    };
+    sign().map_err(unwritable)?;
+    Ok(Lock { file, alone: true })
+}
+
+/// Locks `_sweep/lock` together with others; nothing where the file system knows no locks, because
+/// the records of a dataset do not need them.
+pub(super) fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
+    let (file, unwritable) = open(root, "_sweep/lock")?;
+    // Whoever tidies up holds it for a moment.
+    let begun = Instant::now();
+    let locked = loop {
+        match file.try_lock_shared() {
+            Err(TryLockError::WouldBlock) if begun.elapsed() < MOMENT => thread::sleep(MOMENT / 20),
+            tried => break tried,
+        }
+    };
+    match locked {
+        Ok(()) => Ok(Some(Lock { file, alone: false })),
+        Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
+        Err(TryLockError::Error(source)) => Err(unwritable(source)),
+    }
+}
+
+fn open(root: &Path, name: &str) -> Result<(File, impl Fn(io::Error) -> Error + use<>), Error> {
+    let path = root.join(name);
+    let mut options = OpenOptions::new();
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let file = options.open(&path);
+    let unwritable = move |source| Error::Unwritable {
+        path: path.clone(),
+        source,
+    };
+    Ok((file.map_err(&unwritable)?, unwritable))
+}
+
+fn in_use(root: &Path, mut lock: File) -> Error {
+    let mut by = String::new();
+    let _ = lock.read_to_string(&mut by);
+    Error::InUse {
+        path: root.to_owned(),
+        by: if by.is_empty() {
+            "one that makes a shard".into()
+        } else {
+            by
+        },
+    }
+}
+
+/// Does `work` while no other process holds the lock of the dataset at `root`, of which this process
+/// holds `own`; nothing where another one does, or where there are no locks.
+pub(super) fn alone(
+    root: &Path,
+    own: &Mutex<Option<Lock>>,
+    work: impl FnOnce() -> Result<(), Error>,
+) -> Result<(), Error> {
+    let mut own = own.lock().unwrap_or_else(PoisonError::into_inner);
+    if own.as_ref().is_some_and(|lock| lock.alone) {
+        return work();
+    }
+    // A lock held together with others does not become one held alone in one step.
+    *own = None;
+    let (file, _) = open(root, "_sweep/lock")?;
+    let done = match file.try_lock() {
+        Ok(()) => work(),
+        Err(_) => Ok(()),
+    };
+    drop(file);
+    *own = lock_shared(root)?;
+    done
+}
+
+impl Output {
+    /// Whether nobody else writes to this dataset.
+    pub(super) fn is_alone(&self) -> bool {
+        let lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
+        lock.as_ref().is_some_and(|lock| lock.alone)
+    }
+
+    /// Waits until nobody commits a shard, or until nobody does so `alone`; none where one process
+    /// makes the whole dataset, or where there are no locks.
+    pub(super) fn committing(&self, alone: bool) -> Result<Option<File>, Error> {
+        let Some(root) = self.store.folder().filter(|_| !self.is_alone()) else {
+            return Ok(None);
+        };
+        let (file, _) = open(root, "_sweep/commit.lock")?;
+        let locked = match alone {
+            true => file.lock(),
+            false => file.lock_shared(),
+        };
+        Ok(locked.is_ok().then_some(file))
+    }
+}

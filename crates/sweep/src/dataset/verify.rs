@@ -1,0 +1,200 @@
+//! Whether the files of a finished dataset are those that were written, from its manifest alone.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fmt::{self, Display};
+use std::path::{Component, Path};
+
+use recordings::formats::parquet::rows_of_footer;
+use recordings::{FileEntry, Manifest};
+
+use super::commit::{Check, Damage, checksum, fault};
+use super::output::{MANIFEST, SUMS, strays};
+use super::parts::READERS;
+use super::pool;
+use super::store::Store;
+use crate::Error;
+use crate::in_order::in_order;
+
+/// What is wrong with a file of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// The file, within the dataset.
+    pub path: String,
+    /// What is wrong with it.
+    pub damage: Damage,
+}
+
+impl Fault {
+    pub(super) fn new(path: &str, damage: Damage) -> Self {
+        Self {
+            path: path.to_owned(),
+            damage,
+        }
+    }
+}
+
+impl Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        // A name from a manifest may hold anything.
+        write!(f, "{}: {}", self.path.escape_debug(), self.damage)
+    }
+}
+
+/// What [`verify`] found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verified {
+    /// Files that were compared, with the manifest and `SHA256SUMS`.
+    pub files: usize,
+    /// Their bytes.
+    pub bytes: u64,
+    /// Whether there is a `SHA256SUMS`, without which nothing vouches for the manifest itself.
+    pub has_sums: bool,
+    /// All that is wrong, by path.
+    pub faults: Vec<Fault>,
+}
+
+/// Compares every file of the finished dataset at `root` with its manifest, and the manifest with
+/// `SHA256SUMS`; reads the rows of tables from their footers; and names files of data that the
+/// manifest does not have. Nothing is written. `progress` is told the bytes of all files and, after
+/// each, those that are compared.
+///
+/// # Errors
+/// Where there is no manifest, it cannot be read, or the storage fails.
+pub fn verify(root: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Verified, Error> {
+    let store = Store::at(root)?;
+    let no_manifest = || Error::NoManifest(root.to_owned());
+    let text = store.bytes(MANIFEST)?.ok_or_else(no_manifest)?;
+    let damaged = |reason: String| recordings::Error::Damaged {
+        format: "a manifest",
+        path: store.path(MANIFEST),
+        reason,
+    };
+    let text = String::from_utf8(text).map_err(|error| damaged(error.to_string()))?;
+    let manifest = Manifest::from_json(&text, &store.path(MANIFEST))?;
+    let written = store.bytes(SUMS)?;
+    let mut faults = Vec::new();
+    let expected = sums(&manifest, &text);
+    if written
+        .as_ref()
+        .is_some_and(|found| found != expected.as_bytes())
+    {
+        faults.push(Fault::new(SUMS, Damage::Sums));
+    }
+    let counted = manifest
+        .counts
+        .rows
+        .values()
+        .flat_map(|faults| faults.values());
+    let counted = counted.fold(0, |sum: u64, rows| sum.saturating_add(*rows));
+    let tabled = manifest
+        .files
+        .iter()
+        .filter(|file| file.path.starts_with("features/"));
+    let tabled = tabled.fold(0, |sum: u64, file| {
+        sum.saturating_add(file.rows.unwrap_or(0))
+    });
+    if counted != tabled || manifest.counts.failed != manifest.failed.len() as u64 {
+        faults.push(Fault::new(MANIFEST, Damage::Counts));
+    }
+    let names: BTreeSet<&str> = manifest
+        .files
+        .iter()
+        .map(|file| file.path.as_str())
+        .collect();
+    if names.len() < manifest.files.len() {
+        faults.push(Fault::new(MANIFEST, Damage::Twice));
+    }
+    let files = || manifest.files.iter();
+    let bytes = files().fold(0, |sum: u64, file| sum.saturating_add(file.bytes));
+    faults.extend(faults_of(&store, files(), &mut |done| {
+        progress(bytes, done)
+    })?);
+    for path in strays(&store, |path| names.contains(path))? {
+        faults.push(Fault::new(&path, Damage::Extra));
+    }
+    faults.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(Verified {
+        files: manifest.files.len() + 1 + usize::from(written.is_some()),
+        bytes: bytes.saturating_add(text.len() as u64),
+        has_sums: written.is_some(),
+        faults,
+    })
+}
+
+/// What is wrong with `files`, of which everything is read. `progress` is told how many bytes are
+/// compared, after each file.
+pub(super) fn faults_of<'a>(
+    store: &Store,
+    files: impl Iterator<Item = &'a FileEntry>,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Vec<Fault>, Error> {
+    let (mut faults, mut done) = (Vec::new(), 0_u64);
+    in_order(
+        &pool(READERS)?,
+        4 * READERS,
+        files,
+        |file| damage_in(store, file),
+        |file, damage| {
+            faults.extend(damage?.map(|damage| Fault::new(&file.path, damage)));
+            done = done.saturating_add(file.bytes);
+            progress(done);
+            Ok::<(), Error>(())
+        },
+    )?;
+    Ok(faults)
+}
+
+/// What is wrong with `file` of the dataset at `root`, if anything is: all of it is read.
+///
+/// # Errors
+/// Where it cannot be read.
+pub fn damage(root: &Path, file: &FileEntry) -> Result<Option<Damage>, Error> {
+    damage_in(&Store::at(root)?, file)
+}
+
+fn damage_in(store: &Store, file: &FileEntry) -> Result<Option<Damage>, Error> {
+    if !is_inside(&file.path) {
+        return Ok(Some(Damage::Outside));
+    }
+    if let Some(damage) = fault(store, file, Check::Sums)? {
+        return Ok(Some(damage));
+    }
+    let Some(expected) = file.rows else {
+        return Ok(None);
+    };
+    let read = |range| store.range(&file.path, range);
+    let found = rows_of_footer(file.bytes, read, &store.path(&file.path));
+    Ok(match found {
+        Ok(found) if found == expected => None,
+        Ok(found) => Some(Damage::Rows { found, expected }),
+        Err(_) => Some(Damage::Table),
+    })
+}
+
+/// Whether a path from a manifest stays within the dataset.
+fn is_inside(path: &str) -> bool {
+    let mut parts = Path::new(path).components();
+    !path.is_empty() && parts.all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// `SHA256SUMS`: every file with its checksum, the manifest included, as `sha256sum -c` reads it. A name
+/// with a backslash or an end of line is escaped as `sha256sum` escapes it.
+pub(super) fn sums(manifest: &Manifest, json: &str) -> String {
+    let own = checksum(json);
+    let files = manifest.files.iter();
+    let mut files: Vec<(&str, &str)> = files
+        .map(|file| (file.path.as_str(), file.sha256.as_str()))
+        .chain([(MANIFEST, own.as_str())])
+        .collect();
+    files.sort_unstable();
+    let mut text = String::new();
+    for (path, sha256) in files {
+        let escaped = path.replace('\\', "\\\\");
+        let escaped = escaped.replace('\n', "\\n").replace('\r', "\\r");
+        let mark = if escaped == path { "" } else { "\\" };
+        // A `String` takes everything.
+        let _ = writeln!(text, "{mark}{sha256}  {escaped}");
+    }
+    text
+}
