@@ -53,7 +53,7 @@ impl Document {
     /// Where the file cannot be read or is not YAML.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = files::read_text(path, files::LONGEST_TEXT).map_err(|error| {
             let reason = match error.kind() {
                 std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
                 std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
@@ -69,7 +69,8 @@ impl Document {
     /// The content `text` of a file that messages call `file_name`.
     ///
     /// # Errors
-    /// Where the text is empty or not YAML, or a section has a key twice.
+    /// Where the text is empty or not YAML, is no section, or a section has a key twice. A message
+    /// quotes names of keys and what stands at a key that is known, never the text of a file without keys.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
         let options = serde_saphyr::options! {
             // Deep enough for any file of ours, and no test of the stack.
@@ -91,8 +92,18 @@ impl Document {
                 .into_tree("", &mut places)
                 .map_err(|error| error.in_file(file_name))?,
         };
-        if tree.is_null() {
-            return Err(Error::new("", Problem::Empty).in_file(file_name));
+        // What stands in a file that is none of ours is not for a message, which others may read.
+        let found = match &tree {
+            Value::Object(_) => None,
+            Value::Null => return Err(Error::new("", Problem::Empty).in_file(file_name)),
+            Value::Array(_) => Some("a list"),
+            Value::String(_) => Some("text"),
+            Value::Bool(_) | Value::Number(_) => Some("a value"),
+        };
+        if let Some(found) = found {
+            let start = Place { line: 1, column: 1 };
+            let error = Error::found("", found, "a section: lines of `key: value`");
+            return Err(error.at(start).in_file(file_name));
         }
         Ok(Self {
             tree,

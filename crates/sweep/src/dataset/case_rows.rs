@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::path::Path;
 
 use recordings::formats::mcap;
 use recordings::{FailedCase, Value};
@@ -64,7 +65,7 @@ pub(super) fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
     let case_id = plan.case_id(index);
     FailedCase {
         reason: failure.to_string(),
-        command: format!("crosshead simulate sweep.yaml --case {case_id}"),
+        command: FailedCase::command_of(Path::new("sweep.yaml"), &case_id),
         case_id,
     }
 }

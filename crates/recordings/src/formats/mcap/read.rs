@@ -253,7 +253,7 @@ impl Stream {
             .with_record_length_limit(LONGEST_RECORD);
         Ok(Self {
             path: path.to_owned(),
-            file: File::open(path).map_err(Error::io("open", path))?,
+            file: files::open(path).map_err(Error::io("open", path))?,
             reader: LinearReader::new_with_options(options),
         })
     }
