@@ -2,18 +2,25 @@
 //!
 //! The standard library's `println!` panics where standard output cannot be written: a full disk, a
 //! closed descriptor. Here it ends the program with one message and exit status 1; `eprintln!` goes on, as
-//! a message that nobody can read is no reason to lose the work.
+//! a message that nobody can read is no reason to lose the work. A summary that nobody reads to its end
+//! (`| head`) ends the program without a word, as everywhere.
 //!
 //! Names of runs, cases and files come from others. What is printed is [`Harmless`], whoever wrote it.
 
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
 
+/// Exit status of a program that the signal of a broken pipe has ended, as the shell tells it.
+const BROKEN_PIPE: i32 = 128 + 13;
+
 /// Writes to standard output, and ends the program where that fails.
 #[allow(clippy::exit)] // A summary that cannot be written: what follows it could not be either.
 pub(crate) fn print(text: Arguments) {
     let mut out = io::stdout().lock();
     if let Err(error) = write(&mut out, text).and_then(|()| out.flush()) {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            std::process::exit(BROKEN_PIPE);
+        }
         message(format_args!("error: standard output: {error}\n"));
         std::process::exit(1);
     }

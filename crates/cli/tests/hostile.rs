@@ -342,7 +342,7 @@ fn a_path_is_one_word_in_the_scripts_of_slurm() {
     );
 }
 
-/// Standard error that is closed, or full: the same exit status, of every verb of both programs.
+/// Standard error that is closed, full, or a pipe without a reader: the same exit status, of every verb of both programs.
 #[test]
 #[cfg(target_os = "linux")]
 fn messages_that_nobody_can_read_change_no_exit_status() {
@@ -389,6 +389,15 @@ fn messages_that_nobody_can_read_change_no_exit_status() {
             );
             assert_eq!(status, Some(expected), "{line}: {said}");
         }
+        // A pipe whose reader has gone.
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut shell = Command::new("sh");
+        let shell = shell
+            .args(["-c", &format!("exec {command}")])
+            .stdout(Stdio::null());
+        let status = shell.stderr(writer).current_dir(folder.path()).status();
+        assert_eq!(status.unwrap().code(), Some(expected), "{command}");
     }
 }
 
@@ -413,4 +422,20 @@ fn a_file_is_refused_before_it_exhausts_memory() {
         said.contains("decodes to more than 536870912 bytes"),
         "{said}"
     );
+}
+
+/// Standard output whose reader has gone ends the program without a word.
+#[test]
+#[cfg(unix)]
+fn a_summary_that_nobody_reads_ends_quietly() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut schema = Command::new(CROSSHEAD);
+    let output = schema
+        .args(["schema", "machine"])
+        .stdout(writer)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(141));
+    assert!(output.stderr.is_empty(), "{}", text(&output));
 }

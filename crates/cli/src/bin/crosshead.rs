@@ -36,8 +36,6 @@ enum Verb {
 }
 
 fn main() -> ExitCode {
-    // Output that nobody reads any more ends a program, as everywhere.
-    sigpipe::reset();
     cli::finish(match Arguments::parse().verb {
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Sweep(arguments) => cli::sweep::run(&arguments),
