@@ -69,8 +69,7 @@ impl Document {
     /// The content `text` of a file that messages call `file_name`.
     ///
     /// # Errors
-    /// Where the text is empty or not YAML, is no section, or a section has a key twice. A message
-    /// quotes names of keys and what stands at a key that is known, never the text of a file without keys.
+    /// Where the text is empty or not YAML, or a section has a key twice.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
         let options = serde_saphyr::options! {
             // Deep enough for any file of ours, and no test of the stack.
@@ -92,18 +91,8 @@ impl Document {
                 .into_tree("", &mut places)
                 .map_err(|error| error.in_file(file_name))?,
         };
-        // What stands in a file that is none of ours is not for a message, which others may read.
-        let found = match &tree {
-            Value::Object(_) => None,
-            Value::Null => return Err(Error::new("", Problem::Empty).in_file(file_name)),
-            Value::Array(_) => Some("a list"),
-            Value::String(_) => Some("text"),
-            Value::Bool(_) | Value::Number(_) => Some("a value"),
-        };
-        if let Some(found) = found {
-            let start = Place { line: 1, column: 1 };
-            let error = Error::found("", found, "a section: lines of `key: value`");
-            return Err(error.at(start).in_file(file_name));
+        if tree.is_null() {
+            return Err(Error::new("", Problem::Empty).in_file(file_name));
         }
         Ok(Self {
             tree,
@@ -130,8 +119,13 @@ impl Document {
     }
 
     /// `error` with the value as it is written, the file's name, and the place of its key or of the
-    /// section that lacks it.
+    /// section that lacks it. A message quotes what stands at a key; of a file without keys, which is none of ours, it
+    /// says what it is and not what stands in it.
     pub fn locate(&self, error: Error) -> Error {
+        let error = match error.key().is_empty() {
+            true => error.unquoted(&self.tree),
+            false => error,
+        };
         let error = match find(&self.tree, error.key()) {
             Some(value) => error.written(value),
             None => error,

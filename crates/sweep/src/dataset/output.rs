@@ -187,9 +187,12 @@ impl Claim {
     /// Where it holds the dataset of another plan, or cannot be written to.
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
         let own = self.output.path(CALIBRATION);
-        let is_own = |from: &&PathBuf| fs::canonicalize(from).ok() == fs::canonicalize(&own).ok();
         let named = plan.calibrated.as_ref();
-        let has_it = self.calibrated || named.is_some_and(|from| is_own(&from));
+        let is_own = named.is_some_and(|from| {
+            let from = fs::canonicalize(from).ok();
+            from.is_some() && from == fs::canonicalize(&own).ok()
+        });
+        let has_it = self.calibrated || is_own;
         // Before anything is written or removed.
         let copied = match named.filter(|_| !has_it) {
             Some(from) => kept::read(from)?,
