@@ -258,8 +258,15 @@ impl Stream {
         })
     }
 
-    /// Hands the next record to `take` that can matter; false at the end.
+    /// Hands the next record to `take` that can matter; false at the end. A record that is longer than its chunk
+    /// is a mistake of its own to the MCAP library.
     fn next(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
+        let path = self.path.clone();
+        let contradiction = || damaged(&path, "its chunks and records contradict each other");
+        super::super::guarded(|| self.advance(take), contradiction)
+    }
+
+    fn advance(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
         loop {
             let Some(event) = self.reader.next_event() else {
                 return Ok(false);

@@ -14,7 +14,6 @@ use parquet::arrow::arrow_reader::{
 use parquet::file::metadata::PageIndexPolicy;
 use std::fs::File;
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 /// Rows decoded at a time.
@@ -254,11 +253,10 @@ fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Err
     Table::from_columns(schema.clone(), data)
 }
 
-/// The result of `read`, with an error in place of a panic: the Parquet library takes some damage
-/// to page headers (one flipped byte in 2000) for a mistake of its own.
+/// The result of `read`: the Parquet library takes some damage to page headers (one flipped byte in 2000) for a mistake of
+/// its own.
 fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-    catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(damaged(path)("its pages contradict each other")))
+    super::super::guarded(read, || damaged(path)("its pages contradict each other"))
 }
 
 fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
