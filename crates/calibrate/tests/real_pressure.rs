@@ -30,7 +30,7 @@ fn problem(fitted: &[(&str, Option<[f64; 2]>)]) -> (Problem, Vec<Run>) {
         .iter()
         .zip(columns_of)
         .map(|(run, column)| {
-            let text = std::fs::read_to_string(bundle.path_of(run)).unwrap();
+            let text = std::fs::read_to_string(bundle.path_of(run).unwrap()).unwrap();
             let rows: Vec<[f64; 2]> = text
                 .lines()
                 .skip(1)

@@ -4,10 +4,31 @@ mod recording;
 
 use crate::Failure;
 use ::calibrate::Run;
+use clap::Args;
 use input::bundle::{self, Bundle};
 use input::bundle_channel::{Meaning, meaning};
 use serde_json::Value;
 use std::path::Path;
+
+/// Whether a bundle may name recordings outside of its folder.
+#[derive(Args, Clone, Copy, Debug, Default)]
+pub struct AllowOutside {
+    /// Read recordings outside of the bundle's folder, too, where its recordings.yaml names them
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+impl AllowOutside {
+    /// Reads the bundle at `path`.
+    ///
+    /// # Errors
+    /// As [`Bundle::read`].
+    pub fn read(self, path: &Path) -> Result<Bundle, input::Error> {
+        let mut bundle = Bundle::read(path)?;
+        bundle.allow_outside = self.allow_outside;
+        Ok(bundle)
+    }
+}
 
 /// The machine file's content that the bundle in `folder` is held against: that of `machine`, or the
 /// bundle's own machine section.

@@ -2,24 +2,87 @@
 //!
 //! The standard library's `println!` panics where standard output cannot be written: a full disk, a
 //! closed descriptor. Here it ends the program with one message and exit status 1; `eprintln!` goes on, as
-//! a message that nobody can read is no reason to lose the work.
+//! a message that nobody can read is no reason to lose the work. A summary that nobody reads to its end
+//! (`| head`) ends the program without a word, as everywhere.
+//!
+//! Names of runs, cases and files come from others. What is printed is [`Harmless`], whoever wrote it.
 
-use std::fmt::Arguments;
-use std::io::Write;
+use std::fmt::{Arguments, Write as _};
+use std::io::{self, Write};
+
+/// Exit status of a program that the signal of a broken pipe has ended, as the shell tells it.
+const BROKEN_PIPE: i32 = 128 + 13;
 
 /// Writes to standard output, and ends the program where that fails.
 #[allow(clippy::exit)] // A summary that cannot be written: what follows it could not be either.
 pub(crate) fn print(text: Arguments) {
-    let mut out = std::io::stdout().lock();
-    if let Err(error) = out.write_fmt(text).and_then(|()| out.flush()) {
+    let mut out = io::stdout().lock();
+    if let Err(error) = write(&mut out, text).and_then(|()| out.flush()) {
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            std::process::exit(BROKEN_PIPE);
+        }
         message(format_args!("error: standard output: {error}\n"));
         std::process::exit(1);
     }
 }
 
+/// `text` as it is printed, for a line that something else draws.
+pub(crate) fn harmless(text: &str) -> String {
+    let mut harmless = String::new();
+    // A string takes all that is written to it.
+    let _ = Harmless(&mut harmless).write_str(text);
+    harmless
+}
+
 /// Writes to standard error, if that can be written.
 pub(crate) fn message(text: Arguments) {
-    let _ = std::io::stderr().lock().write_fmt(text);
+    let _ = write(&mut io::stderr().lock(), text);
+}
+
+fn write(out: &mut impl Write, text: Arguments) -> io::Result<()> {
+    let mut harmless = String::new();
+    let written = Harmless(&mut harmless).write_fmt(text);
+    written.map_err(io::Error::other)?;
+    out.write_all(without_passwords(&harmless).as_bytes())
+}
+
+/// Text in which nothing speaks to the terminal: control characters but the line break, and characters that turn the
+/// direction of writing (Unicode Standard Annex 9), are written out as
+/// `\u001b`, which within JSON is the same character.
+struct Harmless<'a>(&'a mut String);
+
+impl std::fmt::Write for Harmless<'_> {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        for c in text.chars() {
+            let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+            match c {
+                '\n' => self.0.push(c),
+                c if c.is_control() || turns => write!(self.0, "\\u{:04x}", u32::from(c))?,
+                c => self.0.push(c),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `text` with `***` in the place of the user and the password of each URL (RFC 3986, section 3.2.1).
+fn without_passwords(text: &str) -> String {
+    let mut masked = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(begin) = rest.find("://") {
+        let (head, tail) = rest.split_at(begin + 3);
+        masked += head;
+        let end = tail.find(|c: char| c == '/' || c.is_whitespace());
+        let host = &tail[..end.unwrap_or(tail.len())];
+        rest = match host.rfind('@') {
+            Some(at) => {
+                masked += "***";
+                &tail[at..]
+            }
+            None => tail,
+        };
+    }
+    masked + rest
 }
 
 macro_rules! println {
@@ -34,4 +97,36 @@ macro_rules! print {
 macro_rules! eprintln {
     () => { $crate::output::message(format_args!("\n")) };
     ($($text:tt)*) => { $crate::output::message(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(text: &str) -> String {
+        let mut out = Vec::new();
+        write(&mut out, format_args!("{text}")).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn nothing_speaks_to_the_terminal() {
+        assert_eq!(
+            printed("run\u{1b}[2J\r\u{9b}1m\u{202e}\n"),
+            "run\\u001b[2J\\u000d\\u009b1m\\u202e\n"
+        );
+        assert_eq!(printed("Überdruck 2 × p₀ µm\n"), "Überdruck 2 × p₀ µm\n");
+    }
+
+    #[test]
+    fn passwords_are_masked() {
+        for (text, expected) in [
+            ("s3://me:secret@bucket/a: no", "s3://***@bucket/a: no"),
+            ("`s3://me:se@cret@bucket`", "`s3://***@bucket`"),
+            ("s3://bucket/a@b https://x/y", "s3://bucket/a@b https://x/y"),
+            ("a://u:p@h b://u:p@h", "a://***@h b://***@h"),
+        ] {
+            assert_eq!(printed(text), expected);
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 mod relations;
 
+use crate::bundle::AllowOutside;
 use crate::{Failure, bundle};
 use ::calibrate::prediction::predict;
 use ::calibrate::problem::columns;
@@ -48,6 +49,8 @@ pub struct Arguments {
     /// Do not use this run; may be repeated
     #[arg(long, value_name = "RUN")]
     leave_out: Vec<String>,
+    #[command(flatten)]
+    outside: AllowOutside,
     /// Replace the files of an earlier replay
     #[arg(long)]
     overwrite: bool,
@@ -59,7 +62,7 @@ pub struct Arguments {
 /// A bundle or machine that is none, runs that cannot be used or simulated, or files that cannot be
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let bundle = Bundle::read(&arguments.bundle)?;
+    let bundle = arguments.outside.read(&arguments.bundle)?;
     let tree = bundle::machine(&bundle, arguments.machine.as_deref())?;
     let mut listed = listed(&arguments.leave_out, &bundle, &tree)?;
     let problem = problem(tree, &mut listed)?;
@@ -96,14 +99,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// As [`run`].
 pub(crate) fn into_folder(
-    bundle: &Path,
+    bundle: &Bundle,
     tree: Value,
     conditions: impl Fn(&str) -> Vec<(String, Value)>,
     leave_out: &[String],
     folder: &Path,
 ) -> Result<(), Failure> {
-    let bundle = Bundle::read(bundle)?;
-    let mut listed = listed(leave_out, &bundle, &tree)?;
+    let mut listed = listed(leave_out, bundle, &tree)?;
     for listed in &mut listed {
         let own = conditions(&listed.run.id);
         listed.run.settings.extend(own);

@@ -11,7 +11,7 @@ use crate::yaml::Document;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// Name of the file that makes a folder a bundle.
 pub const FILE: &str = "recordings.yaml";
@@ -28,6 +28,8 @@ pub struct Bundle {
     pub machine: Value,
     /// The runs, at least one, each with an `id` of its own.
     pub runs: Vec<Run>,
+    /// Whether a recording may lie outside of the folder; false in a bundle that has just been read.
+    pub allow_outside: bool,
     document: Document,
 }
 
@@ -151,13 +153,42 @@ impl Bundle {
             folder: folder.to_owned(),
             machine: document.tree.get("machine").cloned().unwrap_or_default(),
             runs,
+            allow_outside: false,
             document,
         })
     }
 
-    /// Where the recording of a run lies.
-    pub fn path_of(&self, run: &Run) -> PathBuf {
-        self.folder.join(&run.file)
+    /// Where the recording of a run lies. A bundle may come from a stranger, and names only what lies in its folder
+    /// unless [`Bundle::allow_outside`] says otherwise.
+    ///
+    /// # Errors
+    /// A recording that lies elsewhere: an absolute path, one with `..`, or one through a link that leads out.
+    pub fn path_of(&self, run: &Run) -> Result<PathBuf, Error> {
+        let path = self.folder.join(&run.file);
+        let within = run
+            .file
+            .components()
+            .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+        // One that is not there is told by who opens it.
+        let leads_out = || match (path.canonicalize(), self.folder().canonicalize()) {
+            (Ok(path), Ok(folder)) => !path.starts_with(folder),
+            _ => false,
+        };
+        if self.allow_outside || within && !leads_out() {
+            return Ok(path);
+        }
+        let i = self.runs.iter().position(|other| other.id == run.id);
+        let key = format!("runs.{}.file", i.unwrap_or(0));
+        let expected = "a file in the folder of the bundle; --allow-outside reads others";
+        Err(self.locate(Error::clash(key, expected)))
+    }
+
+    /// The folder, which is `.` where its path is empty.
+    fn folder(&self) -> &Path {
+        match self.folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => &self.folder,
+        }
     }
 
     /// `error`, whose key is a dotted path (`runs.0.file`), with the line where that stands.

@@ -189,6 +189,17 @@ impl Error {
         self
     }
 
+    /// Says what `value` is in the place of what it holds.
+    pub(crate) fn unquoted(mut self, value: &Value) -> Self {
+        if let Problem::Found { found, .. } = &mut *self.problem {
+            *found = match value {
+                Value::String(_) => "text".to_owned(),
+                other => shown(other),
+            };
+        }
+        self
+    }
+
     /// Fills in what belongs in the place of a missing key, if that is still open.
     pub(crate) fn expecting(mut self, expectation: impl FnOnce() -> Option<String>) -> Self {
         if let Problem::Missing { expected } = &mut *self.problem

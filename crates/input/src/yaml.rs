@@ -53,7 +53,7 @@ impl Document {
     /// Where the file cannot be read or is not YAML.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = files::read_text(path, files::LONGEST_TEXT).map_err(|error| {
             let reason = match error.kind() {
                 std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
                 std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
@@ -119,8 +119,13 @@ impl Document {
     }
 
     /// `error` with the value as it is written, the file's name, and the place of its key or of the
-    /// section that lacks it.
+    /// section that lacks it. A message quotes what stands at a key; of a file without keys, which is none of ours, it
+    /// says what it is and not what stands in it.
     pub fn locate(&self, error: Error) -> Error {
+        let error = match error.key().is_empty() {
+            true => error.unquoted(&self.tree),
+            false => error,
+        };
         let error = match find(&self.tree, error.key()) {
             Some(value) => error.written(value),
             None => error,

@@ -46,7 +46,7 @@ fn throws_keep_their_names() {
     assert!(matches!(&run.joints["throw2"]["big_end"], Joint::Scalar(_)));
     assert_eq!(run.speed_reference_rpm.unwrap().get(), 496.0);
     assert_eq!(run.samples, Some(72_581));
-    assert_eq!(bundle.path_of(run), bundle.folder.join("a.parquet"));
+    assert_eq!(bundle.path_of(run), Ok(bundle.folder.join("a.parquet")));
     assert!(Bundle::is_at(Path::new("x/recordings.yaml")));
 }
 

@@ -255,7 +255,7 @@ fn files_that_hold_nothing() {
             "m.yaml: the file is empty",
             "m.yaml: the file is empty",
             "m.yaml:1:1: found a list, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
-            "m.yaml:1:1: found '500 rpm', expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found text, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
             "m.yaml:3:1: not valid YAML: only single YAML document expected but multiple found"
         ]
     );

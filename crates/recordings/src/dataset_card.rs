@@ -46,7 +46,7 @@ pub struct Subset {
 impl Display for DatasetCard {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         self.front_matter(f)?;
-        writeln!(f, "\n# {}\n\n{}", self.title, self.summary.trim())?;
+        writeln!(f, "\n# {}\n\n{}", plain(&self.title), plain(&self.summary))?;
         self.machine(f)?;
         self.counts(f)?;
         self.loading(f)?;
@@ -54,7 +54,7 @@ impl Display for DatasetCard {
         writeln!(
             f,
             "\n## How it was made\n\nBy version {} of the program:\n",
-            self.version
+            plain(&self.version)
         )?;
         writeln!(f, "```sh\n{}\n```\n", self.command)?;
         writeln!(
@@ -69,17 +69,21 @@ impl Display for DatasetCard {
 impl DatasetCard {
     /// YAML between two lines of dashes. Strings are quoted as in JSON, which YAML contains.
     fn front_matter(&self, f: &mut Formatter) -> fmt::Result {
-        writeln!(f, "---\npretty_name: {}", json!(self.title))?;
+        writeln!(f, "---\npretty_name: {}", yaml(&self.title))?;
         writeln!(
             f,
-            "license: {}\ntags: {}",
-            json!(self.license),
-            json!(self.tags)
+            "license: {}\ntags: [{}]",
+            yaml(&self.license),
+            self.tags
+                .iter()
+                .map(|tag| yaml(tag))
+                .collect::<Vec<_>>()
+                .join(", ")
         )?;
         writeln!(
             f,
             "size_categories: [{}]",
-            json!(size_category(self.total()))
+            yaml(size_category(self.total()))
         )?;
         let splits = self.splits_with_rows();
         let offered = self.subsets.iter().filter(|_| !splits.is_empty());
@@ -87,20 +91,20 @@ impl DatasetCard {
             if i == 0 {
                 writeln!(f, "configs:")?;
             }
-            writeln!(f, "- config_name: {}", json!(subset.name))?;
+            writeln!(f, "- config_name: {}", yaml(&subset.name))?;
             if i == 0 {
                 writeln!(f, "  default: true")?;
             }
             writeln!(f, "  data_files:")?;
             for split in &splits {
                 let files = format!("{}/{split}-*.parquet", subset.name);
-                writeln!(f, "  - split: {}\n    path: {}", json!(split), json!(files))?;
+                writeln!(f, "  - split: {}\n    path: {}", yaml(split), yaml(&files))?;
             }
         }
         for subset in self.unsplit.iter().filter(|_| !splits.is_empty()) {
             let files = format!("{}/*.parquet", subset.name);
-            writeln!(f, "- config_name: {}", json!(subset.name))?;
-            writeln!(f, "  data_files: {}", json!(files))?;
+            writeln!(f, "- config_name: {}", yaml(&subset.name))?;
+            writeln!(f, "  data_files: {}", yaml(&files))?;
         }
         writeln!(f, "---")
     }
@@ -111,7 +115,7 @@ impl DatasetCard {
         }
         writeln!(f, "\n## The machine\n\n| quantity | value |\n|---|---|")?;
         for (name, value) in &self.machine {
-            writeln!(f, "| {} | {} |", cell(name), cell(value))?;
+            writeln!(f, "| {} | {} |", plain(name), plain(value))?;
         }
         Ok(())
     }
@@ -122,7 +126,8 @@ impl DatasetCard {
         faults.sort_by_key(|fault| (*fault != "none", *fault));
         faults.dedup();
         writeln!(f, "\n## What is in it\n\nRows by fault and split:\n")?;
-        writeln!(f, "| fault | {} | all |", splits.join(" | "))?;
+        let names: Vec<_> = splits.iter().map(|split| plain(split)).collect();
+        writeln!(f, "| fault | {} | all |", names.join(" | "))?;
         writeln!(f, "|---|{}---|", "---|".repeat(splits.len()))?;
         for fault in faults {
             let rows: Vec<_> = splits
@@ -131,8 +136,8 @@ impl DatasetCard {
                 .collect();
             writeln!(
                 f,
-                "| `{}` | {} | {} |",
-                cell(fault),
+                "| {} | {} | {} |",
+                code(fault),
                 join(&rows),
                 rows.iter().sum::<u64>()
             )?;
@@ -196,19 +201,19 @@ Foxglove opens the files of `mcap/` as they are: add a Plot panel and drag a cha
             let columns = subset.schema.columns();
             writeln!(
                 f,
-                "\n## Columns of `{}`\n\n| column | role | holds | unit | meaning |\n|---|---|---|---|---|",
-                subset.name
+                "\n## Columns of {}\n\n| column | role | holds | unit | meaning |\n|---|---|---|---|---|",
+                code(&subset.name)
             )?;
             for column in columns {
                 let optional = if column.optional { ", or nothing" } else { "" };
                 let unit = column.unit.as_deref().unwrap_or_default();
                 let role = column.role.map(Role::name).unwrap_or_default();
-                let (name, kind) = (cell(&column.name), column.kind);
+                let (name, kind) = (code(&column.name), column.kind);
                 writeln!(
                     f,
-                    "| `{name}` | {role} | {kind}{optional} | {} | {} |",
-                    cell(unit),
-                    cell(&column.description)
+                    "| {name} | {role} | {kind}{optional} | {} | {} |",
+                    plain(unit),
+                    plain(&column.description)
                 )?;
             }
         }
@@ -245,9 +250,46 @@ fn in_order<'a>(splits: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     splits
 }
 
-/// Text that stays within a cell of a table.
-fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('\n', " ")
+/// Text that Markdown shows as it is, on one line and in any cell: what begins markup has a backslash before it
+/// (CommonMark 0.31, 2.4), so that names from elsewhere bring neither links nor HTML.
+fn plain(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.trim().chars() {
+        match c {
+            c if c.is_control() => shown.push(' '),
+            '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '&' | '|' | '~' | '!' | '$' => {
+                shown.extend(['\\', c])
+            }
+            c => shown.push(c),
+        }
+    }
+    shown
+}
+
+/// Text as code within a cell of a table: a character that would end the code or the cell becomes `?`.
+fn code(text: &str) -> String {
+    let shown = |c: char| if c.is_control() || c == '`' { '?' } else { c };
+    let text: String = text.chars().map(shown).collect();
+    format!("`{}`", text.replace('|', "\\|"))
+}
+
+/// Text in the quotation marks of YAML 1.2 (7.3.1): as in JSON, but what is not printable in YAML is written out.
+fn yaml(text: &str) -> String {
+    let mut shown = String::new();
+    for c in json!(text).to_string().chars() {
+        match c {
+            '\u{7f}'..='\u{9f}'
+            | '\u{2028}'
+            | '\u{2029}'
+            | '\u{feff}'
+            | '\u{fffe}'
+            | '\u{ffff}' => {
+                shown += &format!("\\u{:04x}", u32::from(c));
+            }
+            c => shown.push(c),
+        }
+    }
+    shown
 }
 
 fn join(numbers: &[u64]) -> String {
@@ -348,5 +390,38 @@ configs:
         assert!(text.contains(expected), "{text}");
         let column = r"| `clearance_m` | label | a real number, or nothing | m | of a \| joint |";
         assert_eq!(text.matches(column).count(), 2, "{text}");
+    }
+
+    /// Names come from files that others wrote; the card is published.
+    #[test]
+    fn names_are_no_markup() {
+        let hostile = "<img src=x onerror=alert(1)> [a](b) `c` | d\n# e\u{85}---\n";
+        let mut card = card();
+        card.title = hostile.into();
+        card.machine = vec![("machine".into(), hostile.into())];
+        card.rows
+            .insert("train".into(), [(hostile.to_owned(), 3)].into());
+        card.subsets[0].schema =
+            Schema::new(vec![Column::new(hostile, Kind::Real, hostile)]).unwrap();
+        let text = card.to_string();
+        let shown = r"\<img src=x onerror=alert(1)\> \[a\](b) \`c\` \| d # e ---";
+        assert!(text.contains(&format!("\n# {shown}\n")), "{text}");
+        assert!(text.contains(&format!("| machine | {shown} |\n")), "{text}");
+        let code = r"`<img src=x onerror=alert(1)> [a](b) ?c? \| d?# e?---?`";
+        assert_eq!(text.matches(code).count(), 2, "{text}");
+        let name = r#"pretty_name: "<img src=x onerror=alert(1)> [a](b) `c` | d\n# e\u0085---\n""#;
+        assert_eq!(text.lines().nth(1), Some(name));
+        // Every heading is one of the card's own.
+        let headings = text.lines().filter(|line| line.starts_with('#')).count();
+        let mut plain = self::card();
+        plain.title = "a".into();
+        assert_eq!(
+            headings,
+            plain
+                .to_string()
+                .lines()
+                .filter(|line| line.starts_with('#'))
+                .count()
+        );
     }
 }

@@ -4,6 +4,7 @@
 //! - [`formats`]: one file per format; the only place in the workspace that knows Arrow and MCAP;
 //! - [`measured`]: recordings of any origin, read a stretch at a time;
 //! - [`WholeFile`]: a file that appears whole or not at all, with its size and checksum;
+//! - [`shell`]: words of the shell, for commands to paste;
 //! - [`DatasetCard`] and [`Manifest`]: what a dataset says about itself, to people and programs.
 //!
 //! A table reaches the disk through three steps, each of which hands the writer on:
@@ -29,6 +30,7 @@
 
 pub mod formats;
 pub mod measured;
+pub mod shell;
 
 mod dataset_card;
 mod error;

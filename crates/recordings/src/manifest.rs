@@ -1,10 +1,12 @@
 //! `manifest.json`: what a dataset consists of, for programs.
 
-use crate::Error;
+use crate::{Error, shell};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
+
+/// Longest manifest, in bytes: 1 GiB. One of a million files has a fifth of that.
+const LONGEST: u64 = 1 << 30;
 
 /// What a dataset consists of. A folder without it is not a complete dataset.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,15 +75,21 @@ pub struct FailedCase {
 }
 
 impl FailedCase {
+    /// The command that runs the case `case_id` alone, where the sweep file is at `sweep`.
+    pub fn command_of(sweep: &Path, case_id: &str) -> String {
+        let [sweep, case] = [&sweep.display().to_string(), case_id].map(shell::word);
+        format!("crosshead simulate {sweep} --case {case}")
+    }
+
     /// The command that runs this case alone, from anywhere, of the dataset in `folder`; of one in
-    /// object storage, from where its `sweep.yaml` has been copied to.
+    /// object storage, from where its `sweep.yaml` has been copied to. It is made anew: the record of a dataset that
+    /// others hand out may hold any other command.
     pub fn command_in(&self, folder: &Path) -> String {
-        if folder.starts_with("s3:") {
-            return self.command.clone();
-        }
-        let sweep = folder.join("sweep.yaml");
-        self.command
-            .replacen("sweep.yaml", &sweep.display().to_string(), 1)
+        let sweep = match folder.starts_with("s3:") {
+            true => "sweep.yaml".into(),
+            false => folder.join("sweep.yaml"),
+        };
+        Self::command_of(&sweep, &self.case_id)
     }
 }
 
@@ -100,7 +108,7 @@ impl Manifest {
     /// # Errors
     /// When the file is not there or is not a manifest.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(Error::io("read", path))?;
+        let text = files::read_text(path, LONGEST).map_err(Error::io("read", path))?;
         Self::from_json(&text, path)
     }
 
@@ -120,6 +128,7 @@ impl Manifest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
 
     #[test]
     fn what_is_no_manifest_is_named() {

@@ -14,7 +14,7 @@ pub(crate) fn vectorised<T>(work: impl FnOnce() -> T) -> T {
         work()
     }
     if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-        // SAFETY: the processor has them.
+        // SAFETY: the processor has them, as the line before has found.
         unsafe { with_instructions(work) }
     } else {
         work()

@@ -106,6 +106,20 @@ pub enum Error {
          then that folder's sweep.yaml in object storage", .0.display()
     )]
     NoCalibration(PathBuf),
+    /// A folder that is to be copied into a dataset as its calibration, and is none.
+    #[error("`{}` is not the folder of a calibration: {reason}", path.display())]
+    NotACalibration {
+        /// The folder.
+        path: PathBuf,
+        /// What is missing, or cannot be read.
+        reason: String,
+    },
+    /// A URL that has a password in it.
+    #[error(
+        "a URL of object storage cannot have a user or a password: give AWS_ACCESS_KEY_ID and \
+         AWS_SECRET_ACCESS_KEY in the environment"
+    )]
+    Password,
     /// The program was built without object storage.
     #[error("`{}`: this program was built without object storage (feature `s3`)", .0.display())]
     NoObjectStorage(PathBuf),
@@ -232,6 +246,8 @@ impl Error {
                 | Error::OtherDeltaTable(_)
                 | Error::NoOverwrite(_)
                 | Error::NoCalibration(_)
+                | Error::NotACalibration { .. }
+                | Error::Password
                 | Error::NoObjectStorage(_)
                 | Error::NoShard { .. }
                 | Error::LargeShards { .. }

@@ -22,6 +22,15 @@ vary:
   rod.mass: {lognormal: {factor: 1.01}}
 ";
 
+/// The files of a calibration that are always there.
+fn calibration_at(folder: &Path, machine: &Value) {
+    fs::create_dir_all(folder).unwrap();
+    let results = r#"{"parameters": {}}"#;
+    fs::write(folder.join("calibration.json"), results).unwrap();
+    let machine = input::yaml::to_string(machine).unwrap();
+    fs::write(folder.join("machine.yaml"), machine).unwrap();
+}
+
 /// A sweep file beside a bundle with a run whose recording is a few bytes.
 fn write(folder: &Path, text: &str) -> PathBuf {
     let machine = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
@@ -214,6 +223,7 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
     let mut claim = Claim::new(&root, Existing::Resume).unwrap();
     claim.calibration(false).unwrap();
     assert!(calibration.join("calibration.json").exists());
+    calibration_at(&calibration, &machine);
     let plan = sweep.calibrated(&found(&sweep)).unwrap();
     generate(claim, Existing::Resume, &plan).unwrap();
 
@@ -334,4 +344,63 @@ fn undetermined_exponents_of_a_relation_are_drawn() {
     let uniform = &plan.sweep()["vary"][format!("{path}.damping")]["uniform"];
     assert_eq!(*uniform, json!([-1.0, 0.5]));
     assert!(plan.sweep()["vary"].get(DAMPING).is_none());
+}
+
+/// What a stranger's sweep file calls a calibration must not publish anything else.
+#[test]
+fn the_named_files_of_a_calibration_alone_are_copied() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let machine = Sweep::read(&write(folder.path(), SWEEP)).unwrap();
+    let machine = machine.machine().unwrap().unwrap();
+    let plan = |from: &str| {
+        let text = SWEEP.replace(
+            "calibrate: {bundle: bundle, uncertainty: sampled, undetermined: prior}",
+            &format!("calibrated: {from}"),
+        );
+        Plan::read(&write(folder.path(), &text)).unwrap()
+    };
+    let begin = |from: &str| {
+        let claim = Claim::new(&at("out"), Existing::Resume).unwrap();
+        claim.open(&plan(from)).map_err(|error| error.to_string())
+    };
+    let link = |from: &str, to: &str| std::os::unix::fs::symlink(from, at(to)).unwrap();
+
+    fs::create_dir(at("keys")).unwrap();
+    fs::write(at("keys/secret"), "a key").unwrap();
+    link("keys", "link");
+    calibration_at(&at("linked"), &machine);
+    fs::remove_file(at("linked/machine.yaml")).unwrap();
+    link("../keys/secret", "linked/machine.yaml");
+    calibration_at(&at("other"), &machine);
+    fs::write(at("other/machine.yaml"), "a key").unwrap();
+    calibration_at(&at("empty"), &machine);
+    fs::write(at("empty/calibration.json"), "[]").unwrap();
+    link("second", "first");
+    link("first", "second");
+    for (from, expected) in [
+        ("keys", "it has no calibration.json"),
+        ("link", "it is a link or a file"),
+        ("first", "it is a link or a file"),
+        ("linked", "machine.yaml: it is a link"),
+        ("other", "machine.yaml:1:1: found text, expected a section"),
+        ("empty", "no section `parameters`"),
+    ] {
+        let message = begin(from).unwrap_err();
+        assert!(message.contains(expected), "{from}: {message}");
+        assert!(!message.contains("a key"), "{message}");
+        assert!(!at("out/_sweep/plan.json").exists(), "{from}");
+        assert!(!at("out/calibration").exists(), "{from}");
+    }
+
+    calibration_at(&at("sound"), &machine);
+    fs::write(at("sound/secret"), "a key").unwrap();
+    link("second", "sound/first");
+    link(".", "sound/second");
+    fs::write(at("sound/report.html"), "its page").unwrap();
+    begin("sound").unwrap();
+    let copied = fs::read_dir(at("out/calibration")).unwrap();
+    let mut copied: Vec<_> = copied.map(|entry| entry.unwrap().file_name()).collect();
+    copied.sort();
+    assert_eq!(copied, ["calibration.json", "machine.yaml", "report.html"]);
 }

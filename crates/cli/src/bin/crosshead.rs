@@ -38,8 +38,6 @@ enum Verb {
 }
 
 fn main() -> ExitCode {
-    // Output that nobody reads any more ends a program, as everywhere.
-    sigpipe::reset();
     if let Some(tried) = cli::try_case::if_asked() {
         return tried;
     }

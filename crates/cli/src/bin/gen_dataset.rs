@@ -4,8 +4,6 @@ use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // Output that nobody reads any more ends a program, as everywhere.
-    sigpipe::reset();
     if let Some(tried) = cli::try_case::if_asked() {
         return tried;
     }

@@ -111,7 +111,7 @@ struct Series {
 
 impl Series {
     fn read(bundle: &Bundle, run: &bundle::Run, columns: &[&str]) -> Result<Self, String> {
-        let path = bundle.path_of(run);
+        let path = bundle.path_of(run).map_err(|error| error.to_string())?;
         let options = Options {
             columns: columns.iter().map(|c| (*c).to_owned()).collect(),
             sample_rate_hz: run.sample_rate_hz.map(|rate| rate.get()),

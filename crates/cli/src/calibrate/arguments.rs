@@ -2,6 +2,7 @@
 
 use super::Existing;
 use crate::Failure;
+use crate::bundle::AllowOutside;
 use clap::{Args, ValueEnum};
 use input::bundle::Bundle;
 use input::calibration::{Calibration, Optimiser, Parameters, Relation};
@@ -51,6 +52,8 @@ pub struct Arguments {
     /// Do not use this run at all; may be repeated
     #[arg(long, value_name = "RUN")]
     leave_out: Vec<String>,
+    #[command(flatten)]
+    outside: AllowOutside,
     /// How the best fit is searched [default: default]
     #[arg(long)]
     optimiser: Option<Search>,
@@ -159,6 +162,10 @@ impl Arguments {
             .or(settings.evaluations);
         settings.seed = self.seed.and_then(Count::new).or(settings.seed);
         Ok((settings, base, document))
+    }
+
+    pub(super) fn outside(&self) -> AllowOutside {
+        self.outside
     }
 
     pub(super) fn out(&self) -> &Path {

@@ -91,7 +91,8 @@ pub fn look(
         return Ok(None);
     }
     let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-    let text = std::fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let text =
+        files::read_text(&path, files::LONGEST_TEXT).map_err(|error| wrong(error.to_string()))?;
     let results: Value = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     let same = results["fingerprint"] == fingerprint && folder.join(output::MACHINE).is_file();
     match (same, existing) {

@@ -11,6 +11,7 @@ mod progress;
 pub(crate) mod relation;
 pub(crate) mod sensors;
 
+use crate::bundle::AllowOutside;
 use crate::{Failure, interrupt, report};
 use ::calibrate::meter::Meter;
 use ::calibrate::optimiser::Progress;
@@ -33,6 +34,8 @@ pub struct Settings<'a> {
     pub base: &'a Path,
     /// The tree of the machine file, in the place of the file that the settings name.
     pub machine: Option<&'a Value>,
+    /// Whether its bundles may name recordings outside of their folders.
+    pub outside: AllowOutside,
     /// Gives a mistake in the settings the place where they stand.
     pub locate: &'a dyn Fn(input::Error) -> input::Error,
 }
@@ -83,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration: &calibration,
         base: &base,
         machine: None,
+        outside: arguments.outside(),
         locate: &locate,
     };
     let cancel = interrupt::flag()?;

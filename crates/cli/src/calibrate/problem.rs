@@ -263,7 +263,7 @@ fn bundles(settings: &Settings) -> Result<Vec<Listed>, Failure> {
     let paths = settings.calibration.bundles();
     let mut listed: Vec<Listed> = Vec::new();
     for path in paths {
-        let bundle = Bundle::read(&settings.base.join(path))?;
+        let bundle = settings.outside.read(&settings.base.join(path))?;
         let name = path
             .file_name()
             .unwrap_or(path.as_os_str())

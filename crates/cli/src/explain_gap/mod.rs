@@ -4,6 +4,7 @@ pub mod output;
 mod progress;
 mod words;
 
+use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
 use crate::calibrate::sensors::{Fitted, Sensors};
 use crate::calibrate::{Settings, pictures, task};
@@ -57,6 +58,8 @@ pub struct Arguments {
     /// Do not use this run at all; may be repeated
     #[arg(long, value_name = "RUN")]
     leave_out: Vec<String>,
+    #[command(flatten)]
+    outside: AllowOutside,
     /// Replace an explanation that is there
     #[arg(long)]
     overwrite: bool,
@@ -87,6 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration: &calibration,
         base: &base,
         document: document.as_ref(),
+        outside: arguments.outside,
     };
     let results = into_folder(&asked, out, &cancel)?;
     output::summary(&results)?;
@@ -104,6 +108,8 @@ pub struct Asked<'a> {
     pub base: &'a Path,
     /// The file that it was read from, if it was.
     pub document: Option<&'a Document>,
+    /// Whether the bundle may name recordings outside of its folder.
+    pub outside: AllowOutside,
 }
 
 /// Explains the gap between a machine and the recordings of one bundle into the folder `out`, and gives
@@ -116,6 +122,7 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
         calibration,
         base,
         document,
+        outside,
     } = *asked;
     let [bundle] = calibration.bundles() else {
         return Err(Failure::input(format!(
@@ -123,11 +130,12 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
             calibration.bundles().len()
         )));
     };
-    let bundle = base.join(bundle);
+    let bundle = outside.read(&base.join(bundle))?;
     let mut task = task(&Settings {
         calibration,
         base,
         machine: None,
+        outside,
         locate: &|error| match document {
             Some(document) => document.locate(error),
             None => error,

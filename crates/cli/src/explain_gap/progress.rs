@@ -25,7 +25,8 @@ impl Bar {
             true => format!(", misfit {:.2}", stage.misfit),
             false => String::new(),
         };
-        self.0.set_message(format!("{}{misfit}", stage.words));
+        let words = format!("{}{misfit}", stage.words);
+        self.0.set_message(crate::output::harmless(&words));
     }
 
     pub fn finish(&self) {

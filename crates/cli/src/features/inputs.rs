@@ -2,6 +2,7 @@
 
 use super::shaft;
 use crate::Failure;
+use crate::bundle::AllowOutside;
 use input::bundle::{self, Bundle, Joint, Run};
 use input::bundle_channel::Meaning;
 use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
@@ -65,6 +66,7 @@ pub(super) struct Said {
     pub(super) options: Options,
     pub(super) speed_rpm: Option<f64>,
     pub(super) crank: shaft::Asked,
+    pub(super) outside: AllowOutside,
 }
 
 impl Said {
@@ -85,7 +87,7 @@ pub(super) fn all(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Failure>
     let mut beside = Beside::default();
     for path in paths {
         if Bundle::is_at(path) {
-            let bundle = Bundle::read(path)?;
+            let bundle = said.outside.read(path)?;
             for i in 0..bundle.runs.len() {
                 inputs.push(of_run(&bundle, i, said)?);
             }
@@ -136,7 +138,11 @@ impl Beside {
         }
         let bundle = self.0.get(folder).and_then(Option::as_ref);
         Ok(bundle.and_then(|bundle| {
-            let is = |run: &Run| bundle.path_of(run).canonicalize().is_ok_and(|p| p == file);
+            let is = |run: &Run| {
+                let path = bundle.path_of(run).ok();
+                path.and_then(|path| path.canonicalize().ok())
+                    .is_some_and(|path| path == file)
+            };
             Some((bundle, bundle.runs.iter().position(is)?))
         }))
     }
@@ -195,7 +201,7 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Failure> 
     options.sample_rate_hz = rate.or(options.sample_rate_hz);
     let speed = run.speed_rpm.map(|speed| speed.get());
     Ok(Input {
-        path: bundle.path_of(run),
+        path: bundle.path_of(run)?,
         options,
         speed_rpm: speed.or(said.speed_rpm),
         labels: labels(run),

@@ -9,6 +9,7 @@ mod units;
 mod warnings;
 mod window;
 
+use crate::bundle::AllowOutside;
 use crate::{Failure, interrupt};
 use ::features::FEWEST_SAMPLES;
 use clap::Args;
@@ -82,6 +83,8 @@ pub struct Arguments {
     /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     window: Option<String>,
+    #[command(flatten)]
+    outside: AllowOutside,
     /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
@@ -122,6 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .map(shaft::parse_top_dead_centre)
                 .transpose()?,
         },
+        outside: arguments.outside,
     };
     let inputs = inputs::all(&arguments.files, &said)?;
     refuse_input_as_output(&inputs, &arguments.out)?;

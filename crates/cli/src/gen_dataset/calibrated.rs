@@ -1,6 +1,7 @@
 //! The calibration that a sweep asks for before its first case.
 
 use crate::Failure;
+use crate::bundle::AllowOutside;
 use crate::calibrate::{self, Calibrated, Prepared, Settings, output, relation};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use input::bundle::Bundle;
@@ -66,6 +67,7 @@ fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
         calibration: &calibrate.settings,
         base: sweep.folder(),
         machine: machine.as_ref(),
+        outside: AllowOutside::default(),
         locate: &|error: Error| sweep.locate(error),
     };
     let folder = root.join(CALIBRATION);
@@ -160,7 +162,7 @@ fn damaged(folder: &Path, reason: &str) -> Failure {
 /// The content of the `calibration.json` in `folder`.
 fn results(folder: &Path) -> Result<Value, Failure> {
     let damaged = |reason: String| damaged(folder, &reason);
-    let text = std::fs::read_to_string(folder.join(output::RESULTS));
+    let text = files::read_text(&folder.join(output::RESULTS), files::LONGEST_TEXT);
     let text = text.map_err(|error| damaged(error.to_string()))?;
     serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))
 }

@@ -9,7 +9,9 @@ use recordings::{CaseWarning, FailedCase, Manifest};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use sweep::dataset::{Claim, Existing, Options, Progress, generate_in, sample_diagram};
+use sweep::dataset::{
+    Claim, Existing, Options, Progress, check_calibration, generate_in, sample_diagram,
+};
 use sweep::sweep_file::Format;
 use sweep::{Census, Plan, Sweep, simulate_cases};
 
@@ -119,7 +121,10 @@ pub(crate) fn claim(
     cancel: &AtomicBool,
 ) -> Result<(Claim, Plan), Failure> {
     match sweep.calibrate() {
-        None => Ok((Claim::new(out, existing).map_err(failed)?, nominal)),
+        None => {
+            check_calibration(&nominal).map_err(failed)?;
+            Ok((Claim::new(out, existing).map_err(failed)?, nominal))
+        }
         Some(_) => calibrated::plan(sweep, out, existing, cancel),
     }
 }

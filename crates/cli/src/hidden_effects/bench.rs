@@ -7,6 +7,7 @@ use super::plan::Case;
 use super::recordings::{Clean, Recorder};
 use super::truth;
 use crate::Failure;
+use crate::bundle::AllowOutside;
 use crate::calibrate::output::write_file;
 use crate::explain_gap::{self, Asked};
 use input::calibration::Calibration;
@@ -114,6 +115,7 @@ impl Bench<'_> {
             calibration: &calibration,
             base: Path::new(""),
             document: None,
+            outside: AllowOutside::default(),
         };
         let found = explain_gap::into_folder(&asked, &folder, cancel);
         outcome.cpu_seconds = start.zip(cpu_seconds()).map(|(start, end)| end - start);

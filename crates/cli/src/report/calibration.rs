@@ -95,7 +95,8 @@ pub(super) struct Results<'a> {
 impl<'a> Results<'a> {
     pub fn read(path: &'a Path) -> Result<Self, Failure> {
         let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+        let text = files::read_text(path, files::LONGEST_TEXT)
+            .map_err(|error| wrong(error.to_string()))?;
         let content = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
         Ok(Self { path, content })
     }

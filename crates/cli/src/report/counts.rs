@@ -4,6 +4,7 @@ use super::dataset::Dataset;
 use super::windows::{Case, Windows};
 use ::report::dataset_page::{CaseWarning, FailedCase, FaultCount, ParameterRange};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Cases and windows by fault: the healthy first, then by the number of faults.
 pub(super) fn faults(dataset: &Dataset, windows: &Windows, cases: &[Case]) -> Vec<FaultCount> {
@@ -50,9 +51,9 @@ pub(super) fn failed(dataset: &Dataset) -> Vec<FailedCase> {
     let failed = dataset.manifest.failed.iter().cloned();
     failed
         .map(|case| FailedCase {
+            command: recordings::FailedCase::command_of(Path::new("sweep.yaml"), &case.case_id),
             case_id: case.case_id,
             reason: case.reason,
-            command: case.command,
         })
         .collect()
 }

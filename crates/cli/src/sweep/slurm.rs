@@ -4,7 +4,7 @@
 //! again and succeeded. It looks itself whether all is there.
 
 use crate::Failure;
-use recordings::WholeFile;
+use recordings::{WholeFile, shell};
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,40 @@ struct Submitted {
     array_size: u64,
     flags: Vec<String>,
     round: u64,
-    jobs: Vec<String>,
+    jobs: Vec<JobId>,
+}
+
+/// The number of a job as Slurm writes it: `1234`, of an array's task `1234_5`, of a part of a
+/// heterogeneous job `1234+1`. The record of the jobs stands in a folder that others may write to, and nothing else
+/// from there is handed to Slurm's programs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+struct JobId(String);
+
+impl TryFrom<String> for JobId {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let is_number = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        match text.split(['_', '+']).all(is_number) {
+            true => Ok(Self(text)),
+            false => Err(format!(
+                "found '{text}', expected the number of a job, as 1234 or 1234_5"
+            )),
+        }
+    }
+}
+
+impl From<JobId> for String {
+    fn from(id: JobId) -> Self {
+        id.0
+    }
+}
+
+/// The numbers of jobs, with `between` between them.
+fn joined(jobs: &[JobId], between: &str) -> String {
+    let numbers: Vec<&str> = jobs.iter().map(|job| job.0.as_str()).collect();
+    numbers.join(between)
 }
 
 /// The jobs of a dataset.
@@ -92,8 +125,8 @@ impl Jobs {
             round: 1,
             jobs: Vec::new(),
         };
-        self.write(SHARD, &self.shard_script(&submitted))?;
-        self.write(FINALIZE, &self.finalize_script(&submitted))?;
+        self.write(SHARD, &self.shard_script(&submitted)?)?;
+        self.write(FINALIZE, &self.finalize_script(&submitted)?)?;
         self.submit_round(submitted, missing)
     }
 
@@ -120,17 +153,14 @@ impl Jobs {
             return Vec::new();
         };
         // Slurm forgets jobs, and then says so of each; those are over.
-        let state = |job: &String| {
+        let state = |job: &JobId| {
             let arguments = [
                 "--noheader",
                 "--states=PD,R,CG,S,RQ",
                 "--format=%i %T %r",
-                "--jobs",
+                &format!("--jobs={}", job.0),
             ];
-            let lines = run(
-                "squeue",
-                arguments.map(String::from).into_iter().chain([job.clone()]),
-            );
+            let lines = run("squeue", arguments.map(String::from).into_iter());
             let lines = lines.unwrap_or_default();
             lines.lines().map(str::to_owned).collect::<Vec<_>>()
         };
@@ -144,8 +174,9 @@ impl Jobs {
     pub fn cancel(&self) -> Result<(), Failure> {
         let jobs = self.submitted()?.jobs;
         // The last one is that which would submit again.
-        run("scancel", jobs.iter().rev().cloned())?;
-        println!("cancelled: {}", jobs.join(" "));
+        let numbers = jobs.iter().rev().map(|job| job.0.clone());
+        run("scancel", ["--".to_owned()].into_iter().chain(numbers))?;
+        println!("cancelled: {}", joined(&jobs, " "));
         Ok(())
     }
 
@@ -158,28 +189,30 @@ impl Jobs {
             let tasks: Vec<u64> = shards.iter().map(|shard| shard - offset).collect();
             let array = [format!("--array={}", ranges(&tasks))];
             let script = [script(SHARD), offset.to_string()];
-            let job = sbatch(&submitted, array.into_iter(), script)?;
+            let logs = self.scripts.join("%A_%a.log");
+            let job = sbatch(&submitted, &logs, array.into_iter(), script)?;
             submitted.jobs.push(job);
             self.record(&submitted)?;
         }
-        let after = (!submitted.jobs.is_empty()).then(|| submitted.jobs.join(":"));
+        let after = (!submitted.jobs.is_empty()).then(|| joined(&submitted.jobs, ":"));
         let after = after.map(|jobs| format!("--dependency=afterany:{jobs}"));
         let script = [script(FINALIZE), String::new()];
-        let job = sbatch(&submitted, after.into_iter(), script)?;
+        let logs = self.scripts.join("%j-finalize.log");
+        let job = sbatch(&submitted, &logs, after.into_iter(), script)?;
         submitted.jobs.push(job);
         self.record(&submitted)?;
         println!(
             "{} shards submitted: jobs {}",
             missing.len(),
-            submitted.jobs.join(" ")
+            joined(&submitted.jobs, " ")
         );
         Ok(())
     }
 
-    fn shard_script(&self, submitted: &Submitted) -> String {
+    fn shard_script(&self, submitted: &Submitted) -> Result<String, Failure> {
         let beginnings: Vec<String> = (1..=BEGINNINGS).map(|n| n.to_string()).collect();
-        let (program, url) = (quoted(&submitted.program), quoted(&self.url));
-        format!(
+        let (program, url) = (word(&submitted.program)?, word(&self.url)?);
+        Ok(format!(
             "{}# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
 # one of its cases, that case is found and left out.
 for beginning in {}; do
@@ -189,34 +222,20 @@ for beginning in {}; do
 done
 exit $status
 ",
-            self.header(submitted, "%A_%a.log"),
+            header(submitted),
             beginnings.join(" "),
-        )
+        ))
     }
 
-    fn finalize_script(&self, submitted: &Submitted) -> String {
-        let (program, url) = (quoted(&submitted.program), quoted(&self.url));
-        format!(
+    fn finalize_script(&self, submitted: &Submitted) -> Result<String, Failure> {
+        let (program, url) = (word(&submitted.program)?, word(&self.url)?);
+        Ok(format!(
             "{}# Completes the dataset, or submits what is missing.
 exec {program} sweep finalize {url} --resubmit --scripts {}
 ",
-            self.header(submitted, "%j-finalize.log"),
-            quoted(&self.scripts),
-        )
-    }
-
-    /// How a batch script begins that logs to the file `log`.
-    fn header(&self, submitted: &Submitted, log: &str) -> String {
-        format!(
-            "#!/bin/sh
-#SBATCH --job-name={}
-#SBATCH --output=\"{}\"
-#SBATCH --open-mode=append
-#SBATCH --requeue
-",
-            job_name(submitted),
-            self.scripts.join(log).display(),
-        )
+            header(submitted),
+            word(&self.scripts)?,
+        ))
     }
 
     fn submitted(&self) -> Result<Submitted, Failure> {
@@ -225,7 +244,8 @@ exec {program} sweep finalize {url} --resubmit --scripts {}
             let path = path.display();
             Failure::input(format!("nothing was submitted from here ({path}: {error})"))
         };
-        let text = std::fs::read_to_string(&path).map_err(|error| failed(error.to_string()))?;
+        let text = files::read_text(&path, files::LONGEST_TEXT);
+        let text = text.map_err(|error| failed(error.to_string()))?;
         serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
     }
 
@@ -243,17 +263,37 @@ exec {program} sweep finalize {url} --resubmit --scripts {}
     }
 }
 
+/// How a batch script begins. Where it logs to is told on the command line: the lines of a script cannot carry
+/// every path.
+fn header(submitted: &Submitted) -> String {
+    format!(
+        "#!/bin/sh
+#SBATCH --job-name={}
+#SBATCH --open-mode=append
+#SBATCH --requeue
+",
+        job_name(submitted),
+    )
+}
+
+/// Submits a job that logs to `logs`, whose last part is a pattern of sbatch, unless the user's flags say
+/// another place.
 fn sbatch(
     submitted: &Submitted,
+    logs: &Path,
     own: impl Iterator<Item = String>,
     script: [String; 2],
-) -> Result<String, Failure> {
-    let arguments = ["--parsable".to_owned()].into_iter();
+) -> Result<JobId, Failure> {
+    let folder = logs.parent().map(|folder| folder.display().to_string());
+    let name = logs.file_name().unwrap_or_default().to_string_lossy();
+    // A percent sign begins a pattern, twice it is itself.
+    let folder = folder.unwrap_or_default().replace('%', "%%");
+    let arguments = ["--parsable".to_owned(), format!("--output={folder}/{name}")].into_iter();
     let arguments = arguments.chain(submitted.flags.iter().cloned()).chain(own);
     let answer = run("sbatch", arguments.chain(script))?;
     // The number, and on a federation of clusters a name after a semicolon.
     let job = answer.trim().split(';').next().unwrap_or_default();
-    Ok(job.to_owned())
+    JobId::try_from(job.to_owned()).map_err(|reason| Failure::work(format!("sbatch: {reason}")))
 }
 
 /// What a program of Slurm prints.
@@ -273,6 +313,16 @@ fn job_name(submitted: &Submitted) -> String {
 }
 
 /// A path as a word of the shell.
-fn quoted(path: &Path) -> String {
-    format!("'{}'", path.display().to_string().replace('\'', "'\\''"))
+///
+/// # Errors
+/// One that is not text, or ends at a NUL character where it is written into a script.
+fn word(path: &Path) -> Result<String, Failure> {
+    let text = path.to_str().filter(|text| !text.contains('\0'));
+    let text = text.ok_or_else(|| {
+        let path = path.display();
+        Failure::input(format!(
+            "{path}: a path in a job's script must be text in UTF-8"
+        ))
+    })?;
+    Ok(shell::word(text))
 }

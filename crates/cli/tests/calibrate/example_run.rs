@@ -128,6 +128,7 @@ pub fn task_of(folder: &Path, text: &str) -> Task {
         machine: None,
         calibration: &calibration,
         base: folder,
+        outside: cli::bundle::AllowOutside::default(),
         locate: &|error| error,
     };
     task(&settings)

@@ -310,6 +310,7 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
         machine: None,
         calibration: &calibration,
         base: folder.path(),
+        outside: bundle::AllowOutside::default(),
         locate: &|error| error,
     };
     let out = folder.path().join("out");

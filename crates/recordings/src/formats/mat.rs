@@ -286,7 +286,7 @@ impl Bytes {
 
 /// The byte order, and the numeric variables.
 fn scan(path: &Path) -> Result<(bool, Vec<Variable>), Error> {
-    let mut file = File::open(path).map_err(Error::io("open", path))?;
+    let mut file = files::open(path).map_err(Error::io("open", path))?;
     let length = file.metadata().map_err(Error::io("read", path))?.len();
     let mut head = [0; 128];
     file.read_exact(&mut head).map_err(failed(path))?;
@@ -324,7 +324,7 @@ fn scan(path: &Path) -> Result<(bool, Vec<Variable>), Error> {
 
 /// The bytes of the array at `offset`; none of other elements.
 fn element(path: &Path, big_endian: bool, offset: u64) -> Result<Option<Bytes>, Error> {
-    let mut file = File::open(path).map_err(Error::io("open", path))?;
+    let mut file = files::open(path).map_err(Error::io("open", path))?;
     file.seek(SeekFrom::Start(offset)).map_err(failed(path))?;
     let mut file = BufReader::with_capacity(BUFFER, file);
     let mut tag = [0; 8];

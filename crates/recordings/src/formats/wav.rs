@@ -48,7 +48,7 @@ struct WavSamples {
 
 /// Opens a file.
 pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
-    let file = File::open(path).map_err(Error::io("open", path))?;
+    let file = files::open(path).map_err(Error::io("open", path))?;
     let length = file.metadata().map_err(Error::io("read", path))?.len();
     let mut file = BufReader::new(file);
     let (format, frames) = heading(path, &mut file, length)?;

@@ -1,7 +1,6 @@
 //! Which format a file has.
 
 use crate::Error;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -21,7 +20,7 @@ const HEAD: u64 = 1024;
 /// The format that the name says, or for other names the one that the first bytes show.
 pub(super) fn of(path: &Path) -> Result<Kind, Error> {
     let mut head = Vec::new();
-    File::open(path)
+    files::open(path)
         .and_then(|file| file.take(HEAD).read_to_end(&mut head))
         .map_err(Error::io("read", path))?;
     let ending = path.extension().unwrap_or_default().to_string_lossy();

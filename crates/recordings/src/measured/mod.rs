@@ -11,6 +11,7 @@
 
 mod blanks;
 mod clock;
+pub(crate) mod expansion;
 mod kind;
 mod names;
 mod windows;
@@ -25,6 +26,7 @@ pub(crate) use names::{name_and_unit, seconds_per_unit};
 use crate::formats::{csv, mat, mcap, parquet, wav};
 use crate::{Column, Error, Value};
 use clock::Clock;
+use expansion::Expansion;
 use kind::Kind;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -71,6 +73,7 @@ pub struct Recording {
     sample_rate_hz: Option<f64>,
     clock: Option<Clock>,
     samples: Box<dyn Samples>,
+    expansion: Expansion,
     /// Samples that are decoded and not handed out, from `next` on.
     times: Vec<f64>,
     block: Vec<Vec<f32>>,
@@ -112,11 +115,11 @@ impl MeasuredFile {
         {
             return Err(Error::SampleRate(rate));
         }
-        let length = fs::metadata(path).map_err(Error::io("open", path))?;
-        if length.is_dir() {
+        let metadata = fs::metadata(path).map_err(Error::io("open", path))?;
+        if metadata.is_dir() {
             return Err(Error::damaged("a recording", path, "it is a folder"));
         }
-        if length.len() == 0 {
+        if metadata.is_file() && metadata.len() == 0 {
             return Err(Error::damaged("a recording", path, "it is empty"));
         }
         match kind::of(path)? {
@@ -203,6 +206,7 @@ impl Recording {
             sample_rate_hz: stated_hz,
             clock: None,
             samples: Box::new(samples),
+            expansion: Expansion::of(path),
             times: Vec::new(),
             block: vec![Vec::new(); channels],
             next: 0,
@@ -211,11 +215,7 @@ impl Recording {
         if let Some(time) = time {
             while recording.times.len() < FIRST_SAMPLES {
                 let most = FIRST_SAMPLES - recording.times.len();
-                if recording
-                    .samples
-                    .read(most, &mut recording.times, &mut recording.block)?
-                    == 0
-                {
+                if recording.decode(most)? == 0 {
                     break;
                 }
             }
@@ -284,10 +284,16 @@ impl Recording {
         self.times.clear();
         self.block.iter_mut().for_each(Vec::clear);
         self.next = 0;
-        let read = self
-            .samples
-            .read(BLOCK_SAMPLES, &mut self.times, &mut self.block)?;
-        Ok(read > 0)
+        Ok(self.decode(BLOCK_SAMPLES)? > 0)
+    }
+
+    /// Decodes at most `most` samples, and says how many there were.
+    fn decode(&mut self, most: usize) -> Result<usize, Error> {
+        let read = self.samples.read(most, &mut self.times, &mut self.block)?;
+        let numbers = read.saturating_mul(self.block.len().max(1));
+        let taken = self.expansion.take(numbers);
+        taken.map_err(|reason| Error::damaged("a recording", &self.path, reason))?;
+        Ok(read)
     }
 
     /// From the next sample to `end` or the first gap before it: where it stops, the gap before

@@ -43,26 +43,26 @@ fn vectorised<T>(work: impl FnOnce() -> T) -> T {
     fn with_instructions<T>(work: impl FnOnce() -> T) -> T {
         work()
     }
-    // SAFETY: the processor has them.
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`.
     unsafe { with_instructions(work) }
 }
 
 impl F64x8 {
     #[inline(always)]
     fn numbers(&self) -> &[f64; 8] {
-        // SAFETY: the register's numbers lie in memory one after another.
+        // SAFETY: `F64x8` is these registers alone, whose numbers lie in memory one after another.
         unsafe { &*(&raw const self.0).cast() }
     }
     #[inline(always)]
     fn numbers_mut(&mut self) -> &mut [f64; 8] {
-        // SAFETY: as above.
+        // SAFETY: `F64x8` is these registers alone, whose numbers lie in memory one after another.
         unsafe { &mut *(&raw mut self.0).cast() }
     }
 }
 
 impl Truths {
     fn to_array(self) -> [bool; 8] {
-        // SAFETY: as below.
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         let [low, high] = self.0.map(|half| unsafe { _mm256_movemask_pd(half) });
         let signs = low | high << 4;
         std::array::from_fn(|lane| signs >> lane & 1 == 1)
@@ -76,63 +76,77 @@ impl Truths {
 impl Mask for Truths {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
-        // SAFETY, here and below: the processor has the instructions, and none of them touches memory.
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         Self(unsafe { both!(_mm256_and_pd, self, other) })
     }
     #[inline(always)]
     fn or(self, other: Self) -> Self {
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         Self(unsafe { both!(_mm256_or_pd, self, other) })
     }
     #[inline(always)]
     fn not(self) -> Self {
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         let all = Self(unsafe { [_mm256_castsi256_pd(_mm256_set1_epi64x(-1)); 2] });
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         Self(unsafe { both!(_mm256_xor_pd, self, all) })
     }
     #[inline(always)]
     fn any(self) -> bool {
+        // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
         unsafe { _mm256_movemask_pd(self.0[0]) | _mm256_movemask_pd(self.0[1]) != 0 }
     }
 }
 
 #[inline(always)]
 fn splat(x: f64) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { [_mm256_set1_pd(x); 2] })
 }
 #[inline(always)]
 fn add(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_add_pd, a, b) })
 }
 #[inline(always)]
 fn subtract(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_sub_pd, a, b) })
 }
 #[inline(always)]
 fn multiply(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_mul_pd, a, b) })
 }
 #[inline(always)]
 fn divide(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_div_pd, a, b) })
 }
 #[inline(always)]
 fn multiply_add(a: F64x8, b: F64x8, c: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_fmadd_pd, a, b, c) })
 }
 #[inline(always)]
 fn negate(a: F64x8) -> F64x8 {
     let sign = splat(-0.0);
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_xor_pd, a, sign) })
 }
 #[inline(always)]
 fn square_root(a: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_sqrt_pd, a) })
 }
 #[inline(always)]
 fn less(a: F64x8, b: F64x8) -> Truths {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     Truths(unsafe { both!(_mm256_cmp_pd::<_CMP_LT_OQ>, a, b) })
 }
 #[inline(always)]
 fn equal(a: F64x8, b: F64x8) -> bool {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let [low, high] = both!(_mm256_cmp_pd::<_CMP_EQ_OQ>, a, b);
         _mm256_movemask_pd(_mm256_and_pd(low, high)) == 0xf
@@ -140,10 +154,12 @@ fn equal(a: F64x8, b: F64x8) -> bool {
 }
 #[inline(always)]
 fn choose(mask: Truths, yes: F64x8, no: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { both!(_mm256_blendv_pd, no, yes, mask) })
 }
 #[inline(always)]
 fn bit(a: F64x8, number: u32) -> Truths {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let wanted = _mm256_set1_epi64x(1 << number);
         let low = _mm256_and_si256(_mm256_castpd_si256(a.0[0]), wanted);
@@ -160,6 +176,7 @@ fn two_to_the(a: F64x8) -> F64x8 {
 }
 #[inline(always)]
 fn power(a: __m256d) -> __m256d {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let biased = _mm256_add_epi64(_mm256_castpd_si256(a), _mm256_set1_epi64x(1023));
         _mm256_castsi256_pd(_mm256_slli_epi64::<52>(biased))
@@ -172,6 +189,7 @@ fn split(a: F64x8) -> (F64x8, F64x8) {
 }
 #[inline(always)]
 fn split_half(a: __m256d) -> (__m256d, __m256d) {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let bits = _mm256_castpd_si256(a);
         let offset = _mm256_add_epi64(bits, _mm256_set1_epi64x(SPLIT_BIAS as i64));

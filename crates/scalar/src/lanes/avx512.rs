@@ -38,19 +38,19 @@ fn vectorised<T>(work: impl FnOnce() -> T) -> T {
     fn with_instructions<T>(work: impl FnOnce() -> T) -> T {
         work()
     }
-    // SAFETY: the processor has them.
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`.
     unsafe { with_instructions(work) }
 }
 
 impl F64x8 {
     #[inline(always)]
     fn numbers(&self) -> &[f64; 8] {
-        // SAFETY: the register's numbers lie in memory one after another.
+        // SAFETY: `F64x8` is these registers alone, whose numbers lie in memory one after another.
         unsafe { &*(&raw const self.0).cast() }
     }
     #[inline(always)]
     fn numbers_mut(&mut self) -> &mut [f64; 8] {
-        // SAFETY: as above.
+        // SAFETY: `F64x8` is these registers alone, whose numbers lie in memory one after another.
         unsafe { &mut *(&raw mut self.0).cast() }
     }
 }
@@ -84,60 +84,71 @@ impl Mask for Truths {
     }
 }
 
-// SAFETY, of all that follows: the processor has the instructions, and none of them touches memory.
-
 #[inline(always)]
 fn splat(x: f64) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_set1_pd(x) })
 }
 #[inline(always)]
 fn add(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_add_pd(a.0, b.0) })
 }
 #[inline(always)]
 fn subtract(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_sub_pd(a.0, b.0) })
 }
 #[inline(always)]
 fn multiply(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_mul_pd(a.0, b.0) })
 }
 #[inline(always)]
 fn divide(a: F64x8, b: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_div_pd(a.0, b.0) })
 }
 #[inline(always)]
 fn multiply_add(a: F64x8, b: F64x8, c: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_fmadd_pd(a.0, b.0, c.0) })
 }
 #[inline(always)]
 fn negate(a: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_xor_pd(a.0, _mm512_set1_pd(-0.0)) })
 }
 #[inline(always)]
 fn square_root(a: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_sqrt_pd(a.0) })
 }
 #[inline(always)]
 fn less(a: F64x8, b: F64x8) -> Truths {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     Truths(unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a.0, b.0) })
 }
 #[inline(always)]
 fn equal(a: F64x8, b: F64x8) -> bool {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe { _mm512_cmp_pd_mask::<_CMP_EQ_OQ>(a.0, b.0) == 0xff }
 }
 #[inline(always)]
 fn choose(mask: Truths, yes: F64x8, no: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     F64x8(unsafe { _mm512_mask_blend_pd(mask.0, no.0, yes.0) })
 }
 #[inline(always)]
 fn bit(a: F64x8, number: u32) -> Truths {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     Truths(unsafe {
         _mm512_test_epi64_mask(_mm512_castpd_si512(a.0), _mm512_set1_epi64(1 << number))
     })
 }
 #[inline(always)]
 fn two_to_the(a: F64x8) -> F64x8 {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let biased = _mm512_add_epi64(_mm512_castpd_si512(a.0), _mm512_set1_epi64(1023));
         F64x8(_mm512_castsi512_pd(_mm512_slli_epi64::<52>(biased)))
@@ -145,6 +156,7 @@ fn two_to_the(a: F64x8) -> F64x8 {
 }
 #[inline(always)]
 fn split(a: F64x8) -> (F64x8, F64x8) {
+    // SAFETY: only `in_lanes` gets here, which asks `is_present`; no memory is touched.
     unsafe {
         let bits = _mm512_castpd_si512(a.0);
         let offset = _mm512_add_epi64(bits, _mm512_set1_epi64(SPLIT_BIAS as i64));

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::path::Path;
 
 use recordings::formats::mcap;
 use recordings::{FailedCase, Value};
@@ -73,8 +74,8 @@ fn failed(plan: &Plan, index: u64, failure: &Failure) -> FailedCase {
     let case_id = plan.case_id(index);
     FailedCase {
         reason: failure.to_string(),
-        command: format!("crosshead simulate sweep.yaml --case {case_id}"),
         died: failure.is::<Death>(),
+        command: FailedCase::command_of(Path::new("sweep.yaml"), &case_id),
         case_id,
     }
 }

@@ -1,33 +1,99 @@
 //! The calibration that a dataset begins with: its files, in the folder `calibration/`.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use recordings::{FileEntry, FileRecord};
+use serde_json::Value;
 
 use super::commit::text;
 use super::output::{CALIBRATION, Output};
 use super::store::failed;
-use crate::Error;
+use crate::{Error, Plan};
 
 /// What was copied to a bucket, which may list it late.
 const COPIED: &str = "_sweep/calibration.json";
 
+/// The files of a calibration as `crosshead calibrate` writes it that are always there.
+const FILES: [&str; 2] = ["calibration.json", "machine.yaml"];
+/// Those that are there where it has something to show: over the crank angle, by order, of the gas, and its page.
+const PICTURES: [&str; 4] = [
+    "waveforms.parquet",
+    "orders.parquet",
+    "indicator.parquet",
+    "report.html",
+];
+/// Most bytes of such a file, 256 MiB: all are in memory before the first is written.
+const LONGEST: u64 = 1 << 28;
+
+/// The name of a file of a calibration, and what stands in it.
+pub(super) type Kept = (&'static str, Vec<u8>);
+
+/// The calibration in the folder `from`, whose files are no links; nothing where there is no such folder.
+///
+/// # Errors
+/// A folder that is something else: what a sweep file names must not publish other files.
+pub(super) fn read(from: &Path) -> Result<Vec<Kept>, Error> {
+    let wrong = |reason: String| Error::NotACalibration {
+        path: from.to_owned(),
+        reason,
+    };
+    match from.symlink_metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(wrong(error.to_string())),
+        Ok(found) if !found.is_dir() => return Err(wrong("it is a link or a file".into())),
+        Ok(_) => {}
+    }
+    let mut kept = Vec::new();
+    for name in FILES.into_iter().chain(PICTURES) {
+        let content =
+            files::open_itself(&from.join(name)).and_then(|file| files::content(file, LONGEST));
+        match content {
+            Ok(content) => kept.push((name, content)),
+            Err(error) if error.kind() == ErrorKind::NotFound && PICTURES.contains(&name) => {}
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return Err(wrong(format!("it has no {name}")));
+            }
+            Err(error) => return Err(wrong(format!("{name}: {error}"))),
+        }
+    }
+    let results: Option<Value> = serde_json::from_slice(&kept[0].1).ok();
+    if !results.is_some_and(|results| results["parameters"].is_object()) {
+        return Err(wrong(
+            "its calibration.json has no section `parameters`".into(),
+        ));
+    }
+    let machine = std::str::from_utf8(&kept[1].1)
+        .map_err(|_| wrong("its machine.yaml is not text".into()))?;
+    let place = from.join(FILES[1]).display().to_string();
+    input::MachineFile::from_yaml(machine, &place).map_err(|error| wrong(error.to_string()))?;
+    Ok(kept)
+}
+
+/// Checks that what `plan` names as the calibration that its dataset begins with is one.
+///
+/// # Errors
+/// A folder that is something else.
+pub fn check_calibration(plan: &Plan) -> Result<(), Error> {
+    plan.calibrated
+        .as_deref()
+        .map_or(Ok(()), |from| read(from).map(drop))
+}
+
 impl Output {
-    /// Copies the calibration in the folder `from`; nothing where there is none.
-    pub(super) fn copy_calibration(&self, from: &Path) -> Result<(), Error> {
-        if !from.is_dir() {
+    /// Writes the files of a calibration into the dataset; none is nothing to do.
+    pub(super) fn keep_calibration(&self, kept: Vec<Kept>) -> Result<(), Error> {
+        if kept.is_empty() {
             return Ok(());
         }
+        if self.store.folder().is_some() {
+            let folder = self.path(CALIBRATION);
+            fs::create_dir_all(&folder).map_err(|source| failed("create", &folder, source))?;
+        }
         let mut entries = Vec::new();
-        for name in names(from, "")? {
-            let content = read(&from.join(&name))?;
+        for (name, content) in kept {
             let path = format!("{CALIBRATION}/{name}");
-            if self.store.folder().is_some()
-                && let Some(folder) = self.path(&path).parent()
-            {
-                fs::create_dir_all(folder).map_err(|source| failed("create", folder, source))?;
-            }
             let FileRecord { bytes, sha256 } = self.store.write(&path, &content)?;
             entries.push(FileEntry {
                 path,
@@ -51,42 +117,17 @@ impl Output {
             });
         }
         let mut entries = Vec::new();
-        let mut folders = vec![CALIBRATION.to_owned()];
-        while let Some(folder) = folders.pop() {
-            for name in self.store.names(&folder)? {
-                let path = format!("{folder}/{name}");
-                match self.store.record(&path)? {
-                    None => folders.push(path),
-                    Some(FileRecord { bytes, sha256 }) => entries.push(FileEntry {
-                        path,
-                        bytes,
-                        sha256,
-                        rows: None,
-                    }),
-                }
+        for name in FILES.into_iter().chain(PICTURES) {
+            let path = format!("{CALIBRATION}/{name}");
+            if let Some(FileRecord { bytes, sha256 }) = self.store.record(&path)? {
+                entries.push(FileEntry {
+                    path,
+                    bytes,
+                    sha256,
+                    rows: None,
+                });
             }
         }
         Ok(entries)
     }
-}
-
-/// Every file below `folder`, as a path from there that begins with `prefix`.
-fn names(folder: &Path, prefix: &str) -> Result<Vec<String>, Error> {
-    let unreadable = |source| failed("read", folder, source);
-    let mut names = Vec::new();
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let entry = entry.map_err(unreadable)?;
-        let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
-        if entry.path().is_dir() {
-            names.extend(self::names(&entry.path(), &format!("{name}/"))?);
-        } else {
-            names.push(name);
-        }
-    }
-    names.sort();
-    Ok(names)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    fs::read(path).map_err(|source| failed("read", path, source))
 }

@@ -26,6 +26,7 @@ pub use commit::{Commit, Damage};
 pub use delta::{DeltaTable, export_delta};
 pub use diagrams::{run_diagrams, sample_diagram};
 pub use finalize::{finalize, finalize_verified};
+pub use kept::check_calibration;
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};

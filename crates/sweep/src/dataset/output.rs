@@ -20,6 +20,7 @@ use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
 use super::commit::text;
+use super::kept;
 use super::lock::{Lock, lock, lock_shared};
 use super::log::{self, Log};
 use super::store::Store;
@@ -177,18 +178,25 @@ impl Claim {
     /// # Errors
     /// Where it holds the dataset of another plan, or cannot be written to.
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
+        let own = self.output.path(CALIBRATION);
+        let named = plan.calibrated.as_ref();
+        let is_own = named.is_some_and(|from| {
+            let from = fs::canonicalize(from).ok();
+            from.is_some() && from == fs::canonicalize(&own).ok()
+        });
+        let has_it = self.calibrated || is_own;
+        // Before anything is written or removed.
+        let copied = match named.filter(|_| !has_it) {
+            Some(from) => kept::read(from)?,
+            None => Vec::new(),
+        };
         if self.output.store.folder().is_none() {
             self.output.record(plan)?;
-            if let Some(from) = &plan.calibrated {
-                self.output.copy_calibration(from)?;
-            }
+            self.output.keep_calibration(copied)?;
             return Ok(self.output);
         }
         let begun = self.begun();
         let output = self.output;
-        let own = output.path(CALIBRATION);
-        let is_own = |from: &PathBuf| fs::canonicalize(from).ok() == fs::canonicalize(&own).ok();
-        let has_it = self.calibrated || plan.calibrated.as_ref().is_some_and(is_own);
         if self.existing == Existing::Overwrite {
             output.clear(has_it)?;
         } else if !begun && !has_it {
@@ -202,9 +210,7 @@ impl Claim {
         if published {
             output.adopt(plan)?;
         }
-        if let Some(from) = plan.calibrated.as_ref().filter(|_| !has_it) {
-            output.copy_calibration(from)?;
-        }
+        output.keep_calibration(copied)?;
         let folders: &[&str] = match plan.format {
             crate::sweep_file::Format::Parquet => &["signals", "features"],
             crate::sweep_file::Format::Mcap => &["mcap", "features"],

@@ -1,15 +1,18 @@
 //! Broken files of every kind that people and programs hand in: no reader panics, none takes long, and
 //! what is accepted is written as it was read.
 //!
-//! `CROSSHEAD_FUZZ=10000000` for a long trial of so many files in all, `CROSSHEAD_FUZZ_SEED=2` for
-//! other ones; `tests/fuzz/run` does both. Files that are kept are those of `tests/fuzz/corpus`.
+//! `CROSSHEAD_FUZZ=10000000` for a long trial of so many files that people write in all, and a tenth as many of
+//! each format of recordings; `CROSSHEAD_FUZZ_SEED=2` for other ones; `tests/fuzz/run` does both. Files that are kept are those of `tests/fuzz/corpus`.
 
 mod mutate;
+mod parts;
 mod random;
 mod readers;
+mod recordings;
 mod records;
 mod trial;
 
+use mutate::Mutator;
 use serde_json::Value;
 use trial::{executions, seeds, trial};
 
@@ -31,15 +34,22 @@ fn words(schema: &Value) -> Vec<String> {
     words
 }
 
+/// A reader of text as one of files; broken texts are text.
+fn text(
+    read: fn(&str) -> Result<String, String>,
+) -> impl FnMut(&[u8]) -> Result<String, String> + Send {
+    move |file| read(&String::from_utf8_lossy(file))
+}
+
 #[test]
 fn machine_files() {
     let words = words(&input::schema::machine_schema());
     trial(
         "machine",
         seeds("machine"),
-        words,
+        Mutator::new(words),
         executions(500, 200),
-        readers::machine,
+        text(readers::machine),
     );
 }
 
@@ -69,9 +79,9 @@ fn sweep_files() {
     trial(
         "sweep",
         seeds("sweep"),
-        words,
+        Mutator::new(words),
         executions(500, 200),
-        readers::sweep,
+        text(readers::sweep),
     );
 }
 
@@ -81,9 +91,9 @@ fn bundles() {
     trial(
         "bundle",
         seeds("bundle"),
-        words,
+        Mutator::new(words),
         executions(500, 200),
-        readers::bundle,
+        text(readers::bundle),
     );
 }
 
@@ -92,10 +102,35 @@ fn manifests() {
     trial(
         "manifest",
         seeds("manifest"),
-        Vec::new(),
+        Mutator::new(Vec::new()),
         executions(5000, 399),
-        readers::manifest,
+        text(readers::manifest),
     );
+}
+
+#[test]
+fn csv() {
+    recordings::recordings("csv", parts::lines);
+}
+
+#[test]
+fn wav() {
+    recordings::recordings("wav", parts::riff);
+}
+
+#[test]
+fn mat() {
+    recordings::recordings("mat", parts::mat);
+}
+
+#[test]
+fn mcap() {
+    recordings::recordings("mcap", parts::mcap);
+}
+
+#[test]
+fn parquet() {
+    recordings::recordings("parquet", parts::parquet);
 }
 
 #[test]

@@ -1,6 +1,7 @@
-//! Files are broken: bytes, words, numbers, lines, and pieces of other files.
+//! Texts are broken: bytes, words, numbers, lines, and pieces of other texts.
 
 use crate::random::Random;
+use crate::trial::Mutate;
 use std::ops::Range;
 
 /// Bytes of a file at most.
@@ -133,18 +134,6 @@ impl Mutator {
         Self { words }
     }
 
-    /// `text`, broken once or a few times, with pieces of `other`.
-    pub fn mutate(&self, text: &str, other: &str, random: &mut Random) -> String {
-        let mut bytes = text.as_bytes().to_vec();
-        loop {
-            self.once(&mut bytes, other.as_bytes(), random);
-            bytes.truncate(LONGEST);
-            if random.below(2) == 0 {
-                return String::from_utf8_lossy(&bytes).into_owned();
-            }
-        }
-    }
-
     fn once(&self, bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
         match random.below(14) {
             0 => byte(bytes, random),
@@ -188,7 +177,21 @@ impl Mutator {
     }
 }
 
-fn byte(bytes: &mut Vec<u8>, random: &mut Random) {
+impl Mutate for Mutator {
+    fn mutate(&self, file: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
+        let mut bytes = file.to_vec();
+        loop {
+            self.once(&mut bytes, other, random);
+            bytes.truncate(LONGEST);
+            if random.below(2) == 0 {
+                return String::from_utf8_lossy(&bytes).into_owned().into_bytes();
+            }
+        }
+    }
+}
+
+/// A byte becomes another, goes, or comes.
+pub fn byte(bytes: &mut Vec<u8>, random: &mut Random) {
     let at = random.below(bytes.len());
     let new = random.below(256) as u8;
     match (random.below(3), bytes.get_mut(at)) {

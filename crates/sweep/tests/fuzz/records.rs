@@ -1,7 +1,8 @@
 //! The records of a dataset under way, broken by a disk or by somebody: how far it has got, and what
 //! completes it, is told or refused.
 
-use crate::trial::{corpus, trial};
+use crate::mutate::Mutator;
+use crate::trial::{Seed, corpus, trial};
 use input::yaml::Document;
 use signal::channel::Channel;
 use std::fs;
@@ -65,13 +66,14 @@ pub fn records(executions: u64) {
     };
     generate(&plan, &root, &options, &runner, &mut ()).unwrap();
     let whole = RECORDS.map(|name| fs::read_to_string(root.join(name)).unwrap());
-    let seeds: Vec<(String, String)> = RECORDS
+    let seeds: Vec<Seed> = RECORDS
         .iter()
         .zip(&whole)
-        .map(|(name, text)| (String::from(*name), text.clone()))
+        .map(|(name, text)| (String::from(*name), text.clone().into_bytes()))
         .collect();
     let mut turn = 0;
-    trial("records", seeds, Vec::new(), executions, move |text| {
+    let mutator = Mutator::new(Vec::new());
+    trial("records", seeds, mutator, executions, move |text| {
         let _keep = &folder;
         // The seeds come first, each in its own place.
         let place = turn % RECORDS.len();

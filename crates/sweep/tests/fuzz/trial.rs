@@ -3,7 +3,6 @@
 //! Files of the corpus are broken at random. What gets an answer that no file before got joins them,
 //! so that the trial works its way past one mistake after the other. All follows from the seed.
 
-use crate::mutate::Mutator;
 use crate::random::Random;
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -19,20 +18,26 @@ const LIMIT: Duration = Duration::from_secs(10);
 /// Files that are kept to be broken on.
 const KEPT: usize = 4096;
 
+/// How files of a kind are broken.
+pub trait Mutate: Send {
+    /// `file`, broken once or a few times, with pieces of `other`.
+    fn mutate(&self, file: &[u8], other: &[u8], random: &mut Random) -> Vec<u8>;
+}
+
+/// A file, and its name.
+pub type Seed = (String, Vec<u8>);
+
 /// The folder of the corpus.
 pub fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz/corpus")
 }
 
 /// The files of `tests/fuzz/corpus/{kind}`, with their names.
-pub fn seeds(kind: &str) -> Vec<(String, String)> {
+pub fn seeds(kind: &str) -> Vec<Seed> {
     let entries = fs::read_dir(corpus().join(kind)).expect("a folder of the corpus");
     let file = |path: PathBuf| {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        (
-            name,
-            String::from_utf8_lossy(&fs::read(path).unwrap()).into_owned(),
-        )
+        (name, fs::read(path).unwrap())
     };
     let mut seeds: Vec<_> = entries.map(|entry| file(entry.unwrap().path())).collect();
     seeds.sort();
@@ -52,10 +57,10 @@ pub fn executions(usual: u64, parts: u64) -> u64 {
 /// unless they are called `broken-...`, and then broken ones.
 pub fn trial(
     kind: &'static str,
-    seeds: Vec<(String, String)>,
-    words: Vec<String>,
+    seeds: Vec<Seed>,
+    mutator: impl Mutate + 'static,
     executions: u64,
-    mut read: impl FnMut(&str) -> Result<String, String> + Send + 'static,
+    mut read: impl FnMut(&[u8]) -> Result<String, String> + Send + 'static,
 ) {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fuzz-{kind}"));
     // Whatever ends the process, the file that it was at stands there.
@@ -64,29 +69,29 @@ pub fn trial(
     let counter = std::sync::Arc::clone(&done);
     let begun = Instant::now();
     let worker = std::thread::spawn(move || {
-        let sound = |(name, _): &(String, String)| !name.starts_with("broken-");
+        let sound = |(name, _): &Seed| !name.starts_with("broken-");
         let sound: Vec<bool> = seeds.iter().map(sound).collect();
-        let mut pool = Pool::new(seeds, words);
-        let mut slowest = (Duration::ZERO, String::new());
+        let mut pool = Pool::new(seeds, Box::new(mutator));
+        let mut slowest = (Duration::ZERO, Vec::new());
         for execution in 0..executions {
-            let text = pool.next(execution as usize);
+            let file = pool.next(execution as usize);
             current.set_len(0).unwrap();
-            current.write_all_at(text.as_bytes(), 0).unwrap();
+            current.write_all_at(&file, 0).unwrap();
             let started = Instant::now();
-            let answer = catch_unwind(AssertUnwindSafe(|| read(&text)));
+            let answer = catch_unwind(AssertUnwindSafe(|| read(&file)));
             let took = started.elapsed();
             let Ok(answer) = answer else {
                 return Err(execution);
             };
             if took > slowest.0 {
-                slowest = (took, text.clone());
+                slowest = (took, file.clone());
             }
             let refused = sound.get(execution as usize) == Some(&true) && answer.is_err();
             assert!(
                 !refused,
                 "{kind}: a file of the corpus is refused: {answer:?}"
             );
-            pool.keep(text, &answer.unwrap_or_else(|message| message));
+            pool.keep(file, &answer.unwrap_or_else(|message| message));
             counter.store(execution + 1, Relaxed);
         }
         Ok((pool, slowest))
@@ -141,52 +146,52 @@ fn watch<T>(
 
 /// The files that are broken.
 struct Pool {
-    mutator: Mutator,
+    mutator: Box<dyn Mutate>,
     random: Random,
     seeds: usize,
-    texts: Vec<String>,
+    files: Vec<Vec<u8>>,
     answers: HashSet<u64>,
 }
 
 impl Pool {
-    fn new(seeds: Vec<(String, String)>, words: Vec<String>) -> Self {
+    fn new(seeds: Vec<Seed>, mutator: Box<dyn Mutate>) -> Self {
         let seed = std::env::var("CROSSHEAD_FUZZ_SEED").map_or(1, |seed| seed.parse().unwrap());
         assert!(!seeds.is_empty(), "a corpus");
         Self {
-            mutator: Mutator::new(words),
+            mutator,
             random: Random::new(seed),
             seeds: seeds.len(),
-            texts: seeds.into_iter().map(|(_, text)| text).collect(),
+            files: seeds.into_iter().map(|(_, file)| file).collect(),
             answers: HashSet::new(),
         }
     }
 
-    fn next(&mut self, execution: usize) -> String {
+    fn next(&mut self, execution: usize) -> Vec<u8> {
         if execution < self.seeds {
-            return self.texts[execution].clone();
+            return self.files[execution].clone();
         }
         let random = &mut self.random;
         // Every other time a seed, however many there are of the others.
         let within = if random.below(2) == 0 {
             self.seeds
         } else {
-            self.texts.len()
+            self.files.len()
         };
-        let (text, other) = (random.below(within), random.below(self.texts.len()));
+        let (file, other) = (random.below(within), random.below(self.files.len()));
         self.mutator
-            .mutate(&self.texts[text], &self.texts[other], random)
+            .mutate(&self.files[file], &self.files[other], random)
     }
 
     /// Keeps a file with a new answer.
-    fn keep(&mut self, text: String, answer: &str) {
+    fn keep(&mut self, file: Vec<u8>, answer: &str) {
         if !self.answers.insert(signature(answer)) {
             return;
         }
-        if self.texts.len() < self.seeds + KEPT {
-            self.texts.push(text);
+        if self.files.len() < self.seeds + KEPT {
+            self.files.push(file);
         } else {
             let at = self.seeds + self.random.below(KEPT);
-            self.texts[at] = text;
+            self.files[at] = file;
         }
     }
 
@@ -194,8 +199,8 @@ impl Pool {
     fn write(&self, folder: &Path) {
         let _ = fs::remove_dir_all(folder);
         fs::create_dir_all(folder).unwrap();
-        for (number, text) in self.texts[self.seeds..].iter().enumerate() {
-            fs::write(folder.join(format!("{number:04}")), text).unwrap();
+        for (number, file) in self.files[self.seeds..].iter().enumerate() {
+            fs::write(folder.join(format!("{number:04}")), file).unwrap();
         }
     }
 }

@@ -144,7 +144,7 @@ fn damaged(path: &Path, reason: impl ToString) -> Error {
 
 impl Lines {
     fn open(path: &Path) -> Result<Self, Error> {
-        let file = File::open(path).map_err(Error::io("open", path))?;
+        let file = files::open(path).map_err(Error::io("open", path))?;
         let mut lines = Self {
             path: path.to_owned(),
             file: BufReader::with_capacity(BUFFER, file),

@@ -253,13 +253,20 @@ impl Stream {
             .with_record_length_limit(LONGEST_RECORD);
         Ok(Self {
             path: path.to_owned(),
-            file: File::open(path).map_err(Error::io("open", path))?,
+            file: files::open(path).map_err(Error::io("open", path))?,
             reader: LinearReader::new_with_options(options),
         })
     }
 
-    /// Hands the next record to `take` that can matter; false at the end.
+    /// Hands the next record to `take` that can matter; false at the end. A record that is longer than its chunk
+    /// is a mistake of its own to the MCAP library.
     fn next(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
+        let path = self.path.clone();
+        let contradiction = || damaged(&path, "its chunks and records contradict each other");
+        super::super::guarded(|| self.advance(take), contradiction)
+    }
+
+    fn advance(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
         loop {
             let Some(event) = self.reader.next_event() else {
                 return Ok(false);

@@ -6,6 +6,7 @@
 //! for readers that show the file's own keys only, as JSON objects under `units` and
 //! `descriptions`. pandas finds the units in `DataFrame.attrs`.
 
+mod pages;
 mod read;
 pub(crate) mod recordings;
 mod write;

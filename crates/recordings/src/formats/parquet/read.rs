@@ -1,5 +1,7 @@
 //! Parquet to tables: our own, and those of other programs.
 
+use super::pages::{self, Announced};
+use crate::measured::expansion;
 use crate::{Column, Data, Error, Kind, Role, Schema, Table};
 use arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
 use arrow::compute::cast;
@@ -11,9 +13,9 @@ use parquet::arrow::arrow_reader::{
 };
 use parquet::file::FOOTER_SIZE;
 use parquet::file::metadata::{FooterTail, ParquetMetaDataReader};
+use parquet::file::metadata::PageIndexPolicy;
 use std::fs::File;
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 /// Rows decoded at a time.
@@ -24,6 +26,7 @@ pub struct ParquetFile {
     path: PathBuf,
     file: File,
     metadata: ArrowReaderMetadata,
+    announced: Announced,
     rows: usize,
     schema: Schema,
 }
@@ -74,15 +77,23 @@ impl ParquetFile {
     /// # Errors
     /// When the file is not there, is damaged or is not a Parquet file.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let file = File::open(path).map_err(Error::io("open", path))?;
+        let file = files::open(path).map_err(Error::io("open", path))?;
         guarded(path, || {
-            let options = ArrowReaderOptions::new();
+            // Without an index of pages: it could name others than those whose headers are read here.
+            let options = ArrowReaderOptions::new().with_page_index_policy(PageIndexPolicy::Skip);
             let metadata = ArrowReaderMetadata::load(&file, options).map_err(damaged(path))?;
+            let announced = pages::announced(&file, metadata.metadata()).map_err(damaged(path))?;
+            let length = file.metadata().map_err(Error::io("read", path))?.len();
+            let most = expansion::most_of(length);
+            if announced.bytes > most {
+                return Err(damaged(path)(expansion::exceeded(most)));
+            }
             let rows = metadata.metadata().file_metadata().num_rows();
             Ok(Self {
                 path: path.to_owned(),
                 rows: usize::try_from(rows).map_err(damaged(path))?,
                 schema: schema(&metadata)?,
+                announced,
                 file: file.try_clone().map_err(Error::io("open", path))?,
                 metadata,
             })
@@ -180,10 +191,19 @@ impl ParquetFile {
         schema: &Schema,
         data: &mut [Data],
     ) -> Result<(), Error> {
+        let mut texts = 0;
         for batch in self.batches(columns, rows)? {
             let batch = batch.map_err(damaged(&self.path))?;
             for (column, data) in schema.columns().iter().zip(&mut *data) {
+                let before = data.len();
                 append_column(&self.path, &batch, &column.name, data)?;
+                if let Data::Text(values) = data {
+                    let new = values[before..].iter().flatten();
+                    texts += new.map(|text| text.len() as u64).sum::<u64>();
+                }
+            }
+            if texts > expansion::ALWAYS {
+                return Err(damaged(&self.path)(expansion::exceeded(expansion::ALWAYS)));
             }
         }
         Ok(())
@@ -207,7 +227,10 @@ impl ParquetFile {
         columns: &[&str],
         rows: Range<usize>,
     ) -> Result<ParquetRecordBatchReader, Error> {
-        let at_a_time = BATCH_ROWS.min(rows.len().max(1));
+        // However long the texts of a batch are, they fit.
+        let texts = expansion::ALWAYS / self.announced.longest_text.max(1);
+        let most = usize::try_from(texts).map_or(BATCH_ROWS, |rows| rows.clamp(1, BATCH_ROWS));
+        let at_a_time = most.min(rows.len().max(1));
         self.reader(columns, rows, at_a_time)
     }
 
@@ -257,11 +280,10 @@ fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Err
     Table::from_columns(schema.clone(), data)
 }
 
-/// The result of `read`, with an error in place of a panic: the Parquet library takes some damage
-/// to page headers (one flipped byte in 2000) for a mistake of its own.
+/// The result of `read`: the Parquet library takes some damage to page headers (one flipped byte in 2000) for a mistake of
+/// its own.
 fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-    catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(damaged(path)("its pages contradict each other")))
+    super::super::guarded(read, || damaged(path)("its pages contradict each other"))
 }
 
 fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {

@@ -50,6 +50,14 @@ impl Store {
     pub(super) fn at(root: &Path) -> Result<Self, Error> {
         match root.to_str().and_then(|url| url.strip_prefix("s3://")) {
             None => Ok(Self::Folder(Folder::new(root))),
+            Some(address)
+                if address
+                    .split('/')
+                    .next()
+                    .is_some_and(|host| host.contains('@')) =>
+            {
+                Err(Error::Password)
+            }
             #[cfg(feature = "s3")]
             Some(address) => Ok(Self::Bucket(Bucket::new(root, address)?)),
             #[cfg(not(feature = "s3"))]

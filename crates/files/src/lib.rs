@@ -1,0 +1,151 @@
+//! Opens the files that people and strangers hand in.
+//!
+//! A path of a shared folder may lead to a pipe, which nobody ever writes to, or to a device, which never ends. Only
+//! regular files are opened here, and every reader of the workspace opens its files here. That holds for pipes
+//! that a user gives on purpose as well (`/dev/stdin`, `<(...)`): formats with an index at the end, and those that are
+//! read twice, cannot be read from a pipe, and one rule for all is easier to remember than one for each.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Error, ErrorKind, Read};
+use std::path::Path;
+
+/// Longest text of a person or of one result, in bytes: 64 MiB. The YAML reader takes no more text than that either.
+pub const LONGEST_TEXT: u64 = 1 << 26;
+
+/// Opens a regular file to read.
+///
+/// # Errors
+/// Where it is not there, cannot be opened, or is a folder, a pipe, a device or a socket.
+pub fn open(path: &Path) -> io::Result<File> {
+    regular(path, 0)
+}
+
+/// Opens a regular file to read that is no link to one.
+///
+/// # Errors
+/// As [`open`], and where it is a link.
+pub fn open_itself(path: &Path) -> io::Result<File> {
+    if path.symlink_metadata()?.is_symlink() {
+        let reason = "it is a link; expected a regular file";
+        return Err(Error::new(ErrorKind::InvalidInput, reason));
+    }
+    regular(path, NO_LINK)
+}
+
+fn regular(path: &Path, flags: i32) -> io::Result<File> {
+    let file = without_waiting(flags).read(true).open(path)?;
+    let kind = file.metadata()?.file_type();
+    if kind.is_file() {
+        return Ok(file);
+    }
+    Err(match kind.is_dir() {
+        true => ErrorKind::IsADirectory.into(),
+        false => Error::new(
+            ErrorKind::InvalidInput,
+            "it is a pipe, a device or a socket; expected a regular file",
+        ),
+    })
+}
+
+/// The text of a regular file of at most `most` bytes.
+///
+/// # Errors
+/// As [`open`]; a longer file, or one that is not UTF-8.
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let text = content(open(path)?, most)?;
+    let not_text = |_| Error::new(ErrorKind::InvalidData, "it is not text in UTF-8");
+    String::from_utf8(text).map_err(not_text)
+}
+
+/// The content of `file`, of at most `most` bytes.
+///
+/// # Errors
+/// A longer file, or one that cannot be read.
+pub fn content(file: File, most: u64) -> io::Result<Vec<u8>> {
+    let mut content = Vec::new();
+    file.take(most + 1).read_to_end(&mut content)?;
+    if content.len() as u64 > most {
+        let reason = format!("it has more than {most} bytes, the most that is read of such a file");
+        return Err(Error::new(ErrorKind::FileTooLarge, reason));
+    }
+    Ok(content)
+}
+
+#[cfg(unix)]
+const NO_LINK: i32 = libc::O_NOFOLLOW;
+#[cfg(not(unix))]
+const NO_LINK: i32 = 0;
+
+/// Opening a pipe waits for its writer unless it is asked not to; regular files know no difference.
+#[cfg(unix)]
+fn without_waiting(flags: i32) -> OpenOptions {
+    use std::os::unix::fs::OpenOptionsExt;
+    let mut options = OpenOptions::new();
+    options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY | flags);
+    options
+}
+
+#[cfg(not(unix))]
+fn without_waiting(_: i32) -> OpenOptions {
+    OpenOptions::new()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::process::Command;
+
+    #[test]
+    fn a_regular_file_is_read_up_to_its_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "text").unwrap();
+        assert_eq!(read_text(&path, 4).unwrap(), "text");
+        let refused = read_text(&path, 3).unwrap_err();
+        assert_eq!(refused.kind(), ErrorKind::FileTooLarge);
+        fs::write(&path, b"\xff").unwrap();
+        assert_eq!(
+            read_text(&path, 4).unwrap_err().kind(),
+            ErrorKind::InvalidData
+        );
+    }
+
+    #[test]
+    fn a_link_to_a_regular_file_is_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, link) = (folder.path().join("a"), folder.path().join("b"));
+        fs::write(&path, "text").unwrap();
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        assert_eq!(read_text(&link, 4).unwrap(), "text");
+        let refused = open_itself(&link).unwrap_err().to_string();
+        assert!(refused.contains("it is a link"), "{refused}");
+        open_itself(&path).unwrap();
+    }
+
+    /// A pipe without a writer is opened at once, and refused.
+    #[test]
+    fn what_is_no_regular_file_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(
+            open(folder.path()).unwrap_err().kind(),
+            ErrorKind::IsADirectory
+        );
+        let pipe = folder.path().join("pipe");
+        assert!(
+            Command::new("mkfifo")
+                .arg(&pipe)
+                .status()
+                .unwrap()
+                .success()
+        );
+        for path in [
+            pipe.as_path(),
+            Path::new("/dev/zero"),
+            Path::new("/dev/null"),
+        ] {
+            let message = open(path).unwrap_err().to_string();
+            assert!(message.contains("expected a regular file"), "{message}");
+        }
+    }
+}
