@@ -131,8 +131,7 @@ impl<'a> Task<'a> {
         };
         let recorded = lead..lead + sampling.samples * sampling.factor;
         let traced = self.kept == Kept::Trace;
-        let trace = traced
-            .then(|| (Trace::new(machine, sampling.factor), recorded));
+        let trace = traced.then(|| (Trace::new(machine, sampling.factor), recorded));
         let series = sensors.iter().map(|sensor| sampling.begin(sensor, machine));
         Ok(Recording {
             left,

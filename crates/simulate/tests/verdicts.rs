@@ -131,7 +131,10 @@ fn forces_lost_in_rounding_are_an_open_ledger() {
 
 #[test]
 fn a_record_that_is_kept_balances() {
-    let machine = machine("single-stage.yaml", &[("joints.big_end.clearance", "0.2 mm")]);
+    let machine = machine(
+        "single-stage.yaml",
+        &[("joints.big_end.clearance", "0.2 mm")],
+    );
     let settings = settings();
     let asked = Asked {
         machine: &machine.machine,

@@ -12,8 +12,8 @@ use parquet::arrow::arrow_reader::{
     ParquetRecordBatchReaderBuilder,
 };
 use parquet::file::FOOTER_SIZE;
-use parquet::file::metadata::{FooterTail, ParquetMetaDataReader};
 use parquet::file::metadata::PageIndexPolicy;
+use parquet::file::metadata::{FooterTail, ParquetMetaDataReader};
 use std::fs::File;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
