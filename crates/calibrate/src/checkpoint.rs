@@ -1,15 +1,15 @@
 //! What a calibration has evaluated, on the disk while the work goes on.
 //!
 //! The file begins with a line that says what it is of. Then each evaluation of the model follows when it is
-//! done: the digest of everything that it depends on, the number of its values, and these. A calibration that
-//! was ended in whatever way begins anew with the same file: it takes the same steps, finds their evaluations
-//! there, and goes on with the first that is not; its results are bit-identical to those of one that was never
-//! ended. What is lost is the evaluation under way.
+//! done: the digest of everything that it depends on, the number of its values, these, and a sum of all that. A
+//! calibration that was ended in whatever way begins anew with the same file: it takes the same steps, finds their
+//! evaluations there, and goes on with the first that is not; its results are bit-identical to those of one that
+//! was never ended. What is lost is the evaluation under way. The file is locked as long as it is open.
 
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt::{self, Debug, Write as _};
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write as _};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -19,6 +19,8 @@ type Key = [u8; 32];
 
 /// Bytes of a number.
 const NUMBER: usize = 8;
+/// Bytes of the sum of an evaluation, the first of its SHA-256.
+const SUM: usize = 8;
 
 /// Evaluations on the disk.
 #[derive(Debug)]
@@ -35,16 +37,18 @@ struct Kept {
 }
 
 impl Checkpoint {
-    /// The checkpoint in a file, which is made where there is none, or one of something else than `title` says.
-    /// An evaluation that was cut off does not count.
+    /// The checkpoint in a file, which is made where there is none, or one of something else than `title` says, and
+    /// in any case where it is to be made `anew`. An evaluation that was cut off does not count.
     ///
     /// # Errors
-    /// A file that cannot be read or written.
-    pub fn open(path: &Path, title: &str) -> io::Result<Self> {
-        if !Self::is_of(path, title) {
-            std::fs::write(path, format!("{title}\n"))?;
+    /// A file that cannot be read or written; [`io::ErrorKind::ResourceBusy`] where another process holds it.
+    pub fn open(path: &Path, title: &str, anew: bool) -> io::Result<Self> {
+        let mut file = files::lock(path)?;
+        if anew || !begins_with(&file, title) {
+            file.set_len(0)?;
+            file.rewind()?;
+            file.write_all(format!("{title}\n").as_bytes())?;
         }
-        let mut file = OpenOptions::new().read(true).write(true).open(path)?;
         let length = file.metadata()?.len();
         let mut end = title.len() as u64 + 1;
         let mut known = HashMap::new();
@@ -59,7 +63,8 @@ impl Checkpoint {
             let values = end + (size_of::<Key>() + NUMBER) as u64;
             let count = u64::from_le_bytes(count);
             let size = count.checked_mul(NUMBER as u64);
-            let Some(after) = size.and_then(|size| values.checked_add(size)) else {
+            let after = size.and_then(|size| values.checked_add(size)?.checked_add(SUM as u64));
+            let Some(after) = after else {
                 break;
             };
             let Some(count) = usize::try_from(count).ok().filter(|_| after <= length) else {
@@ -76,10 +81,7 @@ impl Checkpoint {
 
     /// Whether there is a checkpoint with this title in a file.
     pub fn is_of(path: &Path, title: &str) -> bool {
-        let line = format!("{title}\n");
-        let mut start = vec![0; line.len()];
-        let read = File::open(path).and_then(|mut file| file.read_exact(&mut start));
-        read.is_ok() && start == line.as_bytes()
+        files::open(path).is_ok_and(|file| begins_with(&file, title))
     }
 
     /// The numbers that `work` gives for this input, or gave before. Numbers that cannot be written are lost, and
@@ -97,12 +99,17 @@ impl Checkpoint {
 }
 
 impl Kept {
+    /// The values of an evaluation; none where they are damaged.
     fn read(&mut self, key: &Key) -> Option<Vec<f64>> {
         let (start, count) = *self.known.get(key)?;
-        let mut bytes = vec![0; count * NUMBER];
+        let mut bytes = vec![0; count * NUMBER + SUM];
         self.file.seek(SeekFrom::Start(start)).ok()?;
         self.file.read_exact(&mut bytes).ok()?;
-        let (numbers, _) = bytes.as_chunks::<NUMBER>();
+        let (values, found) = bytes.split_at(count * NUMBER);
+        if found != sum(key, values) {
+            return None;
+        }
+        let (numbers, _) = values.as_chunks::<NUMBER>();
         let numbers = numbers.iter().map(|bytes| f64::from_le_bytes(*bytes));
         Some(numbers.collect())
     }
@@ -110,7 +117,9 @@ impl Kept {
     fn write(&mut self, key: Key, values: &[f64]) -> io::Result<()> {
         let mut bytes = key.to_vec();
         bytes.extend((values.len() as u64).to_le_bytes());
-        bytes.extend(values.iter().flat_map(|x| x.to_le_bytes()));
+        let numbers: Vec<u8> = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        bytes.extend(&numbers);
+        bytes.extend(sum(&key, &numbers));
         self.file.seek(SeekFrom::Start(self.end))?;
         self.file.write_all(&bytes)?;
         let start = self.end + (size_of::<Key>() + NUMBER) as u64;
@@ -118,6 +127,23 @@ impl Kept {
         self.end += bytes.len() as u64;
         Ok(())
     }
+}
+
+fn begins_with(mut file: &File, title: &str) -> bool {
+    let line = format!("{title}\n");
+    let mut start = vec![0; line.len()];
+    file.read_exact(&mut start).is_ok() && start == line.as_bytes()
+}
+
+fn sum(key: &Key, values: &[u8]) -> [u8; SUM] {
+    let digest: Key = Sha256::new()
+        .chain_update(key)
+        .chain_update(values)
+        .finalize()
+        .into();
+    let mut sum = [0; SUM];
+    sum.copy_from_slice(&digest[..SUM]);
+    sum
 }
 
 /// Digest of an input as it shows itself: numbers are shown with all of their digits.
@@ -142,20 +168,30 @@ mod tests {
     fn what_was_evaluated_is_found_again_after_any_end() {
         let path = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
         let third = [1.0 / 3.0, f64::NEG_INFINITY];
-        let first = Checkpoint::open(&path, "of this").unwrap();
+        let first = Checkpoint::open(&path, "of this", false).unwrap();
+        let busy = Checkpoint::open(&path, "of this", true).unwrap_err();
+        assert_eq!(busy.kind(), io::ErrorKind::ResourceBusy);
         assert_eq!(first.once(&("a", 0.1), || third.to_vec()), third);
         assert_eq!(first.once(&("b", 0.1), || vec![2.0]), [2.0]);
         drop(first);
         // Killed in the middle of the second.
         let length = std::fs::metadata(&path).unwrap().len();
-        let file = OpenOptions::new().write(true).open(&path).unwrap();
+        let mut file = std::fs::OpenOptions::new();
+        let mut file = file.write(true).open(&path).unwrap();
         file.set_len(length - 3).unwrap();
         assert!(Checkpoint::is_of(&path, "of this") && !Checkpoint::is_of(&path, "of that"));
-        let again = Checkpoint::open(&path, "of this").unwrap();
+        let again = Checkpoint::open(&path, "of this", false).unwrap();
         assert_eq!(again.once(&("a", 0.1), Vec::new), third);
         assert_eq!(again.once(&("b", 0.1), || vec![3.0]), [3.0]);
         assert_eq!(again.once(&("b", 0.1), Vec::new), [3.0]);
-        let other = Checkpoint::open(&path, "of that").unwrap();
+        // A bit of the first evaluation altered: it is made again.
+        let first_value = "of this\n".len() + size_of::<Key>() + NUMBER;
+        file.seek(SeekFrom::Start(first_value as u64)).unwrap();
+        file.write_all(&[0x54]).unwrap();
+        assert_eq!(again.once(&("a", 0.1), || vec![5.0]), [5.0]);
+        assert_eq!(again.once(&("a", 0.1), Vec::new), [5.0]);
+        drop(again);
+        let other = Checkpoint::open(&path, "of that", false).unwrap();
         assert_eq!(other.once(&("a", 0.1), || vec![4.0]), [4.0]);
         std::fs::remove_file(path).unwrap();
     }

@@ -6,6 +6,9 @@ mod one_run;
 use one_run::{bundle, crosshead, machine, said};
 use serde_json::Value;
 use std::fs;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 #[test]
 fn where_nothing_is_hidden_it_says_so() {
@@ -47,6 +50,34 @@ fn where_nothing_is_hidden_it_says_so() {
         sensor["rms"].is_number() && sensor["resolution"].is_number(),
         "{sensor}"
     );
+
+    // Killed, and called again: the same bytes.
+    let other = folder.path().join("again");
+    let mut arguments_of_other = arguments;
+    arguments_of_other[5] = other.to_str().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_crosshead"))
+        .args(arguments_of_other)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let journal = other.join("finished.jsonl");
+    let size = || fs::metadata(&journal).map_or(0, |m| m.len());
+    while size() == 0 && child.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    let second = crosshead(&arguments_of_other);
+    assert_eq!(second.status.code(), Some(1), "{}", said(&second));
+    assert!(said(&second).contains("another process is at work"));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!other.join("gap.json").exists());
+    let resumed = crosshead(&arguments_of_other);
+    assert!(resumed.status.success(), "{}", said(&resumed));
+    for file in ["gap.json", "machine.yaml", "report.html"] {
+        let [whole, resumed] = [&out, &other].map(|folder| fs::read(folder.join(file)).unwrap());
+        assert!(whole == resumed, "{file}");
+    }
 
     let again = crosshead(&arguments);
     assert_eq!(again.status.code(), Some(2));

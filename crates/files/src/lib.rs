@@ -5,7 +5,7 @@
 //! that a user gives on purpose as well (`/dev/stdin`, `<(...)`): formats with an index at the end, and those that are
 //! read twice, cannot be read from a pipe, and one rule for all is easier to remember than one for each.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Error, ErrorKind, Read};
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub const LONGEST_TEXT: u64 = 1 << 26;
 /// # Errors
 /// Where it is not there, cannot be opened, or is a folder, a pipe, a device or a socket.
 pub fn open(path: &Path) -> io::Result<File> {
-    regular(path, 0)
+    regular(without_waiting(0).read(true), path)
 }
 
 /// Opens a regular file to read that is no link to one.
@@ -29,11 +29,11 @@ pub fn open_itself(path: &Path) -> io::Result<File> {
         let reason = "it is a link; expected a regular file";
         return Err(Error::new(ErrorKind::InvalidInput, reason));
     }
-    regular(path, NO_LINK)
+    regular(without_waiting(NO_LINK).read(true), path)
 }
 
-fn regular(path: &Path, flags: i32) -> io::Result<File> {
-    let file = without_waiting(flags).read(true).open(path)?;
+fn regular(options: &OpenOptions, path: &Path) -> io::Result<File> {
+    let file = options.open(path)?;
     let kind = file.metadata()?.file_type();
     if kind.is_file() {
         return Ok(file);
@@ -69,6 +69,46 @@ pub fn content(file: File, most: u64) -> io::Result<Vec<u8>> {
         return Err(Error::new(ErrorKind::FileTooLarge, reason));
     }
     Ok(content)
+}
+
+/// Opens a file that is read and written while long work goes on, or makes it, and locks it as long as it stays open.
+/// Where the file system knows no locks there is none.
+///
+/// # Errors
+/// [`ErrorKind::ResourceBusy`] where another process holds it, or has just removed it; a file that cannot be opened.
+pub fn lock(path: &Path) -> io::Result<File> {
+    let busy = || {
+        let reason = "another process is at work in this folder";
+        Error::new(ErrorKind::ResourceBusy, reason)
+    };
+    let mut options = without_waiting(0);
+    let options = options.read(true).write(true).create(true).truncate(false);
+    let file = regular(options, path)?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => return Err(busy()),
+        Err(TryLockError::Error(error)) if error.kind() != ErrorKind::Unsupported => {
+            return Err(error);
+        }
+        _ => {}
+    }
+    match is_at(&file, path)? {
+        true => Ok(file),
+        false => Err(busy()),
+    }
+}
+
+/// Whether `file` is the one at `path`.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let own = file.metadata()?;
+    let there = path.symlink_metadata();
+    Ok(there.is_ok_and(|there| (there.dev(), there.ino()) == (own.dev(), own.ino())))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, path: &Path) -> io::Result<bool> {
+    path.try_exists()
 }
 
 #[cfg(unix)]
@@ -121,6 +161,21 @@ mod tests {
         let refused = open_itself(&link).unwrap_err().to_string();
         assert!(refused.contains("it is a link"), "{refused}");
         open_itself(&path).unwrap();
+    }
+
+    #[test]
+    fn one_alone_holds_a_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let first = lock(&path).unwrap();
+        let refused = lock(&path).unwrap_err();
+        assert_eq!(refused.kind(), ErrorKind::ResourceBusy);
+        drop(first);
+        let second = lock(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        // What the second holds is no longer there, so that it is in nobody's way.
+        lock(&path).unwrap();
+        drop(second);
     }
 
     /// A pipe without a writer is opened at once, and refused.

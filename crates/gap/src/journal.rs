@@ -1,8 +1,9 @@
 //! What was found already, and what it cost: an explanation that was stopped goes on from there.
 //!
-//! Each line of the file holds the key of a piece of work, its result and its cost. The key is a digest
-//! of everything that the result depends on, recordings and version included, so that a line is never
-//! taken for another. The cost counts again when a result is found there, so that what is left of a
+//! Each line of the file holds the key of a piece of work, its result and its cost, and after a space the
+//! sum of all that: a line that was altered or cut off does not count. The key is a digest of everything
+//! that the result depends on, recordings and version included, so that a line is never taken for
+//! another. The file is locked as long as it is open. The cost counts again when a result is found there, so that what is left of a
 //! budget does not depend on whether the work was interrupted.
 
 use crate::error::Error;
@@ -10,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Write as _};
-use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -45,30 +46,39 @@ struct Line {
     finished: Finished,
 }
 
+impl Line {
+    fn write(&self) -> Result<String, serde_json::Error> {
+        let text = serde_json::to_string(self)?;
+        let sum = digest(text.as_bytes());
+        Ok(format!("{text} {sum}\n"))
+    }
+
+    /// A line as it was written, without its end.
+    fn read(line: &[u8]) -> Option<Self> {
+        let (text, sum) = str::from_utf8(line).ok()?.rsplit_once(' ')?;
+        match digest(text.as_bytes()) == sum {
+            true => serde_json::from_str(text).ok(),
+            false => None,
+        }
+    }
+}
+
 impl Journal {
-    /// The journal in a file, which is made where there is none. A last line that was cut off does
-    /// not count.
+    /// The journal in a file, which is made where there is none.
     ///
     /// # Errors
-    /// A file that cannot be read or written.
+    /// A file that cannot be read or written, or that another process is at work with.
     pub fn open(path: &Path) -> Result<Self, Error> {
         let failed = |source| Error::Journal {
             path: path.to_owned(),
             source,
         };
-        let text = match path.exists() {
-            true => std::fs::read_to_string(path).map_err(failed)?,
-            false => String::new(),
-        };
-        let lines = text.lines().filter_map(|l| serde_json::from_str(l).ok());
-        let known = lines.map(|line: Line| (line.key, line.finished)).collect();
-        let mut options = OpenOptions::new();
-        let mut file = options
-            .create(true)
-            .append(true)
-            .open(path)
-            .map_err(failed)?;
-        if !text.is_empty() && !text.ends_with('\n') {
+        let mut file = files::lock(path).map_err(failed)?;
+        let mut text = Vec::new();
+        file.read_to_end(&mut text).map_err(failed)?;
+        let lines = text.split(|byte| *byte == b'\n').filter_map(Line::read);
+        let known = lines.map(|line| (line.key, line.finished)).collect();
+        if text.last().is_some_and(|last| *last != b'\n') {
             file.write_all(b"\n").map_err(failed)?;
         }
         Ok(Self {
@@ -110,8 +120,7 @@ impl Journal {
         }
         let finished = work()?;
         let line = Line { key, finished };
-        if let Ok(mut text) = serde_json::to_string(&line) {
-            text.push('\n');
+        if let Ok(text) = line.write() {
             let _lost = open().file.write_all(text.as_bytes());
         }
         Ok(line.finished)
@@ -121,10 +130,13 @@ impl Journal {
 /// Digest of an input as it shows itself: numbers are shown with all of their digits.
 fn key(input: &dyn Debug) -> String {
     let mut text = env!("CARGO_PKG_VERSION").to_owned();
-    let digest = match write!(text, "{input:?}") {
-        Ok(()) => Sha256::digest(text.as_bytes()),
-        Err(_) => Sha256::digest([]),
-    };
+    let _infallible = write!(text, "{input:?}");
+    digest(text.as_bytes())
+}
+
+/// SHA-256 in hexadecimal digits.
+fn digest(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
     digest.iter().fold(String::new(), |mut hex, byte| {
         let _infallible = write!(hex, "{byte:02x}");
         hex
@@ -147,16 +159,57 @@ mod tests {
         let first = Journal::open(&path).unwrap();
         let numbers = first.once(&("a", third), || found(third)).unwrap();
         assert_eq!((numbers, first.spent()), (vec![third], 7));
+        assert!(Journal::open(&path).is_err(), "it is locked");
+        drop(first);
         // Cut off in the middle of a line.
-        let mut file = OpenOptions::new().append(true).open(&path).unwrap();
-        file.write_all(b"{\"key\": \"0").unwrap();
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        text.push_str("{\"key\": \"0");
+        std::fs::write(&path, text).unwrap();
         let again = Journal::open(&path).unwrap();
         let numbers = again.once(&("a", third), || found(0.0)).unwrap();
         assert_eq!((numbers, again.spent()), (vec![third], 7));
         let other = again.once(&("a", 0.333), || found(2.0)).unwrap();
         assert_eq!(other, [2.0]);
+        drop(again);
         let last = Journal::open(&path).unwrap();
         assert_eq!(last.once(&("a", 0.333), || found(0.0)).unwrap(), [2.0]);
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn every_number_is_found_again_to_the_last_bit() {
+        let path = std::env::temp_dir().join(format!("journal-bits-{}", std::process::id()));
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let numbers: Vec<f64> = (0..10_000)
+            .map(|_| {
+                bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                f64::from_bits(bits)
+            })
+            .filter(|number| number.is_finite())
+            .collect();
+        let work = |numbers: &[f64]| {
+            let numbers = numbers.to_vec();
+            move || Ok(Finished { numbers, cost: 1 })
+        };
+        let first = Journal::open(&path).unwrap();
+        first.once(&"all", work(&numbers)).unwrap();
+        drop(first);
+        let found = Journal::open(&path).unwrap().once(&"all", work(&[]));
+        assert!(found.unwrap() == numbers);
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn a_number_that_was_altered_is_not_believed() {
+        let path = std::env::temp_dir().join(format!("journal-sum-{}", std::process::id()));
+        let first = Journal::open(&path).unwrap();
+        first.once(&"a", || found(1.5)).unwrap();
+        drop(first);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains("1.5"), "{text}");
+        std::fs::write(&path, text.replace("1.5", "2.5")).unwrap();
+        let again = Journal::open(&path).unwrap();
+        assert_eq!(again.once(&"a", || found(1.5)).unwrap(), [1.5]);
         std::fs::remove_file(path).unwrap();
     }
 }

@@ -20,11 +20,6 @@ impl Earlier {
     pub fn is_complete(&self) -> bool {
         self.results["complete"] == true
     }
-
-    /// How long it took, s.
-    pub fn seconds(&self) -> f64 {
-        self.results["seconds"].as_f64().unwrap_or(0.0)
-    }
 }
 
 /// Checks that the folder may be written into, before any work. One that is renewed is known to be
@@ -113,7 +108,7 @@ fn other(path: &Path) -> Failure {
 /// The checkpoint of a calibration into `folder`: what was evaluated before, if it goes on, or nothing yet.
 ///
 /// # Errors
-/// A file that cannot be written.
+/// A file that cannot be written, or that another process is at work with.
 pub fn checkpoint(
     folder: &Path,
     existing: Existing,
@@ -122,10 +117,8 @@ pub fn checkpoint(
     let path = folder.join(CHECKPOINT);
     let unwritten = |error| Failure::unwritten(&path, error);
     std::fs::create_dir_all(folder).map_err(unwritten)?;
-    if path.is_file() && !matches!(existing, Existing::Resume | Existing::Renew) {
-        std::fs::remove_file(&path).map_err(unwritten)?;
-    }
-    Checkpoint::open(&path, fingerprint).map_err(unwritten)
+    let anew = !matches!(existing, Existing::Resume | Existing::Renew);
+    Checkpoint::open(&path, fingerprint, anew).map_err(unwritten)
 }
 
 /// Takes the checkpoint of a calibration away that is complete.

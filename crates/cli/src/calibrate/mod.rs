@@ -21,7 +21,6 @@ use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 pub use arguments::Arguments;
 pub use problem::{Task, task};
@@ -169,20 +168,15 @@ impl Prepared {
             earlier,
         } = self;
         let machine = out.join(output::MACHINE);
-        let mut seconds = 0.0;
-        if let Some(earlier) = earlier {
-            if earlier.is_complete() {
-                return Ok(Calibrated {
-                    machine,
-                    results: earlier.results,
-                    reused: true,
-                });
-            }
-            seconds = earlier.seconds();
+        if let Some(earlier) = earlier.filter(Earlier::is_complete) {
+            return Ok(Calibrated {
+                machine,
+                results: earlier.results,
+                reused: true,
+            });
         }
         let checkpoint = earlier::checkpoint(&out, existing, &fingerprint)?;
         task.problem.meter = Meter::with_checkpoint(checkpoint);
-        let start = Instant::now();
         let progress::Searched {
             mut fit,
             mut corrected,
@@ -209,7 +203,6 @@ impl Prepared {
             fingerprint: &fingerprint,
             corrected: corrected.as_ref(),
             evaluations,
-            seconds: seconds + start.elapsed().as_secs_f64(),
         };
         let x: Vec<f64> = fit
             .estimates
@@ -219,10 +212,11 @@ impl Prepared {
         let compared = ::calibrate::compare(&task.problem, &task.runs, &x);
         pictures::write(&out, &compared.map_err(Failure::work)?)?;
         let results = output::write(&out, &task, &found)?;
+        report::write_calibration(&out, &out.join(report::PAGE))?;
+        // It is locked as long as this goes on: it goes last.
         if fit.complete {
             earlier::remove_checkpoint(&out)?;
         }
-        report::write_calibration(&out, &out.join(report::PAGE))?;
         Ok(Calibrated {
             machine,
             results,

@@ -18,7 +18,6 @@ use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
 
 /// Name of the file of finished work, with which an explanation that was stopped goes on.
 const FINISHED: &str = "finished.jsonl";
@@ -151,7 +150,6 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
     let journal = Journal::open(&finished).map_err(Failure::work)?;
     let effort =
         Effort::new(&task.problem, held_out, EVALUATIONS, journal).map_err(Failure::work)?;
-    let start = Instant::now();
     let bar = progress::Bar::new();
     let hum = gap::remove_hum(&mut task.problem, &mut task.runs).map_err(Failure::work)?;
     let explanation = gap::explain(
@@ -185,8 +183,7 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
         runs: &task.runs,
         encoded: &task.encoded,
     })?;
-    let seconds = start.elapsed().as_secs_f64();
-    let results = output::write(out, &explanation, &effort, &gas, &sensors, seconds)?;
+    let results = output::write(out, &explanation, &effort, &gas, &sensors)?;
     report::write_gap(out, &out.join(report::PAGE))?;
     std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;
     Ok(results)

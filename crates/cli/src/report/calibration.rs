@@ -58,7 +58,6 @@ pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
             .unwrap_or("unknown")
             .to_owned(),
         evaluations: results.content["evaluations"].as_u64().unwrap_or(0),
-        seconds: results.content["seconds"].as_f64().unwrap_or(f64::NAN),
         complete: results.content["complete"].as_bool().unwrap_or(true),
         adequate: results.content["model_is_adequate"] != false,
         corrections: results.corrections(),

@@ -63,7 +63,6 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         scaling: list(&content["scaling"]).iter().map(scaling).collect(),
         runs: runs(folder, &results, ["before", "after"])?,
         next_recording: text(&content["next_recording"]),
-        seconds: number(&content["seconds"]),
     })
 }
 

@@ -29,8 +29,6 @@ pub struct CalibrationPage {
     pub optimiser: String,
     /// Evaluations of the model, all runs being one.
     pub evaluations: u64,
-    /// Time that the search took, s.
-    pub seconds: f64,
     /// False where the search was stopped before its end.
     pub complete: bool,
     /// Whether the model explains the recordings; where it does not, no interval is known.

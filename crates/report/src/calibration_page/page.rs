@@ -84,11 +84,7 @@ impl View<'_> {
 
     fn effort(&self) -> String {
         let evaluations = usize::try_from(self.page.evaluations).unwrap_or(usize::MAX);
-        let time = match self.page.seconds {
-            s if s < 120.0 => text::quantity(s, "s"),
-            s => text::quantity(s / 60.0, "min"),
-        };
-        format!("{} evaluations, {time}", text::count(evaluations))
+        format!("{} evaluations", text::count(evaluations))
     }
 
     fn name(estimate: &Estimate) -> String {

@@ -39,8 +39,6 @@ pub struct GapPage {
     pub runs: Vec<Run>,
     /// What to measure next; empty where nothing is asked for.
     pub next_recording: String,
-    /// Time that it took, s.
-    pub seconds: f64,
 }
 
 /// A model on the way.

@@ -31,7 +31,6 @@ pub fn page() -> CalibrationPage {
         version: "1.0.0".into(),
         optimiser: "levenberg-marquardt, cma-es".into(),
         evaluations: 48,
-        seconds: 13.2,
         complete: true,
         adequate: true,
         corrections: Vec::new(),
