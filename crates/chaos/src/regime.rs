@@ -123,8 +123,12 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
         verdict.scatter = Some(scatter);
         if regime == Regime::Chaotic && scatter.share > RESOLVED {
-            verdict.regime = Regime::Chaotic;
-            verdict.exponent = Some(scatter.growth.per(cycles.length));
+            let slides = repeats_but_for_its_speed(signal, Some(scatter))?;
+            verdict.regime = match slides {
+                true => Regime::Periodic,
+                false => Regime::Chaotic,
+            };
+            verdict.exponent = (!slides).then(|| scatter.growth.per(cycles.length));
             return Ok(verdict);
         }
         if repeats || scatter.is_chance() {
@@ -132,7 +136,7 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
             return Ok(verdict);
         }
     }
-    if repeats || repeats_but_for_its_speed(signal)? {
+    if repeats || repeats_but_for_its_speed(signal, verdict.scatter)? {
         verdict.regime = Regime::Periodic;
         return Ok(verdict);
     }
@@ -170,13 +174,15 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
 }
 
 /// Whether nearly all of the signal repeats itself in its own cycles, whose length changes, and what then
-/// differs from cycle to cycle does not grow out of what was: a speed that drifts or fluctuates.
-fn repeats_but_for_its_speed(signal: &[f64]) -> Result<bool, Error> {
+/// differs from cycle to cycle does not grow out of what was: a speed that drifts or fluctuates. Such cycles leave
+/// less than half of what cycles of one length leave, `fixed`.
+fn repeats_but_for_its_speed(signal: &[f64], fixed: Option<Scatter>) -> Result<bool, Error> {
     let Some(cycles) = cycles::of_changing_length(signal) else {
         return Ok(false);
     };
     let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
-    Ok(scatter.share.powi(2) <= NEARLY_ALL && regime != Regime::Chaotic)
+    let most = fixed.map_or(NEARLY_ALL, |fixed| NEARLY_ALL.min(HALF * fixed.share.powi(2)));
+    Ok(scatter.share.powi(2) <= most && regime != Regime::Chaotic)
 }
 
 /// The cycles whose scatter is judged, as [`driven_verdict`] does.

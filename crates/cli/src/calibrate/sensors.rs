@@ -70,7 +70,16 @@ impl Sensors {
     /// # Errors
     /// None that is known.
     pub fn results(&self) -> Result<Value, Failure> {
-        serde_json::to_value(&self.by_column).map_err(Failure::work)
+        let results = serde_json::to_value(&self.by_column);
+        let mut results = results.map_err(Failure::work)?;
+        let sensors = results.as_object_mut().into_iter().flatten();
+        for sensor in sensors.filter_map(|(_, sensor)| sensor.as_object_mut()) {
+            // Other programs look these up, whatever is known of a converter.
+            for key in ["bits", "range"] {
+                sensor.entry(key).or_insert(Value::Null);
+            }
+        }
+        Ok(results)
     }
 }
 
