@@ -1,0 +1,10 @@
+//! The tests of calibrate, in one program.
+
+mod clearances;
+mod cost;
+mod data_sheet;
+mod free_crank;
+mod interrupted;
+mod real_pressure;
+mod replay;
+mod search;

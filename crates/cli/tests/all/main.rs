@@ -1,0 +1,26 @@
+//! The tests of the command line, in one program.
+
+mod calibrate;
+mod calibrated_sweep;
+mod damage;
+mod dataset;
+mod dataset_bytes;
+mod explain_gap;
+mod explain_pressures;
+mod features;
+mod features_shaft;
+mod hidden_effects;
+mod hostile;
+mod one_run;
+mod output;
+mod readme;
+mod recorded_sensors;
+mod recovery;
+mod replay;
+mod report;
+mod shards;
+mod small_sweep;
+mod transcripts;
+#[path = "../../../../tests/readers/venv.rs"]
+mod venv;
+mod verdicts;

@@ -1,8 +1,0 @@
-//! The transcripts in tests/cli: what the programs print, word for word. They are the manual, too.
-//!
-//! After a wanted change: `TRYCMD=overwrite cargo test -p cli --test transcripts`, and read the diff.
-
-#[test]
-fn transcripts() {
-    trycmd::TestCases::new().case("../../tests/cli/*.md").run();
-}

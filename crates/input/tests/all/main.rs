@@ -1,0 +1,11 @@
+//! The tests of input, in one program.
+
+mod bundle;
+mod bundle_machine;
+mod clearance_relation;
+mod effects;
+mod errors;
+mod machine_file;
+mod quantities;
+mod schema;
+mod two_stage;

@@ -1,0 +1,4 @@
+//! The tests of integrate, in one program.
+
+mod bounces;
+mod order;

@@ -1,0 +1,19 @@
+//! The tests of mechanism, in one program.
+
+mod common;
+mod derivative;
+mod drop;
+mod effects;
+mod energy;
+mod guide;
+mod ideal;
+mod joint_models;
+mod momentum;
+mod plain;
+mod ravn;
+mod reversals;
+mod scalars;
+mod slap;
+mod statistics;
+mod symmetry;
+mod trajectories;

@@ -1,0 +1,4 @@
+//! The tests of signal, in one program.
+
+mod properties;
+mod scipy;

@@ -1,0 +1,15 @@
+//! The tests of simulate, in one program.
+
+mod bifurcation;
+#[path = "../../../mechanism/tests/all/common/mod.rs"]
+mod common;
+mod effects;
+mod ensemble;
+mod joint_models;
+mod known_flows;
+mod lyapunov;
+mod poincare;
+mod record;
+mod sensitivity;
+mod switches;
+mod verdicts;

@@ -1,0 +1,13 @@
+//! The tests of sweep, in one program.
+
+mod bifurcation;
+mod calibration;
+mod damage;
+mod dataset;
+mod errors;
+mod exponent;
+mod labels;
+mod plan;
+mod schema;
+#[path = "../toy/mod.rs"]
+mod toy;
