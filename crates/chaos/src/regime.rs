@@ -123,12 +123,13 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
         let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
         verdict.scatter = Some(scatter);
         if regime == Regime::Chaotic && scatter.share > RESOLVED {
-            let slides = repeats_but_for_its_speed(signal, Some(scatter))?;
-            verdict.regime = match slides {
-                true => Regime::Periodic,
-                false => Regime::Chaotic,
+            verdict.regime = match in_cycles_of_changing_length(signal, Some(scatter))? {
+                None | Some((Regime::Chaotic, _)) => Regime::Chaotic,
+                Some((_, scatter)) if scatter.is_chance() => Regime::Periodic,
+                Some(_) => Regime::Undecided,
             };
-            verdict.exponent = (!slides).then(|| scatter.growth.per(cycles.length));
+            let is_chaotic = verdict.regime == Regime::Chaotic;
+            verdict.exponent = is_chaotic.then(|| scatter.growth.per(cycles.length));
             return Ok(verdict);
         }
         if repeats || scatter.is_chance() {
@@ -136,7 +137,9 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
             return Ok(verdict);
         }
     }
-    if repeats || repeats_but_for_its_speed(signal, verdict.scatter)? {
+    let repeats_but_for_its_speed = in_cycles_of_changing_length(signal, verdict.scatter)?
+        .is_some_and(|(_, scatter)| scatter.is_chance());
+    if repeats || repeats_but_for_its_speed {
         verdict.regime = Regime::Periodic;
         return Ok(verdict);
     }
@@ -173,16 +176,20 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     Ok(verdict)
 }
 
-/// Whether nearly all of the signal repeats itself in its own cycles, whose length changes, and what then
-/// differs from cycle to cycle does not grow out of what was: a speed that drifts or fluctuates. Such cycles leave
-/// less than half of what cycles of one length leave, `fixed`.
-fn repeats_but_for_its_speed(signal: &[f64], fixed: Option<Scatter>) -> Result<bool, Error> {
+/// What the signal is in its own cycles, whose length changes as where a speed drifts or fluctuates: where they leave
+/// little to differ from cycle to cycle, and less than half of what cycles of one length leave, `fixed`.
+fn in_cycles_of_changing_length(
+    signal: &[f64],
+    fixed: Option<Scatter>,
+) -> Result<Option<(Regime, Scatter)>, Error> {
     let Some(cycles) = cycles::of_changing_length(signal) else {
-        return Ok(false);
+        return Ok(None);
     };
+    let most = fixed.map_or(NEARLY_ALL, |fixed| {
+        NEARLY_ALL.min(HALF * fixed.share.powi(2))
+    });
     let (regime, scatter) = of_scatter(&cycles.signal, cycles.per_cycle)?;
-    let most = fixed.map_or(NEARLY_ALL, |fixed| NEARLY_ALL.min(HALF * fixed.share.powi(2)));
-    Ok(scatter.share.powi(2) <= most && regime != Regime::Chaotic)
+    Ok((scatter.share.powi(2) <= most).then_some((regime, scatter)))
 }
 
 /// The cycles whose scatter is judged, as [`driven_verdict`] does.
