@@ -88,6 +88,9 @@ def links(sweep, folder, whole):
 
 
 def main():
+    if shutil.which("strace") is None:
+        print("strace is missing: nothing was broken")
+        sys.exit(77)
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         sweep = folder / "sweep.yaml"
