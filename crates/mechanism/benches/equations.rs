@@ -1,6 +1,6 @@
 //! One right-hand side (plain, dual, lanes), and one revolution.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/all/common/mod.rs"]
 mod common;
 
 use common::{REVOLUTION, Run, with_clearance};

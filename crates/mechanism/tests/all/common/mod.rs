@@ -1,4 +1,5 @@
 //! Machines for the tests, and runs of them.
+#![allow(dead_code)] // The tests of crate simulate and the benches use some of it.
 
 pub mod random;
 
