@@ -12,7 +12,7 @@ const BUNDLE: &str = concat!(
     "/../../data/recordings/recip-compressor-pressure"
 );
 /// What the best fit of ideal valves leaves, exponents anywhere from 1 to 5/3, by a search of Nelder
-/// and Mead's over the closed form (calibrate/tests/real_pressure.rs): head end and crank end, Pa.
+/// and Mead's over the closed form (calibrate/tests/all/real_pressure.rs): head end and crank end, Pa.
 const IDEAL: [f64; 2] = [153.8e3, 129.5e3];
 
 fn crosshead(arguments: &[&str]) {

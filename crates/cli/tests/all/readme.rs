@@ -1,4 +1,5 @@
-//! The README's commands, as a new user would type them, in a folder that has what a clone has.
+//! The commands of the README and of the pages that go on with its tour, as a new user would type them, in a folder that
+//! has what a clone has.
 
 use crate::venv;
 
@@ -9,14 +10,26 @@ fn project() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The content of the README's blocks in `language`.
+/// The README, and the pages that go on with its tour.
+const PAGES: [&str; 5] = [
+    "README.md",
+    "pipelines/README.md",
+    "crates/calibrate/README.md",
+    "crates/gap/README.md",
+    "crates/gap/PROOF.md",
+];
+
+/// The content of the pages' blocks in `language`.
 fn blocks(language: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(project().join("README.md")).unwrap();
     let fence = format!("```{language}\n");
-    let parts = text.split(&fence).skip(1);
-    parts
-        .map(|part| part.split("```").next().unwrap_or_default().to_owned())
-        .collect()
+    let of_page = |page: &str| -> Vec<String> {
+        let text = std::fs::read_to_string(project().join(page)).unwrap();
+        let parts = text.split(&fence).skip(1);
+        parts
+            .map(|part| part.split("```").next().unwrap_or_default().to_owned())
+            .collect()
+    };
+    PAGES.into_iter().flat_map(of_page).collect()
 }
 
 /// One command per entry, continued lines joined.
@@ -69,7 +82,7 @@ fn the_commands_of_the_readme_work() {
         assert!(output.status.success(), "{command}: {message}");
         run += 1;
     }
-    assert!(run >= 4, "the README has only {run} commands");
+    assert!(run >= 10, "the pages have only {run} commands");
 
     for code in blocks("python") {
         // The small dataset of the first command has the same columns.
