@@ -1,15 +1,9 @@
 //! An evaluation with derivatives counts for as many plain ones as it takes steps of the integrator.
 
+use crate::own_recordings;
+use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
-use calibrate::observation::Observed;
 use calibrate::optimiser::{LeastSquares, derivatives};
-use calibrate::prediction::predict;
-use calibrate::{CrankMotion, Observation, Parameter, Problem};
-use mechanism::drive::GivenSpeed;
-use serde_json::json;
-use signal::order_lines::OrderLines;
-use std::f64::consts::PI;
-use std::path::Path;
 
 const RPM: [f64; 3] = [400.0, 480.0, 560.0];
 const PATHS: [&str; 12] = [
@@ -29,50 +23,17 @@ const PATHS: [&str; 12] = [
 
 /// The single-stage machine with two clear joints, so many of its parameters, and what it shows itself.
 fn problem(parameters: usize) -> Problem {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
-    let machine = input::machine_file::read(&path).unwrap();
-    let mut tree = machine.to_tree().clone();
-    for joint in ["big_end", "small_end"] {
-        tree["joints"][joint]["clearance"] = json!("0.1 mm");
-    }
-    let of = |path: &&str| Parameter::of(&tree, path).unwrap();
-    let mut problem = Problem {
-        parameters: PATHS[..parameters].iter().map(of).collect(),
-        tree,
-        runs: Vec::new(),
-        crank: CrankMotion::Driven,
-        meter: calibrate::meter::Meter::default(),
-    };
-    for rpm in RPM {
-        let observed = |lines| Observed {
-            column: "crosshead_acceleration_m_s2".into(),
-            lines,
-            orders: (1..=50).collect(),
-        };
-        let mut run = Observation {
-            id: format!("{rpm} rpm"),
-            settings: vec![("speed".to_owned(), json!(format!("{rpm} rpm")))],
-            crank: GivenSpeed {
-                speed: rpm * PI / 30.0,
-                fluctuation: Vec::new(),
-            },
-            channels: vec![observed(OrderLines {
-                amplitude: Vec::new(),
-                variance: Vec::new(),
-                revolutions: 30,
-            })],
-        };
-        let shown = predict(&problem, &run, &vec![0.0; parameters]).unwrap();
-        assert!(shown.periodic);
-        let lines = shown.lines.into_iter().next().unwrap();
-        run.channels = vec![observed(OrderLines {
-            variance: vec![1e-4; lines.amplitude.len()],
-            revolutions: 30,
-            ..lines
-        })];
-        problem.runs.push(run);
-    }
-    problem
+    let truth: Vec<(&str, f64)> = PATHS[..parameters]
+        .iter()
+        .map(|path| (*path, 0.0))
+        .collect();
+    own_recordings::problem(
+        own_recordings::machine(["0.1 mm"; 2]),
+        &truth,
+        &RPM,
+        50,
+        1e-4,
+    )
 }
 
 #[test]

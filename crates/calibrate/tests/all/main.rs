@@ -5,6 +5,7 @@ mod cost;
 mod data_sheet;
 mod free_crank;
 mod interrupted;
+mod own_recordings;
 mod real_pressure;
 mod replay;
 mod search;

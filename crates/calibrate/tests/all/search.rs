@@ -1,15 +1,10 @@
 //! The default search out of a local minimum of all runs together.
 
+use crate::own_recordings;
 use calibrate::fit::{FitSettings, Optimiser};
-use calibrate::observation::Observed;
-use calibrate::prediction::predict;
-use calibrate::{CrankMotion, Observation, Parameter, Problem, calibrate};
-use mechanism::drive::GivenSpeed;
+use calibrate::{Problem, calibrate};
 use serde_json::json;
-use signal::order_lines::OrderLines;
-use std::f64::consts::PI;
 use std::ops::ControlFlow;
-use std::path::Path;
 
 /// Of the small end's contact and of a misalignment, with their true values over, or less, those with which the
 /// search begins.
@@ -28,51 +23,11 @@ const VARIANCE: f64 = 2e-3;
 
 /// A machine whose forces on the crosshead move the impacts of its small end, and what it shows itself.
 fn problem() -> Problem {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
-    let mut tree = input::machine_file::read(&path).unwrap().to_tree().clone();
-    tree["joints"]["big_end"]["clearance"] = json!("ideal");
-    tree["joints"]["small_end"]["clearance"] = json!("0.1 mm");
+    let mut tree = own_recordings::machine(["ideal", "0.1 mm"]);
     tree["effects"] = json!([{"misalignment": {
         "first": "700 N", "first_phase": "3.2 rad", "second": "450 N", "second_phase": "2.1 rad",
     }}]);
-    let of = |(path, _): &(&str, f64)| Parameter::of(&tree, path).unwrap();
-    let mut problem = Problem {
-        parameters: TRUTH.iter().map(of).collect(),
-        tree,
-        runs: Vec::new(),
-        crank: CrankMotion::Driven,
-        meter: calibrate::meter::Meter::default(),
-    };
-    let observed = |lines| Observed {
-        column: "crosshead_acceleration_m_s2".into(),
-        lines,
-        orders: (1..=200).collect(),
-    };
-    for rpm in RPM {
-        let mut run = Observation {
-            id: format!("{rpm} rpm"),
-            settings: vec![("speed".to_owned(), json!(format!("{rpm} rpm")))],
-            crank: GivenSpeed {
-                speed: rpm * PI / 30.0,
-                fluctuation: Vec::new(),
-            },
-            channels: vec![observed(OrderLines {
-                amplitude: Vec::new(),
-                variance: Vec::new(),
-                revolutions: 30,
-            })],
-        };
-        let shown = predict(&problem, &run, &TRUTH.map(|(_, x)| x)).unwrap();
-        assert!(shown.periodic);
-        let lines = shown.lines.into_iter().next().unwrap();
-        run.channels = vec![observed(OrderLines {
-            variance: vec![VARIANCE; lines.amplitude.len()],
-            revolutions: 30,
-            ..lines
-        })];
-        problem.runs.push(run);
-    }
-    problem
+    own_recordings::problem(tree, &TRUTH, &RPM, 200, VARIANCE)
 }
 
 #[test]

@@ -237,7 +237,7 @@ fn a_worn_machine_is_recorded_in_the_same_steps_and_not_clipped() {
     assert_eq!(at_largest, 1);
 }
 
-/// What the recordings do not tell stays as the machine file has it.
+/// What is not identifiable from the recordings keeps the value of the machine file.
 #[test]
 fn a_stated_range_stays_where_its_bits_are_whole() {
     let (found, rate) = in_good_order();
