@@ -8,6 +8,7 @@ mod flows;
 mod machines;
 mod noises;
 mod regular;
+mod tangent;
 
 pub use machines::{Machine, Memory};
 pub use noises::{Noise, with_noise};
@@ -17,6 +18,7 @@ use flows::{Duffing, Flow, Lorenz, MackeyGlass, Roessler};
 use rand::{RngExt, SeedableRng};
 use scalar::random::Stream;
 use scalar::{Dual, Scalar};
+use tangent::{TRANSIENT, Tangent, mean_growths, renormalise};
 
 /// A chaotic system, observed through its first coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,12 +164,6 @@ impl System {
     }
 }
 
-/// Samples left out at the start.
-const TRANSIENT: usize = 2000;
-
-/// A coordinate with its derivative along the one tangent that is followed.
-type Tangent = Dual<f64, 1>;
-
 fn logistic<S: Scalar>([x]: [S; 1]) -> [S; 1] {
     [x * (S::one() - x) * 4.0]
 }
@@ -199,23 +195,6 @@ fn map_growth<const N: usize>(
         y = map(y);
         renormalise(&mut y)
     })
-}
-
-/// Means of `growth` (nats per call) over successive stretches after the transient.
-fn mean_growths((length, stretches): (usize, usize), mut growth: impl FnMut() -> f64) -> Vec<f64> {
-    (0..TRANSIENT).for_each(|_| {
-        growth();
-    });
-    (0..stretches)
-        .map(|_| (0..length).map(|_| growth()).sum::<f64>() / length as f64)
-        .collect()
-}
-
-/// Brings the tangent back to length 1 and returns the logarithm of what it was.
-fn renormalise(y: &mut [Tangent]) -> f64 {
-    let norm = y.iter().map(|c| c.tangent[0].powi(2)).sum::<f64>().sqrt();
-    y.iter_mut().for_each(|c| c.tangent[0] /= norm);
-    norm.ln()
 }
 
 #[cfg(test)]

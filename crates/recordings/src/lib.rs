@@ -37,11 +37,13 @@ mod error;
 mod manifest;
 mod schema;
 mod table;
+mod value_kind;
 mod whole_file;
 
 pub use dataset_card::{DatasetCard, Subset};
 pub use error::Error;
 pub use manifest::{CaseWarning, Counts, FailedCase, FileEntry, Manifest};
-pub use schema::{Column, Kind, Role, Schema};
+pub use schema::{Column, Role, Schema};
 pub use table::{Cell, Data, Table, Value};
+pub use value_kind::Kind;
 pub use whole_file::{FileRecord, WholeFile, sync_folder};

@@ -1,7 +1,7 @@
 //! The chaotic flows, integrated with the fourth-order Runge-Kutta method (Kutta 1901) in steps
 //! small enough that its error is far below the error of any estimator.
 
-use super::{TRANSIENT, Tangent, mean_growths, renormalise};
+use super::tangent::{TRANSIENT, Tangent, mean_growths, renormalise};
 use scalar::Scalar;
 
 /// An autonomous or driven differential equation.

@@ -9,7 +9,7 @@
     reason = "vector instructions; see the module's page for why they are there"
 )]
 
-use super::Lanes;
+use super::operations::{Lanes, lanes};
 use crate::Mask;
 use crate::elementary::{MAGIC, MAGIC_EXPONENT, SPLIT_BIAS};
 use std::arch::x86_64::*;
@@ -23,7 +23,7 @@ pub(super) struct F64x8([__m256d; 2]);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truths([__m256d; 2]);
 
-super::lanes!(F64x8, 8);
+lanes!(F64x8, 8);
 
 /// What a function of one register makes of both.
 macro_rules! both {

@@ -8,7 +8,7 @@
     reason = "vector instructions; see the module's page for why they are there"
 )]
 
-use super::Lanes;
+use super::operations::{Lanes, lanes};
 use crate::Mask;
 use crate::elementary::{MAGIC, MAGIC_EXPONENT, SPLIT_BIAS};
 use std::arch::x86_64::*;
@@ -22,7 +22,7 @@ pub(super) struct F64x8(__m512d);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truths(__mmask8);
 
-super::lanes!(F64x8, 8);
+lanes!(F64x8, 8);
 
 /// Whether this processor has the instructions.
 pub(super) fn is_present() -> bool {

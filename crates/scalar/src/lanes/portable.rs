@@ -1,6 +1,6 @@
 //! Two lanes in plain numbers: for every processor.
 
-use super::Lanes;
+use super::operations::{Lanes, lanes};
 use crate::Mask;
 use crate::elementary::Bits;
 
@@ -13,7 +13,7 @@ pub(super) struct F64x2([f64; 2]);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truths([bool; 2]);
 
-super::lanes!(F64x2, 2);
+lanes!(F64x2, 2);
 
 impl F64x2 {
     #[inline(always)]

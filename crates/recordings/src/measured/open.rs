@@ -1,0 +1,38 @@
+//! A file is opened by the reader of its format.
+
+use super::kind::{self, Kind};
+use super::{MeasuredFile, Options};
+use crate::Error;
+use crate::formats::{csv, mat, mcap, parquet, wav};
+use std::fs;
+use std::path::Path;
+
+impl MeasuredFile {
+    /// Opens a file and reads its heading. The format is that of the name's ending, and for other
+    /// names the one that its first bytes show.
+    ///
+    /// # Errors
+    /// When the file is not there, is empty, damaged or of another format than its name says, when
+    /// a column that was asked for is not there, or the rates contradict each other.
+    pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
+        if let Some(rate) = options.sample_rate_hz
+            && !(rate.is_finite() && rate > 0.0)
+        {
+            return Err(Error::SampleRate(rate));
+        }
+        let metadata = fs::metadata(path).map_err(Error::io("open", path))?;
+        if metadata.is_dir() {
+            return Err(Error::damaged("a recording", path, "it is a folder"));
+        }
+        if metadata.is_file() && metadata.len() == 0 {
+            return Err(Error::damaged("a recording", path, "it is empty"));
+        }
+        match kind::of(path)? {
+            Kind::Csv => csv::read::open(path, options),
+            Kind::Wav => wav::open(path, options),
+            Kind::Mat => mat::open(path, options),
+            Kind::Parquet => parquet::recordings::open(path, options),
+            Kind::Mcap => mcap::read::open(path, options),
+        }
+    }
+}
