@@ -1,9 +1,8 @@
 //! What may be missing: an effect of the catalogue at a place of the machine.
 
-use crate::empirical_force;
 use crate::error::Error;
 use crate::model::Model;
-use crate::pressures::{is_of_pressures, shows_pressure};
+use crate::recorded::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
 use input::MachineFile;
 use input::effects::{CATALOGUE, Entry, Parameter};
@@ -36,8 +35,10 @@ const OWN_AT_EACH: [&str; 1] = ["suction_unloading"];
 /// The suction valve's throttling is told by the effect that holds it already, where there is one.
 const HELD: &str = "suction_unloading";
 const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
+/// The law of no name.
+pub const FORCE: &str = "empirical_force";
 /// Found by its frequency, not by its orders; a law of no name comes last.
-const ELSEWHERE: [&str; 2] = ["mains_hum", "empirical_force"];
+const ELSEWHERE: [&str; 2] = ["mains_hum", FORCE];
 /// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
 /// clearance volume and exponents imitate it, so that it has to earn its place.
 const ZERO: &str = "crank_angle_offset";
@@ -94,6 +95,13 @@ impl Candidate {
             }
         }
         all
+    }
+
+    /// The first candidate of an effect.
+    #[cfg(test)]
+    pub(crate) fn first(problem: &Problem, name: &str) -> Self {
+        let mut all = Self::all(problem).into_iter();
+        all.find(|candidate| candidate.entry.name == name).unwrap()
     }
 
     /// The same with only the parameters of these indices free, and the others without effect or as
@@ -248,7 +256,7 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if self.entry.name == empirical_force::NAME
+        if self.entry.name == FORCE
             && let Some(section) = item[self.entry.name].as_object_mut()
         {
             // Terms that are left out have no effect, and constants are as usual.
@@ -429,7 +437,7 @@ fn orders(entry: &Entry) -> Vec<Vec<(usize, f64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised::tests::problem;
+    use crate::fixture::problem;
     use serde_json::json;
 
     #[test]

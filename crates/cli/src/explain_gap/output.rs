@@ -6,7 +6,7 @@ use crate::calibrate::output::{told, write_file};
 use crate::calibrate::sensors::{self, Sensors};
 use calibrate::fit::Estimate;
 use calibrate::pressure_gap::PressureGap;
-use gap::{Candidate, Effort, Explanation, Found, Tried};
+use gap::{Candidate, Effort, Explanation, Found, Model, Tried};
 use input::MachineFile;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -45,12 +45,14 @@ pub fn write(
         after_map.map_err(Failure::work)?,
     ];
     let found = &explanation.found;
-    let numbered = found.iter().enumerate().flat_map(|(i, f)| {
+    let mut effects = Vec::new();
+    for (i, one) in found.iter().enumerate() {
         let first = gap::first_item(&before.problem, found, i);
-        effect(f, Some(first), &explanation.estimates)
-    });
-    let chain = explanation.chain.iter().flat_map(|f| effect(f, None, &[]));
-    let effects: Vec<Value> = numbered.chain(chain).collect();
+        effects.extend(effect(one, Some(first), &explanation.estimates)?);
+    }
+    for one in &explanation.chain {
+        effects.extend(effect(one, None, &[])?);
+    }
     let runs: Map<String, Value> = (0..model.problem.runs.len())
         .map(|i| {
             let id = model.problem.runs[i].id.clone();
@@ -115,12 +117,12 @@ pub fn tree(explanation: &Explanation, keep: impl Fn(&str) -> bool) -> Result<Va
     let model = &explanation.explained;
     let mut tree = model.problem.fitted(&model.x).map_err(Failure::work)?;
     for found in &explanation.chain {
-        let Candidate { entry, place, .. } = &found.candidate;
+        let Candidate { entry, place, .. } = found.candidate();
         if keep(entry.name) {
             let place: Vec<(&str, &str)> = place.iter().map(|(k, w)| (*k, w.as_str())).collect();
             let effects = tree["effects"].take();
             let mut effects = effects.as_array().cloned().unwrap_or_default();
-            effects.push(entry.item(&place, &found.values));
+            effects.push(entry.item(&place, &found.effect.values));
             tree["effects"] = effects.into();
         }
     }
@@ -150,13 +152,21 @@ fn parameters(explanation: &Explanation) -> Value {
 
 /// An effect, once for each item of the machine file's list; `first` is the index of its first one
 /// there.
-fn effect(found: &Found, first: Option<usize>, estimates: &[Estimate]) -> Vec<Value> {
-    let items = found.candidate.items().into_iter().enumerate();
+fn effect(
+    found: &Found,
+    first: Option<usize>,
+    estimates: &[Estimate],
+) -> Result<Vec<Value>, Failure> {
+    let pressure_rms = found.effect.model.as_ref().map(Model::pressure_rms);
+    let pressure_rms = pressure_rms.transpose().map_err(Failure::work)?;
+    let pressure_rms = pressure_rms.unwrap_or_default();
+    let items = found.candidate().items().into_iter().enumerate();
     let items = items.map(|(i, (item, value))| {
         let index = first.map(|first| first + i);
-        of_item(&item, index, &found.values[value..], found, estimates)
+        let values = &found.effect.values[value..];
+        of_item(&item, index, values, found, &pressure_rms, estimates)
     });
-    items.collect()
+    Ok(items.collect())
 }
 
 fn of_item(
@@ -164,6 +174,7 @@ fn of_item(
     index: Option<usize>,
     values: &[f64],
     found: &Found,
+    pressure_rms: &[(String, f64)],
     estimates: &[Estimate],
 ) -> Value {
     let entry = item.entry;
@@ -201,9 +212,9 @@ fn of_item(
         "end": item.end(),
         "sentence": sentence,
         "parameters": parameters,
-        "expression": (entry.name == gap::empirical_force::NAME).then(|| gap::empirical_force::expression(terms)),
-        "evidence": found.evidence,
-        "pressure_rms_pa": by_name(&found.pressure_rms),
+        "expression": (entry.name == gap::candidate::FORCE).then(|| gap::expression::expression(terms)),
+        "evidence": found.effect.evidence,
+        "pressure_rms_pa": by_name(pressure_rms),
         "rivals": found.rivals.iter().map(|tried| rival(tried, Some(found))).collect::<Vec<_>>(),
     })
 }
@@ -220,7 +231,7 @@ fn rival(tried: &Tried, found: Option<&Found>) -> Value {
         "evidence": tried.evidence,
         "correlation": tried.likeness.map(|likeness| likeness.correlation),
         "leaves": tried.leaves(),
-        "explains_of_effect": found.map(|found| tried.explains(&found.evidence)),
+        "explains_of_effect": found.map(|found| tried.explains(&found.effect.evidence)),
         "fitted": tried.model.is_some(),
     })
 }

@@ -3,7 +3,7 @@
 use super::machine::Machine;
 use crate::Failure;
 use ::calibrate::{Parameter, Relation};
-use gap::empirical_force;
+use gap::candidate::FORCE;
 use input::effects::{self, Entry};
 use input::paths;
 use rand::RngExt;
@@ -101,7 +101,7 @@ pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) 
         _ => value(parameter, size, random),
     };
     let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
-    if entry.name == empirical_force::NAME {
+    if entry.name == FORCE {
         as_law(entry, &mut values, random);
     }
     entry.item(&place, &values)
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_force_of_no_name_has_a_law_of_a_few_terms() {
         let mut random = stream(1, 1, Purpose::Design);
-        let entry = effects::entry(empirical_force::NAME).unwrap();
+        let entry = effects::entry(FORCE).unwrap();
         let mut values = vec![7.0; entry.parameters.len()];
         as_law(entry, &mut values, &mut random);
         let kept = entry.parameters.iter().zip(&values);

@@ -7,14 +7,11 @@
 //! any minimum on the way.
 
 use crate::candidate::Candidate;
-use crate::decision::evidence;
-use crate::error::{Error, possible};
-use crate::explain::{Found, Search, Tried, effects};
-use crate::missing_force::missing_force;
+use crate::error::Error;
+use crate::finding::effects;
+use crate::fitter::Fitter;
 use crate::model::Model;
-use crate::pressures::shows_pressure;
-use crate::refit::few;
-use crate::screening::screen;
+use crate::moves::missing_force::missing_force;
 use calibrate::Problem;
 use calibrate::observation::Observation;
 use calibrate::optimiser::{LeastSquares, levenberg_marquardt};
@@ -33,110 +30,46 @@ const CHANGE: f64 = 1e-4;
 const EVALUATIONS: u64 = 60;
 
 /// An effect held against a force.
-struct Matched {
-    candidate: Candidate,
+pub(crate) struct Matched {
+    pub candidate: Candidate,
     /// Its parameters, SI.
-    values: Vec<f64>,
+    pub values: Vec<f64>,
     /// How much of the force's sum of squares it makes.
-    share: f64,
+    pub share: f64,
 }
 
-impl Search<'_> {
-    /// The effect of the catalogue that comes nearest to the recordings of those that make the force of
-    /// `with_force`, which has one effect more than `start`; and the model with it in its place. None
-    /// where that is not `enough`.
-    pub(crate) fn named_instead(
-        &self,
-        start: &Model,
-        with_force: &Model,
-        enough: impl Fn(&Model) -> bool,
-    ) -> Result<Option<(Found, Model)>, Error> {
-        (self.say)("looking for a name of the force", with_force.fitted);
-        let known = shows_pressure(&start.problem);
-        let mut candidates = Candidate::all(&start.problem);
-        candidates.retain(|c| !(known && c.is_of_gas()));
-        let mut tried = Vec::new();
-        for matched in self.matched(start, with_force, &candidates)? {
-            let mut x = with_force.x[..start.x.len()].to_vec();
-            let added = matched.candidate.added(&start.problem, &matched.values)?;
-            x.resize(added.parameters.len(), 0.0);
-            if let Some(after) = possible(Model::fit(added, &x, self.effort, self.watch))? {
-                tried.push((matched.tried(start, &after), after));
-            }
-        }
-        tried.sort_by(|(_, a), (_, b)| a.criterion().total_cmp(&b.criterion()));
-        let mut tried = tried.into_iter();
-        let Some((best, after)) = tried.next().filter(|(_, after)| enough(after)) else {
-            return Ok(None);
-        };
-        let few = few(start, self.effort)?;
-        let screened = screen(&few, candidates, self.effort, self.watch)?;
-        let others = tried.map(|(tried, _)| tried).collect();
-        let Tried {
-            candidate,
-            evidence,
-            ..
-        } = best;
-        let found = Found {
-            rivals: self.rivals(&few, &after, &candidate, &evidence, &screened, others)?,
-            candidate,
-            evidence,
-            values: best.values,
-            by_run: best.by_run,
-            model: Some(after.clone()),
-            pressure_rms: after.pressure_rms()?,
-            gap: Some(after.gap()),
-        };
-        Ok(Some((found, after)))
+/// Those of the candidates that make most of the force, with the values with which they do.
+pub(crate) fn matched(
+    fitter: &Fitter,
+    start: &Model,
+    with_force: &Model,
+    candidates: &[Candidate],
+) -> Result<Vec<Matched>, Error> {
+    let x = &with_force.x[..start.x.len()];
+    let runs = &fitter.few(start)?.problem.runs;
+    let without = force(&start.problem, x, runs)?;
+    let with = force(&with_force.problem, &with_force.x, runs)?;
+    let size = squares(&with, &without).sqrt();
+    if size == 0.0 {
+        return Ok(Vec::new());
     }
-
-    /// Those of the candidates that make most of the force, with the values with which they do.
-    fn matched(
-        &self,
-        start: &Model,
-        with_force: &Model,
-        candidates: &[Candidate],
-    ) -> Result<Vec<Matched>, Error> {
-        let x = &with_force.x[..start.x.len()];
-        let runs = &few(start, self.effort)?.problem.runs;
-        let without = force(&start.problem, x, runs)?;
-        let with = force(&with_force.problem, &with_force.x, runs)?;
-        let size = squares(&with, &without).sqrt();
-        if size == 0.0 {
-            return Ok(Vec::new());
+    let asked = Asked {
+        runs,
+        x,
+        size,
+        without,
+        with,
+    };
+    let matched = candidates.par_iter().map(|candidate| {
+        if (fitter.watch)().is_break() {
+            return Err(Error::Stopped);
         }
-        let asked = Asked {
-            runs,
-            x,
-            size,
-            without,
-            with,
-        };
-        let matched = candidates.par_iter().map(|candidate| {
-            if (self.watch)().is_break() {
-                return Err(Error::Stopped);
-            }
-            asked.matched(start, candidate)
-        });
-        let matched = matched.collect::<Result<Vec<_>, Error>>()?;
-        let mut matched: Vec<Matched> = matched.into_iter().flatten().collect();
-        matched.retain(|matched| matched.share > MAKES);
-        Ok(matched)
-    }
-}
-
-impl Matched {
-    /// It as it was tried: `after` was fitted with it in place of a force that `start` lacks.
-    fn tried(self, start: &Model, after: &Model) -> Tried {
-        Tried {
-            values: self.candidate.values(after, effects(&start.problem)),
-            candidate: self.candidate,
-            evidence: evidence(start, after, self.share),
-            by_run: after.misfits(),
-            likeness: None,
-            model: Some(after.clone()),
-        }
-    }
+        asked.matched(start, candidate)
+    });
+    let matched = matched.collect::<Result<Vec<_>, Error>>()?;
+    let mut matched: Vec<Matched> = matched.into_iter().flatten().collect();
+    matched.retain(|matched| matched.share > MAKES);
+    Ok(matched)
 }
 
 /// A force that is asked for.
@@ -254,7 +187,7 @@ impl LeastSquares for Matching<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised::tests::problem;
+    use crate::fixture::problem;
     use input::effects::entry;
     use serde_json::json;
 

@@ -1,7 +1,7 @@
 //! Values at which a candidate is tried before it is fitted.
 
 use crate::candidate::Candidate;
-use crate::recorded_values::recorded_values;
+use crate::moves::recorded_values::recorded_values;
 use calibrate::Problem;
 
 /// Amplitudes at which an effect is tried, over its usual one.
@@ -107,7 +107,7 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised::tests::problem;
+    use crate::fixture::problem;
     use input::effects::CATALOGUE;
 
     #[test]

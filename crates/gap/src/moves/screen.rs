@@ -12,10 +12,11 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
+use crate::fitter::{Fitter, loose};
 use crate::journal::Finished;
-use crate::model::{Effort, Model, Watch, loose};
-use crate::pressures::is_of_pressures;
-use crate::projector::Projector;
+use crate::model::Model;
+use crate::moves::projector::Projector;
+use crate::recorded::is_of_pressures;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::DVector;
@@ -33,7 +34,7 @@ const LEADING: usize = 2;
 
 /// A candidate and how much of the residual it may explain.
 #[derive(Clone, Debug)]
-pub struct Screened {
+pub(crate) struct Screened {
     /// The candidate.
     pub candidate: Candidate,
     /// Share of the residual's sum of squares, 0 to 1, that it explains where it does most.
@@ -44,7 +45,7 @@ pub struct Screened {
 
 /// A point to start from: the calibrated machine with an effect, or the nominal one.
 #[derive(Clone, Debug)]
-pub struct Start {
+pub(crate) struct Start {
     /// Coordinates of the calibrated parameters.
     pub x: Vec<f64>,
     /// Parameters of the effect, SI.
@@ -89,11 +90,10 @@ impl Base {
 ///
 /// # Errors
 /// [`Error::Stopped`].
-pub fn screen(
+pub(crate) fn screen(
+    fitter: &Fitter,
     model: &Model,
     candidates: Vec<Candidate>,
-    effort: &Effort,
-    watch: Watch,
 ) -> Result<Vec<Screened>, Error> {
     let loose = loose(&model.problem);
     let likelihood = Likelihood::coarse(&model.problem, loose);
@@ -107,7 +107,7 @@ pub fn screen(
         let mut best: Option<(f64, Vec<f64>)> = None;
         let metered = model.problem.metered();
         for values in candidate.probes(&model.problem) {
-            if watch().is_break() {
+            if (fitter.watch)().is_break() {
                 return Err(Error::Stopped);
             }
             let Ok(added) = candidate.added(&metered, &values) else {
@@ -133,7 +133,10 @@ pub fn screen(
         let (mut scores, mut starts) = (vec![f64::NEG_INFINITY; bases.len()], Vec::new());
         for (base, best) in bases.iter().zip(&mut scores) {
             let input = ("screen", &model.problem, &base.x, candidate.label());
-            let numbers = effort.journal.once(&input, || of(&candidate, base))?;
+            let numbers = fitter
+                .effort
+                .journal
+                .once(&input, || of(&candidate, base))?;
             if let Some((score, values)) = numbers.split_first() {
                 *best = *score;
                 starts.push(Start {

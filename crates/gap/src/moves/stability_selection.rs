@@ -6,12 +6,13 @@
 //! terms D, both over priors of 1, so that neither goes further than it may. All selections work on
 //! the normal matrix of the lines that are drawn.
 
-use crate::decision::{EARNED, NOISE};
-use crate::empirical_force::MOST;
+use crate::criteria::{EARNED, NOISE};
 use nalgebra::{DMatrix, DVector};
 use rand::seq::SliceRandom;
 use scalar::random::{Purpose, stream};
 
+/// Most groups of terms: what needs more is no law.
+const MOST: usize = 3;
 /// Pairs of halves that are drawn.
 const PAIRS: u64 = 50;
 /// Share of the halves in which a group must be chosen to be believed.

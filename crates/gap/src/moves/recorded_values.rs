@@ -1,6 +1,6 @@
 //! Values of an effect that recordings show by themselves, without a model.
 
-use crate::pressures::is_pressure;
+use crate::recorded::is_pressure;
 use calibrate::Problem;
 use calibrate::observation::{Observation, Observed};
 use input::effects::Entry;
@@ -63,7 +63,7 @@ fn ripple(problem: &Problem) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised::tests::problem;
+    use crate::fixture::problem;
     use input::effects::entry;
 
     #[test]

@@ -1,7 +1,7 @@
 //! Whether an effect has earned its place, and what an explanation comes to.
 
 use crate::model::Model;
-use crate::pressures::is_of_pressures;
+use crate::recorded::is_of_pressures;
 use serde::Serialize;
 
 /// A misfit below this is noise.

@@ -5,9 +5,9 @@
 //! is easily done by another. What is true of the machine has to show at each of them.
 
 use crate::candidate::Candidate;
-use crate::decision::EARNED_OF_GAS;
+use crate::criteria::EARNED_OF_GAS;
 use crate::model::Model;
-use crate::pressures::is_of_pressures;
+use crate::recorded::is_of_pressures;
 use calibrate::Observation;
 
 /// Share of a run's squared misfit that an effect has to take, of what it has to take of all.
