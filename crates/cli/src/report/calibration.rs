@@ -2,11 +2,11 @@
 
 use super::gas;
 use crate::Failure;
-use crate::calibrate::output::{MACHINE, RESULTS};
-use crate::calibrate::pictures::{ORDERS, WAVEFORMS};
-use crate::calibrate::sensors;
+use ::calibrate::calibration::MACHINE;
 use ::calibrate::converter;
+use ::calibrate::pictures::{ORDERS, WAVEFORMS};
 use ::calibrate::recorded_sensor::RecordedSensor;
+use ::calibrate::results::RESULTS;
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::report::calibration_page::{
     Bounded, CalibrationPage, Channel, Converter, Correction, Estimate, Forecast, Hypothesis,
@@ -16,7 +16,9 @@ use input::paths;
 use input::unit::{self, Dimension};
 use recordings::Table;
 use recordings::formats::parquet::read_table;
+use serde::Deserialize;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Whether a calibration has written into `folder`.
@@ -141,7 +143,11 @@ impl<'a> Results<'a> {
     }
 
     fn sensors(&self) -> Result<Vec<Sensor>, Failure> {
-        let found = sensors::read(&self.content["noise"])
+        let noise = &self.content["noise"];
+        if noise.is_null() {
+            return Ok(Vec::new());
+        }
+        let found: BTreeMap<String, RecordedSensor> = Deserialize::deserialize(noise)
             .map_err(|error| self.wrong("noise", &format!("the sensors by column ({error})")))?;
         Ok(found.into_iter().map(sensor).collect())
     }

@@ -2,7 +2,7 @@
 //! `indicator.parquet`.
 
 use crate::Failure;
-use crate::calibrate::gas::INDICATOR;
+use ::calibrate::pictures::INDICATOR;
 use ::report::calibration_page::{Chamber, Diagram, Misfit, Phase, Pressure};
 use recordings::Table;
 use recordings::formats::parquet::read_table;
