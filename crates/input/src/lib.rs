@@ -28,7 +28,9 @@ pub mod yaml;
 
 /// The catalogue of effects as data.
 pub mod effects {
-    pub use crate::machine_file::effects::{CATALOGUE, Choice, Entry, Parameter, at_path, entry};
+    pub use crate::machine_file::effects::{
+        CATALOGUE, Choice, Entry, Kind, Parameter, Proposal, at_path, entry,
+    };
 }
 
 pub use bundle_machine::from_bundle;
