@@ -7,9 +7,8 @@ use ::calibrate::bundle_replay::{BundleReplay, Possible, Results};
 use ::calibrate::relation_spread::RelationSpread;
 use ::calibrate::{Error, bundle};
 use clap::Args;
-use input::bundle::Bundle;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Relative difference of mean speeds that is worth a word.
 const SPEED: f64 = 1e-5;
@@ -79,23 +78,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     println!("{}", path.display());
     Ok(())
-}
-
-/// Simulates the runs of a bundle on the machine of the file's content `tree` and writes them into
-/// `folder`, one file each. `conditions` are values that a run has beyond what the bundle says.
-///
-/// # Errors
-/// As [`run`].
-pub(crate) fn into_folder(
-    bundle: &Bundle,
-    tree: Value,
-    conditions: impl Fn(&str) -> Vec<(String, Value)>,
-    leave_out: &[String],
-    folder: &Path,
-) -> Result<(), Failure> {
-    let replay = BundleReplay::prepare(bundle, tree, conditions, leave_out, folder);
-    let replays = replay.map_err(refused)?.write();
-    replays.map(drop).map_err(Failure::work)
 }
 
 /// Why a replay cannot begin: its input is wrong, unless the simulation fails.

@@ -2,7 +2,7 @@
 
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A misfit below this is noise.
 pub const NOISE: f64 = 1.15;
@@ -27,7 +27,7 @@ pub(crate) const PARTLY: f64 = 0.5;
 const SURE: f64 = 0.8;
 
 /// What an explanation comes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// The calibrated model is at the noise.
@@ -40,8 +40,20 @@ pub enum Verdict {
     Unexplained,
 }
 
+impl Verdict {
+    /// It as results name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NoGap => "no-gap",
+            Self::Explained => "explained",
+            Self::PartlyExplained => "partly-explained",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
 /// What speaks for an effect.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Evidence {
     /// Share of the residual that the score test lets it explain.
     pub score: f64,

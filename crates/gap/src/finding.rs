@@ -6,7 +6,6 @@ use crate::error::Error;
 use crate::fitter::Fitter;
 use crate::model::{Gap, Model};
 use calibrate::Problem;
-use serde::Serialize;
 
 /// Signatures as near as this are one where more is missing than the effect: what is left over hides
 /// the difference (the same limit as for groups of sensitivities in model updating).
@@ -53,7 +52,7 @@ pub(crate) struct Explained {
 }
 
 /// How like an effect's a candidate's signature is.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Likeness {
     /// Correlation ρ of the signatures, 0 to 1.
     pub correlation: f64,

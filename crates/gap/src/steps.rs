@@ -2,14 +2,14 @@
 
 use crate::finding::Found;
 use crate::model::{Gap, Model};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a machine is called that was given, and one that was calibrated and has no effect.
 const NOMINAL: &str = "nominal";
 const CALIBRATED: &str = "calibrated";
 
 /// A model on the way.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// What was done last: the effects that it has and the one before has not.
     pub label: String,

@@ -16,7 +16,6 @@ pub mod bundle_machine;
 pub mod calibration;
 pub mod choice;
 pub mod error;
-pub mod hidden_effects;
 pub mod machine_file;
 pub mod paths;
 pub mod quantity;

@@ -290,11 +290,7 @@ fn unit_of(tree: &Value, path: &str) -> String {
 
 /// The runs, with their curves where the files of these are there; `before` and `after` are the
 /// keys of their misfits.
-pub(super) fn runs(
-    folder: &Path,
-    results: &Results,
-    [before, after]: [&str; 2],
-) -> Result<Vec<Run>, Failure> {
+fn runs(folder: &Path, results: &Results, [before, after]: [&str; 2]) -> Result<Vec<Run>, Failure> {
     let mut runs = Vec::new();
     for (id, content) in results.entries("runs")? {
         let number = |key: &str| results.number(&content, &format!("runs.{id}.{key}"), key);
@@ -308,6 +304,11 @@ pub(super) fn runs(
             id,
         });
     }
+    with_curves(folder, runs)
+}
+
+/// The runs with their curves, where the files of these are there.
+pub(super) fn with_curves(folder: &Path, mut runs: Vec<Run>) -> Result<Vec<Run>, Failure> {
     let names = [
         "crank_angle_deg",
         "measured",

@@ -7,7 +7,7 @@
 use crate::error::Error;
 use calibrate::Problem;
 use calibrate::observation::Observation;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use simulate::{Settings, ThrowTrace, Transient, simulate};
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 pub const ANGLES: usize = 72;
 
 /// The force of all effects on a crosshead in a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MissingForce {
     /// The run.
     pub run: String,

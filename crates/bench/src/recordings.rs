@@ -1,12 +1,11 @@
 //! Recordings that are made here: a bundle on the disk, as another program would leave it.
 
-use super::machine::{Machine, RunConditions};
-use super::outside::Outside;
-use crate::Failure;
-use crate::output::write_file;
+use crate::error::Error;
+use crate::machine::{Machine, RunConditions};
+use crate::outside::Outside;
+use crate::settings::HiddenEffects;
 use input::MachineFile;
 use input::bundle;
-use input::hidden_effects::HiddenEffects;
 use rayon::prelude::*;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
@@ -130,20 +129,19 @@ impl Recorder {
         noise: f64,
         number: u64,
         folder: &Path,
-    ) -> Result<(), Failure> {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
+    ) -> Result<(), Error> {
+        std::fs::create_dir_all(folder).map_err(|error| Error::file(folder, error))?;
         let mut listed = Vec::new();
         for (i, (run, clean)) in machine.runs.iter().zip(clean).enumerate() {
             let mut random = stream(self.seed, number * 1000 + i as u64, Purpose::Noise);
             let (sensors, throws) = (clean.recorders(noise), machine.throws());
             let channels = simulate::measure(&clean.record, &sensors, &throws, &mut random);
             let file = format!("{}.parquet", run.id);
-            let table = table(self.settings.sample_rate, &channels).map_err(Failure::work)?;
+            let table = table(self.settings.sample_rate, &channels)?;
             let path = folder.join(&file);
             WholeFile::create(&path.with_extension("part"), &path)
                 .and_then(|out| parquet::write_table(out, &table, ROWS_PER_GROUP))
-                .and_then(WholeFile::commit)
-                .map_err(Failure::work)?;
+                .and_then(WholeFile::commit)?;
             listed.push(self.listed(run, &file, &channels));
         }
         let content = json!({
@@ -151,8 +149,9 @@ impl Recorder {
             "machine": machine.section,
             "runs": listed,
         });
-        let text = input::yaml::to_string(&content).map_err(Failure::work)?;
-        write_file(&folder.join(bundle::FILE), text.as_bytes())
+        let text = input::yaml::to_string(&content)?;
+        WholeFile::write(&folder.join(bundle::FILE), text.as_bytes())?;
+        Ok(())
     }
 
     /// A run as recordings.yaml lists it.

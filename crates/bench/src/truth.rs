@@ -1,8 +1,8 @@
 //! What is true of the recorded machine and is not told: its contacts, and what is hidden in it.
 
-use super::machine::Machine;
-use crate::Failure;
-use ::calibrate::{Parameter, Relation};
+use crate::error::Error;
+use crate::machine::Machine;
+use calibrate::{Parameter, Relation};
 use gap::candidate::FORCE;
 use input::effects::{self, Entry};
 use input::paths;
@@ -40,7 +40,7 @@ const MEASURED: [&str; 2] = ["crosshead_acceleration", "cylinder_pressure"];
 ///
 /// # Errors
 /// A machine without contact parameters.
-pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Result<Value, Failure> {
+pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Result<Value, Error> {
     let mut tree = machine.tree.clone();
     let relation = match random.random::<bool>() {
         true => Relation::Equation5,
@@ -53,10 +53,10 @@ pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Resu
             "friction.coefficient",
         ] {
             let path = format!("{}.{key}", joint.path);
-            let parameter = Parameter::of(&tree, &path).map_err(Failure::input)?;
+            let parameter = Parameter::of(&tree, &path).map_err(Error::Contact)?;
             let factor = random.random_range(CONTACT[0]..CONTACT[1]);
             let value = parameter.nominal * factor;
-            parameter.write(&mut tree, value).map_err(Failure::work)?;
+            parameter.write(&mut tree, value)?;
         }
         if other_law {
             let at = format!("{}.contact", joint.path);
@@ -70,9 +70,7 @@ pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Resu
             paths::set(&mut tree, &at, law)?;
         }
     }
-    relation
-        .set(&mut tree, &machine.joints)
-        .map_err(Failure::work)?;
+    relation.set(&mut tree, &machine.joints)?;
     Ok(tree)
 }
 

@@ -1,23 +1,21 @@
 //! One case: made, explained, and held against what is true.
 
-use super::machine::Machine;
-use super::outcome::{Explained, Hidden, Outcome};
-use super::outside::Outside;
-use super::plan::Case;
-use super::recordings::{Clean, Recorder};
-use super::truth;
-use crate::Failure;
-use crate::bundle::AllowOutside;
-use crate::explain_gap::{self, Asked};
-use crate::output::write_file;
+use crate::error::Error;
+use crate::machine::Machine;
+use crate::outcome::{Explained, Hidden, Outcome};
+use crate::outside::Outside;
+use crate::plan::Case;
+use crate::recordings::{Clean, Recorder};
+use crate::settings::HiddenEffects;
+use crate::truth;
+use ::recordings::WholeFile;
+use gap::{Asked, Results};
 use input::calibration::Calibration;
-use input::hidden_effects::HiddenEffects;
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// How often a place and values are drawn for an effect before it is given up.
 const DRAWS: usize = 100;
@@ -68,12 +66,16 @@ impl Bench<'_> {
         format!("{:x}", Sha256::digest(content))
     }
 
-    /// Makes the recordings of a case and explains them. What cannot be hidden, or explained, is an
-    /// outcome, too.
+    /// Makes the recordings of a case and has `explain` explain them into a folder; it says why where it
+    /// cannot. What cannot be hidden, or explained, is an outcome, too.
     ///
     /// # Errors
     /// Files that cannot be written.
-    pub fn outcome(&self, case: &Case, cancel: &AtomicBool) -> Result<Outcome, Failure> {
+    pub fn outcome(
+        &self,
+        case: &Case,
+        explain: impl FnOnce(&Asked, &Path) -> Result<Results, String>,
+    ) -> Result<Outcome, Error> {
         let machine = &self.machines[case.machine];
         let mut outcome = Outcome {
             case: case.number,
@@ -106,29 +108,27 @@ impl Bench<'_> {
         self.recorder
             .write(machine, &made.clean, case.noise, case.number, &bundle)?;
         if self.keep {
-            let text = input::yaml::to_string(&made.truth).map_err(Failure::work)?;
-            write_file(&folder.join(TRUTH), text.as_bytes())?;
+            let text = input::yaml::to_string(&made.truth)?;
+            WholeFile::write(&folder.join(TRUTH), text.as_bytes())?;
         }
         let start = cpu_seconds();
         let calibration = Calibration::of(vec![bundle.clone()]);
         let asked = Asked {
             calibration: &calibration,
             base: Path::new(""),
-            document: None,
-            outside: AllowOutside::default(),
+            allow_outside: false,
+            locate: &|error| error,
         };
-        let found = explain_gap::into_folder(&asked, &folder, cancel);
+        let found = explain(&asked, &folder);
         outcome.cpu_seconds = start.zip(cpu_seconds()).map(|(start, end)| end - start);
-        match found.and_then(|results| Explained::of(&results)) {
-            Ok(found) => outcome.found = Some(found),
-            Err(
-                Failure::Input(message) | Failure::Work(message) | Failure::Incomplete(message),
-            ) => outcome.error = Some(message),
+        match found {
+            Ok(results) => outcome.found = Some(Explained::of(&results)),
+            Err(message) => outcome.error = Some(message),
         }
         if !self.keep {
             for part in [&bundle, &folder.join("simulated"), &folder.join("baseline")] {
                 if part.exists() {
-                    std::fs::remove_dir_all(part).map_err(|e| Failure::unwritten(part, e))?;
+                    std::fs::remove_dir_all(part).map_err(|e| Error::file(part, e))?;
                 }
             }
         }
@@ -137,7 +137,7 @@ impl Bench<'_> {
 
     /// Draws what is true in a case until the machine runs with it and each effect is seen; or says
     /// why that cannot be.
-    fn made(&self, case: &Case) -> Result<Result<Made, String>, Failure> {
+    fn made(&self, case: &Case) -> Result<Result<Made, String>, Error> {
         let machine = &self.machines[case.machine];
         let seed = u64::from(self.settings.seed.map_or(0, |seed| seed.get()));
         let mut random = stream(seed, case.number, Purpose::Variation);

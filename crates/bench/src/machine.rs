@@ -1,10 +1,10 @@
 //! A machine of a test bench, and the conditions of its runs.
 
-use ::calibrate::ClearJoint;
+use crate::settings::BenchMachine;
+use calibrate::ClearJoint;
 use input::bundle::Bundle;
-use input::hidden_effects::BenchMachine;
 use input::paths;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::path::Path;
 
 /// A machine and the runs that are recorded of it.
@@ -137,7 +137,7 @@ fn conditions(section: &Value, entry: &BenchMachine) -> Map<String, Value> {
         if let Some(value) = section.get(key) {
             let mut value = value.clone();
             if let Some(rpm) = value.as_f64() {
-                value = json!(rpm * speed);
+                value = (rpm * speed).into();
             } else {
                 scale(&mut value, "clearance_m", clearance);
             }
@@ -151,7 +151,7 @@ fn conditions(section: &Value, entry: &BenchMachine) -> Map<String, Value> {
 fn scale(tree: &mut Value, key: &str, factor: f64) {
     for (name, value) in tree.as_object_mut().into_iter().flatten() {
         match value.as_f64() {
-            Some(number) if name == key => *value = json!(number * factor),
+            Some(number) if name == key => *value = (number * factor).into(),
             _ => scale(value, key, factor),
         }
     }

@@ -1,8 +1,8 @@
 //! The cases of a test bench, in rounds.
 
-use super::outside::Outside;
+use crate::outside::Outside;
+use crate::settings::HiddenEffects;
 use input::effects::Entry;
-use input::hidden_effects::HiddenEffects;
 use rand::seq::IndexedRandom;
 use scalar::random::{Purpose, stream};
 

@@ -3,27 +3,13 @@
 //! Each case goes through the disk: a bundle is made, the workflow is given its folder and nothing
 //! else, and what it writes is held against what was hidden.
 
-mod bench;
-mod machine;
-mod matrix;
-mod outcome;
-mod outside;
-mod plan;
-mod recordings;
-mod truth;
-
 use crate::output::write_file;
-use crate::{Failure, interrupt};
-use bench::Bench;
+use crate::{Failure, explain_gap, interrupt};
+use bench::outcome::CASES;
+use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outcome, Outside};
+use bench::{Recorder, cases};
 use clap::Args;
 use input::effects::CATALOGUE;
-use input::hidden_effects::HiddenEffects;
-use machine::Machine;
-use matrix::Matrix;
-use outcome::{Ledger, Outcome};
-use outside::Outside;
-use plan::{Case, NOTHING};
-use recordings::Recorder;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -96,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             })
         })
         .collect::<Result<_, _>>()?;
-    let cases = chosen(arguments, plan::cases(&settings))?;
+    let cases = chosen(arguments, cases(&settings))?;
     if arguments.dry_run {
         list(&cases, &machines);
         return Ok(());
@@ -106,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if ledger.exists() && !arguments.resume {
         return Err(Failure::input(format!(
             "{} is already there; --resume goes on with it, --out DIR writes elsewhere",
-            out.join(outcome::CASES).display()
+            out.join(CASES).display()
         )));
     }
     let bench = Bench {
@@ -116,14 +102,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         out,
         keep: arguments.keep,
     };
-    let done = ledger.read()?;
+    let done = ledger.read().map_err(failure)?;
     for case in &cases {
         let earlier = done.iter().find(|outcome| outcome.case == case.number);
         if earlier.is_some_and(|earlier| earlier.fingerprint != bench.fingerprint(case)) {
             return Err(Failure::input(format!(
                 "{} has another case {}: the settings, a machine or the program have changed; \
                  --out DIR writes elsewhere",
-                out.join(outcome::CASES).display(),
+                out.join(CASES).display(),
                 case.number
             )));
         }
@@ -135,23 +121,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .filter(|case| done.iter().all(|outcome| outcome.case != case.number));
     let count = open.clone().count();
     for (i, case) in open.enumerate() {
-        let outcome = bench.outcome(case, &cancel);
+        let outcome = bench.outcome(case, |asked, folder| {
+            let results = explain_gap::into_folder(asked, folder, &cancel);
+            results.map_err(
+                |(Failure::Input(why) | Failure::Work(why) | Failure::Incomplete(why))| why,
+            )
+        });
         if cancel.load(Ordering::Relaxed) {
-            write(&Matrix::of(&ledger.read()?), out)?;
+            write(&Matrix::of(&ledger.read().map_err(failure)?), out)?;
             return Err(Failure::work(format!(
                 "stopped: {i} of {count} cases are done; --resume goes on from there"
             )));
         }
-        let outcome = outcome?;
-        ledger.add(&outcome)?;
+        let outcome = outcome.map_err(failure)?;
+        ledger.add(&outcome).map_err(failure)?;
         eprintln!("{} of {count}: {}", i + 1, told(case, &outcome));
     }
-    let done = ledger.read()?;
+    let done = ledger.read().map_err(failure)?;
     let matrix = Matrix::of(&done);
     write(&matrix, out)?;
     print!("{}", matrix.summary());
     println!("{}", out.join(MATRIX[1]).display());
     Ok(())
+}
+
+/// Why a bench cannot go on.
+fn failure(error: bench::Error) -> Failure {
+    match error.is_of_input() {
+        true => Failure::input(error),
+        false => Failure::work(error),
+    }
 }
 
 /// The cases that are asked for.
@@ -210,7 +209,8 @@ fn told(case: &Case, outcome: &Outcome) -> String {
                 true => "nothing named".to_owned(),
                 false => named.join(", "),
             };
-            format!("{}, {named}, {before:.2} to {after:.2}", found.verdict)
+            let verdict = found.verdict.name();
+            format!("{verdict}, {named}, {before:.2} to {after:.2}")
         }
         (None, error) => error.clone().unwrap_or_default(),
     };
@@ -221,7 +221,7 @@ fn told(case: &Case, outcome: &Outcome) -> String {
 
 /// Writes what the cases come to.
 fn write(matrix: &Matrix, out: &Path) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(&matrix.json()).map_err(Failure::work)?;
+    let text = serde_json::to_string_pretty(&matrix.counts()).map_err(Failure::work)?;
     write_file(&out.join(MATRIX[0]), text.as_bytes())?;
     write_file(&out.join(MATRIX[1]), matrix.markdown().as_bytes())
 }

@@ -1,8 +1,10 @@
 //! What became of a case, and the file that has a line for each.
 
-use super::outside::Outside;
-use crate::Failure;
-use crate::output::write_file;
+use crate::error::Error;
+use crate::outside::Outside;
+use gap::Verdict;
+use gap::results::{Effect, Results};
+use recordings::WholeFile;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::OpenOptions;
@@ -64,7 +66,7 @@ impl Hidden {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explained {
     /// The verdict.
-    pub verdict: String,
+    pub verdict: Verdict,
     /// The effects that it names, the first first.
     pub named: Vec<Named>,
     /// Misfits in standard deviations of the noise: of the calibrated machine and of the explained
@@ -103,34 +105,37 @@ pub struct Gap {
 }
 
 impl Explained {
-    /// From the content of `gap.json`.
-    ///
-    /// # Errors
-    /// Content that is none.
-    pub fn of(results: &Value) -> Result<Self, Failure> {
-        let word = |value: &Value| value.as_str().map(str::to_owned);
-        let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
-        let named = list(&results["effects"]).into_iter().map(|effect| Named {
-            effect: word(&effect["effect"]).unwrap_or_default(),
-            joint: word(&effect["joint"]),
-            throw: word(&effect["throw"]),
-            rivals: list(&effect["rivals"])
+    /// From the results of an explanation.
+    pub fn of(results: &Results) -> Self {
+        let named = |effect: &Effect| Named {
+            effect: effect.effect.clone(),
+            joint: effect.joint.clone(),
+            throw: effect.throw.clone(),
+            rivals: effect
+                .rivals
                 .iter()
-                .filter_map(|rival| word(&rival["effect"]))
+                .map(|rival| rival.effect.clone())
                 .collect(),
-        });
-        Ok(Self {
-            verdict: word(&results["verdict"]).unwrap_or_default(),
-            named: named.collect(),
-            gap: Gap::deserialize(&results["gap"]).map_err(Failure::work)?,
-            seconds: results["seconds"].as_f64().unwrap_or_default(),
-        })
+        };
+        let gap = &results.gap;
+        Self {
+            verdict: results.verdict,
+            named: results.effects.iter().map(named).collect(),
+            gap: Gap {
+                noise_floor: gap.noise_floor,
+                before: gap.before,
+                after: gap.after,
+                heldout_before: gap.heldout_before,
+                heldout_after: gap.heldout_after,
+            },
+            seconds: results.seconds.unwrap_or_default(),
+        }
     }
 
     /// The effect that is named first; else the verdict.
     pub fn first(&self) -> &str {
         let first = self.named.first();
-        first.map_or(&self.verdict, |named| &named.effect)
+        first.map_or(self.verdict.name(), |named| &named.effect)
     }
 }
 
@@ -179,20 +184,20 @@ impl Ledger {
     ///
     /// # Errors
     /// A line that is none, or a file that cannot be read.
-    pub fn read(&self) -> Result<Vec<Outcome>, Failure> {
+    pub fn read(&self) -> Result<Vec<Outcome>, Error> {
         let shown = self.path.display();
         let text = match std::fs::read_to_string(&self.path) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(Failure::input(format!("{shown}: {error}"))),
+            Err(error) => return Err(Error::Cases(format!("{shown}: {error}"))),
         };
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         if whole < text.len() {
-            write_file(&self.path, &text.as_bytes()[..whole])?;
+            WholeFile::write(&self.path, &text.as_bytes()[..whole])?;
         }
-        let line = |(i, line): (usize, &str)| -> Result<Outcome, Failure> {
+        let line = |(i, line): (usize, &str)| -> Result<Outcome, Error> {
             serde_json::from_str(line)
-                .map_err(|error| Failure::input(format!("{shown}:{}: {error}", i + 1)))
+                .map_err(|error| Error::Cases(format!("{shown}:{}: {error}", i + 1)))
         };
         let outcomes = text[..whole].lines().enumerate().map(line);
         let mut outcomes = outcomes.collect::<Result<Vec<_>, _>>()?;
@@ -205,14 +210,14 @@ impl Ledger {
     ///
     /// # Errors
     /// A file that cannot be written.
-    pub fn add(&self, outcome: &Outcome) -> Result<(), Failure> {
-        let mut line = serde_json::to_string(outcome).map_err(Failure::work)?;
+    pub fn add(&self, outcome: &Outcome) -> Result<(), Error> {
+        let mut line = serde_json::to_string(outcome)?;
         line.push('\n');
         let file = OpenOptions::new()
             .append(true)
             .create(true)
             .open(&self.path);
         file.and_then(|mut file| file.write_all(line.as_bytes()))
-            .map_err(|error| Failure::unwritten(&self.path, error))
+            .map_err(|error| Error::file(&self.path, error))
     }
 }

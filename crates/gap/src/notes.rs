@@ -1,10 +1,11 @@
-//! What an explanation is told in, beyond its numbers.
+//! What must be known to judge an explanation, in sentences.
 
+use crate::candidate::Candidate;
+use crate::effort::Effort;
+use crate::explain::Explanation;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
-use gap::{Candidate, Effort, Explanation};
-use serde_json::Value;
 use std::f64::consts::PI;
 
 /// Correlation from which two estimates are one.
@@ -14,7 +15,11 @@ const TOGETHER: f64 = 0.95;
 const AS_GOOD: f64 = 1.5;
 
 /// What must be known to judge the results.
-pub fn notes(explanation: &Explanation, effort: &Effort, gas: &[PressureGap]) -> Vec<String> {
+pub(crate) fn notes(
+    explanation: &Explanation,
+    effort: &Effort,
+    gas: &[PressureGap],
+) -> Vec<String> {
     let mut notes = Vec::new();
     if effort.held_out.is_empty() && !explanation.found.is_empty() {
         notes.push(
@@ -76,23 +81,12 @@ fn correlated(explanation: &Explanation) -> Vec<String> {
     words.collect()
 }
 
-/// What is known of a rival, the content of `gap.json`: what it leaves, and how like the effect it is.
-pub fn rival(content: &Value) -> String {
-    let number = |key: &str| content[key].as_f64();
-    let leaves = number("leaves").unwrap_or(f64::NAN);
-    let mut words = format!("which would leave {leaves:.2}");
-    if let Some(correlation) = number("correlation") {
-        words.push_str(&format!(
-            " (correlation of what they change {correlation:.2})"
-        ));
-    }
-    words
-}
-
 /// At which crank angle a held suction valve closes, as a sentence, where `key` says how long it is
 /// held and one end of one cylinder is meant.
-pub fn closing(item: &Candidate, key: &str, value: Option<f64>) -> Option<String> {
-    let held = value.filter(|_| item.entry.name == "suction_unloading" && key == "held")?;
+pub(crate) fn closing(item: &Candidate, key: &str, held: f64) -> Option<String> {
+    if !(item.entry.name == "suction_unloading" && key == "held") {
+        return None;
+    }
     let after = held.to_degrees();
     let (end, dead) = match item.end() {
         Some("head") => ("head end", PI),

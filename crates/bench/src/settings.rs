@@ -12,11 +12,11 @@
 //! Cases come in rounds. A round hides every effect once, and then nothing and pairs as often as the
 //! file says; from round to round each meets another of the combinations of machine, noise and size.
 
-use crate::choice::Count;
-use crate::effects::{CATALOGUE, Entry, entry};
-use crate::error::Error;
-use crate::quantity::{AboveZero, Frequency, FromZero, Number, Positive, Quantity, Ratio};
-use crate::yaml::Document;
+use input::Error;
+use input::choice::Count;
+use input::effects::{CATALOGUE, Entry, entry};
+use input::quantity::{AboveZero, Frequency, FromZero, Number, Positive, Quantity, Ratio};
+use input::yaml::Document;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -151,7 +151,7 @@ impl HiddenEffects {
 
 /// The JSON Schema of hidden-effects.yaml, for editors and checks.
 pub fn schema() -> Value {
-    let mut schema = crate::schema::of::<HiddenEffects>();
+    let mut schema = input::schema::of::<HiddenEffects>();
     schema["title"] = "hidden-effects.yaml".into();
     schema
 }

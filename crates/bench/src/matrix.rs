@@ -1,8 +1,11 @@
 //! What was hidden against what was named.
 
-use super::outcome::{Gap, Outcome};
-use super::plan::NOTHING;
-use serde_json::{Map, Value, json};
+use crate::outcome::{Gap, Outcome};
+use crate::plan::NOTHING;
+use calibrate::results::ByName;
+use gap::Verdict;
+use gap::candidate::FORCE;
+use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -13,14 +16,11 @@ const CLASSES: [(&str, [f64; 2]); 4] = [
     ("10 and more", [10.0, f64::INFINITY]),
     ("3 and more", [3.0, f64::INFINITY]),
 ];
-/// The verdict of what is named with confidence, and the name of a law that is in no catalogue.
-const EXPLAINED: &str = "explained";
-const LAW: &str = "empirical_force";
 /// Share of the distance to the noise that counts as closed.
 const CLOSED: f64 = 0.8;
 
 /// How often something was so, of how many.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Share {
     /// How often.
     pub so: usize,
@@ -41,10 +41,6 @@ impl Share {
         share
     }
 
-    fn json(self) -> Value {
-        json!({"so": self.so, "of": self.of})
-    }
-
     fn text(self) -> String {
         match self.of {
             0 => "–".into(),
@@ -55,6 +51,49 @@ impl Share {
             ),
         }
     }
+}
+
+/// What all cases come to: the content of `matrix.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Counts {
+    /// How many cases there are.
+    pub cases: usize,
+    /// In how many the explanation failed.
+    pub failed: usize,
+    /// How often one hidden effect was found, by its size over the noise.
+    pub recall: ByName<Recall>,
+    /// Something named where nothing is hidden.
+    pub false_discoveries: Share,
+    /// Both of two hidden effects named.
+    pub pairs_found: Share,
+    /// What is in no catalogue taken for an effect, with confidence.
+    pub mistaken: Share,
+    /// How far the gap on held-out runs was closed where the hidden effect was named first.
+    pub held_out_gap_closed: Closed,
+    /// For each thing hidden how often what was named first.
+    pub hidden_against_named: BTreeMap<String, BTreeMap<String, usize>>,
+}
+
+/// How often a hidden effect was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Recall {
+    /// It was named first.
+    pub named_first: Share,
+    /// It was named, or is a rival of what was.
+    pub among_rivals: Share,
+    /// It was named first, at its place.
+    pub at_its_place: Share,
+}
+
+/// Shares of a distance to the noise that are gone, 0 to 1; none without a case.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Closed {
+    /// The median.
+    pub median: Option<f64>,
+    /// The least.
+    pub least: Option<f64>,
+    /// How many are four fifths or more.
+    pub by_80_percent: Share,
 }
 
 /// The outcomes of a test bench, looked at together.
@@ -98,8 +137,8 @@ impl<'a> Matrix<'a> {
             let sure = o
                 .found
                 .as_ref()
-                .is_some_and(|found| found.verdict == EXPLAINED);
-            sure && named(o).any(|name| name != LAW)
+                .is_some_and(|found| found.verdict == Verdict::Explained);
+            sure && named(o).any(|name| name != FORCE)
         })
     }
 
@@ -134,34 +173,34 @@ impl<'a> Matrix<'a> {
         confusion
     }
 
-    /// All of it as JSON.
-    pub fn json(&self) -> Value {
-        let recall: Map<String, Value> = CLASSES
-            .iter()
-            .map(|(name, range)| {
-                let [first, rival, place] = [first_is_right, is_among_rivals, place_is_right]
-                    .map(|is| Share::count(self.of_size(*range), is).json());
-                let content =
-                    json!({"named_first": first, "among_rivals": rival, "at_its_place": place});
-                ((*name).to_owned(), content)
-            })
-            .collect();
+    /// All of it in numbers.
+    pub fn counts(&self) -> Counts {
+        let recall = CLASSES.iter().map(|(name, range)| {
+            let [named_first, among_rivals, at_its_place] =
+                [first_is_right, is_among_rivals, place_is_right]
+                    .map(|is| Share::count(self.of_size(*range), is));
+            let recall = Recall {
+                named_first,
+                among_rivals,
+                at_its_place,
+            };
+            ((*name).to_owned(), recall)
+        });
         let closed = self.closed();
-        let enough = closed.iter().filter(|share| **share >= CLOSED).count();
-        json!({
-            "cases": self.outcomes.len(),
-            "failed": self.failed(),
-            "recall": recall,
-            "false_discoveries": self.false_discoveries().json(),
-            "pairs_found": self.pairs_found().json(),
-            "mistaken": self.mistaken().json(),
-            "held_out_gap_closed": {
-                "median": median(&closed),
-                "least": closed.first(),
-                "by_80_percent": Share { so: enough, of: closed.len() }.json(),
+        Counts {
+            cases: self.outcomes.len(),
+            failed: self.failed(),
+            recall: recall.collect(),
+            false_discoveries: self.false_discoveries(),
+            pairs_found: self.pairs_found(),
+            mistaken: self.mistaken(),
+            held_out_gap_closed: Closed {
+                median: median(&closed),
+                least: closed.first().copied(),
+                by_80_percent: enough(&closed),
             },
-            "hidden_against_named": self.confusion(),
-        })
+            hidden_against_named: self.confusion(),
+        }
     }
 
     /// All of it as a page of Markdown.
@@ -194,8 +233,6 @@ impl<'a> Matrix<'a> {
                 .map(|is| Share::count(self.of_size(range), is).text());
             line(format!("| {name} | {first} | {place} | {rival} |"));
         }
-        let closed = self.closed();
-        let enough = closed.iter().filter(|share| **share >= CLOSED).count();
         line(String::new());
         line("| | |".into());
         line("|---|---|".into());
@@ -211,11 +248,7 @@ impl<'a> Matrix<'a> {
             "| both of two effects named | {} |",
             self.pairs_found().text()
         ));
-        let enough = Share {
-            so: enough,
-            of: closed.len(),
-        }
-        .text();
+        let enough = enough(&self.closed()).text();
         line(format!(
             "| four fifths of the held-out gap closed, where named first | {enough} |"
         ));
@@ -262,7 +295,7 @@ impl<'a> Matrix<'a> {
             let gap = gap(outcome);
             let of = |value: fn(&Gap) -> Option<f64>| number(gap.as_ref().and_then(value));
             let verdict = match &outcome.found {
-                Some(found) => found.verdict.clone(),
+                Some(found) => found.verdict.name().to_owned(),
                 None => outcome.error.clone().unwrap_or_default(),
             };
             let found = outcome.found.iter().flat_map(|found| &found.named);
@@ -327,6 +360,14 @@ fn label(outcome: &Outcome) -> String {
     }
 }
 
+/// How many of the shares count as closed.
+fn enough(closed: &[f64]) -> Share {
+    Share {
+        so: closed.iter().filter(|share| **share >= CLOSED).count(),
+        of: closed.len(),
+    }
+}
+
 /// The middle of sorted values.
 fn median(sorted: &[f64]) -> Option<f64> {
     let [low, high] = [sorted.len().checked_sub(1)? / 2, sorted.len() / 2];
@@ -339,9 +380,10 @@ fn number(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::outcome::{Explained, Hidden, Named};
-    use super::super::outside::Outside;
     use super::*;
+    use crate::outcome::{Explained, Hidden, Named};
+    use crate::outside::Outside;
+    use serde_json::{Value, json};
 
     /// A case that hides `hidden` and in which `named` is found, each with one rival after a slash;
     /// misfits on fitted and held-out runs alike.
@@ -371,7 +413,7 @@ mod tests {
             outside: None,
             other_contact_law: false,
             found: Some(Explained {
-                verdict: "explained".into(),
+                verdict: Verdict::Explained,
                 named: named.collect(),
                 gap: Gap {
                     noise_floor: 1.0,
@@ -416,7 +458,7 @@ mod tests {
             strange(outcome(&[], &["empirical_force"], [9.0, 1.0])),
             strange(outcome(&[], &[], [9.0, 9.0])),
         ];
-        let found = Matrix::of(&outcomes).json();
+        let found = serde_json::to_value(Matrix::of(&outcomes).counts()).unwrap();
         let share = |so: usize, of: usize| json!({"so": so, "of": of});
         assert_eq!(found["cases"], 13);
         assert_eq!(found["failed"], 1);
@@ -452,7 +494,7 @@ mod tests {
 
     #[test]
     fn nothing_comes_to_nothing() {
-        let found = Matrix::of(&[]).json();
+        let found = serde_json::to_value(Matrix::of(&[]).counts()).unwrap();
         assert_eq!(found["held_out_gap_closed"]["median"], Value::Null);
         assert!(Matrix::of(&[]).markdown().contains("| below 3 | – |"));
     }
