@@ -15,6 +15,7 @@ use calibrate::{Settings, compare_models, pictures, task};
 use input::MachineFile;
 use input::bundle::Bundle;
 use input::calibration::Calibration;
+use input::effects::{Entry, Proposal};
 use recordings::WholeFile;
 use serde_json::Value;
 use std::path::Path;
@@ -76,7 +77,10 @@ pub fn into_folder(
     let explanation = explain(&task.problem, &hum, &effort, tell, watch)?;
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let baseline = before.problem.fitted(&before.x)?;
-    let explained = machine(&explanation, |name| name != "mains_hum")?;
+    // What was taken off the recordings is in no simulation that is compared with them.
+    let explained = machine(&explanation, |effect| {
+        effect.proposal != Proposal::Separately
+    })?;
     for (folder, tree, model) in [
         ("simulated", explained, after),
         ("baseline", baseline, before),
@@ -119,11 +123,11 @@ fn refused(error: calibrate::Error) -> Error {
 }
 
 /// The explained machine file, with those findings about the measuring chain whose effect `keep` names.
-fn machine(explanation: &Explanation, keep: impl Fn(&str) -> bool) -> Result<Value, Error> {
+fn machine(explanation: &Explanation, keep: impl Fn(&Entry) -> bool) -> Result<Value, Error> {
     let model = &explanation.explained;
     let mut tree = model.problem.fitted(&model.x)?;
     let chain = explanation.chain.iter().map(|found| &found.effect);
-    for found in chain.filter(|found| keep(found.candidate.entry.name)) {
+    for found in chain.filter(|found| keep(found.candidate.entry)) {
         let place = found.candidate.place.iter();
         let place: Vec<(&str, &str)> = place.map(|(key, word)| (*key, word.as_str())).collect();
         let effects = tree["effects"].take();

@@ -1,6 +1,6 @@
 //! What is wrong with the measuring and not with the machine: told as effects like any other.
 
-use crate::candidate::Candidate;
+use crate::candidate::{Candidate, ZERO};
 use crate::criteria::{Evidence, evidence};
 use crate::finding::{Found, Tried};
 use crate::mains_hum::Hum;
@@ -22,7 +22,7 @@ pub(crate) fn crank_angle_offset(
     let mut offsets = estimates
         .iter()
         .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
-    let (Some(estimate), Some(entry)) = (offsets.next(), entry("crank_angle_offset")) else {
+    let (Some(estimate), Some(entry)) = (offsets.next(), entry(ZERO)) else {
         return Ok(None);
     };
     let clear = estimate
