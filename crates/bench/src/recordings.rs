@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use scalar::random::{Purpose, stream};
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::{Map, Value};
 use signal::channel::Channel;
 use signal::crank_angle::CrankAngle;
 use simulate::{
@@ -142,43 +143,76 @@ impl Recorder {
             WholeFile::create(&path.with_extension("part"), &path)
                 .and_then(|out| parquet::write_table(out, &table, ROWS_PER_GROUP))
                 .and_then(WholeFile::commit)?;
-            listed.push(self.listed(run, &file, &channels));
+            listed.push(self.listed(run, file, &channels));
         }
-        let content = json!({
-            "format": "clearance recordings 1",
-            "machine": machine.section,
-            "runs": listed,
-        });
-        let text = input::yaml::to_string(&content)?;
+        let content = Written {
+            format: "clearance recordings 1",
+            machine: &machine.section,
+            runs: listed,
+        };
+        let text = input::yaml::to_string(&serde_json::to_value(content)?)?;
         WholeFile::write(&folder.join(bundle::FILE), text.as_bytes())?;
         Ok(())
     }
 
     /// A run as recordings.yaml lists it.
-    fn listed(&self, run: &RunConditions, file: &str, channels: &[Channel]) -> Value {
-        let mut listed = Map::new();
-        listed.insert("id".into(), run.id.clone().into());
-        listed.insert("file".into(), file.into());
-        listed.extend(run.section.clone());
+    fn listed(&self, run: &RunConditions, file: String, channels: &[Channel]) -> ListedRun {
+        let mut conditions = run.section.clone();
         let angles: Vec<f64> = channels[0].samples.iter().map(|x| f64::from(*x)).collect();
         // The mean speed of a free crank is what the encoder says, to a tenth.
-        if run.section.contains_key("speed_reference_rpm")
+        if conditions.contains_key("speed_reference_rpm")
             && let Ok(angle) = CrankAngle::from_encoder(&angles)
         {
             let rpm = 60.0 * self.settings.sample_rate / angle.samples_per_revolution();
-            listed.insert("speed_rpm".into(), json!((10.0 * rpm).round() / 10.0));
+            conditions.insert("speed_rpm".into(), ((10.0 * rpm).round() / 10.0).into());
         }
-        listed.insert("sample_rate_hz".into(), self.settings.sample_rate.into());
-        listed.insert("samples".into(), angles.len().into());
-        listed.insert("revolutions".into(), self.settings.revolutions.into());
-        let mut list = vec![json!({"name": "time", "column": "t_s", "unit": "s"})];
-        list.extend(channels.iter().map(|channel| {
+        let time = ListedChannel {
+            name: "time".into(),
+            column: "t_s".into(),
+            unit: "s".into(),
+        };
+        let others = channels.iter().map(|channel| {
             let [name, unit] = words(&channel.name);
-            json!({"name": name, "column": channel.name, "unit": unit})
-        }));
-        listed.insert("channels".into(), list.into());
-        listed.into()
+            let column = channel.name.clone();
+            ListedChannel { name, column, unit }
+        });
+        ListedRun {
+            id: run.id.clone(),
+            file,
+            conditions,
+            sample_rate_hz: self.settings.sample_rate,
+            samples: angles.len(),
+            revolutions: self.settings.revolutions,
+            channels: std::iter::once(time).chain(others).collect(),
+        }
     }
+}
+
+/// The content of recordings.yaml.
+#[derive(Serialize)]
+struct Written<'a> {
+    format: &'static str,
+    machine: &'a Value,
+    runs: Vec<ListedRun>,
+}
+
+#[derive(Serialize)]
+struct ListedRun {
+    id: String,
+    file: String,
+    #[serde(flatten)]
+    conditions: Map<String, Value>,
+    sample_rate_hz: f64,
+    samples: usize,
+    revolutions: u32,
+    channels: Vec<ListedChannel>,
+}
+
+#[derive(Serialize)]
+struct ListedChannel {
+    name: String,
+    column: String,
+    unit: String,
 }
 
 impl Clean {

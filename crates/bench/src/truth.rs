@@ -9,7 +9,7 @@ use input::paths;
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use scalar::random::Stream;
-use serde_json::{Value, json};
+use serde_json::{Map, Value};
 
 /// True contact parameters over their nominal values.
 const CONTACT: [f64; 2] = [0.6, 1.4];
@@ -60,14 +60,22 @@ pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Resu
         }
         if other_law {
             let at = format!("{}.contact", joint.path);
-            let contact = paths::get(&tree, &at)?.cloned().unwrap_or_default();
-            let law = json!({
-                "law": "flores",
-                "stiffness": contact["stiffness"],
-                "exponent": contact["exponent"],
-                "restitution": random.random_range(RESTITUTION[0]..RESTITUTION[1]),
-            });
-            paths::set(&mut tree, &at, law)?;
+            let own = |key: &str| -> Result<Value, input::Error> {
+                let value = paths::get(&tree, &format!("{at}.{key}"))?;
+                Ok(value.cloned().unwrap_or_default())
+            };
+            let restitution = random.random_range(RESTITUTION[0]..RESTITUTION[1]);
+            let law = [
+                ("law", "flores".into()),
+                ("stiffness", own("stiffness")?),
+                ("exponent", own("exponent")?),
+                ("restitution", restitution.into()),
+            ];
+            let law: Map<String, Value> = law
+                .map(|(key, value)| (key.to_owned(), value))
+                .into_iter()
+                .collect();
+            paths::set(&mut tree, &at, law.into())?;
         }
     }
     relation.set(&mut tree, &machine.joints)?;
