@@ -32,7 +32,7 @@ pub use relations::{Relations, bounds_of_not_excluded, not_excluded};
 pub const RESULTS: &str = "calibration.json";
 
 /// What a calibration finds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// How the best fit was searched.
     pub optimiser: String,
@@ -100,6 +100,17 @@ pub struct Estimate {
     pub logarithmic: bool,
 }
 
+/// How well an estimate is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Known {
+    /// Its 95 % interval.
+    Within([f64; 2]),
+    /// It was fitted with a model that does not explain the recordings: there is no interval.
+    Fitted,
+    /// It is not identifiable from the recordings.
+    Nothing,
+}
+
 /// A value of the data sheet that is wrong, or may be, SI.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Correction {
@@ -133,7 +144,7 @@ pub struct Tried {
 }
 
 /// Root mean squares of the runs' misfits; none where there is no such run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Misfits {
     /// What they are in.
     pub unit: String,
@@ -287,6 +298,17 @@ impl Estimate {
         }
     }
 
+    /// How well it is known.
+    pub fn known(&self) -> Known {
+        match self.low.zip(self.high) {
+            Some((low, high)) => Known::Within([low, high]),
+            None if self.identifiable => Known::Fitted,
+            None => Known::Nothing,
+        }
+    }
+}
+
+impl Correction {
     /// Its 95 % interval, where it has one.
     pub fn interval(&self) -> Option<[f64; 2]> {
         Some([self.low?, self.high?])

@@ -2,7 +2,7 @@
 
 use ::calibrate::converter::Converter;
 use ::calibrate::recorded_sensor::{RecordedNoise, RecordedSensor};
-use ::calibrate::results::{Correction, Diagram, Estimate, Gas, Relations, Results, Tried};
+use ::calibrate::results::{Correction, Diagram, Estimate, Gas, Known, Relations, Results, Tried};
 use std::collections::BTreeMap;
 
 /// Prints the results of a calibration.
@@ -47,18 +47,18 @@ pub(crate) fn print(results: &Results) {
 
 fn found(estimate: &Estimate) -> String {
     let value = estimate.value;
-    match estimate.interval() {
-        Some([low, high]) => {
+    match estimate.known() {
+        Known::Within([low, high]) => {
             let stuck = match estimate.at_bound {
                 true => ": at its bound, and the recordings ask for more",
                 false => "",
             };
             format!("{value:.4e} ({low:.4e} to {high:.4e}){stuck}")
         }
-        None if estimate.identifiable => {
+        Known::Fitted => {
             format!("{value:.4e} (no interval: the model is wrong)")
         }
-        None => format!("not identifiable from the recordings; it stays {value:.4e}"),
+        Known::Nothing => format!("not identifiable from the recordings; it stays {value:.4e}"),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::calibrate::{finish, summary};
 use ::calibrate::calibration::MACHINE;
-use ::calibrate::results::{self, RESULTS, not_excluded};
+use ::calibrate::results::{self, Known, RESULTS, not_excluded};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::{Calibrated, Prepared, Results, Settings};
 use input::bundle::Bundle;
@@ -174,8 +174,7 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
     let of_machine = |name: &str| name != CRANK_ANGLE_OFFSET && !name.starts_with("runs.");
     for (name, found) in results.parameters.iter() {
         // Told, but without an interval: neither drawn nor open.
-        let is_open = !found.identifiable || found.interval().is_some();
-        if !of_machine(name) || !is_open {
+        if !of_machine(name) || found.known() == Known::Fitted {
             continue;
         }
         for place in paths::matching(&machine, name)? {
@@ -200,16 +199,16 @@ fn read(folder: &Path) -> Result<Calibration, Failure> {
 fn estimate(machine: &Value, place: &str, found: &results::Estimate) -> Option<Estimate> {
     let value = paths::get(machine, place).ok()??.clone();
     let dimension = Amount::of(&value)?.dimension;
-    let interval = found.interval().filter(|_| found.identifiable);
-    let width = |[low, high]: [f64; 2]| match found.logarithmic {
-        true => scalar::elementary::ln(high / low),
-        false => high - low,
+    let width = match (found.known(), found.logarithmic) {
+        (Known::Within([low, high]), true) => Some(scalar::elementary::ln(high / low)),
+        (Known::Within([low, high]), false) => Some(high - low),
+        (Known::Fitted | Known::Nothing, _) => None,
     };
     Some(Estimate {
         path: place.to_owned(),
         value,
         bounds: found.bounds.map(|si| Amount { si, dimension }.to_value()),
         logarithmic: found.logarithmic,
-        deviation: interval.map(|interval| width(interval) / (2.0 * QUANTILE)),
+        deviation: width.map(|width| width / (2.0 * QUANTILE)),
     })
 }
