@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         File::Sweep => sweep::sweep_file::schema(),
         File::Bundle => input::schema::bundle_schema(),
         File::Calibration => input::calibration::schema(),
-        File::HiddenEffects => input::hidden_effects::schema(),
+        File::HiddenEffects => bench::settings::schema(),
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");

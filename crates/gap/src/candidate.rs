@@ -1,12 +1,11 @@
 //! What may be missing: an effect of the catalogue at a place of the machine.
 
-use crate::empirical_force;
 use crate::error::Error;
 use crate::model::Model;
-use crate::pressures::{is_of_pressures, shows_pressure};
+use crate::recorded::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
 use input::MachineFile;
-use input::effects::{CATALOGUE, Entry, Parameter};
+use input::effects::{CATALOGUE, Entry, Kind, Parameter, Proposal};
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -25,31 +24,19 @@ pub struct Candidate {
 }
 
 /// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
-/// acceleration, which is meant where it is left out; and these on that of the pressure too.
+/// acceleration, which is meant where it is left out, and on that of the pressure.
 const MEASURE: &str = "measure";
-const OF_SENSORS: [&str; 2] = ["sensor_gain", "sensor_resonance"];
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
-/// Where an effect is tried everywhere, each end has values of its own: an unloader is one valve's.
-const OWN_AT_EACH: [&str; 1] = ["suction_unloading"];
 /// The suction valve's throttling is told by the effect that holds it already, where there is one.
 const HELD: &str = "suction_unloading";
 const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
-/// Found by its frequency, not by its orders; a law of no name comes last.
-const ELSEWHERE: [&str; 2] = ["mains_hum", "empirical_force"];
+/// The law of no name.
+pub const FORCE: &str = "empirical_force";
 /// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
 /// clearance volume and exponents imitate it, so that it has to earn its place.
-const ZERO: &str = "crank_angle_offset";
-/// What the pressure of a cylinder shows whatever the joints do.
-const GAS: [&str; 6] = [
-    "valve_loss",
-    "suction_unloading",
-    "ring_leakage",
-    "heat_transfer",
-    "gas_pulsation",
-    "valve_flutter",
-];
+pub(crate) const ZERO: &str = "crank_angle_offset";
 
 impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
@@ -64,14 +51,14 @@ impl Candidate {
             .any(calibrate::Parameter::is_crank_angle_offset)
             && is_of_pressures(problem);
         let looked_for =
-            |entry: &&Entry| !ELSEWHERE.contains(&entry.name) && (zero || entry.name != ZERO);
+            |entry: &&Entry| entry.proposal != Proposal::Separately && (zero || entry.name != ZERO);
         for entry in CATALOGUE.iter().filter(looked_for) {
             for place in places(entry, &throws, both_ends) {
                 if is_series(entry) && recorded(problem, &place) == Some(1) {
                     continue;
                 }
                 let own = both_ends
-                    && OWN_AT_EACH.contains(&entry.name)
+                    && entry.proposal == Proposal::PerEnd
                     && place.iter().all(|(key, _)| *key != EITHER);
                 let ends = entry.places.iter().filter(|c| own && c.key == EITHER);
                 let ends = ends.map(|choice| choice.words).next().unwrap_or_default();
@@ -96,6 +83,13 @@ impl Candidate {
         all
     }
 
+    /// The first candidate of an effect.
+    #[cfg(test)]
+    pub(crate) fn first(problem: &Problem, name: &str) -> Self {
+        let mut all = Self::all(problem).into_iter();
+        all.find(|candidate| candidate.entry.name == name).unwrap()
+    }
+
     /// The same with only the parameters of these indices free, and the others without effect or as
     /// usual.
     pub(crate) fn restricted(&self, free: &[usize]) -> Self {
@@ -118,7 +112,7 @@ impl Candidate {
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
         let measures = |(_, word): &(&str, String)| word == PRESSURE;
-        GAS.contains(&self.entry.name) || self.entry.name == ZERO || self.place.iter().any(measures)
+        self.entry.kind == Kind::Gas || self.entry.name == ZERO || self.place.iter().any(measures)
     }
 
     /// Whether it acts on gas whose pressure was recorded, so that the pressures tell it by themselves.
@@ -248,7 +242,7 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if self.entry.name == empirical_force::NAME
+        if self.entry.name == FORCE
             && let Some(section) = item[self.entry.name].as_object_mut()
         {
             // Terms that are left out have no effect, and constants are as usual.
@@ -338,7 +332,7 @@ fn tells_ends_apart(problem: &Problem) -> bool {
 /// Whether it is a term of a Fourier series of the gas: to one recording of one chamber that fits
 /// whatever there is while a valve is open, and says nothing.
 fn is_series(entry: &Entry) -> bool {
-    GAS.contains(&entry.name) && entry.parameters.iter().any(|p| p.whole)
+    entry.kind == Kind::Gas && entry.parameters.iter().any(|p| p.whole)
 }
 
 /// How many recordings of chambers at a place there are; none where no pressure was recorded.
@@ -386,12 +380,7 @@ fn throttled(
 /// a joint must be one.
 fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'static str, String)>> {
     let mut places: Vec<Vec<(&'static str, String)>> = vec![Vec::new()];
-    for choice in entry
-        .places
-        .iter()
-        .filter(|c| c.key != MEASURE || OF_SENSORS.contains(&entry.name))
-        .filter(|c| c.key != EITHER || both_ends)
-    {
+    for choice in entry.places.iter().filter(|c| c.key != EITHER || both_ends) {
         let words: Vec<String> = match choice.key {
             "throw" => throws.to_vec(),
             MEASURE => vec![PRESSURE.to_owned()],
@@ -429,7 +418,7 @@ fn orders(entry: &Entry) -> Vec<Vec<(usize, f64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linearised::tests::problem;
+    use crate::fixture::problem;
     use serde_json::json;
 
     #[test]

@@ -9,6 +9,15 @@ pub enum Error {
     /// A model that cannot be fitted.
     #[error(transparent)]
     Fit(#[from] calibrate::Error),
+    /// A bundle, a machine or settings that cannot be used.
+    #[error(transparent)]
+    Input(calibrate::Error),
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(#[from] recordings::Error),
+    /// Results that are no JSON.
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
     /// A list of effects that is none.
     #[error("effects: found something else than a list of effects")]
     Effects,

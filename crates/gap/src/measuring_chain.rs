@@ -1,8 +1,8 @@
 //! What is wrong with the measuring and not with the machine: told as effects like any other.
 
-use crate::candidate::Candidate;
-use crate::decision::Evidence;
-use crate::explain::Found;
+use crate::candidate::{Candidate, ZERO};
+use crate::criteria::{Evidence, evidence};
+use crate::finding::{Found, Tried};
 use crate::mains_hum::Hum;
 use crate::model::Model;
 use calibrate::fit::Estimate;
@@ -22,7 +22,7 @@ pub(crate) fn crank_angle_offset(
     let mut offsets = estimates
         .iter()
         .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
-    let (Some(estimate), Some(entry)) = (offsets.next(), entry("crank_angle_offset")) else {
+    let (Some(estimate), Some(entry)) = (offsets.next(), entry(ZERO)) else {
         return Ok(None);
     };
     let clear = estimate
@@ -32,13 +32,8 @@ pub(crate) fn crank_angle_offset(
         return Ok(None);
     }
     let before = before()?;
-    let held_out = before.held_out.zip(after.held_out);
-    let evidence = Evidence {
-        score: 1.0 - (after.fitted / before.fitted).powi(2),
-        misfit: [before.fitted, after.fitted],
-        heldout_misfit: held_out.map(|(before, after)| [before, after]),
-        delta_bic: before.bic_to(after),
-    };
+    let score = 1.0 - (after.fitted / before.fitted).powi(2);
+    let evidence = evidence(&before, after, score);
     Ok(Some((
         found(entry, Vec::new(), vec![estimate.value], evidence),
         before,
@@ -71,19 +66,21 @@ fn found(
     values: Vec<f64>,
     evidence: Evidence,
 ) -> Found {
+    let candidate = Candidate {
+        entry,
+        place,
+        fixed: Vec::new(),
+        ends: &[],
+    };
     Found {
-        candidate: Candidate {
-            entry,
-            place,
-            fixed: Vec::new(),
-            ends: &[],
+        effect: Tried {
+            candidate,
+            values,
+            evidence,
+            likeness: None,
+            model: None,
         },
-        values,
-        evidence,
-        by_run: Vec::new(),
-        pressure_rms: Vec::new(),
         gap: None,
-        model: None,
         rivals: Vec::new(),
     }
 }

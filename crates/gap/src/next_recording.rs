@@ -6,9 +6,10 @@
 //! rival would leave of what the effect shows (a discrimination experiment, Hunter and Reiner 1965).
 
 use crate::error::Error;
-use crate::explain::{Found, Search};
+use crate::finding::Found;
+use crate::fitter::Fitter;
 use crate::model::Model;
-use crate::pressures::is_of_pressures;
+use crate::recorded::is_of_pressures;
 use calibrate::Problem;
 use calibrate::likelihood::{Likelihood, misfit};
 use calibrate::observation::{Observation, Observed};
@@ -51,36 +52,34 @@ struct Separation {
     recorded: bool,
 }
 
-impl Search<'_> {
-    /// The recording that would tell the effect and the rival apart that are nearest to each other, in
-    /// a sentence; none where no effect has a rival that was fitted.
-    ///
-    /// # Errors
-    /// A machine that cannot be simulated as it was recorded.
-    pub(crate) fn next_recording(&self, found: &[Found]) -> Result<Option<String>, Error> {
-        let pairs = found.iter().flat_map(|effect| {
-            effect.rivals.iter().filter_map(move |rival| {
-                let models = effect.model.as_ref().zip(rival.model.as_ref())?;
-                Some((effect, rival, models))
-            })
-        });
-        let nearest = pairs.min_by(|a, b| a.1.leaves().total_cmp(&b.1.leaves()));
-        let Some((effect, rival, (ours, theirs))) = nearest else {
-            return Ok(None);
-        };
-        (self.say)("choosing what to measure next", ours.fitted);
-        let separations = separations(ours, theirs)?;
-        let best = |wanted: &dyn Fn(&&Separation) -> bool| {
-            let of = separations.iter().filter(wanted);
-            of.max_by(|a, b| a.apart.total_cmp(&b.apart))
-        };
-        let there = best(&|s| s.recorded && s.change.is_empty());
-        let Some(best) = best(&|_| true) else {
-            return Ok(None);
-        };
-        let names = [&effect.candidate, &rival.candidate].map(|c| c.label());
-        Ok(Some(sentence(&names, best, there)))
-    }
+/// The recording that would tell the effect and the rival apart that are nearest to each other, in
+/// a sentence; none where no effect has a rival that was fitted.
+///
+/// # Errors
+/// A machine that cannot be simulated as it was recorded.
+pub(crate) fn next_recording(fitter: &Fitter, found: &[Found]) -> Result<Option<String>, Error> {
+    let pairs = found.iter().flat_map(|effect| {
+        effect.rivals.iter().filter_map(move |rival| {
+            let models = effect.effect.model.as_ref().zip(rival.model.as_ref())?;
+            Some((effect, rival, models))
+        })
+    });
+    let nearest = pairs.min_by(|a, b| a.1.leaves().total_cmp(&b.1.leaves()));
+    let Some((effect, rival, (ours, theirs))) = nearest else {
+        return Ok(None);
+    };
+    (fitter.say)("choosing what to measure next", ours.fitted);
+    let separations = separations(ours, theirs)?;
+    let best = |wanted: &dyn Fn(&&Separation) -> bool| {
+        let of = separations.iter().filter(wanted);
+        of.max_by(|a, b| a.apart.total_cmp(&b.apart))
+    };
+    let there = best(&|s| s.recorded && s.change.is_empty());
+    let Some(best) = best(&|_| true) else {
+        return Ok(None);
+    };
+    let names = [effect.candidate(), &rival.candidate].map(|c| c.label());
+    Ok(Some(sentence(&names, best, there)))
 }
 
 fn sentence([name, other]: &[String; 2], best: &Separation, there: Option<&Separation>) -> String {

@@ -10,7 +10,7 @@ use calibrate::Error;
 use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observed;
 use calibrate::prediction::Prediction;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Sectors of a revolution.
@@ -23,7 +23,7 @@ const FALSE_DISCOVERIES: f64 = 0.05;
 const ANGLES: usize = 32;
 
 /// The residual of a channel of a run.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ResidualMap {
     /// The run.
     pub run: String,
@@ -42,7 +42,7 @@ pub struct ResidualMap {
 }
 
 /// A part of the cycle in which model and recording disagree.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Place {
     /// The run.
     pub run: String,

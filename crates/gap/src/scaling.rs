@@ -11,7 +11,7 @@ use crate::residual_map::ResidualMap;
 use calibrate::Error;
 use mechanism::Machine;
 use nalgebra::{DMatrix, DVector};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Conditions that differ by less than this factor between the runs tell no exponent.
 const VARIED: f64 = 1.1;
@@ -19,7 +19,7 @@ const VARIED: f64 = 1.1;
 const ABOVE: f64 = 2.0;
 
 /// The exponents of a channel's residual.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scaling {
     /// The channel's column.
     pub channel: String,
@@ -28,10 +28,10 @@ pub struct Scaling {
 }
 
 /// The residual grows with this power of a condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Exponent {
     /// `speed`, `load` (discharge less suction pressure) or `clearance` (of all joints together).
-    pub with: &'static str,
+    pub with: String,
     /// The power.
     pub exponent: f64,
     /// Its standard error, from the scatter about the law; none where there are no runs to spare.
@@ -117,7 +117,7 @@ fn exponents(points: &[(Conditions, f64)]) -> Vec<Exponent> {
     let spare = points.len() - unknowns;
     let scatter = (&residual - &design * &found).norm_squared() / spare.max(1) as f64;
     let exponent = |(i, condition): (usize, &usize)| Exponent {
-        with: points[0].0[*condition].0,
+        with: points[0].0[*condition].0.to_owned(),
         exponent: found[i + 1],
         standard_error: (spare > 0).then(|| (scatter * inverse[(i + 1, i + 1)]).sqrt()),
     };
@@ -141,7 +141,7 @@ mod tests {
             .collect();
         let found = exponents(&points);
         assert_eq!(found.len(), 2, "{found:?}");
-        assert_eq!([found[0].with, found[1].with], ["speed", "load"]);
+        assert_eq!([&found[0].with, &found[1].with], ["speed", "load"]);
         assert!((found[0].exponent - 2.0).abs() < 1e-9);
         assert!((found[1].exponent + 0.5).abs() < 1e-9);
         assert!(found.iter().all(|e| e.standard_error.unwrap() < 1e-9));

@@ -1,24 +1,15 @@
 //! The gap as it shrank: a waterfall from the machine as it was given to the explained one.
 
-use crate::explain::Found;
-use crate::model::Model;
-use serde::Serialize;
+use crate::finding::Found;
+use crate::model::{Gap, Model};
+use serde::{Deserialize, Serialize};
 
 /// What a machine is called that was given, and one that was calibrated and has no effect.
 const NOMINAL: &str = "nominal";
 const CALIBRATED: &str = "calibrated";
 
-/// What a model leaves, in standard deviations of the noise.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Gap {
-    /// Of the runs that it was fitted to.
-    pub fitted: f64,
-    /// Of those held out; none without one.
-    pub held_out: Option<f64>,
-}
-
 /// A model on the way.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// What was done last: the effects that it has and the one before has not.
     pub label: String,
@@ -49,11 +40,11 @@ pub(crate) fn steps(
     // A hum is taken off the recordings beforehand, and leaves no other gap.
     let fitted = chain
         .iter()
-        .find(|c| c.evidence.misfit[0] != c.evidence.misfit[1]);
-    steps.extend(fitted.map(|c| step(&c.candidate.label(), set_right)));
+        .find(|c| c.effect.evidence.misfit[0] != c.effect.evidence.misfit[1]);
+    steps.extend(fitted.map(|c| step(&c.candidate().label(), set_right)));
     let mut waiting: Vec<String> = Vec::new();
     for (i, found_one) in found.iter().enumerate() {
-        waiting.push(found_one.candidate.label());
+        waiting.push(found_one.candidate().label());
         let gap = match i + 1 == found.len() {
             true => Some(explained.gap()),
             false => found_one.gap,

@@ -110,9 +110,9 @@ fn a_valve_loss_is_named_with_its_coefficients() {
     let entry = entry("valve_loss").unwrap();
     let found = explained(&json!([entry.item(&[], &[0.12, 0.2])]));
     assert_eq!(found.verdict, Verdict::Explained);
-    let names: Vec<_> = found.found.iter().map(|f| f.candidate.label()).collect();
+    let names: Vec<_> = found.found.iter().map(|f| f.candidate().label()).collect();
     assert_eq!(names, ["valve_loss"]);
-    for (value, truth) in found.found[0].values.iter().zip([0.12, 0.2]) {
+    for (value, truth) in found.found[0].effect.values.iter().zip([0.12, 0.2]) {
         assert!((value / truth - 1.0).abs() < 0.01, "{value}");
     }
     assert!(found.explained.held_out.unwrap() < 0.1);
@@ -124,8 +124,8 @@ fn an_encoder_that_is_set_wrong_is_told_as_such() {
     let found = explained(&json!([entry.item(&[], &[0.03])]));
     assert_eq!(found.verdict, Verdict::Explained);
     assert!(found.found.is_empty());
-    let names: Vec<_> = found.chain.iter().map(|f| f.candidate.label()).collect();
+    let names: Vec<_> = found.chain.iter().map(|f| f.candidate().label()).collect();
     assert_eq!(names, ["crank_angle_offset"]);
-    assert!((found.chain[0].values[0] - 0.03).abs() < 1e-4);
+    assert!((found.chain[0].effect.values[0] - 0.03).abs() < 1e-4);
     assert!(found.baseline.fitted > 5.0 * found.explained.fitted);
 }

@@ -16,7 +16,6 @@ pub mod bundle_machine;
 pub mod calibration;
 pub mod choice;
 pub mod error;
-pub mod hidden_effects;
 pub mod machine_file;
 pub mod paths;
 pub mod quantity;
@@ -28,7 +27,9 @@ pub mod yaml;
 
 /// The catalogue of effects as data.
 pub mod effects {
-    pub use crate::machine_file::effects::{CATALOGUE, Choice, Entry, Parameter, at_path, entry};
+    pub use crate::machine_file::effects::{
+        CATALOGUE, Choice, Entry, Kind, Parameter, Proposal, at_path, entry,
+    };
 }
 
 pub use bundle_machine::from_bundle;

@@ -1,28 +1,19 @@
 //! `crosshead explain-gap`: which effect a model lacks that recordings show.
 
-pub mod output;
 mod progress;
-mod words;
+mod summary;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
-use crate::calibrate::sensors::{Fitted, Sensors};
-use crate::calibrate::{Settings, pictures, task};
-use crate::{Failure, interrupt, replay, report};
-use ::calibrate::pressure_gap::pressure_gaps_of;
+use crate::{Failure, interrupt, report};
 use clap::Args;
-use gap::{Effort, Journal};
-use input::calibration::Calibration;
-use input::yaml::Document;
-use serde_json::Value;
+use gap::folder::MACHINE;
+use gap::results::RESULTS;
+use gap::{Asked, Results};
+use progress::Bar;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Name of the file of finished work, with which an explanation that was stopped goes on.
-const FINISHED: &str = "finished.jsonl";
-/// Most evaluations of the model in one descent.
-const EVALUATIONS: u64 = 120;
 
 /// Arguments of `crosshead explain-gap`.
 #[derive(Args, Debug)]
@@ -70,10 +61,10 @@ pub struct Arguments {
 /// A bundle or machine that is none, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    if out.join(output::RESULTS).exists() && !arguments.overwrite {
+    if out.join(RESULTS).exists() && !arguments.overwrite {
         return Err(Failure::input(format!(
             "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            out.join(output::RESULTS).display()
+            out.join(RESULTS).display()
         )));
     }
     let input = std::slice::from_ref(&arguments.input);
@@ -88,103 +79,39 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let asked = Asked {
         calibration: &calibration,
         base: &base,
-        document: document.as_ref(),
-        outside: arguments.outside,
+        allow_outside: arguments.outside.allow_outside,
+        locate: &|error| match &document {
+            Some(document) => document.locate(error),
+            None => error,
+        },
     };
     let results = into_folder(&asked, out, &cancel)?;
-    output::summary(&results)?;
-    println!("{}", out.join(output::MACHINE).display());
+    summary::print(&results);
+    println!("{}", out.join(MACHINE).display());
     println!("{}", out.join(report::PAGE).display());
     Ok(())
 }
 
-/// What is to be explained.
-#[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
-    /// The recordings and what is calibrated.
-    pub calibration: &'a Calibration,
-    /// The folder from which its paths start.
-    pub base: &'a Path,
-    /// The file that it was read from, if it was.
-    pub document: Option<&'a Document>,
-    /// Whether the bundle may name recordings outside of its folder.
-    pub outside: AllowOutside,
-}
-
-/// Explains the gap between a machine and the recordings of one bundle into the folder `out`, and gives
-/// back what `gap.json` says. `cancel` stops it.
+/// Explains the gap into the folder `out`, with its page; `cancel` stops it.
 ///
 /// # Errors
 /// As [`run`]; [`Failure::Work`] where it was stopped.
-pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Value, Failure> {
-    let Asked {
-        calibration,
-        base,
-        document,
-        outside,
-    } = *asked;
-    let [bundle] = calibration.bundles() else {
-        return Err(Failure::input(format!(
-            "explain-gap takes one bundle, not {}",
-            calibration.bundles().len()
-        )));
-    };
-    let bundle = outside.read(&base.join(bundle))?;
-    let mut task = task(&Settings {
-        calibration,
-        base,
-        machine: None,
-        outside,
-        locate: &|error| match document {
-            Some(document) => document.locate(error),
-            None => error,
-        },
-    })?;
+pub(crate) fn into_folder(
+    asked: &Asked,
+    out: &Path,
+    cancel: &AtomicBool,
+) -> Result<Results, Failure> {
+    let bar = Bar::new();
     let watch = || match cancel.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let held_out = task.settings.held_out.clone();
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
-    let finished = out.join(FINISHED);
-    let journal = Journal::open(&finished).map_err(Failure::work)?;
-    let effort =
-        Effort::new(&task.problem, held_out, EVALUATIONS, journal).map_err(Failure::work)?;
-    let bar = progress::Bar::new();
-    let hum = gap::remove_hum(&mut task.problem, &mut task.runs).map_err(Failure::work)?;
-    let explanation = gap::explain(
-        &task.problem,
-        &hum,
-        &effort,
-        &|stage| bar.tell(stage),
-        &watch,
-    );
+    let results = gap::into_folder(asked, out, &|stage| bar.tell(stage), &watch);
     bar.finish();
-    let explanation = explanation.map_err(Failure::work)?;
-    let [before, after] = [&explanation.baseline, &explanation.explained];
-    let baseline = before.problem.fitted(&before.x).map_err(Failure::work)?;
-    let explained = output::tree(&explanation, |name| name != "mains_hum")?;
-    for (folder, tree, model) in [
-        ("simulated", explained, after),
-        ("baseline", baseline, before),
-    ] {
-        let conditions = |run: &str| model.problem.conditions(run, &model.x);
-        let folder = out.join(folder);
-        replay::into_folder(&bundle, tree, conditions, &calibration.leave_out, &folder)?;
-    }
-    let models = [before, after].map(|model| (&model.problem, &model.x[..]));
-    let compared = ::calibrate::compare_models(models, &task.runs).map_err(Failure::work)?;
-    pictures::write(out, &compared)?;
-    let gas = pressure_gaps_of(models, &task.runs).map_err(Failure::work)?;
-    let sensors = Sensors::of(&Fitted {
-        problem: &after.problem,
-        x: &after.x,
-        misfits: after.by_run.clone(),
-        runs: &task.runs,
-        encoded: &task.encoded,
+    let results = results.map_err(|error| match error {
+        gap::Error::Input(error) => Failure::input(error),
+        error => Failure::work(error),
     })?;
-    let results = output::write(out, &explanation, &effort, &gas, &sensors)?;
     report::write_gap(out, &out.join(report::PAGE))?;
-    std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;
     Ok(results)
 }

@@ -171,8 +171,8 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
 
 fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Failure> {
     let run = &bundle.runs[index];
-    let throws = crate::bundle::throws(&bundle.machine);
-    let meanings = crate::bundle::meanings(bundle, index, &throws)?;
+    let throws = calibrate::bundle::throws(&bundle.machine);
+    let meanings = calibrate::bundle::meanings(bundle, index, &throws).map_err(Failure::input)?;
     let rate = run.sample_rate_hz.map(|rate| rate.get());
     let wrong = |key: &str, expected: String| {
         let error = input::Error::clash(format!("runs.{index}.{key}"), expected);

@@ -9,7 +9,6 @@ mod examples;
 mod features;
 mod features_page;
 mod gap;
-mod gas;
 mod grid;
 mod labels;
 mod operating_points;

@@ -1,6 +1,6 @@
 //! The catalogue of effects, entry by entry.
 
-use input::effects::{CATALOGUE, Entry};
+use input::effects::{CATALOGUE, Entry, Kind, Proposal};
 use input::machine_file::MachineFile;
 use input::{Resolved, paths};
 use mechanism::drive::Drive;
@@ -437,4 +437,22 @@ fn messages() {
         error.to_string(),
         "effects.0.speed_fluctuation: found a section, expected a crank of given speed; a free one fluctuates by itself"
     );
+}
+
+#[test]
+fn the_kind_of_an_effect_goes_with_its_places() {
+    let has = |entry: &Entry, key: &str| entry.places.iter().any(|choice| choice.key == key);
+    for entry in CATALOGUE.iter() {
+        let name = entry.name;
+        assert_eq!(entry.kind == Kind::Gas, has(entry, "end"), "{name}");
+        assert!(entry.kind == Kind::Joint || !has(entry, "joint"), "{name}");
+        assert!(
+            entry.kind == Kind::Sensor || !entry.is_of_chosen_sensor(),
+            "{name}"
+        );
+        assert!(
+            entry.proposal != Proposal::PerEnd || has(entry, "end"),
+            "{name}"
+        );
+    }
 }

@@ -1,5 +1,6 @@
 //! The tests of mechanism, in one program.
 
+mod cited_sections;
 mod common;
 mod derivative;
 mod drop;

@@ -1,10 +1,12 @@
 //! The pictures of an explanation.
 
-use super::{GapPage, Map, Step};
+use super::GapPage;
 use crate::calibration_page::{misfits, words};
 use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
+use gap::results::Maps;
+use gap::{MissingForce, ResidualMap, Step};
 
 /// About so many runs' channels have a map: of each channel those with the greatest gap.
 const MOST_MAPS: usize = 6;
@@ -21,7 +23,7 @@ const FLOOR: &str = "noise floor";
 /// The gap as it shrank: each step takes it from where the one before has left it, and the floor is
 /// what none goes below.
 pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
-    let steps = &page.steps;
+    let steps = &page.results.steps;
     let last = steps.last()?;
     let top = steps.len() as f64;
     let name = |(i, step): (usize, &Step)| match i {
@@ -33,18 +35,18 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
     names.reverse();
     let row = |i: usize| top - i as f64;
     let fall = |i: usize| {
-        let from = steps[i - 1].fitted;
-        [[from, row(i)], [steps[i].fitted, row(i)], [f64::NAN; 2]]
+        let from = steps[i - 1].gap.fitted;
+        [[from, row(i)], [steps[i].gap.fitted, row(i)], [f64::NAN; 2]]
     };
     let falls = (1..steps.len()).flat_map(fall);
     // Down from the step above, then along the row.
     let drops = (1..steps.len()).flat_map(|i| {
-        let from = steps[i - 1].fitted;
+        let from = steps[i - 1].gap.fitted;
         [[from, row(i - 1)], [from, row(i)], [f64::NAN; 2]]
     });
     let left = [
-        [last.fitted, row(steps.len() - 1)],
-        [last.fitted, 0.0],
+        [last.gap.fitted, row(steps.len() - 1)],
+        [last.gap.fitted, 0.0],
         [1.0, 0.0],
     ];
     let at = |of: fn(&Step) -> Option<f64>| {
@@ -68,13 +70,13 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
                 "runs fitted to",
                 misfits::AFTER,
                 Mark::Discs,
-                at(|step| Some(step.fitted)),
+                at(|step| Some(step.gap.fitted)),
             ),
             Series::new(
                 "runs held out",
                 misfits::BEFORE,
                 Mark::Rings,
-                at(|step| step.held_out),
+                at(|step| step.gap.held_out),
             ),
         ],
         ..Panel::default()
@@ -96,18 +98,20 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
 
 /// The force that is missing over the crank angle.
 pub(super) fn forces(page: &GapPage) -> Option<Plate> {
-    let last = page.forces.len().checked_sub(1)?;
-    let line = |(i, force): (usize, &super::Force)| {
+    let forces = &page.results.missing_force;
+    let last = forces.len().checked_sub(1)?;
+    let line = |(i, force): (usize, &MissingForce)| {
         let step = 360.0 / force.force.len().max(1) as f64;
         let points = force.force.iter().enumerate();
         let points: Vec<[f64; 2]> = points.map(|(i, f)| [i as f64 * step, *f]).collect();
         let colour = Colour::Ordered(i as f64 / last.max(1) as f64);
-        Series::new(&force.label, colour, Mark::Line, points)
+        let label = format!("{} {}", force.run, force.throw);
+        Series::new(label.trim(), colour, Mark::Line, points)
     };
     let panel = Panel {
         x: Axis::crank_angle(),
         y: Axis::linear("force toward the head (N)"),
-        series: page.forces.iter().enumerate().map(line).collect(),
+        series: forces.iter().enumerate().map(line).collect(),
         ..Panel::default()
     };
     Some(Plate {
@@ -125,10 +129,15 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
 
 /// Where the gap was and is, for the channels in which it was greatest.
 pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
-    let greatest = |map: &Map| map.before.iter().flatten().copied().fold(0.0, f64::max);
-    let mut maps: Vec<&Map> = page.maps.iter().collect();
-    maps.sort_by(|a, b| greatest(b).total_cmp(&greatest(a)));
-    let mut columns: Vec<&str> = maps.iter().map(|map| map.channel.as_str()).collect();
+    let Maps {
+        bands,
+        before,
+        after,
+    } = &page.results.maps;
+    let greatest = |map: &ResidualMap| map.excess.iter().flatten().copied().fold(0.0, f64::max);
+    let mut maps: Vec<[&ResidualMap; 2]> = before.iter().zip(after).map(|(b, a)| [b, a]).collect();
+    maps.sort_by(|a, b| greatest(b[0]).total_cmp(&greatest(a[0])));
+    let mut columns: Vec<&str> = maps.iter().map(|map| map[0].channel.as_str()).collect();
     columns.sort_unstable();
     columns.dedup();
     let each = (MOST_MAPS / columns.len().max(1)).max(1);
@@ -136,30 +145,31 @@ pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
         let own = maps
             .iter()
             .copied()
-            .filter(move |map| map.channel == *column);
+            .filter(move |map| map[0].channel == *column);
         own.take(each)
     });
-    chosen.map(plate).collect()
+    chosen.map(|map| plate(map, bands)).collect()
 }
 
 /// The map of a channel, without the effects and with them; one where there are none.
-fn plate(map: &Map) -> Plate {
-    let (channel, _) = words::column(&map.channel);
-    let panels = match map.before == map.after {
-        true => vec![panel("calibrated", &map.bands, &map.after)],
+fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
+    let (channel, _) = words::column(&before.channel);
+    let bands = &bands[..bands.len().min(before.excess.len())];
+    let panels = match before.excess == after.excess {
+        true => vec![panel("calibrated", bands, &after.excess)],
         false => vec![
-            panel("without the effects", &map.bands, &map.before),
-            panel("with them", &map.bands, &map.after),
+            panel("without the effects", bands, &before.excess),
+            panel("with them", bands, &after.excess),
         ],
     };
     Plate {
-        heading: format!("{}, {channel}", map.run),
+        heading: format!("{}, {channel}", before.run),
         caption: "The residual over the noise, by crank angle and order: the darker, the further from the recording. White is noise \
                   alone; numbers are multiples of it."
             .to_owned(),
         svg: Figure {
             rows: vec![panels],
-            row_height: ROW * (map.bands.len() as f64 + 0.5),
+            row_height: ROW * (bands.len() as f64 + 0.5),
             ..Figure::default()
         }
         .svg(),

@@ -1,15 +1,20 @@
 //! The page itself.
 
-use super::{Effect, GapPage, Parameter, Rival, Scaling, figures};
+use super::{GapPage, figures};
 use crate::calibration_page::{verdict::size, waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
+use gap::results::{Bounded, Effect, Other};
+use gap::scaling::Exponent;
+use gap::{Results, Scaling, Verdict};
+use input::effects::entry;
 
 #[derive(Template)]
 #[template(path = "gap_page.html")]
 struct View<'a> {
     page: &'a GapPage,
+    results: &'a Results,
     verdict: String,
     waterfall: Vec<(usize, Plate)>,
     forces: Vec<(usize, Plate)>,
@@ -25,13 +30,14 @@ impl GapPage {
     pub fn render(&self) -> Result<Rendered, Error> {
         let mut numbers = Numbers::default();
         let mut numbered = |plates| numbers.give(plates);
-        let names = match self.effects.is_empty() {
+        let names = match self.results.effects.is_empty() {
             true => ["calibrated", ""],
             false => ["without the effects", "with them"],
         };
         let view = View {
             page: self,
-            verdict: format!("{}{}", verdict(self), pressure(self)),
+            results: &self.results,
+            verdict: format!("{}{}", verdict(&self.results), pressure(&self.results)),
             waterfall: numbered(figures::waterfall(self).into_iter().collect()),
             forces: numbered(figures::forces(self).into_iter().collect()),
             maps: numbered(figures::maps(self)),
@@ -47,34 +53,42 @@ impl GapPage {
 }
 
 /// What the explanation comes to, in a sentence.
-fn verdict(page: &GapPage) -> String {
-    let named: Vec<String> = page.effects.iter().map(|e| text::words(&e.label)).collect();
+fn verdict(results: &Results) -> String {
+    let named: Vec<String> = results
+        .effects
+        .iter()
+        .map(|e| text::words(&e.label))
+        .collect();
     let named = match named.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
         _ => named.join(""),
     };
-    let it = match page.effects.len() {
+    let it = match results.effects.len() {
         1 => "it",
         _ => "them",
     };
-    let mut sentences: Vec<&str> = page.effects.iter().map(|e| e.sentence.as_str()).collect();
+    let mut sentences: Vec<&str> = results
+        .effects
+        .iter()
+        .map(|e| e.sentence.as_str())
+        .collect();
     // An effect at two places is told once.
     sentences.dedup();
     let sentences = sentences.join(" ");
-    let [before, after] = page.gap.map(size);
-    match page.verdict.as_str() {
-        "no-gap" => format!(
+    let [before, after] = [results.gap.before, results.gap.after].map(size);
+    match results.verdict {
+        Verdict::NoGap => format!(
             "The calibrated model agrees with the recordings within their noise ({before} times): nothing is missing."
         ),
-        "explained" => format!(
+        Verdict::Explained => format!(
             "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with {it} \
              {after} times the noise are left. {sentences}"
         ),
-        "partly-explained" => format!(
+        Verdict::PartlyExplained => format!(
             "The calibrated model missed the recordings by {before} times their noise. {sentences} With {named} \
              {after} times the noise are left; something smaller is still missing."
         ),
-        _ => format!(
+        Verdict::Unexplained => format!(
             "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
              explains it."
         ),
@@ -82,8 +96,9 @@ fn verdict(page: &GapPage) -> String {
 }
 
 /// By how much the pressures are off, in a sentence.
-fn pressure(page: &GapPage) -> String {
-    let Some([before, after]) = page.pressure_rms_pa.filter(|_| !page.effects.is_empty()) else {
+fn pressure(results: &Results) -> String {
+    let rms = results.gap.pressure_rms_pa.both();
+    let Some([before, after]) = rms.filter(|_| !results.effects.is_empty()) else {
         return String::new();
     };
     let [before, after] = [before, after].map(|pa| text::quantity(pa / 1e3, "kPa"));
@@ -105,8 +120,8 @@ fn usual(unit: &str) -> (f64, &str) {
 }
 
 /// Significant digits that show the width of a parameter's interval to two digits, and at least four.
-fn digits(parameter: &Parameter) -> usize {
-    let width = parameter.interval.map_or(0.0, |[low, high]| high - low);
+fn digits(parameter: &Bounded) -> usize {
+    let width = parameter.interval().map_or(0.0, |[low, high]| high - low);
     let ratio = (parameter.value / width).abs();
     match ratio.is_finite() && ratio > 100.0 {
         true => (ratio.log10().ceil() as usize + 2).min(9),
@@ -120,8 +135,14 @@ impl View<'_> {
         size(*value)
     }
 
-    fn value(parameter: &Parameter) -> String {
-        let (factor, unit) = usual(&parameter.unit);
+    /// The SI unit of a parameter of an effect; empty for a plain number.
+    fn unit(effect: &Effect, key: &str) -> &'static str {
+        let parameter = entry(&effect.effect).and_then(|entry| entry.parameter(key));
+        parameter.map_or("", |parameter| parameter.unit)
+    }
+
+    fn value(unit: &str, parameter: &Bounded) -> String {
+        let (factor, unit) = usual(unit);
         let value = text::number(factor * parameter.value, digits(parameter));
         match unit.is_empty() {
             true => value,
@@ -129,11 +150,11 @@ impl View<'_> {
         }
     }
 
-    fn interval(parameter: &Parameter) -> String {
-        match parameter.interval {
+    fn interval(unit: &str, parameter: &Bounded) -> String {
+        match parameter.interval() {
             Some([low, high]) if low == high => "not searched".to_owned(),
             Some(ends) => {
-                let (factor, _) = usual(&parameter.unit);
+                let (factor, _) = usual(unit);
                 let digits = digits(parameter);
                 let [low, high] = ends.map(|end| text::number(factor * end, digits));
                 format!("{low} to {high}")
@@ -142,17 +163,18 @@ impl View<'_> {
         }
     }
 
-    fn key(parameter: &Parameter) -> String {
-        text::words(&parameter.key)
+    fn key(key: &str) -> String {
+        text::words(key)
     }
 
     fn law(scaling: &Scaling) -> String {
-        let power = |(with, exponent, error): &(String, f64, Option<f64>)| {
-            let exponent = text::number(*exponent, 2);
+        let power = |exponent: &Exponent| {
+            let (with, error) = (&exponent.with, exponent.standard_error);
+            let exponent = text::number(exponent.exponent, 2);
             match error {
                 Some(error) => format!(
                     "{with} to the power of {exponent} ± {}",
-                    text::number(*error, 1)
+                    text::number(error, 1)
                 ),
                 None => format!("{with} to the power of {exponent}"),
             }
@@ -162,11 +184,12 @@ impl View<'_> {
         format!("{channel}: {}", powers.join(", "))
     }
 
-    fn explains(rival: &Rival) -> String {
-        format!("{} %", text::decimal(100.0 * rival.explains, 0))
+    fn explains(rival: &Other) -> String {
+        let share = rival.explains_of_effect.unwrap_or(f64::NAN);
+        format!("{} %", text::decimal(100.0 * share, 0))
     }
 
-    fn correlation(rival: &Rival) -> String {
+    fn correlation(rival: &Other) -> String {
         let correlation = rival.correlation;
         correlation.map_or_else(|| "–".to_owned(), |rho| text::decimal(rho, 2))
     }
@@ -192,19 +215,18 @@ mod tests {
 
     #[test]
     fn a_narrow_interval_has_digits_enough_to_be_one() {
-        let parameter = |unit: &str, value, interval| Parameter {
-            key: "clearance".to_owned(),
-            unit: unit.to_owned(),
+        let parameter = |value, interval: Option<[f64; 2]>| Bounded {
             value,
-            interval,
+            low: interval.map(|[low, _]| low),
+            high: interval.map(|[_, high]| high),
         };
-        let narrow = parameter("m", 1.692e-4, Some([1.691_8e-4, 1.692_2e-4]));
-        assert_eq!(View::value(&narrow), "0.1692\u{a0}mm");
-        assert_eq!(View::interval(&narrow), "0.16918 to 0.16922");
-        let wide = parameter("", 0.18, Some([0.123_456, 0.234_567]));
-        assert_eq!(View::interval(&wide), "0.1235 to 0.2346");
-        let untold = parameter("m^2", 5e-6, None);
-        assert_eq!(View::value(&untold), "5\u{a0}mm²");
-        assert_eq!(View::interval(&untold), "not told");
+        let narrow = parameter(1.692e-4, Some([1.691_8e-4, 1.692_2e-4]));
+        assert_eq!(View::value("m", &narrow), "0.1692\u{a0}mm");
+        assert_eq!(View::interval("m", &narrow), "0.16918 to 0.16922");
+        let wide = parameter(0.18, Some([0.123_456, 0.234_567]));
+        assert_eq!(View::interval("", &wide), "0.1235 to 0.2346");
+        let untold = parameter(5e-6, None);
+        assert_eq!(View::value("m^2", &untold), "5\u{a0}mm²");
+        assert_eq!(View::interval("m^2", &untold), "not told");
     }
 }

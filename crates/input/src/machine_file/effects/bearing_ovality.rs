@@ -9,7 +9,7 @@ use mechanism::effects::{self, Joint, Law, Oval, Place};
 effect! {
     /// An oval bearing or journal: clearance + amplitude cos 2(direction of contact − direction).
     /// Nothing in an ideal joint.
-    BearingOvality at [throw, joint, part]:
+    BearingOvality at [throw, joint, part], Joint:
     "The bearing, or its journal, is worn oval: it has more play in one direction than in the other." {
         /// By how much the clearance is larger in the widest direction and smaller across it.
         amplitude: NonNegative<Length>, 1e-6 to 2e-4, start 3e-5, absent 0.0;

@@ -11,10 +11,41 @@ pub struct Entry {
     pub name: &'static str,
     /// What it is, in a sentence that a mechanic understands.
     pub sentence: &'static str,
+    /// On what part of the machine it acts.
+    pub kind: Kind,
+    /// How a program that looks for a missing effect proposes it.
+    pub proposal: Proposal,
     /// Its parameters, in the order of its section.
     pub parameters: &'static [Parameter],
     /// Where it can act.
     pub places: &'static [Choice],
+}
+
+/// The part of the machine that an effect acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The gas of a cylinder, so that the pressure there shows it.
+    Gas,
+    /// A joint: its clearance, its shape, its oil.
+    Joint,
+    /// Crank, rod or crosshead.
+    RunningGear,
+    /// The frame.
+    Frame,
+    /// A sensor or the encoder: the machine itself is as it was.
+    Sensor,
+}
+
+/// How a program that looks for a missing effect proposes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proposal {
+    /// At each place that the machine has, with one set of values.
+    PerPlace,
+    /// The same, but where both ends of a cylinder have it, each end has values of its own: it is a
+    /// fault of one valve.
+    PerEnd,
+    /// By a search of its own: for a frequency that is no order, or for a law without a name.
+    Separately,
 }
 
 /// A parameter of an effect. All values are SI.
@@ -69,6 +100,11 @@ impl Entry {
     /// The parameter whose key is `key`.
     pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.key == key)
+    }
+
+    /// Whether it acts on sensors that a key `measure` chooses.
+    pub fn is_of_chosen_sensor(&self) -> bool {
+        self.places.iter().any(|choice| choice.key == "measure")
     }
 
     /// The parameters whose values make the effect vanish.

@@ -9,7 +9,7 @@ use simulate::{Measured, Sensor};
 
 effect! {
     /// A constant added to the recorded crank angle.
-    CrankAngleOffset at []:
+    CrankAngleOffset at [], Sensor:
     "The zero of the crank angle is not at top dead centre." {
         /// By how much the recorded angle is ahead of the crank.
         offset: Quantity<Angle>, -0.35 to 0.35, start 0.02, absent 0.0;

@@ -7,7 +7,7 @@ use mechanism::effects::{self, Law};
 effect! {
     /// A force on the crosshead along the cylinder, positive toward the head: a sum of the terms
     /// that are stated, each with its coefficient. Other terms there are none.
-    EmpiricalForce at [throw]:
+    EmpiricalForce at [throw], RunningGear, Separately:
     "A force acts on the crosshead that nothing in the catalogue gives: its law was found in the recordings." {
         /// Coefficient of 1.
         constant: Quantity<Force>, -1e5 to 1e5, start 100.0, absent 0.0;

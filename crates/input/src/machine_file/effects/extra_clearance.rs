@@ -12,7 +12,7 @@ use crate::quantity::{Length, NonNegative};
 effect! {
     /// Clearance on top of the joint's own. The joint needs a section, with journal_radius and
     /// contact; with `clearance: ideal` it becomes clear.
-    ExtraClearance at [throw, joint]:
+    ExtraClearance at [throw, joint], Joint:
     "The joint has more play than was believed." {
         /// By how much the radial clearance is larger.
         clearance: NonNegative<Length>, 2e-6 to 5e-4, start 5e-5, absent 0.0;

@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 effect! {
     /// A frame that swings on its mounts, and with it the sensors on the crossheads. It takes the
     /// place of a section `frame`.
-    FrameCompliance at []:
+    FrameCompliance at [], Frame:
     "The frame gives on its mounts: the sensor on the crosshead also feels the frame swing, most near its own frequency." {
         /// Mass of all crossheads over that of the frame.
         mass_ratio: Quantity<Ratio, FromZero>, 0.0005 to 0.5, start 0.04, absent 0.0;

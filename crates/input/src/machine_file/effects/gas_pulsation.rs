@@ -7,7 +7,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// A harmonic of the line pressures: pressure × (1 + amplitude cos(order × crank angle + phase)).
-    GasPulsation at [throw, end]:
+    GasPulsation at [throw, end], Gas:
     "The pressure in the pipes pulsates: while a valve is open, the cylinder's pressure swings with the line." {
         /// Cycles a revolution; 2 where it is left out.
         order: Count<1, 24>, 1.0 to 8.0, start 2.0;

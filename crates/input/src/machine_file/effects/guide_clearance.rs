@@ -15,7 +15,7 @@ use mechanism::joints::guide::{self, Guide};
 
 effect! {
     /// Clearance of the crosshead in its guide, where the machine has an ideal one.
-    GuideClearance at [throw]:
+    GuideClearance at [throw], Joint:
     "The crosshead has play in its guide: it knocks from one slide to the other." {
         /// Gap to each face when the crosshead is centred.
         clearance: NonNegative<Length>, 5e-6 to 5e-4, start 1e-4, absent 0.0;

@@ -6,7 +6,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// Heat transfer between the gas and the walls of the cylinder by a Stanton number.
-    HeatTransfer at [throw, end]:
+    HeatTransfer at [throw, end], Gas:
     "The cylinder walls heat the cool gas and cool the hot gas, so that its pressure leaves the curve of the exponent." {
         /// Stanton number: heat that the walls take up over the heat that flows past them.
         stanton: Number<FromZero>, 0.0002 to 0.1, start 0.01, absent 0.0;

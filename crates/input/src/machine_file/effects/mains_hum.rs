@@ -10,7 +10,7 @@ use simulate::{Hum, Sensor};
 
 effect! {
     /// A sine of constant frequency on accelerometers.
-    MainsHum at [throw, measure]:
+    MainsHum at [throw, measure], Sensor, Separately:
     "The cable picks up the mains: a hum of 50 or 60 Hz whatever the speed." {
         /// Amplitude, in the unit of the sensor.
         amplitude: NonNegative<Acceleration>, 0.01 to 200.0, start 5.0, absent 0.0;

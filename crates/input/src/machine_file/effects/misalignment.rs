@@ -6,7 +6,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// Forces on the crosshead along the cylinder, once and twice a revolution.
-    Misalignment at [throw]:
+    Misalignment at [throw], RunningGear:
     "Crosshead, piston rod and cylinder are not in line: they bind once or twice a revolution, at every speed alike." {
         /// Amplitude of the force once a revolution.
         first: NonNegative<Force>, 1.0 to 5000.0, start 200.0, absent 0.0;

@@ -7,7 +7,7 @@
 mod catalogue;
 mod section;
 
-pub use catalogue::{Choice, Entry, Parameter, at_path, entry};
+pub use catalogue::{Choice, Entry, Kind, Parameter, Proposal, at_path, entry};
 
 use super::Sections;
 use crate::error::{Error, Problem};
@@ -36,6 +36,8 @@ macro_rules! catalogue {
         pub const CATALOGUE: &[Entry] = &[$( Entry {
             name: stringify!($module),
             sentence: <$kind as Described>::SENTENCE,
+            kind: <$kind as Described>::KIND,
+            proposal: <$kind as Described>::PROPOSAL,
             parameters: <$kind as Described>::PARAMETERS,
             places: <$kind as Described>::PLACES,
         } ),*];

@@ -6,7 +6,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// Friction of the rings: a constant part and one that grows with the gas pressure.
-    RingFriction at [throw]:
+    RingFriction at [throw], RunningGear:
     "The piston rings and the packing rub: a force against the motion that changes sign at both dead centres." {
         /// Friction force without gas pressure.
         coulomb_force: NonNegative<Force>, 1.0 to 5000.0, start 100.0, absent 0.0;

@@ -7,7 +7,7 @@ use mechanism::effects::{self, Law};
 effect! {
     /// Leakage past the piston rings, as through throttles in series: flow = area × root of the
     /// difference of the squares of the pressures / gas_speed.
-    RingLeakage at [throw, end]:
+    RingLeakage at [throw, end], Gas:
     "The piston rings leak: gas escapes to the other side of the piston, so that the pressure rises too slowly and falls too fast." {
         /// Effective area: that of the gap over the root of the number of rings.
         area: NonNegative<Area>, 1e-8 to 3e-4, start 5e-6, absent 0.0;

@@ -6,7 +6,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// A connecting rod that is a spring along its axis.
-    RodFlexibility at [throw]:
+    RodFlexibility at [throw], RunningGear:
     "The connecting rod springs along its length: after every change of load it rings at one and the same pitch." {
         /// How much longer a force makes it: length / (Young's modulus × area of its shank).
         compliance: NonNegative<Compliance>, 3e-10 to 1e-7, start 5e-9, absent 0.0;

@@ -8,7 +8,7 @@ effect! {
     /// An unbalance that turns with the crank and shakes the frame on soft mounts with the
     /// acceleration eccentricity × (speed of the crank)², which the sensor on the crosshead feels;
     /// or the crosshead alone, with that times its mass.
-    RotatingUnbalance at [body]:
+    RotatingUnbalance at [body], Frame:
     "Something that turns with the crank is out of balance and shakes the machine once a revolution, with the square of the speed." {
         /// Unbalance over the mass that it shakes.
         eccentricity: NonNegative<Length>, 1e-6 to 0.02, start 5e-4, absent 0.0;

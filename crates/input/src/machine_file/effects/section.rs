@@ -130,6 +130,10 @@ impl Place {
 pub(super) trait Described {
     /// A sentence that a mechanic understands.
     const SENTENCE: &'static str;
+    /// On what part of the machine it acts.
+    const KIND: super::Kind;
+    /// How it is proposed.
+    const PROPOSAL: super::Proposal;
     /// The parameters.
     const PARAMETERS: &'static [Parameter];
     /// The keys of its place.
@@ -227,7 +231,7 @@ pub(super) const fn or(value: Option<f64>, other: f64) -> f64 {
 /// ```text
 /// effect! {
 ///     /// What it is.
-///     Name at [keys of its place]: "A sentence for a mechanic." {
+///     Name at [keys of its place], Kind, Proposal: "A sentence for a mechanic." {
 ///         /// What the parameter means.
 ///         key: Type, low to high, start value, absent value;      // an amplitude
 ///         key: Type, low to high, start value;
@@ -236,11 +240,12 @@ pub(super) const fn or(value: Option<f64>, other: f64) -> f64 {
 /// }
 /// ```
 ///
-/// A key that is left out has the value of `absent`, else of `start`.
+/// A key that is left out has the value of `absent`, else of `start`; a proposal that is left out is
+/// [`super::Proposal::PerPlace`].
 macro_rules! effect {
     (
         $(#[doc = $about:literal])+
-        $name:ident at [$($place:ident),*]: $sentence:literal {
+        $name:ident at [$($place:ident),*], $kind:ident $(, $proposal:ident)?: $sentence:literal {
             $(
                 $(#[doc = $words:literal])+
                 $key:ident: $type:ty, $($cyclic:ident)? $($low:literal to $high:literal)?,
@@ -268,6 +273,8 @@ macro_rules! effect {
 
         impl super::section::Described for $name {
             const SENTENCE: &'static str = $sentence;
+            const KIND: super::Kind = super::Kind::$kind;
+            const PROPOSAL: super::Proposal = effect!(@proposal $($proposal)?);
             const PARAMETERS: &'static [super::Parameter] = &[$(
                 super::Parameter {
                     key: stringify!($key),
@@ -357,6 +364,8 @@ macro_rules! effect {
         }
     };
 
+    (@proposal) => { super::Proposal::PerPlace };
+    (@proposal $proposal:ident) => { super::Proposal::$proposal };
     (@bounds $low:literal to $high:literal) => { [$low, $high] };
     (@bounds turn) => { [0.0, std::f64::consts::TAU] };
     (@bounds half_turn) => { [0.0, std::f64::consts::PI] };

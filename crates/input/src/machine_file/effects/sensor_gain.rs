@@ -6,7 +6,7 @@ use simulate::Sensor;
 
 effect! {
     /// Wrong sensitivity of a sensor: everything it reads × (1 + error).
-    SensorGain at [throw, measure]:
+    SensorGain at [throw, measure], Sensor:
     "The sensor reads too much or too little, everywhere by the same share." {
         /// By how much it reads too much.
         error: Quantity<Ratio>, -0.5 to 0.5, start 0.05, absent 0.0;

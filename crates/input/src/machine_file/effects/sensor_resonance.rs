@@ -10,7 +10,7 @@ use simulate::{Resonance, Sensor};
 
 effect! {
     /// Resonance of a sensor on its mount; it takes the place of the sensor's own.
-    SensorResonance at [throw, measure]:
+    SensorResonance at [throw, measure], Sensor:
     "The sensor rings after every blow or sudden change of what it measures, always at the same pitch." {
         /// Natural frequency; 2 kHz where it is left out. The effect is gone far above the band of
         /// the recording.

@@ -17,7 +17,7 @@ use mechanism::effects::Place;
 
 effect! {
     /// A given speed that fluctuates with one and two cycles a revolution.
-    SpeedFluctuation at []:
+    SpeedFluctuation at [], RunningGear:
     "The crank does not turn evenly: within each revolution it runs faster and slower." {
         /// Amplitude of the fluctuation once a revolution, of the mean speed.
         first: Quantity<Ratio, FromZero>, 0.0002 to 0.2, start 0.02, absent 0.0;

@@ -6,7 +6,7 @@ use mechanism::effects::{self, Law};
 
 effect! {
     /// Squeeze force of the oil in a joint with clearance (short bearing); nothing in an ideal joint.
-    SqueezeFilm at [throw, joint]:
+    SqueezeFilm at [throw, joint], Joint:
     "Oil in the bearing is squeezed out before the metal touches: the blows come late and soft." {
         /// Viscosity of the oil.
         viscosity: NonNegative<Viscosity>, 1e-4 to 0.2, start 0.02, absent 0.0;

@@ -20,7 +20,7 @@ impl Bound for OnTheStroke {
 
 effect! {
     /// Suction valve held open into the compression stroke: gas flows back into the suction line.
-    SuctionUnloading at [throw, end]:
+    SuctionUnloading at [throw, end], Gas, PerEnd:
     "The suction valve closes late, or is held open: part of the gas is pushed back before the compression starts." {
         /// Crank angle after the dead centre at which the valve closes.
         held: Quantity<Angle, OnTheStroke>, 0.02 to 2.5, start 0.5, absent 0.0;

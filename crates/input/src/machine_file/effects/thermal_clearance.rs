@@ -21,7 +21,7 @@ use scalar::Scalar;
 effect! {
     /// Change of a joint's clearance with the speed, by the heat of its friction: change × (speed /
     /// at_speed)^exponent. Nothing in an ideal joint.
-    ThermalClearance at [throw, joint]:
+    ThermalClearance at [throw, joint], Joint:
     "The bearing grows warm, and its play changes with the speed at which the machine runs." {
         /// Change of the radial clearance at at_speed.
         change: Quantity<Length>, -2e-4 to 2e-4, start 3e-5, absent 0.0;

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 effect! {
     /// Valves that open late, and a damped swing of the cylinder's pressure about the line's after it.
-    ValveFlutter at [throw, end]:
+    ValveFlutter at [throw, end], Gas:
     "The valves open late and flutter: the pressure overshoots and then ripples, always at the same pitch, until the plate has come to rest." {
         /// Natural frequency of the plates; 100 Hz where it is left out.
         frequency: Positive<Frequency>, 20.0 to 2000.0, start 100.0;

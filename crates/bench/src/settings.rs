@@ -1,0 +1,227 @@
+//! hidden-effects.yaml: which effects are hidden in which recordings, to see whether they are found.
+//!
+//! ```yaml
+//! machines:
+//!   - bundle: ../data/recordings/example-hidden-effect
+//! sizes: [1, 3]
+//! noises: [2 %, 5 %]
+//! nothing: 2
+//! pairs: 3
+//! ```
+//!
+//! Cases come in rounds. A round hides every effect once, and then nothing and pairs as often as the
+//! file says; from round to round each meets another of the combinations of machine, noise and size.
+
+use input::Error;
+use input::choice::Count;
+use input::effects::{CATALOGUE, Entry, entry};
+use input::quantity::{AboveZero, Frequency, FromZero, Number, Positive, Quantity, Ratio};
+use input::yaml::Document;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
+
+/// A test bench: effects, hidden in recordings of machines.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HiddenEffects {
+    /// What all random numbers follow from; 0 where it is left out.
+    #[serde(default)]
+    pub seed: Option<Count<0, { u32::MAX }>>,
+    /// The machines and their runs, at least one.
+    pub machines: Vec<BenchMachine>,
+    /// The effects that are hidden; all of the catalogue where it is left out.
+    #[serde(default)]
+    pub effects: Option<Vec<String>>,
+    /// Sizes of the effects: their amplitudes over the usual ones.
+    pub sizes: Vec<Number<AboveZero>>,
+    /// Noise of the accelerations, of their RMS; pressures have a quarter of it.
+    pub noises: Vec<Quantity<Ratio, FromZero>>,
+    /// Cases of a round in which nothing is hidden; 1 where it is left out.
+    #[serde(default)]
+    pub nothing: Option<Count<0, 1000>>,
+    /// Cases of a round in which two effects are hidden, drawn among the effects; 0 where it is left
+    /// out.
+    #[serde(default)]
+    pub pairs: Option<Count<0, 1000>>,
+    /// Cases of a round in which something is hidden that no catalogue has, of each kind in turn: the
+    /// contacts of another law, an acceleration behind a capacitor, and one that comes late; 0 where it
+    /// is left out.
+    #[serde(default)]
+    pub outside: Option<Count<0, 1000>>,
+    /// Rounds; where it is left out as many as there are combinations of machine, noise and size, so
+    /// that every effect meets each of them.
+    #[serde(default)]
+    pub rounds: Option<Count<1, 1_000_000>>,
+    /// Revolutions of a recording; 30 where it is left out.
+    #[serde(default)]
+    pub revolutions: Option<Count<4, 10_000>>,
+    /// Sample rate of a recording; 20 kHz where it is left out.
+    #[serde(default)]
+    pub sample_rate: Option<Positive<Frequency>>,
+    /// Share of the cases in which the joints of the recorded machine follow another contact law
+    /// (Flores 2011) than those of the machine that is calibrated; none where it is left out.
+    #[serde(default)]
+    pub other_contact_law: Option<Quantity<Ratio, FromZero>>,
+}
+
+/// A machine and the runs that are recorded of it.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BenchMachine {
+    /// What it is called.
+    pub name: String,
+    /// A folder with recordings.yaml, from the folder of this file. Its machine section and the
+    /// conditions of its runs are used, its recordings are not.
+    pub bundle: PathBuf,
+    /// Values of the machine section in place of the bundle's.
+    #[serde(default)]
+    pub machine: Map<String, Value>,
+    /// The runs of the bundle; all of them where it is left out.
+    #[serde(default)]
+    pub runs: Option<Vec<String>>,
+    /// What the speeds of the runs are multiplied with; 1 where it is left out.
+    #[serde(default)]
+    pub speed_factor: Option<Number<AboveZero>>,
+    /// What the clearances of the runs are multiplied with; 1 where it is left out.
+    #[serde(default)]
+    pub clearance_factor: Option<Number<AboveZero>>,
+    /// Whether the pressures are recorded; yes where it is left out.
+    #[serde(default)]
+    pub pressure: Option<bool>,
+}
+
+impl HiddenEffects {
+    /// Reads a file; `document` tells lines for what turns out later.
+    ///
+    /// # Errors
+    /// The first mistake, with its line.
+    pub fn read(path: &Path) -> Result<(Self, Document), Error> {
+        let document = Document::open(path)?;
+        let settings: Self = document.read()?;
+        settings.check().map_err(|error| document.locate(error))?;
+        Ok((settings, document))
+    }
+
+    /// What the types do not say: lists with entries, effects of the catalogue, machines with names of
+    /// their own, a share of at most 1.
+    fn check(&self) -> Result<(), Error> {
+        for (key, empty) in [
+            ("machines", self.machines.is_empty()),
+            ("sizes", self.sizes.is_empty()),
+            ("noises", self.noises.is_empty()),
+        ] {
+            if empty {
+                return Err(Error::found(key, "an empty list", "one entry or more"));
+            }
+        }
+        for (i, machine) in self.machines.iter().enumerate() {
+            if self.machines[..i].iter().any(|m| m.name == machine.name) {
+                let key = format!("machines.{i}.name");
+                return Err(Error::clash(key, "a name of its own for every machine"));
+            }
+        }
+        let known: Vec<&str> = CATALOGUE.iter().map(|entry| entry.name).collect();
+        for (i, name) in self.effects.iter().flatten().enumerate() {
+            if entry(name).is_none() {
+                return Err(Error::unknown_name(format!("effects.{i}"), name, &known));
+            }
+        }
+        if self.pairs.is_some_and(|pairs| pairs.get() > 0) && self.entries().len() < 2 {
+            return Err(Error::clash("pairs", "two effects or more to draw from"));
+        }
+        if self.other_contact_law.is_some_and(|share| share.si() > 1.0) {
+            return Err(Error::clash(
+                "other_contact_law",
+                "a share, from 0 % to 100 %",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The effects that are hidden.
+    pub fn entries(&self) -> Vec<&'static Entry> {
+        match &self.effects {
+            None => CATALOGUE.iter().collect(),
+            Some(names) => names.iter().filter_map(|name| entry(name)).collect(),
+        }
+    }
+}
+
+/// The JSON Schema of hidden-effects.yaml, for editors and checks.
+pub fn schema() -> Value {
+    let mut schema = input::schema::of::<HiddenEffects>();
+    schema["title"] = "hidden-effects.yaml".into();
+    schema
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WHOLE: &str = "machines: [{name: a, bundle: b}]\nsizes: [1]\nnoises: [2 %]\n";
+
+    fn read(text: &str) -> Result<HiddenEffects, Error> {
+        let document = Document::parse(text, "h.yaml")?;
+        let settings: HiddenEffects = document.read()?;
+        settings.check().map_err(|error| document.locate(error))?;
+        Ok(settings)
+    }
+
+    #[test]
+    fn all_effects_are_hidden_where_none_are_named() {
+        assert_eq!(read(WHOLE).unwrap().entries().len(), CATALOGUE.len());
+        let some = read(&format!("{WHOLE}effects: [valve_loss, mains_hum]\n")).unwrap();
+        let names: Vec<&str> = some.entries().iter().map(|e| e.name).collect();
+        assert_eq!(names, ["valve_loss", "mains_hum"]);
+        assert!(
+            read(&format!("{WHOLE}effects: []\n"))
+                .unwrap()
+                .entries()
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn mistakes_tell_their_line() {
+        for (more, expected) in [
+            (
+                "effects: [valve_los]\n",
+                "h.yaml:4:11: effects.0: found 'valve_los', expected one of valve_loss",
+            ),
+            (
+                "pair: 2\n",
+                "h.yaml:4:1: pair: unknown key; expected one of seed",
+            ),
+            (
+                "effects: [valve_loss]\npairs: 2\n",
+                "h.yaml:5:8: pairs: found 2, expected two effects or more",
+            ),
+            (
+                "other_contact_law: 150 %\n",
+                "h.yaml:4:20: other_contact_law: found '150 %', expected a share",
+            ),
+        ] {
+            let message = read(&format!("{WHOLE}{more}")).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+        for (text, expected) in [
+            (
+                WHOLE.replace("sizes: [1]", "sizes: []"),
+                "h.yaml:2:8: sizes: found an empty list",
+            ),
+            (
+                WHOLE.replace("2 %", "2"),
+                "h.yaml:3:10: noises.0: found 2, expected",
+            ),
+            (
+                WHOLE.replace("a, bundle: b}", "a, bundle: b}, {name: a, bundle: c}"),
+                "h.yaml:1:41: machines.1.name: found 'a', expected a name of its own",
+            ),
+        ] {
+            let message = read(&text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! What is true of the recorded machine and is not told: its contacts, and what is hidden in it.
+
+use crate::error::Error;
+use crate::machine::Machine;
+use calibrate::{Parameter, Relation};
+use gap::candidate::FORCE;
+use input::effects::{self, Entry};
+use input::paths;
+use rand::RngExt;
+use rand::seq::IndexedRandom;
+use scalar::random::Stream;
+use serde_json::{Map, Value};
+
+/// True contact parameters over their nominal values.
+const CONTACT: [f64; 2] = [0.6, 1.4];
+/// An amplitude, and a constant that is none, is up to this factor off its usual value.
+const AMPLITUDE: f64 = 1.25;
+const CONSTANT: f64 = 1.5;
+/// Coefficients of restitution of the other contact law.
+const RESTITUTION: [f64; 2] = [0.3, 0.7];
+/// Frequencies of mains, Hz, and the share by which a grid is off at most.
+const MAINS: [f64; 2] = [50.0, 60.0];
+const GRID: f64 = 0.002;
+/// Terms of a law: a force of many has none.
+const TERMS: usize = 2;
+/// Terms that are none of it, as effects with a name make them: misalignment, and friction of the rings.
+const NAMED: [&str; 6] = [
+    "cos_1",
+    "sin_1",
+    "cos_2",
+    "sin_2",
+    "velocity_sign",
+    "pressure_sign",
+];
+/// What is recorded, of the words that `measure` may have.
+const MEASURED: [&str; 2] = ["crosshead_acceleration", "cylinder_pressure"];
+
+/// The machine file of a machine with true contacts: parameters of their own, which follow the
+/// clearance or do not; with `other_law` that of Flores, Machado, Silva and Martins 2011.
+///
+/// # Errors
+/// A machine without contact parameters.
+pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Result<Value, Error> {
+    let mut tree = machine.tree.clone();
+    let relation = match random.random::<bool>() {
+        true => Relation::Equation5,
+        false => Relation::Constant,
+    };
+    for joint in &machine.joints {
+        for key in [
+            "contact.stiffness",
+            "contact.damping",
+            "friction.coefficient",
+        ] {
+            let path = format!("{}.{key}", joint.path);
+            let parameter = Parameter::of(&tree, &path).map_err(Error::Contact)?;
+            let factor = random.random_range(CONTACT[0]..CONTACT[1]);
+            let value = parameter.nominal * factor;
+            parameter.write(&mut tree, value)?;
+        }
+        if other_law {
+            let at = format!("{}.contact", joint.path);
+            let own = |key: &str| -> Result<Value, input::Error> {
+                let value = paths::get(&tree, &format!("{at}.{key}"))?;
+                Ok(value.cloned().unwrap_or_default())
+            };
+            let restitution = random.random_range(RESTITUTION[0]..RESTITUTION[1]);
+            let law = [
+                ("law", "flores".into()),
+                ("stiffness", own("stiffness")?),
+                ("exponent", own("exponent")?),
+                ("restitution", restitution.into()),
+            ];
+            let law: Map<String, Value> = law
+                .map(|(key, value)| (key.to_owned(), value))
+                .into_iter()
+                .collect();
+            paths::set(&mut tree, &at, law.into())?;
+        }
+    }
+    relation.set(&mut tree, &machine.joints)?;
+    Ok(tree)
+}
+
+/// An effect at a place, with values and signs drawn: the item of a machine file's list. Whether the
+/// machine can have it there is not looked at.
+pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) -> Value {
+    let throws = machine.throws();
+    let mut place: Vec<(&str, &str)> = Vec::new();
+    for choice in entry.places {
+        let words: Vec<&str> = match choice.key {
+            "throw" => throws.clone(),
+            "end" if !machine.is_double_acting() => Vec::new(),
+            "measure" => MEASURED.to_vec(),
+            _ => choice.words.to_vec(),
+        };
+        let everywhere = choice.key == "end" && random.random::<bool>();
+        if let Some(word) = words.choose(random).filter(|_| !everywhere) {
+            place.push((choice.key, word));
+        }
+    }
+    let drawn = |parameter: &effects::Parameter| match (entry.name, parameter.key) {
+        ("mains_hum", "frequency") => {
+            let mains = MAINS[usize::from(random.random::<bool>())];
+            mains * random.random_range(1.0 - GRID..1.0 + GRID)
+        }
+        _ => value(parameter, size, random),
+    };
+    let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
+    if entry.name == FORCE {
+        as_law(entry, &mut values, random);
+    }
+    entry.item(&place, &values)
+}
+
+/// Leaves the amplitudes of a few terms that no effect with a name makes, and takes the others away.
+fn as_law(entry: &Entry, values: &mut [f64], random: &mut Stream) {
+    let parameters = entry.parameters.iter().enumerate();
+    let terms: Vec<(usize, f64)> = parameters
+        .filter_map(|(i, parameter)| Some((i, parameter.absent?)))
+        .collect();
+    let nameless = |(i, _): &&(usize, f64)| !NAMED.contains(&entry.parameters[*i].key);
+    let nameless: Vec<usize> = terms.iter().filter(nameless).map(|(i, _)| *i).collect();
+    let kept: Vec<usize> = nameless.sample(random, TERMS).copied().collect();
+    for (i, absent) in terms.iter().filter(|(i, _)| !kept.contains(i)) {
+        values[*i] = *absent;
+    }
+}
+
+/// A value of a parameter: anywhere for a phase or an order, around the usual one for the others.
+fn value(parameter: &effects::Parameter, size: f64, random: &mut Stream) -> f64 {
+    let [low, high] = parameter.bounds;
+    if parameter.cyclic {
+        return random.random_range(low..high);
+    }
+    if parameter.whole {
+        return random.random_range(low..high + 1.0).floor();
+    }
+    let Some(absent) = parameter.absent else {
+        // Evenly on a logarithmic scale, as far as the bounds go.
+        let from = low.max(parameter.start / CONSTANT);
+        let to = high.min(parameter.start * CONSTANT);
+        return from * (to / from).powf(random.random());
+    };
+    let sign = match absent > low && random.random::<bool>() {
+        true => -1.0,
+        false => 1.0,
+    };
+    let factor = AMPLITUDE.powf(random.random_range(-1.0..1.0));
+    let drawn = absent + sign * size * factor * (parameter.start - absent);
+    drawn.clamp(low, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use input::effects::CATALOGUE;
+    use scalar::random::{Purpose, stream};
+
+    #[test]
+    fn values_stay_within_the_bounds_of_the_catalogue_and_follow_the_size() {
+        let mut random = stream(1, 1, Purpose::Design);
+        for parameter in CATALOGUE.iter().flat_map(|entry| entry.parameters) {
+            let [low, high] = parameter.bounds;
+            for size in [0.5, 1.0, 3.0] {
+                for _ in 0..50 {
+                    let value = value(parameter, size, &mut random);
+                    assert!((low..=high).contains(&value), "{}", parameter.key);
+                    assert!(!parameter.whole || value.fract() == 0.0);
+                    let Some(absent) = parameter.absent else {
+                        continue;
+                    };
+                    let usual = (parameter.start - absent).abs();
+                    let share = (value - absent).abs() / usual / size;
+                    let inside = value > low && value < high;
+                    assert!(!inside || (0.8..=1.25).contains(&share), "{share}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_force_of_no_name_has_a_law_of_a_few_terms() {
+        let mut random = stream(1, 1, Purpose::Design);
+        let entry = effects::entry(FORCE).unwrap();
+        let mut values = vec![7.0; entry.parameters.len()];
+        as_law(entry, &mut values, &mut random);
+        let kept = entry.parameters.iter().zip(&values);
+        let kept = kept.filter(|(p, value)| p.absent.is_some() && **value == 7.0);
+        let kept: Vec<&str> = kept.map(|(p, _)| p.key).collect();
+        assert_eq!(kept.len(), TERMS);
+        assert!(kept.iter().all(|key| !NAMED.contains(key)), "{kept:?}");
+        assert!(NAMED.iter().all(|key| entry.parameter(key).is_some()));
+        let others = entry.parameters.iter().zip(&values);
+        let mut others = others.filter(|(p, _)| p.absent.is_none());
+        assert!(others.all(|(_, value)| *value == 7.0));
+    }
+}

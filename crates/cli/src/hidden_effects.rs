@@ -1,0 +1,227 @@
+//! `crosshead hidden-effects`: the proof of `explain-gap` on recordings whose truth is known.
+//!
+//! Each case goes through the disk: a bundle is made, the workflow is given its folder and nothing
+//! else, and what it writes is held against what was hidden.
+
+use crate::output::write_file;
+use crate::{Failure, explain_gap, interrupt};
+use bench::outcome::CASES;
+use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outcome, Outside};
+use bench::{Recorder, cases};
+use clap::Args;
+use input::effects::CATALOGUE;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+
+/// Names of the files with what all cases come to.
+pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
+
+/// Arguments of `crosshead hidden-effects`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Each case makes a bundle of recordings of a machine whose contacts are not those that are told, hides
+effects in it (or none), and explains it as crosshead explain-gap does, which sees the bundle alone.
+DIR/cases.jsonl gets a line per case, matrix.json and matrix.md what they come to, and cases/ machine,
+results and page of each explanation. Several processes may share a folder, each with --cases of
+its own and --resume.
+
+Examples:
+  crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --dry-run
+  crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --cases 1..26
+  crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --resume --only valve_loss
+
+Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
+pub struct Arguments {
+    /// What is hidden in what (crosshead schema hidden-effects)
+    #[arg(value_name = "SETTINGS.yaml")]
+    settings: PathBuf,
+    /// Folder to write into
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Only cases that hide this effect, or nothing; may be repeated
+    #[arg(long, value_name = "EFFECT")]
+    only: Vec<String>,
+    /// Only cases of these numbers, both ends included
+    #[arg(long, value_name = "FIRST..LAST", value_parser = numbers)]
+    cases: Option<RangeInclusive<u64>>,
+    /// Go on with a proof that was stopped
+    #[arg(long)]
+    resume: bool,
+    /// Keep the true machine and the recordings, measured and simulated: some 10 MB a case
+    #[arg(long)]
+    keep: bool,
+    /// List the cases, and write nothing
+    #[arg(long)]
+    dry_run: bool,
+}
+
+fn numbers(text: &str) -> Result<RangeInclusive<u64>, String> {
+    let ends = text.split_once("..").unwrap_or((text, text));
+    match (ends.0.trim().parse(), ends.1.trim().parse()) {
+        (Ok(first), Ok(last)) if 0 < first && first <= last => Ok(first..=last),
+        _ => Err("expected numbers from 1 on, e.g. 1..26".to_owned()),
+    }
+}
+
+/// Makes the cases, explains them, and tells what was found.
+///
+/// # Errors
+/// Settings or machines that are none, a folder with the cases of others, or files that cannot be
+/// written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (settings, document) = HiddenEffects::read(&arguments.settings)?;
+    let base = arguments.settings.parent().unwrap_or(Path::new(""));
+    let machines = settings.machines.iter().enumerate();
+    let machines: Vec<Machine> = machines
+        .map(|(i, entry)| {
+            let own = |error: input::Error| document.locate(error.under(format!("machines.{i}")));
+            Machine::open(entry, base).map_err(|error| match error.place() {
+                Some(_) => error,
+                None => own(error),
+            })
+        })
+        .collect::<Result<_, _>>()?;
+    let cases = chosen(arguments, cases(&settings))?;
+    if arguments.dry_run {
+        list(&cases, &machines);
+        return Ok(());
+    }
+    let out = &arguments.out;
+    let ledger = Ledger::of(out);
+    if ledger.exists() && !arguments.resume {
+        return Err(Failure::input(format!(
+            "{} is already there; --resume goes on with it, --out DIR writes elsewhere",
+            out.join(CASES).display()
+        )));
+    }
+    let bench = Bench {
+        recorder: Recorder::new(&settings),
+        settings: &settings,
+        machines: &machines,
+        out,
+        keep: arguments.keep,
+    };
+    let done = ledger.read().map_err(failure)?;
+    for case in &cases {
+        let earlier = done.iter().find(|outcome| outcome.case == case.number);
+        if earlier.is_some_and(|earlier| earlier.fingerprint != bench.fingerprint(case)) {
+            return Err(Failure::input(format!(
+                "{} has another case {}: the settings, a machine or the program have changed; \
+                 --out DIR writes elsewhere",
+                out.join(CASES).display(),
+                case.number
+            )));
+        }
+    }
+    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
+    let cancel = interrupt::flag()?;
+    let open = cases
+        .iter()
+        .filter(|case| done.iter().all(|outcome| outcome.case != case.number));
+    let count = open.clone().count();
+    for (i, case) in open.enumerate() {
+        let outcome = bench.outcome(case, |asked, folder| {
+            let results = explain_gap::into_folder(asked, folder, &cancel);
+            results.map_err(
+                |(Failure::Input(why) | Failure::Work(why) | Failure::Incomplete(why))| why,
+            )
+        });
+        if cancel.load(Ordering::Relaxed) {
+            write(&Matrix::of(&ledger.read().map_err(failure)?), out)?;
+            return Err(Failure::work(format!(
+                "stopped: {i} of {count} cases are done; --resume goes on from there"
+            )));
+        }
+        let outcome = outcome.map_err(failure)?;
+        ledger.add(&outcome).map_err(failure)?;
+        eprintln!("{} of {count}: {}", i + 1, told(case, &outcome));
+    }
+    let done = ledger.read().map_err(failure)?;
+    let matrix = Matrix::of(&done);
+    write(&matrix, out)?;
+    print!("{}", matrix.summary());
+    println!("{}", out.join(MATRIX[1]).display());
+    Ok(())
+}
+
+/// Why a bench cannot go on.
+fn failure(error: bench::Error) -> Failure {
+    match error.is_of_input() {
+        true => Failure::input(error),
+        false => Failure::work(error),
+    }
+}
+
+/// The cases that are asked for.
+fn chosen(arguments: &Arguments, mut cases: Vec<Case>) -> Result<Vec<Case>, Failure> {
+    let others = || Outside::ALL.map(Outside::name).into_iter().chain([NOTHING]);
+    let names = || CATALOGUE.iter().map(|e| e.name).chain(others());
+    if let Some(unknown) = arguments
+        .only
+        .iter()
+        .find(|only| names().all(|n| n != *only))
+    {
+        let nearest = input::nearest(unknown, names());
+        let hint = nearest.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        return Err(Failure::input(format!(
+            "--only {unknown}: there is no such effect{hint} They are {}.",
+            names().collect::<Vec<_>>().join(", ")
+        )));
+    }
+    let count = cases.len();
+    cases.retain(|case| {
+        let range = arguments.cases.as_ref();
+        let only = &arguments.only;
+        range.is_none_or(|range| range.contains(&case.number))
+            && (only.is_empty() || only.iter().any(|name| case.hides(name)))
+    });
+    match cases.is_empty() {
+        true => Err(Failure::input(format!(
+            "none of the {count} cases is asked for by --cases and --only"
+        ))),
+        false => Ok(cases),
+    }
+}
+
+fn list(cases: &[Case], machines: &[Machine]) {
+    for case in cases {
+        let machine = &machines[case.machine];
+        println!(
+            "{:4}  {} ({} runs), noise {:.1} %, size {}: {}",
+            case.number,
+            machine.name,
+            machine.runs.len(),
+            100.0 * case.noise,
+            case.size,
+            case.label()
+        );
+    }
+}
+
+/// A case in a line.
+fn told(case: &Case, outcome: &Outcome) -> String {
+    let what = match (&outcome.found, &outcome.error) {
+        (Some(found), _) => {
+            let named: Vec<&str> = found.named.iter().map(|n| n.effect.as_str()).collect();
+            let (before, after) = (found.gap.before, found.gap.after);
+            let named = match named.is_empty() {
+                true => "nothing named".to_owned(),
+                false => named.join(", "),
+            };
+            let verdict = found.verdict.name();
+            format!("{verdict}, {named}, {before:.2} to {after:.2}")
+        }
+        (None, error) => error.clone().unwrap_or_default(),
+    };
+    let seconds = outcome.cpu_seconds;
+    let seconds = seconds.map_or(String::new(), |seconds| format!(" ({seconds:.0} s)"));
+    format!("case {}, {}: {what}{seconds}", case.number, case.label())
+}
+
+/// Writes what the cases come to.
+fn write(matrix: &Matrix, out: &Path) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(&matrix.counts()).map_err(Failure::work)?;
+    write_file(&out.join(MATRIX[0]), text.as_bytes())?;
+    write_file(&out.join(MATRIX[1]), matrix.markdown().as_bytes())
+}

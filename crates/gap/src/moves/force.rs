@@ -1,0 +1,166 @@
+//! A force law found in the recordings, where no effect of the catalogue explains them.
+//!
+//! The terms of the effect `empirical_force` are a library, as in sparse regression of dynamics
+//! (Brunton, Proctor and Kutz 2016; Kaheman and others 2019, for the mismatch of a model). The
+//! response is far from linear in a force as large as one that is missing. The force is therefore
+//! estimated first, by a fit with all terms; there, what the terms do to the predicted lines is their
+//! exact derivative by the coefficient, contacts included, and the force is regressed sparsely on
+//! them, on resamples. The terms that are stable are fitted in full, and the library is regressed
+//! again at that fit, until the same terms come out.
+
+use crate::candidate::{Candidate, FORCE, throws};
+use crate::criteria::NOISE;
+use crate::error::Error;
+use crate::finding::{Tried, effects};
+use crate::fitter::Fitter;
+use crate::model::Model;
+use crate::moves::linearised::{Linearised, groups};
+use crate::moves::missing_force::{MissingForce, missing_force};
+use calibrate::Problem;
+use input::effects::entry;
+
+/// Most evaluations of the fit with all terms.
+const DENSE: u64 = 400;
+/// The same of a search out of the local minimum in which that has ended.
+const FURTHER: u64 = 1000;
+/// Rounds in which terms may still be exchanged.
+const ROUNDS: usize = 4;
+
+/// A force that is missing.
+pub(crate) struct Force {
+    /// As a fit with all terms has it, in every run.
+    pub missing: Vec<MissingForce>,
+    /// That fit, to a few runs.
+    pub all: Model,
+    /// Its law: the effect at its throw, with the terms that it has free, and the model with it.
+    pub law: Option<(Tried, Model)>,
+}
+
+/// The effect with all its terms free, at each throw that does not have it.
+fn libraries(problem: &Problem) -> Vec<Candidate> {
+    let Some(entry) = entry(FORCE) else {
+        return Vec::new();
+    };
+    let names = throws(&problem.tree).into_iter();
+    let mut places: Vec<_> = names.map(|name| vec![("throw", name)]).collect();
+    if places.is_empty() {
+        places.push(Vec::new());
+    }
+    let usual: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
+    let of = |place| {
+        let fixed = Vec::new();
+        Candidate {
+            entry,
+            place,
+            fixed,
+            ends: &[],
+        }
+        .restricted(&groups(entry).concat())
+    };
+    let mut libraries: Vec<Candidate> = places.into_iter().map(of).collect();
+    libraries.retain(|library| library.added(problem, &usual).is_ok());
+    libraries
+}
+
+/// The force that `model` lacks at the throw where it explains most, with a law of no more than a few
+/// terms where the recordings show one that is stable; none where no throw can have one. Whether the
+/// law explains enough is another question.
+///
+/// # Errors
+/// [`Error::Stopped`]; a machine that cannot be simulated.
+pub(crate) fn empirical_force(fitter: &Fitter, model: &Model) -> Result<Option<Force>, Error> {
+    let mut best: Option<(Candidate, Dense)> = None;
+    for library in libraries(&model.problem) {
+        if best.is_some() && !fitter.effort.goes_on_for_force() {
+            break;
+        }
+        let Some(dense) = estimated(fitter, &fitter.few(model)?, &library)? else {
+            continue;
+        };
+        let better = |(_, best): &(Candidate, Dense)| dense.model.fitted < best.model.fitted;
+        if best.as_ref().is_none_or(better) {
+            best = Some((library, dense));
+        }
+    }
+    let Some((library, dense)) = best else {
+        return Ok(None);
+    };
+    let missing = missing_force(&dense.model.problem, &dense.model.x, &model.problem.runs)?;
+    let all = dense.model.clone();
+    let law = law(fitter, model, &library, dense)?;
+    Ok(Some(Force { missing, all, law }))
+}
+
+/// A few runs, fitted with all terms that they show.
+struct Dense {
+    model: Model,
+    /// The values of the effect's parameters, SI.
+    values: Vec<f64>,
+}
+
+/// The law of the force that was estimated with all terms of a library.
+fn law(
+    fitter: &Fitter,
+    model: &Model,
+    library: &Candidate,
+    dense: Dense,
+) -> Result<Option<(Tried, Model)>, Error> {
+    let groups = groups(library.entry);
+    let index = effects(&model.problem);
+    let mut x = dense.model.x[..model.x.len()].to_vec();
+    let mut values = dense.values;
+    let fitted_to = model.problem.with_runs(|run| fitter.effort.fits(&run.id));
+    let mut chosen: Option<(Candidate, Model)> = None;
+    for _ in 0..ROUNDS {
+        let linear = Linearised::at(&fitted_to, &x, library, &values)?;
+        let stable = linear.regression.stable(&groups);
+        let each = stable.iter().flat_map(|group| &groups[*group]);
+        let candidate = library.restricted(&each.copied().collect::<Vec<_>>());
+        if stable.is_empty() {
+            return Ok(None);
+        }
+        if let Some((_, after)) = chosen.take_if(|(before, _)| *before == candidate) {
+            let score = 1.0 - (after.fitted / model.fitted).powi(2);
+            return Ok(Some((
+                Tried::fitted(candidate, model, &after, score),
+                after,
+            )));
+        }
+        let start = linear.fitted(&candidate);
+        let added = candidate.added(&model.problem, &start)?;
+        (fitter.say)("fitting a law of the force", dense.model.fitted);
+        let after = fitter.fit(added, &x)?;
+        x = after.x[..model.x.len()].to_vec();
+        values = candidate.values(&after, index);
+        chosen = Some((candidate, after));
+    }
+    Ok(None)
+}
+
+/// A few runs fitted with all terms of the library that they show; none where they show none.
+fn estimated(fitter: &Fitter, few: &Model, library: &Candidate) -> Result<Option<Dense>, Error> {
+    let nothing = vec![0.0; library.entry.parameters.len()];
+    let nominal = vec![0.0; few.x.len()];
+    (fitter.say)("estimating the force", few.fitted);
+    let linear = Linearised::at(&few.problem, &nominal, library, &nothing)?;
+    let seen = linear.seen();
+    if seen.is_empty() {
+        return Ok(None);
+    }
+    let library = library.restricted(&seen);
+    let added = library.added(&few.problem, &linear.values)?;
+    let from = |x: &[f64]| fitter.fit_within(added.clone(), x, DENSE);
+    let mut model = from(&nominal)?;
+    // Without the force the calibration may have gone far astray, and often has.
+    if model.fitted > NOISE {
+        model = model.better(from(&few.x)?);
+    }
+    if model.fitted > NOISE && fitter.effort.goes_on_for_force() {
+        (fitter.say)("estimating the force further", model.fitted);
+        let start = Some(model.x.clone());
+        let further = fitter.searched(&model.problem, start, FURTHER)?;
+        model = model.better(further);
+    }
+    let values = library.values(&model, effects(&few.problem));
+    Ok(Some(Dense { model, values }))
+}

@@ -1,0 +1,100 @@
+//! What must be known to judge an explanation, in sentences.
+
+use crate::candidate::Candidate;
+use crate::effort::Effort;
+use crate::explain::Explanation;
+use calibrate::fit::Estimate;
+use calibrate::indicator::Alternative;
+use calibrate::pressure_gap::PressureGap;
+use std::f64::consts::PI;
+
+/// Correlation from which two estimates are one.
+const TOGETHER: f64 = 0.95;
+/// Two readings of a curve are as good as each other where the worse one's scatter is within this
+/// factor of the better one's.
+const AS_GOOD: f64 = 1.5;
+
+/// What must be known to judge the results.
+pub(crate) fn notes(
+    explanation: &Explanation,
+    effort: &Effort,
+    gas: &[PressureGap],
+) -> Vec<String> {
+    let mut notes = Vec::new();
+    if effort.held_out.is_empty() && !explanation.found.is_empty() {
+        notes.push(
+            "No run was held out: there are too few. What was found has to hold in all of them at once; \
+             predict a run that was left out to test it."
+                .to_owned(),
+        );
+    }
+    let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
+    if explanation.estimates.iter().any(of_gas) {
+        notes.extend(gas.iter().filter_map(together));
+    }
+    notes.extend(correlated(explanation));
+    let untold = explanation.estimates.iter();
+    let untold = untold.filter(|e| e.interval.is_none());
+    let untold: Vec<&str> = untold.map(|e| e.parameter.path.as_str()).collect();
+    if !untold.is_empty() {
+        notes.push(format!("The recordings do not tell {}.", untold.join(", ")));
+    }
+    notes
+}
+
+/// What a pressure by itself leaves open about clearance and exponents.
+fn together(gap: &PressureGap) -> Option<String> {
+    let indicator = gap.indicator.as_ref()?;
+    let [a, b] = indicator.alternatives;
+    let [better, worse] = [a.scatter.min(b.scatter), a.scatter.max(b.scatter)];
+    let stroke = indicator.chamber.stroke();
+    let reading = |other: &Alternative| {
+        let [compression, expansion] = other.exponents;
+        let clearance = 100.0 * other.clearance / stroke;
+        format!("{clearance:.1} % of the stroke with {compression:.2} and {expansion:.2}")
+    };
+    (worse < AS_GOOD * better).then(|| {
+        format!(
+            "{}, {}: this curve does not determine both clearance volume and polytropic exponents: a clearance \
+             of {} (compression, expansion) fits it as well as {}. Take one of them from elsewhere.",
+            gap.run,
+            gap.column,
+            reading(&a),
+            reading(&b)
+        )
+    })
+}
+
+/// Pairs of parameters that the recordings tell together only.
+fn correlated(explanation: &Explanation) -> Vec<String> {
+    let estimates = &explanation.estimates;
+    let pairs = (0..estimates.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
+    let close = pairs.filter(|at| explanation.correlations[*at].abs() > TOGETHER);
+    let words = close.map(|at| {
+        format!(
+            "{} and {} are told together only (correlation {:.2}).",
+            estimates[at.0].parameter.path,
+            estimates[at.1].parameter.path,
+            explanation.correlations[at]
+        )
+    });
+    words.collect()
+}
+
+/// At which crank angle a held suction valve closes, as a sentence, where `key` says how long it is
+/// held and one end of one cylinder is meant.
+pub(crate) fn closing(item: &Candidate, key: &str, held: f64) -> Option<String> {
+    if !(item.entry.name == "suction_unloading" && key == "held") {
+        return None;
+    }
+    let after = held.to_degrees();
+    let (end, dead) = match item.end() {
+        Some("head") => ("head end", PI),
+        Some("crank") => ("crank end", 0.0),
+        _ => return Some(format!(" It closes {after:.0}° after the dead centre.")),
+    };
+    let angle = (dead + held).to_degrees();
+    Some(format!(
+        " At the {end} it closes {after:.0}° after the dead centre, at a crank angle of {angle:.0}°."
+    ))
+}

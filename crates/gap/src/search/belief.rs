@@ -1,0 +1,117 @@
+//! Which of the effects that were found are believed where more than noise is left.
+
+use crate::criteria::{Verdict, verdict};
+use crate::error::Error;
+use crate::finding::{Explained, Found, Tried, first_item, with_only};
+use crate::fitter::Fitter;
+use crate::model::Model;
+use calibrate::Problem;
+use calibrate::fit::Estimate;
+
+/// The model with those effects alone that are believed; the others are refused. Effects that explain the
+/// whole are. One that closes most of the gap that it was added for is, by itself. Any other is where the
+/// effects explain a part to which no force without a name comes nearer, if the recordings tell how large it
+/// is: what does as well at any size stands for something else.
+pub(crate) fn believed(
+    fitter: &Fitter,
+    problem: &Problem,
+    baseline: &Model,
+    explained: Explained,
+    force_is_nearer: bool,
+) -> Result<Explained, Error> {
+    let Explained { model, found, .. } = &explained;
+    let sure = |found: &Found| found.effect.evidence.is_sure();
+    let by_itself: Vec<bool> = found.iter().map(sure).collect();
+    let believed = match verdict(baseline, model, found.len()) {
+        Verdict::NoGap | Verdict::Explained => vec![true; found.len()],
+        Verdict::PartlyExplained if !force_is_nearer && by_itself.contains(&false) => {
+            (fitter.say)("finding which sizes are told", model.fitted);
+            let estimates = fitter.bounds(model)?.estimates;
+            let told = |i| is_told(&estimates, &found[i], first_item(problem, found, i));
+            (0..found.len()).map(|i| by_itself[i] || told(i)).collect()
+        }
+        Verdict::PartlyExplained | Verdict::Unexplained => by_itself,
+    };
+    if !believed.contains(&false) {
+        return Ok(explained);
+    }
+    let mut believed = believed.into_iter();
+    let is_believed = |_: &Found| believed.next().unwrap_or(true);
+    let (mut kept, others): (Vec<Found>, Vec<Found>) =
+        explained.found.into_iter().partition(is_believed);
+    kept.iter_mut().for_each(|kept| kept.gap = None);
+    let others = others.into_iter().map(|other| Tried {
+        likeness: None,
+        ..other.effect
+    });
+    Ok(Explained {
+        model: with_only(fitter, problem, baseline, &kept)?,
+        found: kept,
+        refused: others.chain(explained.refused).collect(),
+    })
+}
+
+/// Whether the recordings tell how large an effect is whose first item has this index: one of its amplitudes,
+/// or of its parameters where it has none.
+fn is_told(estimates: &[Estimate], found: &Found, first: usize) -> bool {
+    let candidate = found.candidate();
+    let entry = candidate.entry;
+    let amplitudes = entry.amplitudes().next().is_some();
+    let sizes = entry
+        .parameters
+        .iter()
+        .filter(|p| !amplitudes || p.absent.is_some());
+    let items = first..first + candidate.items().len();
+    let mut paths = sizes.flat_map(|size| {
+        let path = move |item| format!("effects.{item}.{}.{}", entry.name, size.key);
+        items.clone().map(path)
+    });
+    paths.any(|path| {
+        let estimate = estimates.iter().find(|e| e.parameter.path == path);
+        estimate.is_some_and(|estimate| estimate.interval.is_some())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::Candidate;
+    use crate::criteria::evidence;
+    use crate::fixture::{effort, problem};
+
+    /// Whether an effect is told of which the parameter of this key alone is.
+    fn is_told_by(effect: &str, key: &str) -> bool {
+        let problem = problem();
+        let candidate = Candidate::first(&problem, effect);
+        let values = candidate.usual();
+        let added = candidate.added(&problem, &values).unwrap();
+        let before = Model::at(problem.clone(), &[0.0], &effort()).unwrap();
+        let found = Found {
+            effect: Tried {
+                evidence: evidence(&before, &before, 0.0),
+                candidate,
+                values,
+                likeness: None,
+                model: None,
+            },
+            gap: None,
+            rivals: Vec::new(),
+        };
+        let estimate = |parameter: &calibrate::Parameter| Estimate {
+            parameter: parameter.clone(),
+            value: 1.0,
+            interval: parameter.path.ends_with(key).then_some([0.0, 2.0]),
+        };
+        let estimates: Vec<Estimate> = added.parameters.iter().map(estimate).collect();
+        is_told(&estimates, &found, first_item(&problem, &[], 0))
+    }
+
+    #[test]
+    fn an_effect_is_told_by_its_size() {
+        assert!(is_told_by("guide_clearance", ".clearance"));
+        assert!(!is_told_by("guide_clearance", ".damping"));
+        assert!(!is_told_by("guide_clearance", "contact.stiffness"));
+        // One without a size by whatever it has.
+        assert!(is_told_by("sensor_resonance", ".frequency"));
+    }
+}
