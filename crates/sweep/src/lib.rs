@@ -11,6 +11,7 @@ pub mod labels;
 mod normal;
 pub mod plan;
 pub mod ranges;
+pub mod reader;
 mod runner;
 pub mod split;
 pub mod sweep_file;

@@ -1,12 +1,12 @@
 //! Which accelerometer a fault is judged by.
 
+use crate::Plan;
 use simulate::sensor::Measured;
-use sweep::Plan;
 
 /// The accelerometers that the faults of a dataset are judged by: a joint by the one on its own
 /// throw's crosshead, where there is one; else by the first on the frame; else by that of another
 /// crosshead. What belongs to no throw, as the main bearing does, is judged by all of them.
-pub(super) struct Sensors {
+pub struct Sensors {
     channels: Vec<String>,
     /// The name of each throw and the place of its sensor among the channels.
     throws: Vec<(String, usize)>,
@@ -40,18 +40,19 @@ impl Sensors {
         sensors
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    /// Whether the dataset has no accelerometer.
+    pub fn is_empty(&self) -> bool {
         self.channels.is_empty()
     }
 
     /// The sensors as features are named after them: `throw1.crosshead_acceleration`.
-    pub(super) fn channels(&self) -> &[String] {
+    pub fn channels(&self) -> &[String] {
         &self.channels
     }
 
     /// The places of the sensors that judge the fault: those of its throws, in their order; all of
     /// them for a machine without a fault and for joints of no throw.
-    pub(super) fn of_fault(&self, fault: &str) -> Vec<usize> {
+    pub fn of_fault(&self, fault: &str) -> Vec<usize> {
         let places = |joint: &str| -> Vec<usize> {
             let own = joint.split_once('.').map_or("", |(throw, _)| throw);
             let of_throw = self
@@ -69,30 +70,14 @@ impl Sensors {
         judging
     }
 
-    /// The first sensor that judges the fault, and its channel.
-    pub(super) fn first_of_fault(&self, fault: &str) -> Option<(usize, &str)> {
-        let place = *self.of_fault(fault).first()?;
-        Some((place, &self.channels[place]))
+    /// The first sensor that judges the fault.
+    pub fn first_of_fault(&self, fault: &str) -> Option<usize> {
+        self.of_fault(fault).first().copied()
     }
 
-    /// Which channel shows what, in a sentence or two.
-    pub(super) fn in_words(&self) -> String {
-        match self.channels.as_slice() {
-            [] => String::new(),
-            [channel] => {
-                format!("Figures show the channel {channel}_m_s2, as the sensor reads it.")
-            }
-            _ => {
-                let each: Vec<String> = self
-                    .throws
-                    .iter()
-                    .map(|(throw, place)| format!("{throw}: {}_m_s2", self.channels[*place]))
-                    .collect();
-                format!(
-                    "A fault is judged by the sensor of its own throw ({}), as the sensor reads it.",
-                    each.join("; ")
-                )
-            }
-        }
+    /// The name of each throw and the channel that its faults are judged by.
+    pub fn throws(&self) -> impl Iterator<Item = (&str, &str)> {
+        let throws = self.throws.iter();
+        throws.map(|(throw, place)| (throw.as_str(), self.channels[*place].as_str()))
     }
 }

@@ -1,11 +1,10 @@
 //! The case that stands for each class of fault.
 
-use super::dataset::Dataset;
 use super::recording::Recording;
-use super::windows::{Case, Windows};
-use crate::Failure;
-use ::report::dataset_page::{ClassExample, FaultCount};
-use ::report::text;
+use super::words;
+use crate::dataset_page::{ClassExample, FaultCount};
+use crate::{Error, text};
+use sweep::reader::{Dataset, Meaning, Side};
 
 /// At most this many classes have an example: as many as the page shows.
 const MOST: usize = 16;
@@ -17,19 +16,16 @@ const MOST: usize = 16;
 /// A table that cannot be read.
 pub(super) fn examples(
     dataset: &Dataset,
-    windows: &Windows,
-    cases: &[Case],
     faults: &[FaultCount],
-) -> Result<Vec<ClassExample>, Failure> {
+) -> Result<Vec<ClassExample>, Error> {
     if !dataset.has_signals() {
         return Ok(Vec::new());
     }
     let of_fault = |fault: &str| {
-        let own = cases.iter().map(|case| case.first);
-        let own: Vec<usize> = own.filter(|&w| windows.fault[w] == fault).collect();
-        nearest_median(&own, |&w| windows.largest_clearance(dataset, w)).copied()
+        let own = dataset.cases.iter().map(|case| case.first);
+        let own: Vec<usize> = own.filter(|&w| dataset.windows.fault[w] == fault).collect();
+        nearest_median(&own, |&w| dataset.windows.largest_clearance(w)).copied()
     };
-    let several = dataset.sensors.channels().len() > 1;
     let judged = faults.iter().flat_map(|count| {
         let mut judging = dataset.sensors.of_fault(&count.fault);
         if count.fault == "none" {
@@ -41,14 +37,11 @@ pub(super) fn examples(
         .filter_map(|(count, sensor)| Some((count, sensor, of_fault(&count.fault)?)))
         .take(MOST)
         .map(|(count, sensor, window)| {
-            let recording = Recording::read(dataset, windows, window, sensor)?;
+            let recording = Recording::read(dataset, window, sensor)?;
             Ok(ClassExample {
                 fault: count.fault.clone(),
-                sensor: match several {
-                    true => text::words(&dataset.sensors.channels()[sensor]),
-                    false => String::new(),
-                },
-                operating_point: described(dataset, windows, window),
+                sensor: words::sensor(dataset, sensor),
+                operating_point: described(dataset, window),
                 response: recording.response()?,
                 spectrum: recording.spectrum()?,
                 order_spectrum: recording.order_spectrum()?,
@@ -66,36 +59,34 @@ pub(super) fn nearest_median<T>(all: &[T], value: impl Fn(&T) -> f64) -> Option<
 }
 
 /// What sets the window's case apart: «big end 0.2 mm, 500 rpm, discharge pressure 393 kPa».
-fn described(dataset: &Dataset, windows: &Windows, window: usize) -> String {
-    let clearances = dataset.labels.iter().zip(&windows.labels);
-    let clearances = clearances.filter_map(|(label, values)| {
-        let joint = label.joint.as_deref()?;
-        let faulty = windows.faults(window).any(|faulty| faulty == joint);
-        faulty.then(|| format!("{} {}", text::words(joint), text::clearance(values[window])))
-    });
-    let mut parts: Vec<String> = clearances.collect();
+fn described(dataset: &Dataset, window: usize) -> String {
+    let windows = &dataset.windows;
+    let clearances = windows.clearances(window);
+    let faulty = clearances.filter(|(joint, _)| windows.faults(window).any(|name| name == *joint));
+    let mut parts: Vec<String> = faulty
+        .map(|(joint, clearance)| format!("{} {}", text::words(joint), text::clearance(clearance)))
+        .collect();
     if parts.is_empty() {
-        parts.push(match windows.largest_clearance(dataset, window) {
+        parts.push(match windows.largest_clearance(window) {
             0.0 => "no clearance".to_owned(),
             largest => format!("clearances up to {}", text::clearance(largest)),
         });
     }
-    parts.push(operating_point(dataset, windows, window));
+    parts.push(operating_point(dataset, window));
     parts.join(", ")
 }
 
 /// Speed and discharge pressures of the window's case.
-pub(super) fn operating_point(dataset: &Dataset, windows: &Windows, window: usize) -> String {
-    let labels = dataset.labels.iter().zip(&windows.labels);
-    let parts = labels.filter_map(|(label, values)| {
-        let (factor, unit) = text::readable_unit(values[window], &label.unit);
-        let value = text::quantity(values[window] * factor, unit);
-        if label.column == "speed_rpm" {
-            Some(value)
-        } else if label.column.ends_with("discharge_pressure_pa") {
-            Some(format!("{} {value}", label.name))
-        } else {
-            None
+pub(super) fn operating_point(dataset: &Dataset, window: usize) -> String {
+    let parts = dataset.windows.labels.iter().filter_map(|label| {
+        let value = || words::value(label, window);
+        match label.meaning {
+            Meaning::Speed => Some(value()),
+            Meaning::Pressure {
+                side: Side::Discharge,
+                ..
+            } => Some(format!("{} {}", words::name(label), value())),
+            _ => None,
         }
     });
     parts.collect::<Vec<_>>().join(", ")

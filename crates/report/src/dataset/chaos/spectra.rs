@@ -1,10 +1,9 @@
 //! Spectra of the recordings of each class.
 
-use crate::Failure;
-use crate::report::dataset::Dataset;
-use crate::report::recording::Recording;
-use crate::report::windows::{Case, Windows};
-use ::report::chaos_page::{CaseChaos, ClassSpectra, Quartiles};
+use crate::Error;
+use crate::chaos_page::{CaseChaos, ClassSpectra, Quartiles};
+use crate::dataset::recording::Recording;
+use sweep::reader::Dataset;
 
 /// Windows of a class that its spectra are from, at most.
 pub(super) const MOST_WINDOWS: usize = 40;
@@ -15,17 +14,12 @@ const MOST_CLASSES: usize = 12;
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn by_class(
-    dataset: &Dataset,
-    windows: &Windows,
-    cases: &[Case],
-    known: &[CaseChaos],
-) -> Result<Vec<ClassSpectra>, Failure> {
+pub(super) fn by_class(dataset: &Dataset, known: &[CaseChaos]) -> Result<Vec<ClassSpectra>, Error> {
     if !dataset.has_signals() {
         return Ok(Vec::new());
     }
     let mut classes: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (case, known) in cases.iter().zip(known) {
+    for (case, known) in dataset.cases.iter().zip(known) {
         match classes.iter_mut().find(|(class, _)| *class == known.joints) {
             Some((_, own)) => own.extend(&case.windows),
             None => classes.push((&known.joints, case.windows.clone())),
@@ -34,7 +28,7 @@ pub(super) fn by_class(
     classes
         .into_iter()
         .take(MOST_CLASSES)
-        .map(|(class, own)| of_class(dataset, windows, class, &evenly(&own)))
+        .map(|(class, own)| of_class(dataset, class, &evenly(&own)))
         .collect()
 }
 
@@ -44,19 +38,17 @@ fn evenly(own: &[usize]) -> Vec<usize> {
     (0..count).map(|i| own[i * own.len() / count]).collect()
 }
 
-fn of_class(
-    dataset: &Dataset,
-    windows: &Windows,
-    class: &str,
-    own: &[usize],
-) -> Result<ClassSpectra, Failure> {
+fn of_class(dataset: &Dataset, class: &str, own: &[usize]) -> Result<ClassSpectra, Error> {
     let (mut densities, mut envelopes) = (Vec::new(), Vec::new());
     let (mut frequencies, mut orders) = (Vec::new(), Vec::new());
     for &window in own {
-        let Some((sensor, _)) = dataset.sensors.first_of_fault(&windows.fault[window]) else {
+        let Some(sensor) = dataset
+            .sensors
+            .first_of_fault(&dataset.windows.fault[window])
+        else {
             continue;
         };
-        let recording = Recording::read(dataset, windows, window, sensor)?;
+        let recording = Recording::read(dataset, window, sensor)?;
         let (at, density) = recording.density()?;
         frequencies = at;
         densities.push(density);

@@ -1,18 +1,17 @@
 //! The columns of the tables, features named once for all channels and orders.
 
-use super::dataset::Dataset;
-use crate::Failure;
-use ::report::dataset_page::Column;
-use ::report::text;
+use crate::dataset_page::Column;
+use crate::{Error, text};
+use sweep::reader::{Dataset, Subset};
 
 /// The columns of a file of either table. Of features there are hundreds: those of the first
 /// channel stand for all, and a numbered row of them is one line.
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn columns(dataset: &Dataset) -> Result<Vec<Column>, Failure> {
-    let signals = of_table(dataset, "signals")?;
-    let mut features = of_table(dataset, "features")?;
+pub(super) fn columns(dataset: &Dataset) -> Result<Vec<Column>, Error> {
+    let signals = of_table(dataset, Subset::Signals)?;
+    let mut features = of_table(dataset, Subset::Features)?;
     let labels: Vec<String> = signals.iter().map(|column| column.name.clone()).collect();
     let first = dataset.plan.channels().into_iter().next();
     let channel = match (dataset.sensors.channels(), first) {
@@ -35,19 +34,15 @@ fn is_feature(dataset: &Dataset, column: &str) -> bool {
         .any(|definition| definition.name == column)
 }
 
-fn of_table(dataset: &Dataset, table: &str) -> Result<Vec<Column>, Failure> {
-    let Some(path) = dataset.files(table).into_iter().next() else {
-        return Ok(Vec::new());
-    };
-    let file = dataset.table(&path)?;
-    let columns = file.schema().columns().iter();
+fn of_table(dataset: &Dataset, table: Subset) -> Result<Vec<Column>, Error> {
+    let columns = dataset.columns(table)?.into_iter();
     Ok(columns
         .map(|column| Column {
-            table: table.to_owned(),
-            name: column.name.clone(),
+            table: table.name().to_owned(),
+            name: column.name,
             kind: column.kind.to_string(),
             unit: text::unit(column.unit.as_deref().unwrap_or_default()),
-            meaning: column.description.clone(),
+            meaning: column.description,
         })
         .collect())
 }

@@ -1,14 +1,13 @@
 //! The shown cases, simulated again as the sweep has them, without sensors.
 
 use super::shown::Shown;
-use crate::Failure;
-use crate::report::dataset::Dataset;
-use ::report::chaos_page::{CaseChaos, Motion, MotionRow, Orbit};
-use ::report::{classes, text};
+use crate::chaos_page::{CaseChaos, Motion, MotionRow, Orbit};
+use crate::{Error, classes, text};
 use simulate::poincare::{Joint, SectionSettings, Sections, sections};
-use simulate::{Error, JointTrace, Settings, Transient, simulate};
+use simulate::{JointTrace, Settings, Transient, simulate};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
+use sweep::reader::Dataset;
 use sweep::{Case, Plan};
 
 /// Revolutions of a portrait or an orbit, as many as the page draws.
@@ -24,7 +23,7 @@ pub(super) fn rows(
     dataset: &Dataset,
     known: &[CaseChaos],
     shown: &Shown,
-) -> Result<Vec<MotionRow>, Failure> {
+) -> Result<Vec<MotionRow>, Error> {
     let wanted: Vec<usize> = shown
         .rows
         .iter()
@@ -59,8 +58,8 @@ pub(super) fn rows(
 /// The motion of each case by its number, as many at a time as there are processors.
 fn side_by_side(
     cases: &[usize],
-    motion: impl Fn(usize) -> Result<Motion, Failure> + Sync,
-) -> Result<BTreeMap<usize, Motion>, Failure> {
+    motion: impl Fn(usize) -> Result<Motion, Error> + Sync,
+) -> Result<BTreeMap<usize, Motion>, Error> {
     let threads = std::thread::available_parallelism().map_or(1, Into::into);
     let (next, made) = (Mutex::new(cases.iter()), Mutex::new(BTreeMap::new()));
     let work = || {
@@ -91,15 +90,12 @@ fn throw(plan: &Plan, joints: &str) -> usize {
     places.min().unwrap_or(0)
 }
 
-fn motion(plan: &Plan, known: &CaseChaos, throw: usize) -> Result<Motion, Failure> {
-    let failed =
-        |error: &dyn std::fmt::Display| Failure::work(format!("{}: {error}", known.case_id));
-    let index = known
-        .case_id
-        .rsplit('-')
-        .next()
-        .and_then(|digits| digits.parse().ok());
-    let Some(index) = index.filter(|index| *index < plan.cases()) else {
+fn motion(plan: &Plan, known: &CaseChaos, throw: usize) -> Result<Motion, Error> {
+    let failed = |error: &dyn std::fmt::Display| Error::Motion {
+        case_id: known.case_id.clone(),
+        reason: error.to_string(),
+    };
+    let Some(index) = plan.case_index(&known.case_id) else {
         return Err(failed(&"no case of this name in sweep.yaml"));
     };
     let case = plan.case(index).map_err(|error| failed(&error))?;
@@ -161,7 +157,7 @@ fn motion(plan: &Plan, known: &CaseChaos, throw: usize) -> Result<Motion, Failur
 }
 
 /// The sections over the recorded revolutions; none of a free crank that stalls.
-fn once_a_revolution(case: &Case) -> Result<Sections, Error> {
+fn once_a_revolution(case: &Case) -> Result<Sections, simulate::Error> {
     let settings = SectionSettings {
         transient: match case.settings.transient {
             Transient::Revolutions(count) => count,
@@ -172,7 +168,7 @@ fn once_a_revolution(case: &Case) -> Result<Sections, Error> {
         ..SectionSettings::default()
     };
     match sections(&case.resolved.machine, &settings) {
-        Err(Error::Stalled { .. }) => Ok(Sections {
+        Err(simulate::Error::Stalled { .. }) => Ok(Sections {
             joints: Vec::new(),
             revolutions: Vec::new(),
         }),

@@ -1,11 +1,9 @@
 //! Which cases' motion is shown.
 
-use crate::report::dataset::Dataset;
-use crate::report::examples::{nearest_median, operating_point};
-use crate::report::grid::all_else;
-use crate::report::windows::{Case, Windows};
-use ::report::chaos_page::CaseChaos;
-use ::report::{classes, text};
+use crate::chaos_page::CaseChaos;
+use crate::dataset::examples::{nearest_median, operating_point};
+use crate::{classes, text};
+use sweep::reader::Dataset;
 
 /// At most this many rows, and cases in a row.
 const MOST_ROWS: usize = 6;
@@ -21,12 +19,7 @@ pub(super) struct Shown {
 
 /// Of a grid the cases of the first operating point: a row for each set of joints, a column for
 /// each clearance. Of other sweeps a typical case for each set of joints.
-pub(super) fn shown(
-    dataset: &Dataset,
-    windows: &Windows,
-    cases: &[Case],
-    known: &[CaseChaos],
-) -> Shown {
+pub(super) fn shown(dataset: &Dataset, known: &[CaseChaos]) -> Shown {
     let clear: Vec<usize> = (0..known.len())
         .filter(|&i| known[i].clearance_m > 0.0)
         .collect();
@@ -36,7 +29,7 @@ pub(super) fn shown(
             rule: String::new(),
         };
     };
-    let key = |i: usize| all_else(dataset, windows, cases[i].first);
+    let key = |i: usize| dataset.windows.all_else(dataset.cases[i].first);
     let wanted = key(first);
     let point: Vec<usize> = clear
         .iter()
@@ -47,7 +40,7 @@ pub(super) fn shown(
     clearances.sort_by(f64::total_cmp);
     clearances.dedup();
     if clearances.len() > 1 {
-        let words = operating_point(dataset, windows, cases[first].first);
+        let words = operating_point(dataset, dataset.cases[first].first);
         grid(known, &point, &clearances, &words)
     } else {
         typical(known, &clear)

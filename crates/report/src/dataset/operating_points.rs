@@ -1,9 +1,9 @@
 //! What sets the operating points of a sweep apart.
 
-use super::dataset::Dataset;
-use super::windows::Windows;
-use ::report::text;
+use super::words;
+use crate::text;
 use serde_json::Value;
+use sweep::reader::{Dataset, Meaning};
 
 /// The values that are not the same at all operating points, in words.
 pub(super) struct Settings {
@@ -12,36 +12,24 @@ pub(super) struct Settings {
 }
 
 impl Settings {
-    /// Of operating points of which each has one window of `windows`. Values that go together, such
+    /// Of operating points of which each has one of the windows `points`. Values that go together, such
     /// as the damping of several joints, are one.
-    pub(super) fn of(dataset: &Dataset, windows: &Windows, points: &[usize]) -> Self {
-        let parameters = &dataset.plan.parameters;
-        let in_numbers = parameters
-            .iter()
-            .filter(|p| p.is_number)
-            .map(|p| p.path.as_str());
-        let before = dataset.labels.len() - in_numbers.clone().count();
-        let named = dataset.labels[..before]
-            .iter()
-            .map(|label| vec![label.name.clone()]);
-        let names: Vec<Vec<String>> = named.chain(in_numbers.map(segments)).collect();
-        let numbers = names
-            .into_iter()
-            .zip(dataset.labels.iter().zip(&windows.labels));
+    pub(super) fn of(dataset: &Dataset, points: &[usize]) -> Self {
+        let numbers = dataset.windows.labels.iter();
+        let numbers = numbers.filter(|label| label.joint().is_none());
         let mut columns: Vec<(Vec<String>, Vec<String>)> = numbers
-            .filter(|(_, (label, _))| label.joint.is_none())
-            .map(|(name, (label, values))| {
-                let shown = points.iter().map(|&window| {
-                    let (factor, unit) = text::readable_unit(values[window], &label.unit);
-                    text::quantity(values[window] * factor, unit)
-                });
+            .map(|label| {
+                let name = match &label.meaning {
+                    Meaning::Parameter(path) => segments(path),
+                    _ => vec![words::name(label)],
+                };
+                let shown = points.iter().map(|&window| words::value(label, window));
                 (name, shown.collect())
             })
             .collect();
-        let paths = parameters.iter().filter(|p| !p.is_number);
-        for (parameter, values) in paths.zip(&windows.texts) {
-            let own: Vec<&str> = points.iter().map(|&w| values[w].as_str()).collect();
-            columns.extend(parts(&segments(&parameter.path), &own));
+        for text in &dataset.windows.texts {
+            let own: Vec<&str> = points.iter().map(|&w| text.values[w].as_str()).collect();
+            columns.extend(parts(&segments(&text.path), &own));
         }
         columns.retain(|(_, values)| values.iter().any(|value| *value != values[0]));
         let mut together: Vec<(Vec<Vec<String>>, Vec<String>)> = Vec::new();

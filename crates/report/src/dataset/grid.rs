@@ -1,17 +1,14 @@
 //! Sweeps that compare joints and clearances, all else equal.
 
-use super::chaos::Regimes;
-use super::dataset::Dataset;
 use super::examples::operating_point;
-use super::features::{HIGH_FROM_HZ, PEAK, RMS};
+use super::features::HIGH_FROM_HZ;
 use super::operating_points::Settings;
 use super::recording::Recording;
-use super::windows::{Case, Windows};
-use crate::Failure;
-use ::report::Level;
-use ::report::dataset_page::{CaseLevel, ClearanceGrid, JointSet, Response};
-use ::report::text;
+use super::{chaos, words};
+use crate::dataset_page::{CaseLevel, ClearanceGrid, JointSet, Response};
+use crate::{Error, Level};
 use std::collections::{BTreeMap, BTreeSet};
+use sweep::reader::{Case, Dataset, Motions};
 
 /// At most this many grids have figures: more would not fit on a page that a browser opens at once,
 /// nor their recordings in little memory.
@@ -38,17 +35,12 @@ pub(super) struct Grids {
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn grids(
-    dataset: &Dataset,
-    windows: &Windows,
-    cases: &[Case],
-    regimes: Option<&Regimes>,
-) -> Result<Option<Grids>, Failure> {
-    let operating_points = operating_points(dataset, windows, cases);
+pub(super) fn grids(dataset: &Dataset, motions: Option<&Motions>) -> Result<Option<Grids>, Error> {
+    let operating_points = operating_points(dataset);
     let firsts = operating_points
         .iter()
         .map(|points| points[0].cases[0].first);
-    let settings = Settings::of(dataset, windows, &firsts.collect::<Vec<_>>());
+    let settings = Settings::of(dataset, &firsts.collect::<Vec<_>>());
     let sensors = dataset.sensors.channels().len();
     let all: Vec<(usize, usize)> = (0..operating_points.len())
         .flat_map(|at| (0..sensors.max(1)).map(move |sensor| (at, sensor)))
@@ -64,10 +56,9 @@ pub(super) fn grids(
     for &(at, sensor) in all.iter().take(MOST_GRIDS) {
         let context = Context {
             dataset,
-            windows,
             sensor: (sensors > 0).then_some(sensor),
             draws: dataset.has_signals() && shown.len() < MOST_DRAWN,
-            regimes,
+            motions,
         };
         let mut grid = context.grid(&operating_points[at])?;
         grid.settings = settings.at(at);
@@ -87,16 +78,15 @@ fn judged(dataset: &Dataset, point: &Point, sensor: usize) -> bool {
 /// What a grid is made from.
 struct Context<'a> {
     dataset: &'a Dataset,
-    windows: &'a Windows,
     /// The sensor that it is seen by; none where the dataset has none.
     sensor: Option<usize>,
     /// Whether it has figures.
     draws: bool,
-    regimes: Option<&'a Regimes>,
+    motions: Option<&'a Motions>,
 }
 
 impl Context<'_> {
-    fn grid(&self, points: &[Point]) -> Result<ClearanceGrid, Failure> {
+    fn grid(&self, points: &[Point]) -> Result<ClearanceGrid, Error> {
         let seen = |point: &&Point| {
             let sensor = self.sensor;
             sensor.is_none_or(|sensor| judged(self.dataset, point, sensor))
@@ -126,12 +116,11 @@ impl Context<'_> {
             None => Vec::new(),
         };
         Ok(ClearanceGrid {
-            operating_point: operating_point(self.dataset, self.windows, points[0].cases[0].first),
+            operating_point: operating_point(self.dataset, points[0].cases[0].first),
             settings: Vec::new(),
-            sensor: match (self.sensor, self.dataset.sensors.channels()) {
-                (Some(sensor), channels) if channels.len() > 1 => text::words(&channels[sensor]),
-                _ => String::new(),
-            },
+            sensor: self
+                .sensor
+                .map_or(String::new(), |sensor| words::sensor(self.dataset, sensor)),
             ideal: match (ideal, drawn) {
                 (Some(point), Some(sensor)) => Some(self.response(point, sensor)?),
                 _ => None,
@@ -142,14 +131,14 @@ impl Context<'_> {
         })
     }
 
-    fn response(&self, point: &Point, sensor: usize) -> Result<Response, Failure> {
-        Recording::read(self.dataset, self.windows, point.cases[0].first, sensor)?.response()
+    fn response(&self, point: &Point, sensor: usize) -> Result<Response, Error> {
+        Recording::read(self.dataset, point.cases[0].first, sensor)?.response()
     }
 
     /// The levels of a point over all windows of all its cases. The spread is that over the windows,
     /// or over the revolutions where there is one window alone and its recording is at hand.
-    fn level(&self, point: &Point, sensor: usize) -> Result<CaseLevel, Failure> {
-        let measured = &self.windows.measured[sensor];
+    fn level(&self, point: &Point, sensor: usize) -> Result<CaseLevel, Error> {
+        let measured = &self.dataset.windows.measured[sensor];
         let own: Vec<usize> = point
             .cases
             .iter()
@@ -157,19 +146,21 @@ impl Context<'_> {
             .copied()
             .collect();
         let of = |value: &dyn Fn(usize) -> f64| own.iter().map(|&w| value(w)).collect::<Vec<_>>();
-        let high = of(&|w| measured.high_rms[w].powi(2));
-        let variance: f64 = of(&|w| measured.variance[w]).iter().sum();
+        let high = of(&|w| measured.rms_from(HIGH_FROM_HZ, w).powi(2));
+        let variance: f64 = of(&|w| measured.variance(w)).iter().sum();
         let mut level = CaseLevel {
             joints: point.fault.to_owned(),
             clearance_m: point.clearance_m,
-            rms: Level::root_mean(&of(&|w| measured.shown[RMS][w].powi(2))),
-            peak: Level::largest(&of(&|w| measured.shown[PEAK][w])),
+            rms: Level::root_mean(&of(&|w| measured.rms[w].powi(2))),
+            peak: Level::largest(&of(&|w| measured.peak[w])),
             high_rms: Level::root_mean(&high),
             high_share: high.iter().sum::<f64>() / variance,
-            chaotic: self.regimes.and_then(|r| r.chaotic(point.cases[0].first)),
+            chaotic: self
+                .motions
+                .and_then(|m| chaos::is_chaotic(m, point.cases[0].first)),
         };
         if own.len() == 1 && self.dataset.has_signals() {
-            let recording = Recording::read(self.dataset, self.windows, own[0], sensor)?;
+            let recording = Recording::read(self.dataset, own[0], sensor)?;
             let spread = recording.spread(HIGH_FROM_HZ)?;
             level.peak.spread = spread.peak;
             level.rms.spread = spread.rms;
@@ -180,24 +171,20 @@ impl Context<'_> {
 }
 
 /// The points of each operating point that makes a grid, in the order of the sweep.
-fn operating_points<'a>(
-    dataset: &Dataset,
-    windows: &'a Windows,
-    cases: &'a [Case],
-) -> Vec<Vec<Point<'a>>> {
+fn operating_points(dataset: &Dataset) -> Vec<Vec<Point<'_>>> {
     let mut by_operating_point: Vec<Vec<Point>> = Vec::new();
     let mut index: BTreeMap<Vec<String>, usize> = BTreeMap::new();
-    for case in cases {
-        let Some(clearance_m) = common_clearance(dataset, windows, case.first) else {
+    for case in &dataset.cases {
+        let Some(clearance_m) = common_clearance(dataset, case.first) else {
             continue;
         };
-        let key = all_else(dataset, windows, case.first);
+        let key = dataset.windows.all_else(case.first);
         let at = *index.entry(key).or_insert_with(|| {
             by_operating_point.push(Vec::new());
             by_operating_point.len() - 1
         });
         let points = &mut by_operating_point[at];
-        let fault = windows.fault[case.first].as_str();
+        let fault = dataset.windows.fault[case.first].as_str();
         let same = |p: &&mut Point| p.fault == fault && p.clearance_m == clearance_m;
         match points.iter_mut().find(same) {
             Some(point) => point.cases.push(case),
@@ -229,28 +216,17 @@ fn is_grid(points: &[Point]) -> bool {
 /// The clearance that all faulty joints of the window's case have; 0 for a machine without any.
 /// None where they differ, where a machine without fault has clearance, and where the case has an
 /// effect as a fault.
-fn common_clearance(dataset: &Dataset, windows: &Windows, window: usize) -> Option<f64> {
-    let largest = windows.largest_clearance(dataset, window);
+fn common_clearance(dataset: &Dataset, window: usize) -> Option<f64> {
+    let windows = &dataset.windows;
+    let largest = windows.largest_clearance(window);
     let mut faulty = windows.faults(window).peekable();
     if faulty.peek().is_none() {
         return (largest == 0.0).then_some(0.0);
     }
     let clearance = |joint: &str| {
-        let of = dataset
-            .labels
-            .iter()
-            .position(|l| l.joint.as_deref() == Some(joint));
-        of.map(|at| windows.labels[at][window])
+        let mut all = windows.clearances(window);
+        all.find(|(name, _)| *name == joint).map(|(_, at)| at)
     };
     let alike = faulty.all(|joint| clearance(joint) == Some(largest));
     alike.then_some(largest)
-}
-
-/// Everything that is said about the case but its clearances.
-pub(super) fn all_else(dataset: &Dataset, windows: &Windows, window: usize) -> Vec<String> {
-    let labels = dataset.labels.iter().zip(&windows.labels);
-    let numbers = labels.filter(|(label, _)| label.joint.is_none());
-    let numbers = numbers.map(|(_, values)| format!("{:e}", values[window]));
-    let texts = windows.texts.iter().map(|values| values[window].clone());
-    numbers.chain(texts).collect()
 }

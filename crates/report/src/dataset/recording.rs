@@ -1,10 +1,7 @@
 //! The recording of one window, and what is analysed in it.
 
-use super::dataset::{CRANK_ANGLE, Dataset};
-use super::windows::Windows;
-use crate::Failure;
-use ::report::Level;
-use ::report::dataset_page::{Response, Spectrum};
+use crate::dataset_page::{Response, Spectrum};
+use crate::{Error, Level};
 use signal::amplitude_spectrum::amplitude_spectrum;
 use signal::angle_resampling::{AngleGrid, Revolutions};
 use signal::crank_angle::CrankAngle;
@@ -15,6 +12,7 @@ use signal::phase_portrait::PhasePortrait;
 use signal::welch::welch;
 use signal::windows::Window;
 use std::f64::consts::TAU;
+use sweep::reader::{Dataset, SignalRow};
 
 /// Highest order of the crank's speed in order spectra.
 const HIGHEST_ORDER: usize = 100;
@@ -47,35 +45,17 @@ impl Recording {
     ///
     /// # Errors
     /// A table that is damaged, lacks the channel, or holds samples that are no motion of a crank.
-    pub(super) fn read(
-        dataset: &Dataset,
-        windows: &Windows,
-        window: usize,
-        sensor: usize,
-    ) -> Result<Self, Failure> {
-        let (file, row) = windows.place[window];
-        let path = windows.files[file].replacen("features/", "signals/", 1);
-        let read = Row::read(dataset, &path, row, &dataset.sensors.channels()[sensor]).map_err(
-            |error| match error {
-                Unreadable::Open(failure) => failure,
-                Unreadable::Read(error) => dataset.unreadable(&path, error),
-            },
-        )?;
-        let place = || format!("{}: row {row}", dataset.folder.join(&path).display());
-        if read.case_id != windows.case_id[window] {
-            return Err(Failure::input(format!(
-                "{} is of {}, that of the features of {}: they are not of one dataset",
-                place(),
-                read.case_id,
-                windows.case_id[window]
-            )));
-        }
-        let case_id = read.case_id.clone();
-        Self::analyse(read, path.clone())
-            .map_err(|error| Failure::input(format!("{}, {case_id}: {error}", place())))
+    pub(super) fn read(dataset: &Dataset, window: usize, sensor: usize) -> Result<Self, Error> {
+        let row = dataset.signal(window, sensor)?;
+        let (place, case_id) = (row.place.clone(), row.case_id.clone());
+        Self::analyse(row).map_err(|error| Error::Recording {
+            place,
+            case_id,
+            error,
+        })
     }
 
-    fn analyse(row: Row, file: String) -> Result<Self, signal::Error> {
+    fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
         let angle = match &row.crank_angle {
             Some(readings) => CrankAngle::from_encoder(readings)?,
             None => {
@@ -87,7 +67,7 @@ impl Recording {
         let revolutions = grid.resample(&row.acceleration)?;
         Ok(Self {
             case_id: row.case_id,
-            file,
+            file: row.file,
             sample_rate_hz: row.sample_rate_hz,
             acceleration: row.acceleration,
             angle,
@@ -100,9 +80,8 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: the parts belong together.
-    pub(super) fn response(&self) -> Result<Response, Failure> {
-        let portrait = PhasePortrait::new(&self.revolutions, &self.grid, self.sample_rate_hz)
-            .map_err(Failure::work)?;
+    pub(super) fn response(&self) -> Result<Response, Error> {
+        let portrait = PhasePortrait::new(&self.revolutions, &self.grid, self.sample_rate_hz)?;
         let start = self.start();
         let step = TAU / self.revolutions.points_per_revolution() as f64;
         let velocity = portrait.velocity();
@@ -128,7 +107,7 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: a revolution has a spectrum.
-    pub(super) fn spread(&self, high_from_hz: f64) -> Result<Spread, Failure> {
+    pub(super) fn spread(&self, high_from_hz: f64) -> Result<Spread, Error> {
         let points = self.revolutions.points_per_revolution();
         let shaft_hz = self.sample_rate_hz / self.grid.samples_per_revolution();
         let (mut peaks, mut squares, mut high) = (Vec::new(), Vec::new(), Vec::new());
@@ -137,7 +116,7 @@ impl Recording {
             peaks.push(part.iter().fold(0.0_f64, |peak, a| peak.max(a.abs())));
             squares.push(part.iter().map(|a| a * a).sum::<f64>() / part.len() as f64);
             let spectrum = amplitude_spectrum(part, points as f64, Window::Rectangular);
-            let spectrum = spectrum.map_err(Failure::work)?;
+            let spectrum = spectrum?;
             let orders = spectrum.frequencies().zip(&spectrum.amplitude);
             let above = orders.filter(|(order, _)| order * shaft_hz >= high_from_hz);
             high.push(
@@ -170,7 +149,7 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: a recording has a revolution.
-    pub(super) fn spectrum(&self) -> Result<Spectrum, Failure> {
+    pub(super) fn spectrum(&self) -> Result<Spectrum, Error> {
         let revolution = self.angle.samples_per_revolution().round() as usize;
         let length = (2 * revolution).min(self.acceleration.len());
         let mut squares = vec![0.0; length / 2 + 1];
@@ -178,8 +157,7 @@ impl Recording {
         let stretches = self.acceleration.windows(length).step_by(revolution.max(1));
         let count = stretches.len() as f64;
         for stretch in stretches {
-            let spectrum = amplitude_spectrum(stretch, self.sample_rate_hz, Window::Hann)
-                .map_err(Failure::work)?;
+            let spectrum = amplitude_spectrum(stretch, self.sample_rate_hz, Window::Hann)?;
             at = spectrum.frequencies().collect();
             for (square, amplitude) in squares.iter_mut().zip(&spectrum.amplitude) {
                 *square += amplitude * amplitude / count;
@@ -195,9 +173,9 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: no order is asked for that the grid does not have.
-    pub(super) fn order_spectrum(&self) -> Result<Spectrum, Failure> {
+    pub(super) fn order_spectrum(&self) -> Result<Spectrum, Error> {
         let highest = self.grid.highest_order().min(HIGHEST_ORDER);
-        let spectrum = order_spectrum(&self.revolutions, highest).map_err(Failure::work)?;
+        let spectrum = order_spectrum(&self.revolutions, highest)?;
         Ok(Spectrum {
             at: (1..=highest).map(|order| order as f64).collect(),
             amplitude_m_s2: spectrum.rms,
@@ -217,15 +195,14 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: a recording has two samples.
-    pub(super) fn density(&self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    pub(super) fn density(&self) -> Result<(Vec<f64>, Vec<f64>), Error> {
         let segment = SEGMENT.min(self.acceleration.len());
         let density = welch(
             &self.acceleration,
             self.sample_rate_hz,
             Window::Hann,
             segment,
-        )
-        .map_err(Failure::work)?;
+        )?;
         let at = (0..density.density.len()).map(|k| k as f64 * density.resolution);
         let amplitude = density.density.iter().map(|d| d.sqrt());
         // Without the mean, which the segments do not have.
@@ -259,53 +236,5 @@ impl Recording {
         }
         let orders = (1..=bins).map(|bin| bin as f64 * ORDER_BIN);
         Some((orders.collect(), highest))
-    }
-}
-
-/// What a row of the table of signals holds for the page.
-struct Row {
-    case_id: String,
-    speed_rpm: f64,
-    sample_rate_hz: f64,
-    acceleration: Vec<f64>,
-    crank_angle: Option<Vec<f64>>,
-}
-
-enum Unreadable {
-    Open(Failure),
-    Read(recordings::Error),
-}
-
-impl Row {
-    fn read(dataset: &Dataset, path: &str, row: usize, channel: &str) -> Result<Self, Unreadable> {
-        let file = dataset.table(path).map_err(Unreadable::Open)?;
-        let acceleration = format!("{channel}_m_s2");
-        let mut names = vec!["case_id", "speed_rpm", "sample_rate_hz", &acceleration];
-        let has_angle = dataset.has_crank_angle();
-        if has_angle {
-            names.push(CRANK_ANGLE);
-        }
-        let table = file.read(&names, row..row + 1).map_err(Unreadable::Read)?;
-        let real = |name: &str| {
-            let value = table.values::<f64>(name).map(|values| values[0]);
-            value
-                .map(Option::unwrap_or_default)
-                .map_err(Unreadable::Read)
-        };
-        let samples = |name: &str| -> Result<Vec<f64>, Unreadable> {
-            let values = table.values::<Vec<f32>>(name).map_err(Unreadable::Read)?;
-            Ok(values[0].iter().flatten().map(|x| f64::from(*x)).collect())
-        };
-        Ok(Self {
-            case_id: table
-                .values::<String>("case_id")
-                .map_err(Unreadable::Read)?[0]
-                .clone()
-                .unwrap_or_default(),
-            speed_rpm: real("speed_rpm")?,
-            sample_rate_hz: real("sample_rate_hz")?,
-            acceleration: samples(&acceleration)?,
-            crank_angle: has_angle.then(|| samples(CRANK_ANGLE)).transpose()?,
-        })
     }
 }

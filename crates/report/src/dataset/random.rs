@@ -1,30 +1,27 @@
 //! Sweeps drawn at random: how parameters lie, and how features go with clearance.
 
-use super::dataset::Dataset;
-use super::features::{CREST, KURTOSIS, Measured, RMS, high_name};
-use super::windows::{Case, Windows};
-use ::report::dataset_page::{FaultCount, Histogram, RandomSweep, Scatter};
-use ::report::text;
+use super::features::{high_name, high_rms};
+use super::words;
+use crate::dataset_page::{FaultCount, Histogram, RandomSweep, Scatter};
+use crate::text;
+use sweep::reader::{ChannelFeatures, Dataset};
 
-pub(super) fn sweep(
-    dataset: &Dataset,
-    windows: &Windows,
-    cases: &[Case],
-    faults: &[FaultCount],
-) -> RandomSweep {
+pub(super) fn sweep(dataset: &Dataset, faults: &[FaultCount]) -> RandomSweep {
     RandomSweep {
-        histograms: histograms(dataset, windows, cases),
-        scatters: scatters(dataset, windows, faults),
+        histograms: histograms(dataset),
+        scatters: scatters(dataset, faults),
     }
 }
 
 /// Of every label that is not the same for all cases.
-fn histograms(dataset: &Dataset, windows: &Windows, cases: &[Case]) -> Vec<Histogram> {
-    let all = dataset.labels.iter().zip(&windows.labels);
-    let histograms = all.map(|(label, values)| Histogram {
-        name: label.name.clone(),
-        unit: label.unit.clone(),
-        values: cases.iter().map(|case| values[case.first]).collect(),
+fn histograms(dataset: &Dataset) -> Vec<Histogram> {
+    let histograms = dataset.windows.labels.iter().map(|label| {
+        let cases = dataset.cases.iter();
+        Histogram {
+            name: words::name(label),
+            unit: text::unit(&label.unit),
+            values: cases.map(|case| label.values[case.first]).collect(),
+        }
     });
     histograms
         .filter(|histogram| {
@@ -39,16 +36,16 @@ fn histograms(dataset: &Dataset, windows: &Windows, cases: &[Case]) -> Vec<Histo
 
 /// Features against the largest clearance as each sensor reads them, a point for each window whose
 /// fault the sensor judges.
-fn scatters(dataset: &Dataset, windows: &Windows, faults: &[FaultCount]) -> Vec<Scatter> {
+fn scatters(dataset: &Dataset, faults: &[FaultCount]) -> Vec<Scatter> {
+    let windows = &dataset.windows;
     let clearances: Vec<f64> = (0..windows.count())
-        .map(|window| windows.largest_clearance(dataset, window))
+        .map(|window| windows.largest_clearance(window))
         .collect();
-    let several = dataset.sensors.channels().len() > 1;
-    let of_sensor = |(sensor, measured): (usize, &Measured)| {
+    let of_sensor = |(sensor, measured): (usize, &ChannelFeatures)| {
         let judged = |count: &&FaultCount| dataset.sensors.of_fault(&count.fault).contains(&sensor);
-        let place = match several {
-            true => format!(", {}", text::words(&dataset.sensors.channels()[sensor])),
-            false => String::new(),
+        let place = match words::sensor(dataset, sensor).as_str() {
+            "" => String::new(),
+            sensor => format!(", {sensor}"),
         };
         let scatter = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
             x: ("largest clearance".to_owned(), "m".to_owned()),
@@ -65,10 +62,10 @@ fn scatters(dataset: &Dataset, windows: &Windows, faults: &[FaultCount]) -> Vec<
                 .collect(),
         };
         [
-            scatter("rms", "m/s²", false, &measured.shown[RMS]),
-            scatter(&high_name(), "m/s²", true, &measured.high_rms),
-            scatter("crest factor", "", false, &measured.shown[CREST]),
-            scatter("kurtosis", "", true, &measured.shown[KURTOSIS]),
+            scatter("rms", "m/s²", false, &measured.rms),
+            scatter(&high_name(), "m/s²", true, &high_rms(measured)),
+            scatter("crest factor", "", false, &measured.crest_factor),
+            scatter("kurtosis", "", true, &measured.kurtosis),
         ]
     };
     let sensors = windows.measured.iter().enumerate();

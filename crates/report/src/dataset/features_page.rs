@@ -1,10 +1,9 @@
 //! The page that documents the features, from their one table and the columns of the files.
 
-use super::dataset::Dataset;
-use crate::Failure;
-use ::report::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
-use ::report::text;
+use crate::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
+use crate::{Error, text};
 use features::{Definition, Group};
+use sweep::reader::{Dataset, Subset};
 
 /// The groups with their headings.
 const GROUPS: [(Group, &str); 8] = [
@@ -23,7 +22,7 @@ const GROUPS: [(Group, &str); 8] = [
 
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Failure> {
+pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Error> {
     let channels = dataset.plan.channels();
     let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
     let columns = features::columns(named, dataset.plan.chaos).into_iter();
@@ -38,7 +37,7 @@ pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Failure> {
     let groups = groups.filter(|group| !group.features.is_empty()).collect();
     Ok(FeaturesPage {
         name: dataset.plan.name.clone(),
-        version: dataset.manifest.version.clone(),
+        version: dataset.manifest().version.clone(),
         groups,
         columns: labels(dataset, &definitions)?,
     })
@@ -91,22 +90,18 @@ fn entries<'a>(definitions: impl Iterator<Item = &'a Definition>) -> Vec<Feature
 }
 
 /// The columns of the table of features that are no features.
-fn labels(dataset: &Dataset, definitions: &[Definition]) -> Result<Vec<LabelColumn>, Failure> {
-    let Some(path) = dataset.files("features").into_iter().next() else {
-        return Ok(Vec::new());
-    };
-    let file = dataset.table(&path)?;
-    let columns = file.schema().columns().iter();
+fn labels(dataset: &Dataset, definitions: &[Definition]) -> Result<Vec<LabelColumn>, Error> {
+    let columns = dataset.columns(Subset::Features)?.into_iter();
     let others = columns.filter(|column| {
         definitions
             .iter()
             .all(|definition| definition.name != column.name)
     });
     let labels = others.map(|column| LabelColumn {
-        name: column.name.clone(),
+        name: column.name,
         kind: column.kind.to_string(),
         unit: text::unit(column.unit.as_deref().unwrap_or_default()),
-        meaning: column.description.clone(),
+        meaning: column.description,
     });
     Ok(labels.collect())
 }
