@@ -15,7 +15,7 @@ use std::path::Path;
 pub struct AllowOutside {
     /// Read recordings outside of the bundle's folder, too, where its recordings.yaml names them
     #[arg(long)]
-    allow_outside: bool,
+    pub allow_outside: bool,
 }
 
 impl AllowOutside {

@@ -30,7 +30,7 @@ pub use kept::check_calibration;
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};
-pub use tables::{Tables, feature_column};
+pub use tables::Tables;
 pub use trial::{Trial, try_here};
 pub use verify::{Fault, Verified, damage, verify};
 

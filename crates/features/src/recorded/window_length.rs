@@ -1,7 +1,6 @@
 //! How long windows are.
 
-use crate::Failure;
-use ::features::FEWEST_SAMPLES;
+use crate::FEWEST_SAMPLES;
 use input::quantity::{AboveZero, Duration, Quantity};
 use recordings::measured::Length;
 
@@ -12,19 +11,23 @@ const DEFAULT_SAMPLES: f64 = 1e5;
 /// The longest window, in samples: its analysis takes about 100 bytes for each.
 const MOST_SAMPLES: f64 = (1 << 24) as f64;
 
-/// What `--window` asks for.
+/// How long the windows are to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Asked {
-    Nothing,
+pub enum WindowLength {
+    /// The whole of a short recording, stretches of a set length of a longer one.
+    Default,
+    /// So many seconds.
     Seconds(f64),
+    /// So many revolutions of the crank.
     Revolutions(f64),
 }
 
-impl Asked {
-    pub(super) fn parse(text: Option<&str>) -> Result<Self, Failure> {
-        let Some(text) = text else {
-            return Ok(Self::Nothing);
-        };
+impl WindowLength {
+    /// A duration (`2 s`) or revolutions (`10 revolutions`).
+    ///
+    /// # Errors
+    /// What was found instead.
+    pub fn parse(text: &str) -> Result<Self, String> {
         if let Some((number, "revolution" | "revolutions" | "rev")) = text.trim().rsplit_once(' ')
             && let Some(count) = number
                 .trim()
@@ -34,24 +37,19 @@ impl Asked {
         {
             return Ok(Self::Revolutions(count));
         }
-        match Quantity::<Duration, AboveZero>::parse(text) {
-            Ok(seconds) => Ok(Self::Seconds(seconds.si())),
-            Err(found) => Err(Failure::input(format!(
-                "--window: found {found}, expected a duration, e.g. '2 s', or '10 revolutions'"
-            ))),
-        }
+        Quantity::<Duration, AboveZero>::parse(text).map(|seconds| Self::Seconds(seconds.si()))
     }
 
     /// The length in samples; `whole` where a recording is a window by itself.
-    pub(super) fn length(
+    pub(super) fn in_samples(
         self,
         sample_rate_hz: f64,
         speed_rpm: Option<f64>,
         whole: bool,
     ) -> Result<Length, String> {
         let samples = match (self, speed_rpm) {
-            (Self::Nothing, _) if whole => return Ok(Length::UpTo(MOST_SAMPLES as usize)),
-            (Self::Nothing, _) => {
+            (Self::Default, _) if whole => return Ok(Length::UpTo(MOST_SAMPLES as usize)),
+            (Self::Default, _) => {
                 let most = (DEFAULT_S * sample_rate_hz).clamp(DEFAULT_SAMPLES, MOST_SAMPLES);
                 return Ok(Length::UpTo(most as usize));
             }
@@ -84,20 +82,26 @@ mod tests {
 
     #[test]
     fn windows_are_seconds_or_revolutions() {
-        let parse = |text| Asked::parse(Some(text));
-        assert_eq!(parse("2 s").unwrap(), Asked::Seconds(2.0));
-        assert_eq!(parse("10 revolutions").unwrap(), Asked::Revolutions(10.0));
+        let parse = WindowLength::parse;
+        assert_eq!(parse("2 s").unwrap(), WindowLength::Seconds(2.0));
+        assert_eq!(
+            parse("10 revolutions").unwrap(),
+            WindowLength::Revolutions(10.0)
+        );
         for wrong in ["2", "-2 s", "0 revolutions", "x revolutions", "2 m", ""] {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
-        let length = |asked: Asked, speed| asked.length(1000.0, speed, false);
+        let length = |asked: WindowLength, speed| asked.in_samples(1000.0, speed, false);
         assert_eq!(
-            length(Asked::Revolutions(10.0), Some(600.0)),
+            length(WindowLength::Revolutions(10.0), Some(600.0)),
             Ok(Length::Equal(1000.0))
         );
-        assert_eq!(length(Asked::Nothing, None), Ok(Length::UpTo(100_000)));
-        assert!(length(Asked::Revolutions(10.0), None).is_err());
-        assert!(length(Asked::Seconds(0.05), None).is_err());
-        assert!(length(Asked::Seconds(1e6), None).is_err());
+        assert_eq!(
+            length(WindowLength::Default, None),
+            Ok(Length::UpTo(100_000))
+        );
+        assert!(length(WindowLength::Revolutions(10.0), None).is_err());
+        assert!(length(WindowLength::Seconds(0.05), None).is_err());
+        assert!(length(WindowLength::Seconds(1e6), None).is_err());
     }
 }

@@ -1,15 +1,15 @@
 //! What is said at the end: how many windows, what looks wrong, and which columns stay empty and why.
 
 use super::table::Row;
-use ::features::{Reason, Remedy};
+use crate::{Reason, Remedy};
 use recordings::{Schema, Value};
 use std::collections::BTreeMap;
 
 /// Files whose warnings are shown.
 const SHOWN: usize = 5;
 
-/// Counts over the rows.
-pub(super) struct Summary {
+/// Counts over the rows of a table.
+pub struct Summary {
     /// Of each column, whether any row has a value, and why the first one has none.
     filled: Vec<bool>,
     reasons: Vec<Option<Reason>>,
@@ -26,7 +26,8 @@ struct Warned {
 }
 
 impl Summary {
-    pub(super) fn new(columns: usize) -> Self {
+    /// Of a table with so many columns, before its first row.
+    pub fn new(columns: usize) -> Self {
         Self {
             filled: vec![false; columns],
             reasons: vec![None; columns],
@@ -36,7 +37,8 @@ impl Summary {
         }
     }
 
-    pub(super) fn add(&mut self, row: &mut Row) {
+    /// Counts a row; its reasons are taken.
+    pub fn add(&mut self, row: &mut Row) {
         self.rows += 1;
         self.bridged += row.bridged;
         for (filled, value) in self.filled.iter_mut().zip(&row.values) {
@@ -56,17 +58,18 @@ impl Summary {
         }
     }
 
-    pub(super) fn rows(&self) -> u64 {
+    /// Rows of the table.
+    pub fn rows(&self) -> u64 {
         self.rows
     }
 
     /// Samples that are bridged.
-    pub(super) fn bridged(&self) -> usize {
+    pub fn bridged(&self) -> usize {
         self.bridged
     }
 
     /// A line per file with warnings.
-    pub(super) fn warnings(&self) -> Vec<String> {
+    pub fn warnings(&self) -> Vec<String> {
         let shown = self.warnings.iter().take(SHOWN);
         let mut lines: Vec<String> = shown
             .map(|warned| {
@@ -85,7 +88,7 @@ impl Summary {
     }
 
     /// How many of the features are empty in every window, and what fills them.
-    pub(super) fn empty(&self, schema: &Schema) -> Vec<String> {
+    pub fn empty(&self, schema: &Schema) -> Vec<String> {
         let columns = schema.columns().iter().zip(&self.filled);
         let mut empty: BTreeMap<String, u64> = BTreeMap::new();
         for ((_, filled), reason) in columns.zip(&self.reasons) {
@@ -122,7 +125,7 @@ fn advice(reason: &Reason) -> String {
 }
 
 /// `1 window`, `2 windows`.
-pub(super) fn counted(count: u64, what: &str) -> String {
+pub fn counted(count: u64, what: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {what}{plural}")
 }

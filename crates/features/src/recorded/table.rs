@@ -5,15 +5,14 @@ use super::shaft::{self, Crank};
 use super::summary::counted;
 use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
-use crate::Failure;
-use ::features::{Cell, CrankAngles, Reason};
+use super::{Error, Said, Unit};
+use crate::{Cell, CrankAngles, Reason, column};
 use input::bundle_channel::Meaning;
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
-use sweep::dataset::feature_column;
 
 /// The columns with which every row begins; the labels follow.
 const FIRST_COLUMNS: usize = 6;
@@ -61,14 +60,12 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Where the column stands; it is added if it is new.
-    fn position(&mut self, column: Column) -> Result<usize, String> {
+    fn position(&mut self, column: Column) -> Result<usize, Error> {
         if let Some(&position) = self.positions.get(&column.name) {
-            let other = &self.columns[position];
-            if other.kind != column.kind {
-                return Err(format!(
-                    "column `{}` is {} here and {} in another file: give them in separate calls",
-                    column.name, column.kind, other.kind
-                ));
+            let (kind, other) = (column.kind, self.columns[position].kind);
+            if kind != other {
+                let name = column.name;
+                return Err(Error::Kinds { name, kind, other });
             }
             return Ok(position);
         }
@@ -103,15 +100,18 @@ impl Layout {
     pub(super) fn new(
         input: &Input,
         file: &MeasuredFile,
-        default_unit: Option<&(f64, String)>,
-        crank: &shaft::Asked,
+        said: &Said,
         labels: &mut Columns,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let shown = input.path.display().to_string();
-        let wrong = |reason: String| Failure::input(format!("{shown}: {reason}"));
+        let mut label = |column: Column| {
+            let position = labels.position(column);
+            position.map_err(|error| Error::of(&input.path, error))
+        };
         let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
-        let reference = shaft::reference(&input.path, file, crank, meaning)?;
-        let channels = channels(input, file, default_unit, reference).map_err(wrong)?;
+        let reference = shaft::reference(&input.path, file, &said.crank, meaning)?;
+        let channels = channels(input, file, said.unit.as_ref(), reference);
+        let channels = channels.map_err(|reason| Error::of(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
         let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();
@@ -126,22 +126,19 @@ impl Layout {
         for column in file.labels() {
             let position = match fixed.contains(&column.name) {
                 true => None,
-                false => Some(labels.position(column.clone()).map_err(wrong)?),
+                false => Some(label(column.clone())?),
             };
             label_positions.push(position);
         }
         let mut known = Vec::new();
         for (column, value) in &input.labels {
-            known.push((
-                labels.position(column.clone()).map_err(wrong)?,
-                value.clone(),
-            ));
+            known.push((label(column.clone())?, value.clone()));
         }
         let is = |name: &str, kind| own(name).filter(|&i| file.labels()[i].kind == kind);
         Ok(Self {
-            features: ::features::columns(names, true)
+            features: crate::columns(names, true)
                 .into_iter()
-                .map(feature_column)
+                .map(column)
                 .collect(),
             feature_positions: Vec::new(),
             speed_label: is("speed_rpm", Kind::Real),
@@ -155,14 +152,19 @@ impl Layout {
         })
     }
 
+    /// That the file cannot be used.
+    pub(super) fn wrong(&self, reason: String) -> Error {
+        let file = self.file.clone();
+        Error::Wrong { file, reason }
+    }
+
     /// The speed of a recording with these labels, as it is stated.
-    pub(super) fn stated_speed(&self, labels: &[Value]) -> Result<Option<f64>, Failure> {
+    pub(super) fn stated_speed(&self, labels: &[Value]) -> Result<Option<f64>, Error> {
         let label = self.speed_label.and_then(|i| labels.get(i));
         match (label, self.stated_speed_rpm) {
             (Some(Value::Real(of_file)), Some(said)) if (of_file / said - 1.0).abs() > 0.01 => {
-                Err(Failure::input(format!(
-                    "{}: the speed is {of_file} rpm, but --speed says {said:.4} rpm",
-                    self.file
+                Err(self.wrong(format!(
+                    "the speed is {of_file} rpm, but --speed says {said:.4} rpm"
                 )))
             }
             (Some(Value::Real(of_file)), _) => Ok(Some(*of_file)),
@@ -192,7 +194,7 @@ impl Layout {
 fn channels(
     input: &Input,
     file: &MeasuredFile,
-    default_unit: Option<&(f64, String)>,
+    default_unit: Option<&Unit>,
     reference: Option<(usize, Scaled)>,
 ) -> Result<Vec<Scaled>, String> {
     let mut channels = Vec::new();
@@ -239,9 +241,9 @@ fn channels(
 }
 
 /// The table of all files: the schema, and the layouts with their places in it.
-pub(super) fn schema(labels: Columns, layouts: &mut [Layout]) -> Result<Schema, Failure> {
+pub(super) fn schema(labels: Columns, layouts: &mut [Layout]) -> Result<Schema, Error> {
     let mut all = Columns::default();
-    let mut add = |column: Column| all.position(column).map_err(Failure::input);
+    let mut add = |column: Column| all.position(column);
     for column in first_columns() {
         add(column)?;
     }
@@ -263,11 +265,11 @@ pub(super) fn schema(labels: Columns, layouts: &mut [Layout]) -> Result<Schema, 
         }
     }
     add(warnings_column())?;
-    Schema::new(all.columns).map_err(Failure::input)
+    Schema::new(all.columns).map_err(Error::File)
 }
 
 /// A window that is to become a row.
-pub(super) struct Job {
+pub struct Job {
     pub(super) layout: std::sync::Arc<Layout>,
     pub(super) labels: std::sync::Arc<Vec<Value>>,
     /// Which window of its recording.
@@ -275,11 +277,14 @@ pub(super) struct Job {
     pub(super) sample_rate_hz: f64,
     pub(super) speed_rpm: Option<f64>,
     pub(super) window: Window,
+    /// Columns of the table.
+    pub(super) columns: usize,
 }
 
 /// A row of the table, and what is to be said of it.
-pub(super) struct Row {
-    pub(super) values: Vec<Value>,
+pub struct Row {
+    /// The values, in the order of the columns.
+    pub values: Vec<Value>,
     /// Why features have no value, by column.
     pub(super) reasons: Vec<(usize, Reason)>,
     pub(super) file: String,
@@ -289,9 +294,9 @@ pub(super) struct Row {
     pub(super) bridged: usize,
 }
 
-/// The row of a window in a table of `columns` columns.
-pub(super) fn row(job: &Job, columns: usize) -> Row {
-    let layout = &*job.layout;
+/// The row of a window.
+pub fn row(job: &Job) -> Row {
+    let (layout, columns) = (&*job.layout, job.columns);
     let measured = layout.channels.iter().zip(&job.window.channels);
     let measured = measured.filter(|(channel, _)| channel.role == Role::Measured);
     let channels: Vec<Channel> = measured
@@ -305,8 +310,8 @@ pub(super) fn row(job: &Job, columns: usize) -> Row {
     let samples = raw.first().map_or(0, |samples| samples.len());
     let crank = layout.crank(&raw);
     let known = crank.as_ref().and_then(|crank| crank.as_ref().ok());
-    let (cells, reasons) = ::features::row_with_reasons(
-        &::features::Window {
+    let (cells, reasons) = crate::row_with_reasons(
+        &crate::Window {
             sample_rate: job.sample_rate_hz,
             speed_rpm: job.speed_rpm,
             crank_angle: known.map(|crank| CrankAngles {

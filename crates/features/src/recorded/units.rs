@@ -1,6 +1,5 @@
 //! Units of measured channels: what a file says becomes SI, so that features compare.
 
-use crate::Failure;
 use input::bundle_channel::ToSi;
 use recordings::measured::{MeasuredChannel, stem};
 
@@ -59,34 +58,36 @@ impl Scaled {
     }
 }
 
-/// What `--unit` says of channels without a unit: a unit (`m/s^2`), or how much one unit of the
-/// file is (`100 m/s^2`).
-pub(super) fn parse_argument(text: &str) -> Result<(f64, String), Failure> {
-    let of = |text: &str| to_si(text.trim()).map(|(factor, unit)| (factor, unit.to_owned()));
-    let text = text.trim();
-    let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)));
-    let (number, unit) = text.split_at(split.unwrap_or(text.len()));
-    let amount = match number {
-        "" => Some(1.0),
-        number => number
-            .parse()
-            .ok()
-            .filter(|x: &f64| x.is_finite() && *x != 0.0),
-    };
-    match (amount, of(unit)) {
-        (Some(amount), Some((factor, unit))) => Ok((amount * factor, unit)),
-        _ => Err(Failure::input(format!(
-            "--unit: found '{text}', expected a unit, e.g. 'm/s^2', or what 1 in the file is, e.g. \
-             '100 m/s^2'"
-        ))),
+/// The unit of channels without one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// What 1 in the file is, in `si`.
+    factor: f64,
+    /// The unit, as the features know it.
+    si: String,
+}
+
+impl Unit {
+    /// A unit (`m/s^2`), or how much one unit of the file is (`100 m/s^2`); none for any other text.
+    pub fn parse(text: &str) -> Option<Self> {
+        let text = text.trim();
+        let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)));
+        let (number, unit) = text.split_at(split.unwrap_or(text.len()));
+        let amount: f64 = match number {
+            "" => 1.0,
+            number => number.parse().ok()?,
+        };
+        let (factor, si) = to_si(unit.trim())?;
+        let is_amount = amount.is_finite() && amount != 0.0;
+        is_amount.then_some(Self {
+            factor: amount * factor,
+            si,
+        })
     }
 }
 
-/// The channel in SI; `default` is what `--unit` says.
-pub(super) fn scaled(
-    channel: &MeasuredChannel,
-    default: Option<&(f64, String)>,
-) -> Result<Scaled, String> {
+/// The channel in SI; `default` is the unit where it has none.
+pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Result<Scaled, String> {
     let base = stem(&channel.name);
     if base.eq_ignore_ascii_case("crank_angle") {
         return crank_angle(channel);
@@ -96,7 +97,7 @@ pub(super) fn scaled(
             Some((factor, si)) => (base, factor, si),
             None => (base, 1.0, unit.clone()),
         },
-        (None, Some((factor, unit))) => (channel.name.as_str(), *factor, unit.clone()),
+        (None, Some(unit)) => (channel.name.as_str(), unit.factor, unit.si.clone()),
         (None, None) => (channel.name.as_str(), 1.0, String::new()),
     };
     Ok(Scaled {
@@ -178,15 +179,17 @@ mod tests {
     }
 
     #[test]
-    fn the_argument_is_a_unit_or_an_amount() {
-        assert_eq!(parse_argument("m/s^2").unwrap(), (1.0, "m/s^2".to_owned()));
-        assert_eq!(
-            parse_argument("100 m/s^2").unwrap(),
-            (100.0, "m/s^2".to_owned())
-        );
-        assert_eq!(parse_argument("2.5 bar").unwrap(), (2.5e5, "Pa".to_owned()));
+    fn a_unit_is_a_name_or_an_amount() {
+        for (text, factor, si) in [
+            ("m/s^2", 1.0, "m/s^2"),
+            ("100 m/s^2", 100.0, "m/s^2"),
+            ("2.5 bar", 2.5e5, "Pa"),
+        ] {
+            let si = si.to_owned();
+            assert_eq!(Unit::parse(text), Some(Unit { factor, si }));
+        }
         for wrong in ["", "7", "0 Pa", "nonsense", "1 / m"] {
-            assert!(parse_argument(wrong).is_err(), "{wrong}");
+            assert_eq!(Unit::parse(wrong), None, "{wrong}");
         }
     }
 }

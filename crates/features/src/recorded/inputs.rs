@@ -1,8 +1,6 @@
 //! The files that arguments name: single ones, the runs of bundles, the tables of datasets.
 
-use super::shaft;
-use crate::Failure;
-use crate::bundle::AllowOutside;
+use super::{Error, Unit, shaft};
 use input::bundle::{self, Bundle, Joint, Run};
 use input::bundle_channel::Meaning;
 use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
@@ -12,9 +10,9 @@ use std::path::{Path, PathBuf};
 
 /// A file, and what is known about it from elsewhere.
 #[derive(Clone, Debug)]
-pub(super) struct Input {
+pub struct Input {
     /// As it is named in the output.
-    pub(super) path: PathBuf,
+    pub path: PathBuf,
     pub(super) options: Options,
     pub(super) speed_rpm: Option<f64>,
     /// Labels that the bundle tells.
@@ -31,42 +29,25 @@ impl Input {
     }
 
     /// Opens the file.
-    pub(super) fn open(&self) -> Result<MeasuredFile, Failure> {
-        MeasuredFile::open(&self.path, &self.options).map_err(|error| refused(&self.path, error))
-    }
-}
-
-/// The one message of a file that cannot be read.
-pub(super) fn refused(path: &Path, error: recordings::Error) -> Failure {
-    match error {
-        recordings::Error::NoColumn { name, among } => {
-            // Without its unit in brackets a name is one, too.
-            let bare =
-                |column: &String| column.split(['[', '(']).next().map(|n| n.trim().to_owned());
-            let names: Vec<String> = among.iter().filter_map(bare).collect();
-            let nearest = input::nearest(&name, names.iter().map(String::as_str));
-            let hint = nearest.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-            let among = among.join(", ");
-            Failure::input(format!(
-                "{}: no column `{name}`; there are: {among}{hint}",
-                path.display()
-            ))
-        }
-        error @ (recordings::Error::SampleRate(_) | recordings::Error::ValueKind { .. }) => {
-            Failure::input(format!("{}: {error}", path.display()))
-        }
-        error => Failure::input(error),
+    pub(super) fn open(&self) -> Result<MeasuredFile, Error> {
+        MeasuredFile::open(&self.path, &self.options)
+            .map_err(|error| Error::of_file(&self.path, error))
     }
 }
 
 /// What the arguments say of all files.
 #[derive(Clone, Debug)]
-pub(super) struct Said {
+pub struct Said {
     /// Columns and sample rate.
-    pub(super) options: Options,
-    pub(super) speed_rpm: Option<f64>,
-    pub(super) crank: shaft::Asked,
-    pub(super) outside: AllowOutside,
+    pub options: Options,
+    /// Speed of the crank.
+    pub speed_rpm: Option<f64>,
+    /// Unit of the channels that have none.
+    pub unit: Option<Unit>,
+    /// Where the crank stands.
+    pub crank: shaft::Asked,
+    /// Whether a bundle may name recordings outside of its folder.
+    pub allow_outside: bool,
 }
 
 impl Said {
@@ -81,13 +62,17 @@ impl Said {
     }
 }
 
-/// All files that `paths` name.
-pub(super) fn all(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Failure> {
+/// All files that `paths` name: single ones, the runs of bundles, the tables of datasets.
+///
+/// # Errors
+/// A folder that is neither a bundle nor a dataset, or a bundle with a mistake.
+pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
     let mut inputs = Vec::new();
     let mut beside = Beside::default();
     for path in paths {
         if Bundle::is_at(path) {
-            let bundle = said.outside.read(path)?;
+            let mut bundle = Bundle::read(path)?;
+            bundle.allow_outside = said.allow_outside;
             for i in 0..bundle.runs.len() {
                 inputs.push(of_run(&bundle, i, said)?);
             }
@@ -124,7 +109,7 @@ struct Beside(BTreeMap<PathBuf, Option<Bundle>>);
 
 impl Beside {
     /// The run of a `recordings.yaml` in the file's folder whose recording it is.
-    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize)>, Failure> {
+    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize)>, Error> {
         let Ok(file) = file.canonicalize() else {
             return Ok(None);
         };
@@ -149,7 +134,7 @@ impl Beside {
 }
 
 /// The recordings of a dataset, in order.
-fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for (below, ending) in [("signals", "parquet"), ("mcap", "mcap")] {
         let Ok(entries) = std::fs::read_dir(folder.join(below)) else {
@@ -160,23 +145,21 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     }
     files.sort();
     if files.is_empty() {
-        return Err(Failure::input(format!(
-            "{}: a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a \
-             dataset)",
-            folder.display()
-        )));
+        return Err(Error::of(
+            folder,
+            "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset)",
+        ));
     }
     Ok(files)
 }
 
-fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Failure> {
+fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
     let run = &bundle.runs[index];
-    let throws = crate::bundle::throws(&bundle.machine);
-    let meanings = crate::bundle::meanings(bundle, index, &throws)?;
+    let meanings = bundle.meanings(index)?;
     let rate = run.sample_rate_hz.map(|rate| rate.get());
     let wrong = |key: &str, expected: String| {
         let error = input::Error::clash(format!("runs.{index}.{key}"), expected);
-        Failure::from(bundle.locate(error))
+        Error::from(bundle.locate(error))
     };
     if let (Some(of_run), Some(asked)) = (rate, said.options.sample_rate_hz)
         && of_run != asked

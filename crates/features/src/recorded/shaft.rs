@@ -1,10 +1,8 @@
 //! Where the crank stands: by the angle or the pulses that a recording has of it.
 
-use super::inputs;
+use super::Error;
 use super::units::{Role, Scaled, scaled};
-use crate::Failure;
 use input::bundle_channel::{Meaning, ToSi};
-use input::quantity::{Angle, Quantity};
 use recordings::measured::{MeasuredChannel, MeasuredFile, stem};
 use signal::crank_angle::{CrankAngle, runs_backwards};
 use signal::tacho;
@@ -17,11 +15,13 @@ const SLIP: f64 = 0.05;
 
 /// What the arguments say about the crank.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Asked {
-    pub(super) crank_angle: Option<String>,
-    pub(super) tacho: Option<String>,
+pub struct Asked {
+    /// Column of the crank angle.
+    pub crank_angle: Option<String>,
+    /// Column of pulses, one per revolution.
+    pub tacho: Option<String>,
     /// The reading at top dead centre, rad; with a tacho, the angle from its pulse to there.
-    pub(super) top_dead_centre: Option<f64>,
+    pub top_dead_centre: Option<f64>,
 }
 
 impl Asked {
@@ -36,17 +36,6 @@ impl Asked {
     }
 }
 
-/// `--top-dead-centre`, rad.
-pub(super) fn parse_top_dead_centre(text: &str) -> Result<f64, Failure> {
-    let angle = Quantity::<Angle>::parse(text).map_err(|found| {
-        let expected = Quantity::<Angle>::expected();
-        Failure::input(format!(
-            "--top-dead-centre: found {found}, expected {expected}"
-        ))
-    })?;
-    Ok(angle.si())
-}
-
 /// The channel that tells where the crank stands, and how: the one asked for, else that of the bundle,
 /// else the column `crank_angle_rad` or `crank_angle_deg`.
 pub(super) fn reference(
@@ -54,7 +43,7 @@ pub(super) fn reference(
     file: &MeasuredFile,
     asked: &Asked,
     meaning: impl Fn(&MeasuredChannel) -> Option<Meaning>,
-) -> Result<Option<(usize, Scaled)>, Failure> {
+) -> Result<Option<(usize, Scaled)>, Error> {
     let channels = file.channels();
     if let Some(name) = asked.column() {
         let (index, unit) = named(path, channels, name)?;
@@ -95,8 +84,8 @@ pub(super) fn reference(
         (Some(pulses), _) => Ok(Some(pulses)),
         (None, None) => Ok(None),
         (None, Some(i)) => {
-            let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-            let mut angle = scaled(&channels[i], None).map_err(wrong)?;
+            let angle = scaled(&channels[i], None);
+            let mut angle = angle.map_err(|reason| Error::of(path, reason))?;
             angle.role = Role::CrankAngle {
                 top_dead_centre: asked.top_dead_centre.or(Some(0.0)),
             };
@@ -139,7 +128,7 @@ fn named(
     path: &Path,
     channels: &[MeasuredChannel],
     name: &str,
-) -> Result<(usize, Option<String>), Failure> {
+) -> Result<(usize, Option<String>), Error> {
     let find = |name: &str| {
         let is = |c: &MeasuredChannel| c.column == name || c.name == name;
         channels.iter().position(is)
@@ -156,10 +145,10 @@ fn named(
         name: name.to_owned(),
         among: channels.iter().map(|c| c.column.clone()).collect(),
     };
-    Err(inputs::refused(path, error))
+    Err(Error::of_file(path, error))
 }
 
-fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Result<ToSi, Failure> {
+fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Result<ToSi, Error> {
     let scale = match unit {
         Some("rad") => 1.0,
         Some("deg" | "°" | "degree" | "degrees") => TAU / 360.0,
@@ -167,11 +156,11 @@ fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Res
         _ => {
             let found = unit.map_or("none".to_owned(), |unit| format!("'{unit}'"));
             let column = &channel.column;
-            return Err(Failure::input(format!(
-                "{}: column `{column}`: the unit of a crank angle is rad, deg or rev, but found \
-                 {found}; write it in brackets: --crank-angle '{column} [deg]'",
-                path.display()
-            )));
+            let reason = format!(
+                "column `{column}`: the unit of a crank angle is rad, deg or rev, but found {found}; \
+                 write it in brackets: --crank-angle '{column} [deg]'"
+            );
+            return Err(Error::of(path, reason));
         }
     };
     Ok(ToSi { offset: 0.0, scale })
