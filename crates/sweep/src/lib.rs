@@ -5,6 +5,7 @@ pub mod dataset;
 pub mod design;
 pub mod distribution;
 pub mod effects;
+pub mod engines;
 mod error;
 pub mod in_order;
 pub mod labels;

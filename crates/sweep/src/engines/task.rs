@@ -1,11 +1,11 @@
 //! The number of a shard where nobody gives one: the engines that run arrays of tasks say it in a
 //! variable.
 
-use crate::Failure;
+use super::Error;
 
 /// The variable of each engine, and the number from which it counts at the least. LSF and Grid
 /// Engine know no task 0: their task 1 is shard 0.
-pub(super) const VARIABLES: [(&str, u64); 6] = [
+const VARIABLES: [(&str, u64); 6] = [
     ("SLURM_ARRAY_TASK_ID", 0),
     ("PBS_ARRAY_INDEX", 0),
     ("PBS_ARRAYID", 0),
@@ -18,24 +18,21 @@ pub(super) const VARIABLES: [(&str, u64); 6] = [
 ///
 /// # Errors
 /// Where there is none.
-pub(super) fn from_engine(variable: impl Fn(&str) -> Option<String>) -> Result<u64, Failure> {
+pub fn index(variable: impl Fn(&str) -> Option<String>) -> Result<u64, Error> {
     // Outside an array, LSF says 0 and Grid Engine `undefined`.
     let index =
         |(name, first): &(&str, u64)| variable(name)?.parse::<u64>().ok()?.checked_sub(*first);
     VARIABLES.iter().find_map(index).ok_or_else(|| {
         let names = VARIABLES.map(|(name, _)| name).join(", ");
-        Failure::input(format!(
-            "no shard is named: expected --index K, or one of {names} with a number"
-        ))
+        Error::NoIndex(names)
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::from_engine;
 
     fn index(name: &'static str, value: &'static str) -> Option<u64> {
-        from_engine(|asked| (asked == name).then(|| value.to_owned())).ok()
+        super::index(|asked| (asked == name).then(|| value.to_owned())).ok()
     }
 
     #[test]
