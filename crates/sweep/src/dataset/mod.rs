@@ -31,6 +31,7 @@ pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};
 pub use tables::Tables;
+pub(crate) use tables::prefixed;
 pub use trial::{Trial, try_here};
 pub use verify::{Fault, Verified, damage, verify};
 

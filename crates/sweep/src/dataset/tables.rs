@@ -116,7 +116,7 @@ fn about(plan: &Plan) -> Vec<Column> {
     columns
 }
 
-pub(super) fn prefixed(throw: &str, name: &str) -> String {
+pub(crate) fn prefixed(throw: &str, name: &str) -> String {
     match throw {
         "" => name.to_owned(),
         throw => format!("{throw}.{name}"),

@@ -1,6 +1,7 @@
 //! The columns that describe a case: clearances, operating point, parameters.
 
 use crate::Plan;
+use crate::dataset::prefixed;
 
 /// A column of numbers that describe a case, and its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,12 +89,8 @@ pub(super) fn numbers(plan: &Plan) -> Vec<Label> {
     let mut labels: Vec<Label> = clearances.collect();
     labels.push(label("speed_rpm".to_owned(), Meaning::Speed, "rpm"));
     for throw in plan.throws() {
-        let prefix = match throw.as_str() {
-            "" => String::new(),
-            throw => format!("{throw}."),
-        };
         for side in [Side::Suction, Side::Discharge] {
-            let column = format!("{prefix}{}_pressure_pa", side.name());
+            let column = prefixed(throw, &format!("{}_pressure_pa", side.name()));
             let throw = throw.clone();
             labels.push(label(column, Meaning::Pressure { throw, side }, "Pa"));
         }
