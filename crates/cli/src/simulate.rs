@@ -146,9 +146,7 @@ fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Fa
         return Ok((machine, settings, noise));
     };
     let plan = crate::gen_dataset::read_plan(&arguments.machine)?;
-    let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
-    let index = index.filter(|i| *i < plan.cases() && plan.case_id(*i) == *id);
-    let Some(index) = index else {
+    let Some(index) = plan.case_index(id) else {
         return Err(Failure::input(format!(
             "--case: found {id}, expected one of {} to {}",
             plan.case_id(0),

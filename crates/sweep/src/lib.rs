@@ -17,9 +17,11 @@ pub mod run_table;
 mod runner;
 pub mod split;
 pub mod sweep_file;
+mod timing;
 
 pub use calibration::{Calibration, Sweep};
 pub use dataset::{Existing, Options, Progress, Recording, Runner, finalize, generate, run_shards};
 pub use error::Error;
 pub use plan::{Case, Census, Diagram, DiagramEstimate, Estimate, Plan};
 pub use runner::simulate_cases;
+pub use timing::Timing;
