@@ -127,12 +127,11 @@ fn listed<'a>(
     bundle: &'a Bundle,
     tree: &Value,
 ) -> Result<Vec<Listed<'a>>, Error> {
-    let throws = bundle::throws(tree);
     let mut all = Vec::new();
     for run in bundle::runs(bundle, tree, leave_out)? {
         let i = bundle.runs.iter().position(|listed| listed.id == run.id);
         let i = i.unwrap_or_default();
-        let meanings = bundle::meanings(bundle, i, &throws)?;
+        let meanings = bundle.meanings(i, tree)?;
         let channels = bundle.runs[i].channels.iter().zip(meanings).collect();
         all.push(Listed { run, channels });
     }

@@ -2,22 +2,22 @@
 
 use crate::Failure;
 use crate::run_progress::Progress;
-use ::report::case_picture::{CasePicture, ClearJoint};
+use ::report::case_picture::CasePicture;
 use clap::{Args, ValueEnum};
 use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
 use mechanism::drive::Drive;
+use recordings::WholeFile;
 use recordings::formats::{csv, parquet};
-use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
 use simulate::{
-    ExponentSettings, Extent, JointTrace, Motion, Penetration, Record, Regime, Settings,
-    ThrowTrace, Trace, Transient,
+    ExponentSettings, Extent, Motion, Penetration, Record, Regime, Settings, Transient,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use sweep::run_table::run_table;
 
 /// Rows per group of the Parquet file.
 const ROWS_PER_GROUP: usize = 65_536;
@@ -113,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     std::fs::create_dir_all(&out).map_err(|e| Failure::input(format!("{}: {e}", out.display())))?;
     let trace = record.trace.as_ref().filter(|_| arguments.trace);
-    let table = table(&record, &channels, trace, &throws).map_err(Failure::work)?;
+    let table = run_table(&record, &channels, trace, &throws).map_err(Failure::work)?;
     write_whole(&signals, |file| match arguments.format {
         Format::Parquet => parquet::write_table(file, &table, ROWS_PER_GROUP),
         Format::Csv => csv::write_table(file, &table),
@@ -146,9 +146,7 @@ fn what_to_run(arguments: &Arguments) -> Result<(Resolved, Settings, Stream), Fa
         return Ok((machine, settings, noise));
     };
     let plan = crate::gen_dataset::read_plan(&arguments.machine)?;
-    let index = id.rsplit('-').next().and_then(|digits| digits.parse().ok());
-    let index = index.filter(|i| *i < plan.cases() && plan.case_id(*i) == *id);
-    let Some(index) = index else {
+    let Some(index) = plan.case_index(id) else {
         return Err(Failure::input(format!(
             "--case: found {id}, expected one of {} to {}",
             plan.case_id(0),
@@ -235,108 +233,8 @@ fn write_whole(
         .map_err(Failure::work)
 }
 
-fn table(
-    record: &Record,
-    channels: &[Channel],
-    trace: Option<&Trace>,
-    throws: &[&str],
-) -> Result<Table, recordings::Error> {
-    let mut columns = vec![Column::new("t_s", Kind::Real, "time since the first sample").unit("s")];
-    let count = channels.first().map_or_else(
-        || record.series.first().map_or(0, Vec::len),
-        |channel| channel.samples.len(),
-    );
-    let times = (0..count).map(|i| Some(i as f64 / record.sample_rate));
-    let mut data = vec![Data::Real(times.collect())];
-    let mut add = |name: &str, unit: &str, about: &str, values: Vec<Option<f64>>| {
-        columns.push(Column::new(name, Kind::Real, about).unit(unit));
-        data.push(Data::Real(values));
-    };
-    for channel in channels {
-        let values = channel
-            .samples
-            .iter()
-            .map(|x| Some(f64::from(*x)))
-            .collect();
-        add(
-            &channel.name,
-            &channel.unit,
-            "as the sensor reads it",
-            values,
-        );
-    }
-    let stride = trace.map_or(1, |trace| trace.stride);
-    for (trace, name) in trace.iter().flat_map(|t| t.throws.iter().zip(throws)) {
-        for (column, unit, values) in motion_columns(trace) {
-            let prefix = if name.is_empty() {
-                String::new()
-            } else {
-                format!("{name}.")
-            };
-            let values = values.iter().step_by(stride).copied().map(Some).collect();
-            add(
-                &format!("{prefix}{column}"),
-                unit,
-                "the motion itself",
-                values,
-            );
-        }
-    }
-    Table::from_columns(Schema::new(columns)?, data)
-}
-
-/// The motion of a throw as columns with their units.
-fn motion_columns(throw: &ThrowTrace) -> Vec<(String, &'static str, &[f64])> {
-    let mut columns: Vec<(String, &'static str, &[f64])> = vec![
-        ("true_crosshead_position_m".into(), "m", &throw.position),
-        ("true_crosshead_velocity_m_s".into(), "m/s", &throw.velocity),
-        (
-            "true_crosshead_acceleration_m_s2".into(),
-            "m/s^2",
-            &throw.acceleration,
-        ),
-        ("true_cylinder_pressure_pa".into(), "Pa", &throw.pressure),
-    ];
-    for (name, joint) in [("big_end", &throw.big_end), ("small_end", &throw.small_end)] {
-        if let Some(joint) = joint {
-            columns.extend([
-                (format!("true_{name}_offset_x_m"), "m", joint.x.as_slice()),
-                (format!("true_{name}_offset_y_m"), "m", joint.y.as_slice()),
-                (
-                    format!("true_{name}_normal_force_n"),
-                    "N",
-                    joint.normal_force.as_slice(),
-                ),
-                (
-                    format!("true_{name}_friction_force_n"),
-                    "N",
-                    joint.friction_force.as_slice(),
-                ),
-            ]);
-        }
-    }
-    columns
-}
-
-/// The picture of the first throw, and of every clear joint of it.
+/// The picture of the run; empty where it has no throw.
 fn picture_of(machine: &Resolved, record: &Record) -> String {
-    let (Some(trace), Some(throw)) = (
-        &record.trace,
-        record.trace.as_ref().and_then(|t| t.throws.first()),
-    ) else {
-        return String::new();
-    };
-    let joint = |name: &'static str, joint: &Option<JointTrace>| -> Option<_> {
-        joint.clone().map(|joint| (name, joint))
-    };
-    let clear: Vec<(&str, JointTrace)> = [
-        joint("main", &trace.main),
-        joint("big_end", &throw.big_end),
-        joint("small_end", &throw.small_end),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
     let deep = too_deep(record).map(|joint| {
         let times = joint.deepest / joint.clearance;
         format!(
@@ -346,23 +244,9 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
     });
     let deep: String = deep.collect();
     let title = format!("{}, {}{deep}", machine.name, rpm(machine.speed));
-    CasePicture {
-        title: &title,
-        crank_angle_rad: &trace.crank_angle,
-        acceleration_m_s2: &throw.acceleration,
-        velocity_m_s: &throw.velocity,
-        joints: clear
-            .iter()
-            .map(|(name, joint)| ClearJoint {
-                name,
-                clearance_m: joint.clearance,
-                x_m: &joint.x,
-                y_m: &joint.y,
-                contact_force_n: &joint.normal_force,
-            })
-            .collect(),
-    }
-    .svg()
+    let trace = record.trace.as_ref();
+    let picture = trace.and_then(|trace| CasePicture::of(&title, trace));
+    picture.map_or(String::new(), |picture| picture.svg())
 }
 
 /// The joints whose surfaces penetrate each other too deeply.

@@ -17,6 +17,7 @@ mod envelope;
 mod missing;
 mod motion;
 mod reason;
+pub mod recorded;
 mod row;
 mod spectral;
 mod statistics;
@@ -25,7 +26,7 @@ mod table;
 pub use missing::missing;
 pub use motion::{Motion, motion, motion_definitions};
 pub use reason::{Reason, Remedy};
-pub use row::{Cell, Content, FEWEST_SAMPLES, columns, row, row_with_reasons};
+pub use row::{Cell, Content, FEWEST_SAMPLES, column, columns, row, row_with_reasons};
 
 use envelope::Envelope;
 use signal::channel::Channel;

@@ -3,6 +3,7 @@
 use crate::{
     Definition, Group, Reason, Window, definitions, features, missing, motion, motion_definitions,
 };
+use recordings::{Column, Kind, Role};
 
 /// Fewest samples of a window that anything can be said about.
 pub const FEWEST_SAMPLES: usize = 100;
@@ -23,6 +24,23 @@ pub enum Cell {
     Number(f64),
     /// Text.
     Text(String),
+}
+
+/// The column of a feature in a table.
+pub fn column((definition, content): (Definition, Content)) -> Column {
+    let (kind, meaning) = match content {
+        Content::Number => (
+            Kind::Real,
+            format!("{}: {}", definition.description, definition.formula),
+        ),
+        Content::Text => (Kind::Text, definition.description),
+    };
+    let column = Column::new(definition.name, kind, meaning).optional();
+    let column = column.role(Role::Feature);
+    match definition.unit.as_str() {
+        "1" => column,
+        unit => column.unit(unit),
+    }
 }
 
 /// The columns of rows of these channels (names and units): their features, with `motion` the kind of

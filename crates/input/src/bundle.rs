@@ -4,6 +4,7 @@
 //! is handed on as it stands: what is read from it depends on what it is wanted for. A bundle of a
 //! machine with one throw is one with the throw ``, so that load and joints have one shape.
 
+use crate::bundle_channel::{Meaning, meaning};
 use crate::choice::{Ideal, Or};
 use crate::error::{Error, nearest};
 use crate::quantity::{AboveZero, FromZero, Number};
@@ -189,6 +190,28 @@ impl Bundle {
             true => Path::new("."),
             false => &self.folder,
         }
+    }
+
+    /// What the channels of run `index` are, in their order; `machine` is the content of the machine file, or the
+    /// bundle's own section, whose throws give the channels their names.
+    ///
+    /// # Errors
+    /// A channel whose unit or name is not understood.
+    pub fn meanings(&self, index: usize, machine: &Value) -> Result<Vec<Meaning>, Error> {
+        let throws = match machine["throws"].as_array() {
+            None => vec![""],
+            Some(throws) => {
+                let names = throws.iter().map(|throw| throw["name"].as_str());
+                names.map(Option::unwrap_or_default).collect()
+            }
+        };
+        let channels = self.runs[index].channels.iter().enumerate();
+        channels
+            .map(|(i, channel)| {
+                meaning(channel, &throws)
+                    .map_err(|error| self.locate(error.under(format!("runs.{index}.channels.{i}"))))
+            })
+            .collect()
     }
 
     /// `error`, whose key is a dotted path (`runs.0.file`), with the line where that stands.

@@ -2,7 +2,7 @@
 //! `datasets` finds its tables.
 
 use crate::{Role, Schema};
-use serde_json::json;
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
@@ -276,7 +276,7 @@ fn code(text: &str) -> String {
 /// Text in the quotation marks of YAML 1.2 (7.3.1): as in JSON, but what is not printable in YAML is written out.
 fn yaml(text: &str) -> String {
     let mut shown = String::new();
-    for c in json!(text).to_string().chars() {
+    for c in Value::from(text).to_string().chars() {
         match c {
             '\u{7f}'..='\u{9f}'
             | '\u{2028}'

@@ -3,6 +3,7 @@
 use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series};
 use crate::revolutions::Revolutions;
 use crate::text;
+use simulate::Trace;
 
 /// At most this many revolutions are drawn behind their mean: the last ones.
 const REVOLUTIONS: usize = 20;
@@ -39,7 +40,34 @@ pub struct ClearJoint<'a> {
     pub contact_force_n: &'a [f64],
 }
 
-impl CasePicture<'_> {
+impl<'a> CasePicture<'a> {
+    /// Of the first throw of a run and its joints with clearance; none without a throw.
+    pub fn of(title: &'a str, trace: &'a Trace) -> Option<Self> {
+        let throw = trace.throws.first()?;
+        let joints = [
+            ("main", &trace.main),
+            ("big_end", &throw.big_end),
+            ("small_end", &throw.small_end),
+        ];
+        let clear = joints.into_iter().filter_map(|(name, joint)| {
+            let joint = joint.as_ref()?;
+            Some(ClearJoint {
+                name,
+                clearance_m: joint.clearance,
+                x_m: &joint.x,
+                y_m: &joint.y,
+                contact_force_n: &joint.normal_force,
+            })
+        });
+        Some(Self {
+            title,
+            crank_angle_rad: &trace.crank_angle,
+            acceleration_m_s2: &throw.acceleration,
+            velocity_m_s: &throw.velocity,
+            joints: clear.collect(),
+        })
+    }
+
     /// The picture as SVG: acceleration and contact force against crank angle, the
     /// velocity-acceleration portrait, and the orbit of each journal in its clearance circle.
     pub fn svg(&self) -> String {

@@ -1,4 +1,4 @@
-//! Figures and self-contained pages from plain structs.
+//! Figures and self-contained pages of what the other crates compute.
 //!
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
@@ -9,8 +9,8 @@
 //! - [`gap_page`]: the HTML page of an explanation;
 //! - [`text`]: numbers with units, words, escaping.
 //!
-//! Structs go in, text comes out: nothing here reads or writes a file, and the same structs always
-//! give the same bytes. Pages load nothing from anywhere.
+//! A page is a plain struct that renders itself: the same struct always gives the same bytes, and pages
+//! load nothing from anywhere. Those of a dataset are filled from a [`sweep::reader::Dataset`].
 //!
 //! The figures are drawn by a module of our own. Of the plotting crates, kuva 0.6 was tried: its
 //! grids hide the tick labels of panels that then do not have the common range, equal axes come
@@ -20,9 +20,11 @@ pub mod calibration_page;
 pub mod case_picture;
 pub mod chaos_page;
 pub mod classes;
+mod dataset;
 pub mod dataset_page;
 pub mod features_page;
 pub mod figure;
+mod files;
 pub mod gap_page;
 mod level;
 mod plate;
@@ -30,8 +32,11 @@ mod revolutions;
 mod statistics;
 pub mod text;
 
+pub use files::{write_page, write_pages};
 pub use level::Level;
 pub use plate::{FigureFile, Rendered};
+
+use std::path::PathBuf;
 
 /// What can go wrong in making a page.
 #[derive(Debug, thiserror::Error)]
@@ -39,4 +44,50 @@ pub enum Error {
     /// The template could not be filled in.
     #[error("the page could not be written: {0}")]
     Template(#[from] askama::Error),
+    /// The dataset cannot be read.
+    #[error(transparent)]
+    Dataset(#[from] sweep::reader::Error),
+    /// A recording whose crank angle is not that of a turning crank.
+    #[error("{place}, {case_id}: {error}")]
+    Recording {
+        /// The table and the row.
+        place: String,
+        /// The case.
+        case_id: String,
+        /// What is wrong with it.
+        error: signal::Error,
+    },
+    /// A recording that cannot be analysed.
+    #[error(transparent)]
+    Analysis(#[from] signal::Error),
+    /// A case that cannot be simulated again.
+    #[error("{case_id}: {reason}")]
+    Motion {
+        /// The case.
+        case_id: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A folder or a figure that cannot be changed.
+    #[error("{}: {error}", path.display())]
+    Unwritten {
+        /// Its place.
+        path: PathBuf,
+        /// Why not.
+        error: std::io::Error,
+    },
+    /// A page that cannot be written.
+    #[error(transparent)]
+    Write(recordings::Error),
+}
+
+impl Error {
+    /// Whether the input is wrong; else the work failed.
+    pub fn is_input(&self) -> bool {
+        match self {
+            Self::Dataset(error) => error.is_input(),
+            Self::Recording { .. } => true,
+            _ => false,
+        }
+    }
 }

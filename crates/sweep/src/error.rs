@@ -53,6 +53,14 @@ pub enum Error {
         .0.display()
     )]
     OtherDeltaTable(PathBuf),
+    /// A case or a diagram that is simulated to measure the time fails.
+    #[error("{what}: {reason}")]
+    Sample {
+        /// The case or the diagram.
+        what: String,
+        /// Why.
+        reason: String,
+    },
     /// A number beyond the shards of the sweep.
     #[error("there is no shard {index}: this sweep has shards 0 to {}", shards - 1)]
     NoShard {

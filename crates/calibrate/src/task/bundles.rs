@@ -71,12 +71,11 @@ impl Listed {
             let error = input::Error::unknown_name("leave_out", unknown, &known);
             return Err((settings.locate)(error).into());
         }
-        let throws = bundle::throws(tree);
         let kept = (0..known.len()).filter(|i| !own.iter().any(|id| id == known[*i]));
         let runs = bundle::runs(&self.bundle, tree, &own)?;
         let runs = runs.into_iter().zip(kept).map(|(mut run, i)| {
             run.id = format!("{}{}", self.prefix, run.id);
-            Ok((run, bundle::meanings(&self.bundle, i, &throws)?))
+            Ok((run, self.bundle.meanings(i, tree)?))
         });
         runs.collect()
     }

@@ -9,16 +9,10 @@ use recordings::{CaseWarning, FailedCase, Manifest};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use sweep::dataset::{
-    Claim, Existing, Options, Progress, check_calibration, generate_in, sample_diagram,
-};
+use sweep::dataset::{Claim, Existing, Options, Progress, check_calibration, generate_in};
 use sweep::sweep_file::Format;
 use sweep::{Census, Plan, Sweep, simulate_cases};
 
-/// Cases that `--dry-run` simulates to measure the time: enough for the lanes to be full for most of
-/// it, and few where the motion of each is judged, which takes much longer.
-const SAMPLE_CASES: u64 = 32;
-const JUDGED_CASES: u64 = 3;
 /// Failed cases that are shown.
 const SHOWN_FAILURES: usize = 5;
 
@@ -364,22 +358,12 @@ fn dry_run(plan: &Plan) -> Result<(), Failure> {
     );
     println!("{}", plan.census());
     warn(&plan.census().warnings());
-    let most = match plan.judgement {
-        Some(_) => JUDGED_CASES,
-        None => SAMPLE_CASES,
-    };
-    let sample = estimate.cases.min(most);
-    let cases = (0..sample).map(|i| plan.case(i * (estimate.cases / sample)));
-    let cases = cases.collect::<Result<Vec<_>, _>>()?;
-    let started = Instant::now();
-    for (case, recording) in cases.iter().zip(simulate_cases(&cases)) {
-        recording.map_err(|e| Failure::work(format!("{}: {e}", case.id)))?;
-    }
-    let each = started.elapsed().as_secs_f64() / sample as f64;
+    let timing = plan.time_cases().map_err(failed)?;
     println!(
-        "time: {:.0} s on one core, measured on {sample} cases ({:.2} s each)",
-        each * estimate.cases as f64,
-        each
+        "time: {:.0} s on one core, measured on {} cases ({:.2} s each)",
+        timing.all_s,
+        timing.sampled,
+        timing.sample_s / timing.sampled
     );
     dry_run_diagrams(plan)?;
     if estimate.cases > sweep::plan::MOST_CASES {
@@ -404,15 +388,10 @@ fn dry_run_diagrams(plan: &Plan) -> Result<(), Failure> {
         estimate.revolutions,
         estimate.bytes / 1e6
     );
-    let (mut seconds, mut sampled) = (0.0, 0.0);
-    for diagram in &plan.diagrams {
-        let started = Instant::now();
-        let revolutions = sample_diagram(plan, diagram)
-            .map_err(|e| Failure::work(format!("bifurcation diagram {}: {e}", diagram.name)))?;
-        let each = started.elapsed().as_secs_f64() / f64::from(revolutions);
-        seconds += each * diagram.revolutions() as f64;
-        sampled += f64::from(revolutions);
-    }
-    println!("time: {seconds:.0} s more on one core, measured on {sampled} revolutions");
+    let timing = plan.time_diagrams().map_err(failed)?;
+    println!(
+        "time: {:.0} s more on one core, measured on {} revolutions",
+        timing.all_s, timing.sampled
+    );
     Ok(())
 }

@@ -1,31 +1,16 @@
 //! `crosshead report`: the HTML pages of a dataset, of a calibration, or of an explanation.
 
 mod calibration;
-mod chaos;
-mod columns;
-mod counts;
-mod dataset;
-mod examples;
-mod features;
-mod features_page;
 mod gap;
-mod grid;
-mod labels;
-mod operating_points;
-mod pages;
-mod random;
-mod recording;
-mod sensors;
-mod windows;
 
 use crate::Failure;
 use ::report::chaos_page::ChaosPage;
-use ::report::dataset_page::{ClearanceGrids, DatasetPage, Design};
+use ::report::dataset_page::{DatasetPage, Design};
+use ::report::features_page::FeaturesPage;
+use ::report::{Error, write_page, write_pages};
+use ::sweep::reader::Dataset;
 use clap::Args;
-use dataset::Dataset;
-use pages::Place;
 use std::path::{Path, PathBuf};
-use windows::{Case, Windows};
 
 /// Name of the page in its folder.
 pub(crate) const PAGE: &str = "report.html";
@@ -58,44 +43,41 @@ pub struct Arguments {
 /// # Errors
 /// A folder that is no whole dataset, or a page that cannot be made or written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if calibration::is_at(&arguments.dir) {
-        let out = arguments.out.clone();
-        let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
-        println!("{}", write_calibration(&arguments.dir, &out)?.display());
-        return Ok(());
-    }
-    if gap::is_at(&arguments.dir) {
-        let out = arguments.out.clone();
-        let out = out.unwrap_or_else(|| arguments.dir.join(PAGE));
-        println!("{}", write_gap(&arguments.dir, &out)?.display());
-        return Ok(());
-    }
-    let contents = Contents::read(&arguments.dir)?;
-    let page = contents.dataset_page()?;
-    let place = Place {
-        dataset: arguments
-            .out
-            .clone()
-            .unwrap_or_else(|| arguments.dir.join(PAGE)),
-    };
-    place.write(&[
-        (
-            place.beside("chaos.html"),
-            contents.chaos_page()?.render().map_err(Failure::work)?,
-        ),
-        (
-            place.beside("features.html"),
-            features_page::page(&contents.dataset)?
-                .render()
-                .map_err(Failure::work)?,
-        ),
-        (place.dataset.clone(), page.render().map_err(Failure::work)?),
-    ])?;
-    println!("{}", place.dataset.display());
-    if let Design::Grid(grids) = &page.design {
-        print!("{}", grids.markdown());
+    let dir = &arguments.dir;
+    let out = arguments.out.clone().unwrap_or_else(|| dir.join(PAGE));
+    if calibration::is_at(dir) {
+        println!("{}", write_calibration(dir, &out)?.display());
+    } else if gap::is_at(dir) {
+        println!("{}", write_gap(dir, &out)?.display());
+    } else {
+        let page = write_dataset(dir, &out).map_err(failed)?;
+        println!("{}", out.display());
+        if let Design::Grid(grids) = &page.design {
+            print!("{}", grids.markdown());
+        }
     }
     Ok(())
+}
+
+/// Writes the pages of the dataset in `folder`, its own to the file `out` and last: where it is, the others are.
+fn write_dataset(folder: &Path, out: &Path) -> Result<DatasetPage, Error> {
+    let dataset = Dataset::read(folder)?;
+    let page = DatasetPage::of(&dataset)?;
+    let chaos = ChaosPage::of(&dataset)?.render()?;
+    let features = FeaturesPage::of(&dataset)?.render()?;
+    write_pages(&[
+        (out.with_file_name("chaos.html"), chaos),
+        (out.with_file_name("features.html"), features),
+        (out.to_owned(), page.render()?),
+    ])?;
+    Ok(page)
+}
+
+fn failed(error: Error) -> Failure {
+    match error.is_input() {
+        true => Failure::input(error),
+        false => Failure::work(error),
+    }
 }
 
 /// Writes the page of the calibration in `folder` to the file `out`, and says where that is.
@@ -104,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// A folder that is no calibration, or a page that cannot be made or written.
 pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = calibration::page(folder)?.render().map_err(Failure::work)?;
-    pages::write(out, &page.html)?;
+    write_page(out, &page.html).map_err(failed)?;
     Ok(out.to_owned())
 }
 
@@ -114,96 +96,6 @@ pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Fa
 /// A folder that is no explanation, or a page that cannot be made or written.
 pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = gap::page(folder)?.render().map_err(Failure::work)?;
-    pages::write(out, &page.html)?;
+    write_page(out, &page.html).map_err(failed)?;
     Ok(out.to_owned())
-}
-
-/// What the page of the dataset in `folder` tells.
-///
-/// # Errors
-/// A folder that is no whole dataset.
-pub fn page(folder: &Path) -> Result<DatasetPage, Failure> {
-    Contents::read(folder)?.dataset_page()
-}
-
-/// What the page about chaos of the dataset in `folder` tells.
-///
-/// # Errors
-/// A folder that is no whole dataset, or a case that cannot be simulated again.
-pub fn chaos_page(folder: &Path) -> Result<ChaosPage, Failure> {
-    Contents::read(folder)?.chaos_page()
-}
-
-/// A dataset and its table of features.
-struct Contents {
-    dataset: Dataset,
-    windows: Windows,
-    cases: Vec<Case>,
-}
-
-impl Contents {
-    fn read(folder: &Path) -> Result<Self, Failure> {
-        let dataset = Dataset::open(folder)?;
-        let windows = Windows::read(&dataset)?;
-        let cases = windows.cases();
-        Ok(Self {
-            dataset,
-            windows,
-            cases,
-        })
-    }
-
-    fn chaos_page(&self) -> Result<ChaosPage, Failure> {
-        chaos::page(&self.dataset, &self.windows, &self.cases)
-    }
-
-    fn dataset_page(&self) -> Result<DatasetPage, Failure> {
-        let Self {
-            dataset,
-            windows,
-            cases,
-        } = self;
-        let faults = counts::faults(dataset, windows, cases);
-        let examples = examples::examples(dataset, windows, cases, &faults)?;
-        let regimes = match dataset.plan.study {
-            Some(_) => Some(chaos::Regimes::read(dataset, windows)?),
-            None => None,
-        };
-        let design = match grid::grids(dataset, windows, cases, regimes.as_ref())? {
-            Some(grids) => Design::Grid(ClearanceGrids {
-                grids: grids.shown,
-                left_out: grids.left_out,
-                claims: dataset.plan.study.is_some(),
-            }),
-            None => Design::Random(random::sweep(dataset, windows, cases, &faults)),
-        };
-        let (features, feature_rows) = features::by_fault(dataset, windows, &faults);
-        Ok(DatasetPage {
-            name: dataset.plan.name.clone(),
-            about: dataset.about(),
-            version: dataset.manifest.version.clone(),
-            seed: dataset.manifest.seed,
-            sample_rate_hz: dataset.plan.settings.sample_rate,
-            revolutions_per_window: dataset.revolutions_per_window(),
-            samples_per_window: counts::samples_per_window(dataset, windows),
-            channels: dataset
-                .plan
-                .channels()
-                .into_iter()
-                .map(|(name, _)| name)
-                .collect(),
-            joints: dataset.joints(),
-            splits: dataset.splits(),
-            faults,
-            ranges: counts::ranges(dataset, windows, cases),
-            failed: counts::failed(dataset),
-            warnings: counts::warnings(dataset),
-            no_examples: dataset.why_no_recordings(),
-            examples,
-            design,
-            features,
-            feature_rows,
-            columns: columns::columns(dataset)?,
-        })
-    }
 }

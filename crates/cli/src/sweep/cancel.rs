@@ -1,9 +1,10 @@
 //! `sweep cancel`: what was submitted is taken back.
 
-use super::slurm::Jobs;
+use super::of_engine;
 use crate::Failure;
 use clap::Args;
 use std::path::PathBuf;
+use sweep::engines::slurm::Jobs;
 
 /// Arguments of `sweep cancel`.
 #[derive(Args, Debug)]
@@ -25,5 +26,8 @@ pub struct Arguments {
 /// # Errors
 /// Nothing submitted, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    Jobs::of(&arguments.url, arguments.scripts.as_deref())?.cancel()
+    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
+    let cancelled = jobs.and_then(|jobs| jobs.cancel()).map_err(of_engine)?;
+    println!("cancelled: {cancelled}");
+    Ok(())
 }

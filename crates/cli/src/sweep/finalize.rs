@@ -1,6 +1,6 @@
 //! `sweep finalize`: the dataset is completed.
 
-use super::slurm::Jobs;
+use super::{of_engine, tell};
 use crate::Failure;
 use crate::gen_dataset;
 use clap::Args;
@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 use sweep::Error;
 use sweep::dataset::{Output, finalize, finalize_verified};
+use sweep::engines::slurm::Jobs;
 use sweep::ranges::ranges;
 
 /// Arguments of `sweep finalize`.
@@ -52,8 +53,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Error::Incomplete { shards, missing }) => {
             println!("{}", ranges(&missing));
             if arguments.resubmit {
-                let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref())?;
-                jobs.submit_again(&missing)?;
+                let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
+                let submitted = jobs.and_then(|jobs| jobs.submit_again(&missing));
+                tell(&submitted.map_err(of_engine)?);
             }
             let text = format!("{} of {shards} shards are missing", missing.len());
             return Err(Failure::Incomplete(text));

@@ -1,12 +1,13 @@
 //! `sweep shard`: one shard is made.
 
-use super::index;
+use super::of_engine;
 use crate::gen_dataset::{self, Bar};
 use crate::{Failure, interrupt, try_case};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
 use sweep::dataset::{Existing, Options, Output, run_part};
+use sweep::engines::task;
 use sweep::{Error, simulate_cases};
 
 /// Arguments of `sweep shard`.
@@ -47,7 +48,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let index = match arguments.index {
         Some(index) => index,
-        None => index::from_engine(|name| std::env::var(name).ok())?,
+        None => task::index(|name| std::env::var(name).ok()).map_err(of_engine)?,
     };
     let index = index.saturating_add(arguments.offset);
     let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;

@@ -1,12 +1,13 @@
 //! `sweep status`: how far a dataset has got.
 
-use super::slurm::Jobs;
 use crate::Failure;
 use crate::gen_dataset;
 use clap::Args;
-use serde_json::json;
+use recordings::FailedCase;
+use serde::Serialize;
 use std::path::PathBuf;
 use sweep::dataset::{Output, status};
+use sweep::engines::slurm::Jobs;
 use sweep::ranges::ranges;
 
 /// Arguments of `sweep status`.
@@ -31,6 +32,32 @@ pub struct Arguments {
     json: bool,
 }
 
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Status<'a> {
+    plan_id: &'a str,
+    name: &'a str,
+    complete: bool,
+    shards: u64,
+    made: u64,
+    missing: String,
+    cases: u64,
+    cases_made: u64,
+    cases_failed: usize,
+    failed: &'a [FailedCase],
+    attempts: Vec<Attempts>,
+    jobs: Vec<String>,
+}
+
+/// The processes at a shard.
+#[derive(Serialize)]
+struct Attempts {
+    shard: u64,
+    attempts: u64,
+    at_work: u64,
+    ended: u64,
+}
+
 /// Prints how far the dataset has got.
 ///
 /// # Errors
@@ -43,26 +70,28 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let jobs = jobs.map_or_else(|_| Vec::new(), |jobs| jobs.under_way());
     let made = plan.parts() - found.missing.len() as u64;
     if arguments.json {
-        let attempts = found.attempts.iter();
-        let attempts = attempts.map(|(shard, at)| {
-            let (at_work, ended) = (at.at_work, at.ended);
-            json!({"shard": shard, "attempts": at_work + ended, "at_work": at_work, "ended": ended})
+        let attempts = found.attempts.iter().map(|(shard, at)| Attempts {
+            shard: *shard,
+            attempts: at.at_work + at.ended,
+            at_work: at.at_work,
+            ended: at.ended,
         });
-        let value = json!({
-            "plan_id": plan.id,
-            "name": plan.name,
-            "complete": found.complete,
-            "shards": plan.parts(),
-            "made": made,
-            "missing": ranges(&found.missing),
-            "cases": plan.cases(),
-            "cases_made": found.cases,
-            "cases_failed": found.failed.len(),
-            "failed": found.failed,
-            "attempts": attempts.collect::<Vec<_>>(),
-            "jobs": jobs,
-        });
-        println!("{value:#}");
+        let status = Status {
+            plan_id: &plan.id,
+            name: &plan.name,
+            complete: found.complete,
+            shards: plan.parts(),
+            made,
+            missing: ranges(&found.missing),
+            cases: plan.cases(),
+            cases_made: found.cases,
+            cases_failed: found.failed.len(),
+            failed: &found.failed,
+            attempts: attempts.collect(),
+            jobs,
+        };
+        let text = serde_json::to_string_pretty(&status).map_err(Failure::work)?;
+        println!("{text}");
         return Ok(());
     }
     let complete = match found.complete {

@@ -1,11 +1,12 @@
 //! `sweep submit`: an engine is handed the shards.
 
-use super::slurm::Jobs;
+use super::{of_engine, tell};
 use crate::Failure;
 use crate::gen_dataset;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use sweep::dataset::{Output, status};
+use sweep::engines::slurm::Jobs;
 
 /// Arguments of `sweep submit`.
 #[derive(Args, Debug)]
@@ -49,12 +50,14 @@ enum Engine {
 /// # Errors
 /// Nothing planned, jobs that are under way already, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref())?;
+    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref()).map_err(of_engine)?;
     let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
     let missing = status(&output, &plan, false)
         .map_err(gen_dataset::failed)?
         .missing;
-    match arguments.engine {
+    let submitted = match arguments.engine {
         Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
-    }
+    };
+    tell(&submitted.map_err(of_engine)?);
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! `crosshead report` on small datasets that are simulated here.
 
-use report::dataset_page::Design;
+use report::chaos_page::ChaosPage;
+use report::dataset_page::{DatasetPage, Design};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -99,6 +100,14 @@ impl Dataset {
         report(&self.path(), more)
     }
 
+    fn read(&self) -> sweep::reader::Dataset {
+        sweep::reader::Dataset::read(&self.path()).unwrap()
+    }
+
+    fn page(&self) -> DatasetPage {
+        DatasetPage::of(&self.read()).unwrap()
+    }
+
     fn html(&self) -> String {
         fs::read_to_string(self.path().join("report.html")).unwrap()
     }
@@ -180,7 +189,7 @@ fn a_grid_is_compared_and_its_claims_are_printed() {
 #[test]
 fn levels_are_those_of_the_recordings() {
     let dataset = Dataset::of(GRID, Format::Parquet);
-    let page = cli::report::page(&dataset.path()).unwrap();
+    let page = dataset.page();
     let Design::Grid(grids) = &page.design else {
         panic!("a grid")
     };
@@ -250,7 +259,7 @@ fn chaos_and_features_have_pages_of_their_own() {
         column("lyapunov_true_per_s"),
         column("lyapunov_true_standard_error_per_s"),
     );
-    let page = cli::report::chaos_page(&dataset.path()).unwrap();
+    let page = ChaosPage::of(&dataset.read()).unwrap();
     assert_eq!(page.cases.len(), 4);
     for (i, case) in page.cases.iter().enumerate() {
         assert_eq!(
@@ -323,7 +332,7 @@ fn random_cases_have_distributions() {
     }
     // Two examples, the histograms, four scatters.
     assert_eq!(html.matches("<figcaption>").count(), 2 + 1 + 4);
-    let page = cli::report::page(&dataset.path()).unwrap();
+    let page = dataset.page();
     let counts = page
         .faults
         .iter()
@@ -408,7 +417,7 @@ fn a_fault_is_judged_by_the_sensor_of_its_own_throw() {
     stands_alone(&html);
     assert!(html.contains("front: front.crosshead_acceleration_m_s2; rear: rear.crosshead_"));
     assert!(html.contains("No sensor reads the crank angle"));
-    let page = cli::report::page(&dataset.path()).unwrap();
+    let page = dataset.page();
     let Design::Grid(grids) = &page.design else {
         panic!("a grid")
     };
@@ -516,7 +525,7 @@ fn settings_of_the_contacts_are_operating_points() {
         - {from: eq5, youngs_modulus: 207 GPa, poisson_ratio: 0.3}",
     );
     let dataset = Dataset::of(&sweep, Format::Parquet);
-    let page = cli::report::page(&dataset.path()).unwrap();
+    let page = dataset.page();
     let Design::Grid(grids) = &page.design else {
         panic!("a grid")
     };

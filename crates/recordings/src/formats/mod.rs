@@ -4,6 +4,7 @@ pub mod csv;
 pub(crate) mod mat;
 pub mod mcap;
 pub mod parquet;
+pub mod table_file;
 pub(crate) mod wav;
 
 use crate::Error;

@@ -17,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use serde_json::json;
+use serde::Serialize;
 
 use super::commit::text;
 use super::output::Output;
@@ -35,6 +35,14 @@ const PATIENCE: u64 = 3;
 const BEAT: Duration = Duration::from_secs(60);
 /// Age at which such a marker counts as that of a process that ended.
 const LEASE: Duration = Duration::from_secs(5 * 60);
+
+/// What a marker says.
+#[derive(Serialize)]
+struct Record<'a> {
+    process: &'a str,
+    number: u64,
+    unix_time_s: u64,
+}
 
 /// The processes at a shard that is not made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,8 +97,11 @@ impl<'a> Attempts<'a> {
         let number = BEGUN.fetch_add(1, Ordering::Relaxed);
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
         let since = since.map_or(0, |time| time.as_secs());
-        let record = json!({"process": process(), "number": number, "unix_time_s": since});
-        let record = text(&record)?;
+        let record = text(&Record {
+            process: process(),
+            number,
+            unix_time_s: since,
+        })?;
         let path = format!("{FOLDER}/{shard}.{}-{number}", process());
         let lock = self.output.store.hold(&path, &record)?;
         let marker = Marker { path, record, lock };

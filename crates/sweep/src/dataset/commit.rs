@@ -381,11 +381,16 @@ pub enum Damage {
 
 /// A record as it is written.
 pub(super) fn text(record: &impl Serialize) -> Result<String, Error> {
-    let json = serde_json::to_string_pretty(record).map_err(|e| {
-        let message = e.to_string();
-        recordings::Error::Write(std::io::Error::other(message))
-    })?;
-    Ok(json + "\n")
+    Ok(serde_json::to_string_pretty(record).map_err(unwritable)? + "\n")
+}
+
+/// A record on one line, without the line's end.
+pub(super) fn line(record: &impl Serialize) -> Result<String, Error> {
+    Ok(serde_json::to_string(record).map_err(unwritable)?)
+}
+
+fn unwritable(error: serde_json::Error) -> recordings::Error {
+    recordings::Error::Write(std::io::Error::other(error.to_string()))
 }
 
 /// SHA-256 of a text, in hexadecimal.

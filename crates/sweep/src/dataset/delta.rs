@@ -6,9 +6,10 @@
 use std::fs;
 
 use recordings::{Column, FileEntry, Kind, Manifest, Schema};
-use serde_json::{Value, json};
+use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use super::commit::line;
 use super::diagrams::{self, DiagramTable};
 use super::output::Output;
 use super::store::failed;
@@ -62,7 +63,7 @@ pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Err
         if files.is_empty() {
             continue;
         }
-        write(output, folder, &log(plan, folder, &schema, &files))?;
+        write(output, folder, &log(plan, folder, &schema, &files)?)?;
         exported.push(DeltaTable {
             folder,
             files: files.len(),
@@ -109,31 +110,127 @@ fn write(output: &Output, folder: &str, log: &str) -> Result<(), Error> {
     }
 }
 
+/// A line of the log.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase", rename_all_fields = "camelCase")]
+enum Action<'a> {
+    Protocol {
+        min_reader_version: u32,
+        min_writer_version: u32,
+    },
+    MetaData {
+        id: String,
+        name: String,
+        format: Format,
+        schema_string: String,
+        partition_columns: [&'a str; 0],
+        configuration: Nothing,
+        created_time: u64,
+    },
+    Add {
+        path: &'a str,
+        partition_values: Nothing,
+        size: u64,
+        modification_time: u64,
+        data_change: bool,
+        stats: String,
+    },
+}
+
+/// An object without keys.
+#[derive(Serialize)]
+struct Nothing {}
+
+#[derive(Serialize)]
+struct Format {
+    provider: &'static str,
+    options: Nothing,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Stats {
+    num_records: Option<u64>,
+}
+
+/// A struct of columns.
+#[derive(Serialize)]
+struct Struct<'a> {
+    r#type: &'static str,
+    fields: Vec<Field<'a>>,
+}
+
+#[derive(Serialize)]
+struct Field<'a> {
+    name: &'a str,
+    r#type: Type,
+    nullable: bool,
+    metadata: Metadata<'a>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged, rename_all_fields = "camelCase")]
+enum Type {
+    Primitive(&'static str),
+    Array {
+        r#type: &'static str,
+        element_type: &'static str,
+        contains_null: bool,
+    },
+}
+
+#[derive(Serialize)]
+struct Metadata<'a> {
+    comment: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'a str>,
+}
+
 /// The actions of the first version, a line each.
-fn log(plan: &Plan, folder: &str, schema: &Schema, files: &[(&str, &FileEntry)]) -> String {
-    let protocol = json!({"protocol": {"minReaderVersion": 1, "minWriterVersion": 2}});
-    let meta_data = json!({"metaData": {
-        "id": id(plan, folder),
-        "name": format!("{} {folder}", plan.name),
-        "format": {"provider": "parquet", "options": {}},
-        "schemaString": schema_of(schema).to_string(),
-        "partitionColumns": [],
-        "configuration": {},
-        "createdTime": 0,
-    }});
-    let add = |(name, file): &(&str, &FileEntry)| {
-        json!({"add": {
-            "path": name,
-            "partitionValues": {},
-            "size": file.bytes,
-            "modificationTime": 0,
-            "dataChange": true,
-            "stats": json!({"numRecords": file.rows}).to_string(),
-        }})
+fn log(
+    plan: &Plan,
+    folder: &str,
+    schema: &Schema,
+    files: &[(&str, &FileEntry)],
+) -> Result<String, Error> {
+    let mut log = String::new();
+    let mut action = |action: Action| -> Result<(), Error> {
+        log += &line(&action)?;
+        log.push('\n');
+        Ok(())
     };
-    let actions = [protocol, meta_data].into_iter();
-    let actions = actions.chain(files.iter().map(add));
-    actions.map(|action| format!("{action}\n")).collect()
+    action(Action::Protocol {
+        min_reader_version: 1,
+        min_writer_version: 2,
+    })?;
+    action(Action::MetaData {
+        id: id(plan, folder),
+        name: format!("{} {folder}", plan.name),
+        format: Format {
+            provider: "parquet",
+            options: Nothing {},
+        },
+        schema_string: line(&Struct {
+            r#type: "struct",
+            fields: schema.columns().iter().map(field).collect(),
+        })?,
+        partition_columns: [],
+        configuration: Nothing {},
+        created_time: 0,
+    })?;
+    for (name, file) in files {
+        action(Action::Add {
+            path: name,
+            partition_values: Nothing {},
+            size: file.bytes,
+            modification_time: 0,
+            data_change: true,
+            stats: line(&Stats {
+                num_records: file.rows,
+            })?,
+        })?;
+    }
+    Ok(log)
 }
 
 /// An identifier of the form that Delta asks for, the same for the same dataset (UUID of version 8,
@@ -158,22 +255,24 @@ fn id(plan: &Plan, folder: &str) -> String {
     .join("-")
 }
 
-fn schema_of(schema: &Schema) -> Value {
-    let fields: Vec<Value> = schema.columns().iter().map(field).collect();
-    json!({"type": "struct", "fields": fields})
-}
-
-fn field(column: &Column) -> Value {
-    let mut metadata = json!({"comment": column.description});
-    if let Some(unit) = &column.unit {
-        metadata["unit"] = unit.as_str().into();
+fn field(column: &Column) -> Field<'_> {
+    Field {
+        name: &column.name,
+        r#type: match column.kind {
+            Kind::Text => Type::Primitive("string"),
+            Kind::Integer => Type::Primitive("long"),
+            Kind::Real => Type::Primitive("double"),
+            Kind::Flag => Type::Primitive("boolean"),
+            Kind::Samples => Type::Array {
+                r#type: "array",
+                element_type: "float",
+                contains_null: false,
+            },
+        },
+        nullable: column.optional,
+        metadata: Metadata {
+            comment: &column.description,
+            unit: column.unit.as_deref(),
+        },
     }
-    let kind = match column.kind {
-        Kind::Text => json!("string"),
-        Kind::Integer => json!("long"),
-        Kind::Real => json!("double"),
-        Kind::Flag => json!("boolean"),
-        Kind::Samples => json!({"type": "array", "elementType": "float", "containsNull": false}),
-    };
-    json!({"name": column.name, "type": kind, "nullable": column.optional, "metadata": metadata})
 }

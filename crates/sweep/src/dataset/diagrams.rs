@@ -104,7 +104,7 @@ pub(super) fn compute(
 ///
 /// # Errors
 /// Where the machine in its middle fails.
-pub fn sample_diagram(plan: &Plan, diagram: &Diagram) -> Result<u32, Failure> {
+pub(crate) fn sample_diagram(plan: &Plan, diagram: &Diagram) -> Result<u32, Failure> {
     let machine = plan.diagram_machine(diagram, diagram.count() / 2)?;
     let settings = simulate::SectionSettings {
         angle: diagram.angle,

@@ -24,13 +24,15 @@ mod verify;
 pub use attempts::Attended;
 pub use commit::{Commit, Damage};
 pub use delta::{DeltaTable, export_delta};
-pub use diagrams::{run_diagrams, sample_diagram};
+pub use diagrams::run_diagrams;
+pub(crate) use diagrams::sample_diagram;
 pub use finalize::{finalize, finalize_verified};
 pub use kept::check_calibration;
 pub use output::{CALIBRATION, Claim, Existing, Output};
 pub use parts::run_part;
 pub use status::{Status, status};
-pub use tables::{Tables, feature_column};
+pub use tables::Tables;
+pub(crate) use tables::prefixed;
 pub use trial::{Trial, try_here};
 pub use verify::{Fault, Verified, damage, verify};
 

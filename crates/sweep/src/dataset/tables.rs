@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use features::{Cell, Content, Definition};
+use features::Cell;
 use recordings::{Column, Kind, Role, Schema, Value};
 use signal::channel::Channel;
 
@@ -43,7 +43,7 @@ impl Tables {
         summed_up.extend(
             features::columns(names, plan.chaos)
                 .into_iter()
-                .map(feature_column),
+                .map(features::column),
         );
         let metadata = BTreeMap::from([("plan_id".to_owned(), plan.id.clone())]);
         Ok(Self {
@@ -116,24 +116,7 @@ fn about(plan: &Plan) -> Vec<Column> {
     columns
 }
 
-/// The column of a feature.
-pub fn feature_column((definition, content): (Definition, Content)) -> Column {
-    let (kind, meaning) = match content {
-        Content::Number => (
-            Kind::Real,
-            format!("{}: {}", definition.description, definition.formula),
-        ),
-        Content::Text => (Kind::Text, definition.description),
-    };
-    let column = Column::new(definition.name, kind, meaning).optional();
-    let column = column.role(Role::Feature);
-    match definition.unit.as_str() {
-        "1" => column,
-        unit => column.unit(unit),
-    }
-}
-
-pub(super) fn prefixed(throw: &str, name: &str) -> String {
+pub(crate) fn prefixed(throw: &str, name: &str) -> String {
     match throw {
         "" => name.to_owned(),
         throw => format!("{throw}.{name}"),

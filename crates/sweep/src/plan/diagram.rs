@@ -3,7 +3,7 @@
 use input::quantity::{Kind, Speed};
 use input::{Error, MachineFile, Problem, paths};
 use mechanism::Machine;
-use serde_json::{Value, json};
+use serde_json::Value;
 use simulate::bifurcation::{Chunk, Direction, WalkSettings};
 use simulate::poincare::{Joint, clear_joints};
 
@@ -50,7 +50,7 @@ impl Diagram {
         let set = match &file.joints {
             None => Vec::new(),
             Some(names) => {
-                let set = frame.set(&json!(names));
+                let set = frame.set(&names.clone().into());
                 set.map_err(|e| e.under("joints").under(&key))?
             }
         };

@@ -1,0 +1,235 @@
+//! The files that arguments name: single ones, the runs of bundles, the tables of datasets.
+
+use super::{Error, Unit, shaft};
+use input::bundle::{self, Bundle, Joint, Run};
+use input::bundle_channel::Meaning;
+use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
+use recordings::{Column, Kind, Value};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// A file, and what is known about it from elsewhere.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// As it is named in the output.
+    pub path: PathBuf,
+    pub(super) options: Options,
+    pub(super) speed_rpm: Option<f64>,
+    /// Labels that the bundle tells.
+    pub(super) labels: Vec<(Column, Value)>,
+    /// What the bundle says that its columns are, with their units.
+    pub(super) meanings: BTreeMap<String, (Meaning, String)>,
+}
+
+impl Input {
+    /// What the bundle says of a channel.
+    pub(super) fn meaning(&self, channel: &MeasuredChannel) -> Option<&(Meaning, String)> {
+        let of = |name| self.meanings.get(name);
+        of(&channel.column).or_else(|| of(&channel.name))
+    }
+
+    /// Opens the file.
+    pub(super) fn open(&self) -> Result<MeasuredFile, Error> {
+        MeasuredFile::open(&self.path, &self.options)
+            .map_err(|error| Error::of_file(&self.path, error))
+    }
+}
+
+/// What the arguments say of all files.
+#[derive(Clone, Debug)]
+pub struct Said {
+    /// Columns and sample rate.
+    pub options: Options,
+    /// Speed of the crank.
+    pub speed_rpm: Option<f64>,
+    /// Unit of the channels that have none.
+    pub unit: Option<Unit>,
+    /// Where the crank stands.
+    pub crank: shaft::Asked,
+    /// Whether a bundle may name recordings outside of its folder.
+    pub allow_outside: bool,
+}
+
+impl Said {
+    /// The options for a file of which these columns tell where the crank stands.
+    fn options(&self, references: impl Iterator<Item = String>) -> Options {
+        let mut options = self.options.clone();
+        // Without a choice of columns all are read.
+        if !options.columns.is_empty() {
+            options.columns.extend(references);
+        }
+        options
+    }
+}
+
+/// All files that `paths` name: single ones, the runs of bundles, the tables of datasets.
+///
+/// # Errors
+/// A folder that is neither a bundle nor a dataset, or a bundle with a mistake.
+pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
+    let mut inputs = Vec::new();
+    let mut beside = Beside::default();
+    for path in paths {
+        if Bundle::is_at(path) {
+            let mut bundle = Bundle::read(path)?;
+            bundle.allow_outside = said.allow_outside;
+            for i in 0..bundle.runs.len() {
+                inputs.push(of_run(&bundle, i, said)?);
+            }
+            continue;
+        }
+        let files = if path.is_dir() {
+            of_folder(path)?
+        } else {
+            vec![path.clone()]
+        };
+        for path in files {
+            let input = match beside.run_of(&path)? {
+                Some((bundle, i)) => Input {
+                    path,
+                    ..of_run(bundle, i, said)?
+                },
+                None => Input {
+                    path,
+                    options: said.options(said.crank.bare_column().into_iter()),
+                    speed_rpm: said.speed_rpm,
+                    labels: Vec::new(),
+                    meanings: BTreeMap::new(),
+                },
+            };
+            inputs.push(input);
+        }
+    }
+    Ok(inputs)
+}
+
+/// The bundles beside files, each read once.
+#[derive(Default)]
+struct Beside(BTreeMap<PathBuf, Option<Bundle>>);
+
+impl Beside {
+    /// The run of a `recordings.yaml` in the file's folder whose recording it is.
+    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize)>, Error> {
+        let Ok(file) = file.canonicalize() else {
+            return Ok(None);
+        };
+        let Some(folder) = file.parent() else {
+            return Ok(None);
+        };
+        if !self.0.contains_key(folder) {
+            let there = folder.join(bundle::FILE).is_file();
+            let bundle = there.then(|| Bundle::read(folder)).transpose()?;
+            self.0.insert(folder.to_owned(), bundle);
+        }
+        let bundle = self.0.get(folder).and_then(Option::as_ref);
+        Ok(bundle.and_then(|bundle| {
+            let is = |run: &Run| {
+                let path = bundle.path_of(run).ok();
+                path.and_then(|path| path.canonicalize().ok())
+                    .is_some_and(|path| path == file)
+            };
+            Some((bundle, bundle.runs.iter().position(is)?))
+        }))
+    }
+}
+
+/// The recordings of a dataset, in order.
+fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for (below, ending) in [("signals", "parquet"), ("mcap", "mcap")] {
+        let Ok(entries) = std::fs::read_dir(folder.join(below)) else {
+            continue;
+        };
+        let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        files.extend(paths.filter(|path| path.extension().is_some_and(|e| e == ending)));
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(Error::of(
+            folder,
+            "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset)",
+        ));
+    }
+    Ok(files)
+}
+
+fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
+    let run = &bundle.runs[index];
+    let meanings = bundle.meanings(index, &bundle.machine)?;
+    let rate = run.sample_rate_hz.map(|rate| rate.get());
+    let wrong = |key: &str, expected: String| {
+        let error = input::Error::clash(format!("runs.{index}.{key}"), expected);
+        Error::from(bundle.locate(error))
+    };
+    if let (Some(of_run), Some(asked)) = (rate, said.options.sample_rate_hz)
+        && of_run != asked
+    {
+        return Err(wrong(
+            "sample_rate_hz",
+            format!("the {asked} Hz of --sample-rate"),
+        ));
+    }
+    let listed = || run.channels.iter().zip(&meanings);
+    let asked = said.crank.bare_column().into_iter();
+    let references = listed()
+        .filter(|(_, meaning)| matches!(meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. }));
+    let references = references.map(|(channel, _)| channel.column.clone());
+    let mut options = said.options(asked.clone().chain(references));
+    if options.columns.is_empty() {
+        // The column of time is read in any case, and is no channel.
+        let channels = listed().filter(|(c, meaning)| **meaning != Meaning::Time && c.unit != "s");
+        let columns = channels.map(|(channel, _)| channel.column.clone());
+        options.columns = columns.chain(asked).collect();
+    }
+    options.sample_rate_hz = rate.or(options.sample_rate_hz);
+    let speed = run.speed_rpm.map(|speed| speed.get());
+    Ok(Input {
+        path: bundle.path_of(run)?,
+        options,
+        speed_rpm: speed.or(said.speed_rpm),
+        labels: labels(run),
+        meanings: listed()
+            .map(|(c, meaning)| (c.column.clone(), (meaning.clone(), c.unit.clone())))
+            .collect(),
+    })
+}
+
+/// What a bundle tells about a run.
+fn labels(run: &Run) -> Vec<(Column, Value)> {
+    let real = |name: String, unit: &str, meaning: &str, value: f64| {
+        let column = Column::new(name, Kind::Real, meaning).unit(unit).optional();
+        (column, Value::from(value))
+    };
+    let under = |throw: &str, name: &str| match throw {
+        "" => name.to_owned(),
+        throw => format!("{throw}.{name}"),
+    };
+    let run_id = Column::new("run", Kind::Text, "name of the run in its bundle").optional();
+    let mut labels = vec![(run_id, Value::from(run.id.as_str()))];
+    for (throw, load) in &run.load {
+        for (side, pressure) in [
+            ("suction", load.suction_pressure_pa),
+            ("discharge", load.discharge_pressure_pa),
+        ] {
+            let name = under(throw, &format!("{side}_pressure_pa"));
+            labels.push(real(
+                name,
+                "Pa",
+                "as the bundle says, absolute",
+                pressure.get(),
+            ));
+        }
+    }
+    for (throw, joints) in &run.joints {
+        for (joint, state) in joints {
+            let clearance = match state {
+                Joint::Scalar(_) => 0.0,
+                Joint::Section(clear) => clear.clearance_m.get(),
+            };
+            let name = format!("clearance_{}_m", under(throw, joint));
+            let meaning = "clearance as the bundle says; 0 where the joint is ideal";
+            labels.push(real(name, "m", meaning, clearance));
+        }
+    }
+    labels
+}

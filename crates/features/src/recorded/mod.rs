@@ -1,0 +1,79 @@
+//! The table of features of recordings, measured or simulated: a row for each window.
+//!
+//! ```text
+//! inputs()            the files that paths name, and what their bundles say of them
+//! Table::new(inputs)  the columns over all files
+//! Table::windows()    the windows of all files, in order
+//! row(window)         its row; rows depend on their window alone
+//! ```
+
+mod error;
+mod inputs;
+mod jobs;
+mod shaft;
+mod summary;
+mod table;
+mod units;
+mod warnings;
+mod window_length;
+
+pub use error::Error;
+pub use inputs::{Input, Said, inputs};
+pub use jobs::Jobs;
+pub use shaft::Asked as CrankReference;
+pub use summary::{Summary, counted};
+pub use table::{Job, Row, row};
+pub use units::Unit;
+pub use window_length::WindowLength;
+
+use recordings::Schema;
+use table::{Columns, Layout};
+
+/// The table of features of some files.
+pub struct Table<'a> {
+    inputs: &'a [Input],
+    layouts: Vec<Layout>,
+    schema: Schema,
+}
+
+impl<'a> Table<'a> {
+    /// Opens every file to find the columns.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or does not go together with the others or with what is `said`.
+    pub fn new(inputs: &'a [Input], said: &Said) -> Result<Self, Error> {
+        let mut labels = Columns::default();
+        let layouts = inputs
+            .iter()
+            .map(|input| Layout::new(input, &input.open()?, said, &mut labels));
+        let mut layouts = layouts.collect::<Result<Vec<_>, _>>()?;
+        let schema = table::schema(labels, &mut layouts)?;
+        Ok(Self {
+            inputs,
+            layouts,
+            schema,
+        })
+    }
+
+    /// The columns.
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// The first file that has channels without a unit, and these.
+    pub fn without_unit(&self) -> Option<(&str, &[String])> {
+        let mut layouts = self.layouts.iter();
+        let layout = layouts.find(|layout| !layout.without_unit.is_empty())?;
+        Some((&layout.file, &layout.without_unit))
+    }
+
+    /// The windows of all files, in order.
+    pub fn windows(self, length: WindowLength) -> Jobs<'a> {
+        Jobs::new(
+            self.inputs,
+            self.layouts,
+            self.schema.columns().len(),
+            length,
+        )
+    }
+}

@@ -1,0 +1,405 @@
+//! The table of features: its columns over all files, and its rows.
+
+use super::inputs::Input;
+use super::shaft::{self, Crank};
+use super::summary::counted;
+use super::units::{Role, Scaled, scaled};
+use super::warnings::clipped;
+use super::{Error, Said, Unit};
+use crate::{Cell, CrankAngles, Reason, column};
+use input::bundle_channel::Meaning;
+use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
+use recordings::{Column, Kind, Schema, Value};
+use signal::channel::Channel;
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
+
+/// The columns with which every row begins; the labels follow.
+const FIRST_COLUMNS: usize = 6;
+
+fn first_columns() -> [Column; FIRST_COLUMNS] {
+    let real =
+        |name: &str, unit: &str, meaning: &str| Column::new(name, Kind::Real, meaning).unit(unit);
+    [
+        Column::new("file", Kind::Text, "the recording"),
+        Column::new(
+            "window",
+            Kind::Integer,
+            "which window of the recording, from 0",
+        ),
+        real(
+            "start_s",
+            "s",
+            "where the window begins, after the first sample",
+        ),
+        real("duration_s", "s", "length of the window"),
+        real("sample_rate_hz", "Hz", "samples per second"),
+        real(
+            "speed_rpm",
+            "rpm",
+            "mean speed of the crank, from its angle where there is one",
+        )
+        .optional(),
+    ]
+}
+
+/// The column with which every row ends, behind [`MISSING`].
+fn warnings_column() -> Column {
+    Column::new("warnings", Kind::Text, "what looks wrong with the window").optional()
+}
+
+/// The last of a file's features, which stands behind those of all files.
+const MISSING: &str = "missing";
+
+/// The columns of the table, each once.
+#[derive(Default)]
+pub(super) struct Columns {
+    columns: Vec<Column>,
+    positions: BTreeMap<String, usize>,
+}
+
+impl Columns {
+    /// Where the column stands; it is added if it is new.
+    fn position(&mut self, column: Column) -> Result<usize, Error> {
+        if let Some(&position) = self.positions.get(&column.name) {
+            let (kind, other) = (column.kind, self.columns[position].kind);
+            if kind != other {
+                let name = column.name;
+                return Err(Error::Kinds { name, kind, other });
+            }
+            return Ok(position);
+        }
+        self.positions
+            .insert(column.name.clone(), self.columns.len());
+        self.columns.push(column);
+        Ok(self.columns.len() - 1)
+    }
+}
+
+/// What the rows of one file hold, and where it stands.
+pub(super) struct Layout {
+    pub(super) file: String,
+    pub(super) channels: Vec<Scaled>,
+    /// Channels whose unit is not known.
+    pub(super) without_unit: Vec<String>,
+    features: Vec<Column>,
+    feature_positions: Vec<usize>,
+    /// Places among the labels of all files; none of what is told by a column of its own.
+    label_positions: Vec<Option<usize>>,
+    /// Labels from elsewhere, with their places.
+    known: Vec<(usize, Value)>,
+    /// Where the file's labels have the speed, and the window.
+    pub(super) speed_label: Option<usize>,
+    window_label: Option<usize>,
+    stated_speed_rpm: Option<f64>,
+}
+
+impl Layout {
+    /// The layout of a file's rows; `columns` grows by those that it adds. Labels and features
+    /// are collected in two passes, so that all labels stand before all features.
+    pub(super) fn new(
+        input: &Input,
+        file: &MeasuredFile,
+        said: &Said,
+        labels: &mut Columns,
+    ) -> Result<Self, Error> {
+        let shown = input.path.display().to_string();
+        let mut label = |column: Column| {
+            let position = labels.position(column);
+            position.map_err(|error| Error::of(&input.path, error))
+        };
+        let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
+        let reference = shaft::reference(&input.path, file, &said.crank, meaning)?;
+        let channels = channels(input, file, said.unit.as_ref(), reference);
+        let channels = channels.map_err(|reason| Error::of(&input.path, reason))?;
+        let measured = || channels.iter().filter(|c| c.role == Role::Measured);
+        let unknown = measured().filter(|c| c.unit.is_empty());
+        let without_unit = unknown.map(|c| c.name.clone()).collect();
+        let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
+        let own = |name: &str| file.labels().iter().position(|c| c.name == name);
+        let fixed: BTreeSet<String> = first_columns()
+            .into_iter()
+            .map(|c| c.name)
+            .chain([MISSING.to_owned(), warnings_column().name])
+            .collect();
+        let mut label_positions = Vec::new();
+        for column in file.labels() {
+            let position = match fixed.contains(&column.name) {
+                true => None,
+                false => Some(label(column.clone())?),
+            };
+            label_positions.push(position);
+        }
+        let mut known = Vec::new();
+        for (column, value) in &input.labels {
+            known.push((label(column.clone())?, value.clone()));
+        }
+        let is = |name: &str, kind| own(name).filter(|&i| file.labels()[i].kind == kind);
+        Ok(Self {
+            features: crate::columns(names, true)
+                .into_iter()
+                .map(column)
+                .collect(),
+            feature_positions: Vec::new(),
+            speed_label: is("speed_rpm", Kind::Real),
+            window_label: is("window", Kind::Integer),
+            stated_speed_rpm: input.speed_rpm,
+            file: shown,
+            channels,
+            without_unit,
+            label_positions,
+            known,
+        })
+    }
+
+    /// That the file cannot be used.
+    pub(super) fn wrong(&self, reason: String) -> Error {
+        let file = self.file.clone();
+        Error::Wrong { file, reason }
+    }
+
+    /// The speed of a recording with these labels, as it is stated.
+    pub(super) fn stated_speed(&self, labels: &[Value]) -> Result<Option<f64>, Error> {
+        let label = self.speed_label.and_then(|i| labels.get(i));
+        match (label, self.stated_speed_rpm) {
+            (Some(Value::Real(of_file)), Some(said)) if (of_file / said - 1.0).abs() > 0.01 => {
+                Err(self.wrong(format!(
+                    "the speed is {of_file} rpm, but --speed says {said:.4} rpm"
+                )))
+            }
+            (Some(Value::Real(of_file)), _) => Ok(Some(*of_file)),
+            (_, said) => Ok(said),
+        }
+    }
+
+    /// Where the crank stands at each of these samples of the channels; none without a channel that
+    /// tells it.
+    pub(super) fn crank(&self, samples: &[&[f32]]) -> Option<Result<Crank, signal::Error>> {
+        let mut channels = self.channels.iter().zip(samples);
+        channels.find_map(|(channel, samples)| shaft::crank(samples, channel))
+    }
+
+    /// What a line between two samples of each channel is.
+    pub(super) fn bridges(&self) -> Vec<Bridge> {
+        let bridge = |channel: &Scaled| match channel.role {
+            Role::CrankAngle { .. } => Bridge::Turn((TAU / channel.to_si.scale) as f32),
+            _ => Bridge::Line,
+        };
+        self.channels.iter().map(bridge).collect()
+    }
+}
+
+/// The channels of a file in SI, each with a name of its own. `reference` is the one that tells where
+/// the crank stands.
+fn channels(
+    input: &Input,
+    file: &MeasuredFile,
+    default_unit: Option<&Unit>,
+    reference: Option<(usize, Scaled)>,
+) -> Result<Vec<Scaled>, String> {
+    let mut channels = Vec::new();
+    for (i, channel) in file.channels().iter().enumerate() {
+        if let Some((at, reference)) = &reference
+            && *at == i
+        {
+            channels.push(reference.clone());
+            continue;
+        }
+        let mut channel = channel.clone();
+        let said = input.meaning(&channel);
+        if let Some((_, unit)) = said {
+            channel.unit = Some(unit.clone());
+        }
+        let of_crank = matches!(
+            said,
+            Some((Meaning::CrankAngle(_) | Meaning::Tacho { .. }, _))
+        );
+        if of_crank || (reference.is_some() && shaft::is_crank_angle(&channel)) {
+            channels.push(Scaled::reference(Role::Unused, shaft::AS_IT_IS));
+            continue;
+        }
+        let mut scaled = scaled(&channel, default_unit)?;
+        if let Some((Meaning::Measured { column, to_si }, _)) = said {
+            scaled.to_si = *to_si;
+            scaled.unit = shaft::unit_of(column).to_owned();
+        }
+        let taken = |name: &str| {
+            let mut measured = channels
+                .iter()
+                .filter(|c: &&Scaled| c.role == Role::Measured);
+            measured.any(|c| c.name == name)
+        };
+        if taken(&scaled.name) {
+            scaled.name = channel.column.clone();
+        }
+        if taken(&scaled.name) {
+            return Err(format!("two columns are called `{}`", channel.column));
+        }
+        channels.push(scaled);
+    }
+    Ok(channels)
+}
+
+/// The table of all files: the schema, and the layouts with their places in it.
+pub(super) fn schema(labels: Columns, layouts: &mut [Layout]) -> Result<Schema, Error> {
+    let mut all = Columns::default();
+    let mut add = |column: Column| all.position(column);
+    for column in first_columns() {
+        add(column)?;
+    }
+    for column in labels.columns {
+        add(column)?;
+    }
+    for layout in layouts.iter_mut() {
+        for column in &layout.features {
+            if column.name != MISSING {
+                layout.feature_positions.push(add(column.clone())?);
+            }
+        }
+    }
+    for layout in layouts.iter_mut() {
+        for column in &layout.features {
+            if column.name == MISSING {
+                layout.feature_positions.push(add(column.clone())?);
+            }
+        }
+    }
+    add(warnings_column())?;
+    Schema::new(all.columns).map_err(Error::File)
+}
+
+/// A window that is to become a row.
+pub struct Job {
+    pub(super) layout: std::sync::Arc<Layout>,
+    pub(super) labels: std::sync::Arc<Vec<Value>>,
+    /// Which window of its recording.
+    pub(super) index: u64,
+    pub(super) sample_rate_hz: f64,
+    pub(super) speed_rpm: Option<f64>,
+    pub(super) window: Window,
+    /// Columns of the table.
+    pub(super) columns: usize,
+}
+
+/// A row of the table, and what is to be said of it.
+pub struct Row {
+    /// The values, in the order of the columns.
+    pub values: Vec<Value>,
+    /// Why features have no value, by column.
+    pub(super) reasons: Vec<(usize, Reason)>,
+    pub(super) file: String,
+    pub(super) start_s: f64,
+    pub(super) warning: Option<String>,
+    /// Samples that were missing and are bridged.
+    pub(super) bridged: usize,
+}
+
+/// The row of a window.
+pub fn row(job: &Job) -> Row {
+    let (layout, columns) = (&*job.layout, job.columns);
+    let measured = layout.channels.iter().zip(&job.window.channels);
+    let measured = measured.filter(|(channel, _)| channel.role == Role::Measured);
+    let channels: Vec<Channel> = measured
+        .map(|(channel, samples)| Channel {
+            name: channel.name.clone(),
+            unit: channel.unit.clone(),
+            samples: samples.iter().map(|x| channel.in_si(*x)).collect(),
+        })
+        .collect();
+    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let samples = raw.first().map_or(0, |samples| samples.len());
+    let crank = layout.crank(&raw);
+    let known = crank.as_ref().and_then(|crank| crank.as_ref().ok());
+    let (cells, reasons) = crate::row_with_reasons(
+        &crate::Window {
+            sample_rate: job.sample_rate_hz,
+            speed_rpm: job.speed_rpm,
+            crank_angle: known.map(|crank| CrankAngles {
+                angles: &crank.angles,
+                from_top_dead_centre: crank.from_top_dead_centre,
+            }),
+            channels: &channels,
+        },
+        true,
+    );
+    let speed = known.map(|crank| shaft::speed_rpm(crank, job.sample_rate_hz));
+    let measured_rpm = speed
+        .as_ref()
+        .and_then(|speed| speed.as_ref().ok().copied());
+    let index = match layout.window_label.and_then(|i| job.labels.get(i)) {
+        Some(Value::Integer(window)) if job.index == 0 => *window,
+        _ => job.index as i64,
+    };
+    let mut row = vec![Value::Missing; columns];
+    let first: [Value; FIRST_COLUMNS] = [
+        layout.file.as_str().into(),
+        index.into(),
+        job.window.start_s.into(),
+        (samples as f64 / job.sample_rate_hz).into(),
+        job.sample_rate_hz.into(),
+        measured_rpm.or(job.speed_rpm).into(),
+    ];
+    for (place, value) in row.iter_mut().zip(first) {
+        *place = value;
+    }
+    for (position, value) in layout.label_positions.iter().zip(job.labels.iter()) {
+        if let Some(position) = position {
+            row[FIRST_COLUMNS + position] = value.clone();
+        }
+    }
+    for (position, value) in &layout.known {
+        row[FIRST_COLUMNS + position] = value.clone();
+    }
+    for (position, cell) in layout.feature_positions.iter().zip(cells) {
+        row[*position] = match cell {
+            None => Value::Missing,
+            Some(Cell::Number(number)) => number.into(),
+            Some(Cell::Text(text)) => text.into(),
+        };
+    }
+    let of_crank = shaft::warning(
+        crank.as_ref(),
+        speed.as_ref(),
+        job.speed_rpm,
+        job.sample_rate_hz,
+    );
+    let warning = warnings(job, &channels, of_crank);
+    row[columns - 1] = warning.clone().into();
+    let reasons = layout.feature_positions.iter().copied().zip(reasons);
+    Row {
+        values: row,
+        reasons: reasons
+            .filter_map(|(column, reason)| Some((column, reason?)))
+            .collect(),
+        file: layout.file.clone(),
+        start_s: job.window.start_s,
+        warning,
+        bridged: job.window.bridged.iter().sum(),
+    }
+}
+
+fn warnings(job: &Job, channels: &[Channel], crank: Option<String>) -> Option<String> {
+    let gap = job.window.gap_s;
+    let gap = gap.map(|gap| format!("{gap:.6} s are missing before the window"));
+    let bridged = job.layout.channels.iter().zip(&job.window.bridged);
+    let bridged = bridged
+        .filter(|(_, count)| **count > 0)
+        .map(|(channel, count)| {
+            let samples = counted(*count as u64, "missing sample");
+            format!("{}: {samples} bridged by a line", channel.name)
+        });
+    // Pressures rest at their limits while a valve is open.
+    let clipped = channels
+        .iter()
+        .filter(|c| c.unit != "Pa")
+        .filter_map(|channel| {
+            let samples = clipped(&channel.samples)?;
+            Some(format!(
+                "{}: may be clipped, {samples} samples stand at its limits",
+                channel.name
+            ))
+        });
+    let of_crank = gap.into_iter().chain(crank);
+    let all: Vec<String> = of_crank.chain(bridged).chain(clipped).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}

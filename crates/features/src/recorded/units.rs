@@ -1,0 +1,195 @@
+//! Units of measured channels: what a file says becomes SI, so that features compare.
+
+use input::bundle_channel::ToSi;
+use recordings::measured::{MeasuredChannel, stem};
+
+/// Standard gravity, m/s^2 (CGPM 1901). A measured `g` is never a gram.
+const GRAVITY: f64 = 9.80665;
+
+/// Pound-force per square inch, Pa (NIST SP 811, 2008, appendix B).
+const PSI: f64 = 6894.757;
+
+/// A channel as the features take it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Scaled {
+    /// Name without its unit.
+    pub(super) name: String,
+    /// Unit as the features know it, empty where it is not known.
+    pub(super) unit: String,
+    /// How its numbers become those of the unit.
+    pub(super) to_si: ToSi,
+    /// What it is for.
+    pub(super) role: Role,
+}
+
+/// What a channel is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// It has features.
+    Measured,
+    /// It tells where the crank stands, with the reading at top dead centre, rad, if that is known.
+    CrankAngle { top_dead_centre: Option<f64> },
+    /// Its pulses tell it; the angle from a pulse to top dead centre, rad, if that is known.
+    Tacho { top_dead_centre: Option<f64> },
+    /// It tells of the crank too, but another channel is asked.
+    Unused,
+}
+
+impl Scaled {
+    /// The channel that tells where the crank stands.
+    pub(super) fn reference(role: Role, to_si: ToSi) -> Self {
+        Self {
+            name: "crank_angle".to_owned(),
+            unit: "rad".to_owned(),
+            to_si,
+            role,
+        }
+    }
+
+    /// A sample in SI.
+    pub(super) fn in_si(&self, sample: f32) -> f32 {
+        match self.to_si {
+            ToSi {
+                offset: 0.0,
+                scale: 1.0,
+            } => sample,
+            to_si => to_si.of(f64::from(sample)) as f32,
+        }
+    }
+}
+
+/// The unit of channels without one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// What 1 in the file is, in `si`.
+    factor: f64,
+    /// The unit, as the features know it.
+    si: String,
+}
+
+impl Unit {
+    /// A unit (`m/s^2`), or how much one unit of the file is (`100 m/s^2`); none for any other text.
+    pub fn parse(text: &str) -> Option<Self> {
+        let text = text.trim();
+        let split = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)));
+        let (number, unit) = text.split_at(split.unwrap_or(text.len()));
+        let amount: f64 = match number {
+            "" => 1.0,
+            number => number.parse().ok()?,
+        };
+        let (factor, si) = to_si(unit.trim())?;
+        let is_amount = amount.is_finite() && amount != 0.0;
+        is_amount.then_some(Self {
+            factor: amount * factor,
+            si,
+        })
+    }
+}
+
+/// The channel in SI; `default` is the unit where it has none.
+pub(super) fn scaled(channel: &MeasuredChannel, default: Option<&Unit>) -> Result<Scaled, String> {
+    let base = stem(&channel.name);
+    if base.eq_ignore_ascii_case("crank_angle") {
+        return crank_angle(channel);
+    }
+    let (name, factor, unit) = match (&channel.unit, default) {
+        (Some(unit), _) => match to_si(unit) {
+            Some((factor, si)) => (base, factor, si),
+            None => (base, 1.0, unit.clone()),
+        },
+        (None, Some(unit)) => (channel.name.as_str(), unit.factor, unit.si.clone()),
+        (None, None) => (channel.name.as_str(), 1.0, String::new()),
+    };
+    Ok(Scaled {
+        name: name.to_owned(),
+        unit,
+        to_si: times(factor),
+        role: Role::Measured,
+    })
+}
+
+fn times(scale: f64) -> ToSi {
+    ToSi { offset: 0.0, scale }
+}
+
+fn crank_angle(channel: &MeasuredChannel) -> Result<Scaled, String> {
+    let factor = match channel.unit.as_deref() {
+        Some("rad") => 1.0,
+        Some("deg" | "°") => std::f64::consts::PI / 180.0,
+        _ => {
+            return Err(format!(
+                "column `{}`: a crank angle is called crank_angle_rad or crank_angle_deg",
+                channel.column
+            ));
+        }
+    };
+    let role = Role::CrankAngle {
+        top_dead_centre: Some(0.0),
+    };
+    Ok(Scaled::reference(role, times(factor)))
+}
+
+/// SI units per `unit`, and their name. Speeds stay in rpm, as the field has them.
+fn to_si(unit: &str) -> Option<(f64, String)> {
+    match unit {
+        "g" => return Some((GRAVITY, "m/s^2".to_owned())),
+        "psi" => return Some((PSI, "Pa".to_owned())),
+        "rpm" => return Some((1.0, "rpm".to_owned())),
+        _ => {}
+    }
+    let measure = input::unit::parse(&format!("1 {unit}")).ok()?;
+    let exact = measure.si.is_finite() && measure.si > 0.0;
+    exact.then(|| (measure.si, measure.dimension.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn channel(name: &str, unit: Option<&str>) -> MeasuredChannel {
+        MeasuredChannel {
+            column: name.to_owned(),
+            name: name.to_owned(),
+            unit: unit.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn units_become_si() {
+        for (name, unit, expected) in [
+            ("acc_m_s2", Some("m/s2"), ("acc", "m/s^2", 1.0)),
+            ("acc_g", Some("g"), ("acc", "m/s^2", 9.80665)),
+            ("p", Some("bar"), ("p", "Pa", 1e5)),
+            ("p", Some("psi"), ("p", "Pa", 6894.757)),
+            ("v_mm_s", Some("mm/s"), ("v", "m/s", 1e-3)),
+            ("u", Some("V"), ("u", "V", 1.0)),
+            ("u", None, ("u", "", 1.0)),
+            ("speed_rpm", Some("rpm"), ("speed", "rpm", 1.0)),
+        ] {
+            let found = scaled(&channel(name, unit), None).unwrap();
+            assert_eq!(
+                (found.name.as_str(), found.unit.as_str(), found.to_si.scale),
+                expected
+            );
+        }
+        let angle = scaled(&channel("crank_angle_deg", Some("deg")), None).unwrap();
+        assert!(matches!(angle.role, Role::CrankAngle { .. }));
+        assert!((angle.to_si.of(180.0) - std::f64::consts::PI).abs() < 1e-15);
+        assert!(scaled(&channel("crank_angle", None), None).is_err());
+    }
+
+    #[test]
+    fn a_unit_is_a_name_or_an_amount() {
+        for (text, factor, si) in [
+            ("m/s^2", 1.0, "m/s^2"),
+            ("100 m/s^2", 100.0, "m/s^2"),
+            ("2.5 bar", 2.5e5, "Pa"),
+        ] {
+            let si = si.to_owned();
+            assert_eq!(Unit::parse(text), Some(Unit { factor, si }));
+        }
+        for wrong in ["", "7", "0 Pa", "nonsense", "1 / m"] {
+            assert_eq!(Unit::parse(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! The features that the page shows: how large the acceleration is, how peaked, how violent.
+
+use crate::dataset_page::{FaultCount, Feature, FeatureRow};
+use sweep::reader::{ChannelFeatures, Dataset};
+
+/// Lower edge of the bands that count as violence: the motion without clearance hardly reaches
+/// order 19 at 500 rpm.
+pub(super) const HIGH_FROM_HZ: f64 = 160.0;
+
+/// What [`HIGH_FROM_HZ`] leaves of the root mean square.
+pub(super) fn high_name() -> String {
+    format!("rms above {HIGH_FROM_HZ} Hz")
+}
+
+/// The root mean square above [`HIGH_FROM_HZ`] of each window, m/s².
+pub(super) fn high_rms(measured: &ChannelFeatures) -> Vec<f64> {
+    let windows = 0..measured.rms.len();
+    windows
+        .map(|window| measured.rms_from(HIGH_FROM_HZ, window))
+        .collect()
+}
+
+/// The features by name and unit, and their values.
+fn all(measured: &ChannelFeatures) -> Vec<(Feature, Vec<f64>)> {
+    let feature = |name: &str, unit: &str, values: &[f64]| {
+        let (name, unit) = (name.to_owned(), unit.to_owned());
+        (Feature { name, unit }, values.to_owned())
+    };
+    vec![
+        feature("rms", "m/s²", &measured.rms),
+        feature("peak", "m/s²", &measured.peak),
+        feature("crest factor", "", &measured.crest_factor),
+        feature("kurtosis", "", &measured.kurtosis),
+        feature(&high_name(), "m/s²", &high_rms(measured)),
+        feature("order 1", "m/s²", &measured.orders[0]),
+        feature("order 2", "m/s²", &measured.orders[1]),
+    ]
+}
+
+/// Mean and standard deviation of the features over the windows of each fault, a row for each
+/// sensor that judges it.
+pub(super) fn by_fault(
+    dataset: &Dataset,
+    faults: &[FaultCount],
+) -> (Vec<Feature>, Vec<FeatureRow>) {
+    let measured: Vec<_> = dataset.windows.measured.iter().map(all).collect();
+    let Some(first) = measured.first() else {
+        return (Vec::new(), Vec::new());
+    };
+    let features = first.iter().map(|(feature, _)| feature.clone());
+    let row = |count: &FaultCount, sensor: usize| {
+        let of_fault = |(_, values): &(Feature, Vec<f64>)| {
+            let own = values.iter().zip(&dataset.windows.fault);
+            let own = own.filter(|(_, fault)| **fault == count.fault);
+            mean_and_spread(own.map(|(value, _)| *value))
+        };
+        FeatureRow {
+            fault: count.fault.clone(),
+            sensor: dataset.sensors.channels()[sensor].clone(),
+            windows: count.windows,
+            values: measured[sensor].iter().map(of_fault).collect(),
+        }
+    };
+    let rows = faults.iter().flat_map(|count| {
+        let judging = dataset.sensors.of_fault(&count.fault).into_iter();
+        judging.map(|sensor| row(count, sensor)).collect::<Vec<_>>()
+    });
+    (features.collect(), rows.collect())
+}
+
+/// Mean and standard deviation of the finite values; the latter 0 for a single value.
+fn mean_and_spread(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0).max(1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mean_and_spread;
+
+    #[test]
+    fn the_spread_is_that_of_a_sample() {
+        let (mean, spread) = mean_and_spread([1.0, 2.0, f64::NAN, 3.0].into_iter());
+        assert_eq!((mean, spread), (2.0, 1.0));
+        assert_eq!(mean_and_spread([4.0].into_iter()), (4.0, 0.0));
+        assert!(mean_and_spread(std::iter::empty()).0.is_nan());
+    }
+}
