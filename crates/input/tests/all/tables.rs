@@ -1,6 +1,7 @@
 //! The tables of the pages follow from the declarations.
 
 use input::effects::{CATALOGUE, Entry};
+use mechanism::joints::contact::CONTACT_LAWS;
 use std::fs;
 use std::path::Path;
 
@@ -16,6 +17,27 @@ fn the_table_of_effects_is_current() {
         table.push_str(&row(entry));
     }
     check("crates/mechanism/README.md", "effects", &table);
+}
+
+#[test]
+fn the_table_of_contact_laws_is_current() {
+    let mut table = String::from("| law | what it is | keys |\n|---|---|---|\n");
+    for law in CONTACT_LAWS {
+        let declared = &law.declaration;
+        let own = declared.parameters.iter();
+        let own = own.map(|parameter| match parameter.default {
+            None => format!("`{}`", parameter.key),
+            Some(_) => format!("(`{}`)", parameter.key),
+        });
+        let stiffness = declared.stiffness.map(|_| "`stiffness`".to_owned());
+        let keys: Vec<String> = stiffness.into_iter().chain(own).collect();
+        let keys = keys.join(", ");
+        table.push_str(&format!(
+            "| `{}` | {} | {keys} |\n",
+            law.name, declared.about
+        ));
+    }
+    check("crates/mechanism/README.md", "contact laws", &table);
 }
 
 fn row(entry: &Entry) -> String {
