@@ -6,7 +6,9 @@ use serde::de::value::{
     BorrowedStrDeserializer, F64Deserializer, I64Deserializer, MapAccessDeserializer,
     SeqAccessDeserializer, StrDeserializer, U64Deserializer,
 };
-use serde::de::{Deserialize, Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess};
+use serde::de::{
+    Deserialize, DeserializeSeed, Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess,
+};
 use serde::de::{Unexpected, Visitor};
 use std::borrow::Cow;
 use std::fmt;
@@ -143,21 +145,44 @@ impl<const LOW: u32, const HIGH: u32> Count<LOW, HIGH> {
 
 impl<'de, const LOW: u32, const HIGH: u32> Deserialize<'de> for Count<LOW, HIGH> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Whole<const LOW: u32, const HIGH: u32>;
-        impl<const LOW: u32, const HIGH: u32> Visitor<'_> for Whole<LOW, HIGH> {
-            type Value = Count<LOW, HIGH>;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                write!(f, "a whole number from {LOW} to {HIGH}")
-            }
-            fn visit_u64<E: Error>(self, value: u64) -> Result<Self::Value, E> {
-                u32::try_from(value)
-                    .ok()
-                    .filter(|n| (LOW..=HIGH).contains(n))
-                    .map(Count)
-                    .ok_or_else(|| E::invalid_value(Unexpected::Unsigned(value), &self))
-            }
-        }
-        deserializer.deserialize_u32(Whole)
+        let (low, high) = (LOW, HIGH);
+        WholeNumber { low, high }
+            .deserialize(deserializer)
+            .map(Self)
+    }
+}
+
+/// Reads a whole number from `low` to `high`.
+#[derive(Clone, Copy)]
+pub(crate) struct WholeNumber {
+    pub low: u32,
+    pub high: u32,
+}
+
+impl<'de> DeserializeSeed<'de> for WholeNumber {
+    type Value = u32;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<u32, D::Error> {
+        deserializer.deserialize_u32(self)
+    }
+}
+
+impl Visitor<'_> for WholeNumber {
+    type Value = u32;
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "a whole number from {} to {}", self.low, self.high)
+    }
+    fn visit_u64<E: Error>(self, value: u64) -> Result<u32, E> {
+        let number = u32::try_from(value).ok();
+        let number = number.filter(|n| (self.low..=self.high).contains(n));
+        number.ok_or_else(|| E::invalid_value(Unexpected::Unsigned(value), &self))
+    }
+}
+
+impl WholeNumber {
+    /// Its schema.
+    pub(crate) fn schema(self) -> Schema {
+        let Self { low, high } = self;
+        json_schema!({"type": "integer", "minimum": low, "maximum": high})
     }
 }
 
@@ -171,6 +196,7 @@ impl<const LOW: u32, const HIGH: u32> JsonSchema for Count<LOW, HIGH> {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        json_schema!({"type": "integer", "minimum": LOW, "maximum": HIGH})
+        let (low, high) = (LOW, HIGH);
+        WholeNumber { low, high }.schema()
     }
 }

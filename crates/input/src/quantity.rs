@@ -304,16 +304,6 @@ impl<B: Bound> Number<B> {
     }
 }
 
-impl<B> Number<B> {
-    /// A default, which its author has checked against the bound.
-    pub(crate) const fn fixed(value: f64) -> Self {
-        Self {
-            value,
-            bound: PhantomData,
-        }
-    }
-}
-
 impl<B> Clone for Number<B> {
     fn clone(&self) -> Self {
         *self

@@ -3,12 +3,14 @@
 //!
 //! - [`machine`]: the parameters, as plain data;
 //! - [`joints`]: the four places with clearance, their contact and friction laws;
-//! - [`gas`], [`drive`], [`frame`], [`effects`]: what else acts;
+//! - [`gas`], [`drive`], [`frame`], [`effects`]: what else acts; [`declaration`]: what an effect says
+//!   of itself;
 //! - [`throw`] and [`shaft`]: forces and accelerations of one throw, and what couples them;
 //! - [`state`] and [`mode`]: what is integrated, and what switches;
 //! - [`dynamics`]: all of it together, [`SideBySide`] for several machines at once; [`energy`]: the
 //!   ledger that must balance.
 
+pub mod declaration;
 pub mod drive;
 pub mod dynamics;
 pub mod effects;

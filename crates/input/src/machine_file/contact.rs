@@ -1,124 +1,211 @@
 //! Contact and friction laws of a joint.
 
 use super::relation::{RelationSection, Stated};
+use super::value::{self, Value};
 use crate::choice::{Or, Pair};
 use crate::error::{Error, quoted};
 use crate::quantity::{
-    Contraction, Damping, FromOne, FromZero, Length, NonNegative, Number, Positive, Pressure,
-    Rebound, Velocity, describe, found, text_schema,
+    Contraction, FromZero, Length, NonNegative, Number, Positive, Pressure, Velocity, describe,
+    found, text_schema,
 };
 use crate::unit::{self, Dimension};
-use mechanism::joints::contact::{self, ContactLaw};
+use mechanism::declaration::Quantity;
+use mechanism::joints::contact::{self, CONTACT_LAWS, ContactLaw, Entry, Parameter};
 use mechanism::joints::friction::{self, FrictionLaw};
 use mechanism::joints::stiffness::{Material, conformal, equation_5};
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::de::{Deserialize, Deserializer, Unexpected, Visitor};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{
+    Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, Unexpected,
+    VariantAccess, Visitor,
+};
+use serde_json::{Map, json};
 use std::borrow::Cow;
 use std::fmt;
+use std::sync::LazyLock;
 
-/// Normal force between two surfaces as a function of the penetration δ and its rate.
-#[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(rename = "tag:law=impact", rename_all = "snake_case")]
-#[schemars(rename = "Contact", tag = "law", transform = crate::schema::default_variant)]
-pub(super) enum Contact {
-    /// IMPACT of ADAMS (the default): K δⁿ + STEP(δ, 0, 0, depth, damping) dδ/dt.
-    Impact(Impact),
-    /// K δⁿ, without loss (Hertz 1881).
-    Hertz(Hertz),
-    /// Linear spring and damper (Dubowsky and Freudenstein 1971).
-    KelvinVoigt(KelvinVoigt),
-    /// Hunt and Crossley 1975.
-    HuntCrossley(Restitution),
-    /// Lankarani and Nikravesh 1990.
-    LankaraniNikravesh(Restitution),
-    /// Flores, Machado, Silva and Martins 2011.
-    Flores(Restitution),
-}
-
-/// Declares the parameters of a contact law: its own, and how they follow the clearance.
-macro_rules! law {
-    (
-        $(#[$meta:meta])*
-        struct $name:ident { $( $(#[$field_meta:meta])* $field:ident: $type:ty, )* }
-    ) => {
-        $(#[$meta])*
-        #[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct $name {
-            $( $(#[$field_meta])* $field: $type, )*
-            /// How the parameters follow the clearance: eq5, conformal, constant, or a section of
-            /// exponents. They do not follow it where it is left out.
-            #[serde(default)]
-            relation: Option<RelationSection>,
-            /// Clearance at which the parameters are as they stand here; needed with a relation.
-            #[serde(default)]
-            at_clearance: Option<Positive<Length>>,
-        }
-
-        impl $name {
-            fn stated(&self) -> Result<Option<Stated>, Error> {
-                Stated::new(self.relation.as_ref(), self.at_clearance)
-            }
-        }
-    };
-}
-
-law! {
-    /// Parameters of IMPACT.
-    struct Impact {
-        /// Stiffness K, or what it follows from.
-        stiffness: StiffnessSource,
-        /// Exponent n of the penetration; 1.5 where it is left out.
-        #[serde(default = "hertzian")]
-        exponent: Number<FromOne>,
-        /// Greatest damping.
-        damping: NonNegative<Damping>,
-        /// Penetration at which the damping is full.
-        depth: Positive<Length>,
-    }
-}
-
-law! {
-    /// Parameters of the elastic law.
-    struct Hertz {
-        /// Stiffness K, or what it follows from.
-        stiffness: StiffnessSource,
-        /// Exponent n of the penetration; 1.5 where it is left out.
-        #[serde(default = "hertzian")]
-        exponent: Number<FromOne>,
-    }
-}
-
-law! {
-    /// Parameters of the linear law.
-    struct KelvinVoigt {
-        /// Stiffness, in N/m.
-        stiffness: StiffnessSource,
-        /// Damping.
-        damping: NonNegative<Damping>,
-    }
-}
-
-law! {
-    /// Parameters of a law with a coefficient of restitution.
-    struct Restitution {
-        /// Stiffness K, or what it follows from.
-        stiffness: StiffnessSource,
-        /// Exponent n of the penetration; 1.5 where it is left out.
-        #[serde(default = "hertzian")]
-        exponent: Number<FromOne>,
-        /// Coefficient of restitution.
-        restitution: Number<Rebound>,
-        /// Smallest approach speed that the damping is computed with; 1 mm/s where it is left out.
-        #[serde(default)]
-        slowest_approach: Option<Positive<Velocity>>,
-    }
+/// Normal force between two surfaces as a function of the penetration δ and its rate: the section of
+/// one of [`CONTACT_LAWS`], as its declaration has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Contact {
+    /// Index of the law.
+    law: usize,
+    /// Stiffness K, or what it follows from; none where the law works it out.
+    stiffness: Option<StiffnessSource>,
+    /// The other parameters, SI, in their order.
+    values: Vec<f64>,
+    /// How the parameters follow the clearance: eq5, conformal, constant, or a section of exponents.
+    relation: Option<RelationSection>,
+    /// Clearance at which the parameters are as they stand; needed with a relation.
+    at_clearance: Option<Positive<Length>>,
 }
 
 type StiffnessSource = Or<Stiffness, Materials>;
 
-fn hertzian() -> Number<FromOne> {
-    Number::fixed(1.5)
+/// Keys that every contact law has.
+const RELATION: &str = "relation";
+const AT_CLEARANCE: &str = "at_clearance";
+/// The key that most have.
+const STIFFNESS: &str = "stiffness";
+
+/// Names of the laws, and the keys of each.
+static NAMES: LazyLock<Vec<&'static str>> =
+    LazyLock::new(|| CONTACT_LAWS.iter().map(|law| law.name).collect());
+static KEYS: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
+    let keys = |law: &Entry| {
+        let declared = &law.declaration;
+        let own = declared.parameters.iter().map(|parameter| parameter.key);
+        let stiffness = declared.stiffness.map(|_| STIFFNESS);
+        let keys = stiffness.into_iter().chain(own);
+        keys.chain([RELATION, AT_CLEARANCE]).collect()
+    };
+    CONTACT_LAWS.iter().map(keys).collect()
+});
+
+impl<'de> Deserialize<'de> for Contact {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Named;
+        impl<'de> Visitor<'de> for Named {
+            type Value = Contact;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a contact law")
+            }
+            fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Contact, A::Error> {
+                let (Law(law), content) = data.variant()?;
+                content.newtype_variant_seed(Keys(law))
+            }
+        }
+        deserializer.deserialize_enum("tag:law=impact", &NAMES, Named)
+    }
+}
+
+/// The index of a law, by its name.
+struct Law(usize);
+
+impl<'de> Deserialize<'de> for Law {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let law = NAMES.iter().position(|known| *known == name);
+        law.map(Law)
+            .ok_or_else(|| D::Error::unknown_variant(&name, &NAMES))
+    }
+}
+
+/// The keys of the law with this index.
+struct Keys(usize);
+
+impl<'de> DeserializeSeed<'de> for Keys {
+    type Value = Contact;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Contact, D::Error> {
+        deserializer.deserialize_struct("Contact", &KEYS[self.0], self)
+    }
+}
+
+impl<'de> Visitor<'de> for Keys {
+    type Value = Contact;
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a section")
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Contact, A::Error> {
+        let declared = &CONTACT_LAWS[self.0].declaration;
+        let mut stated = vec![None; declared.parameters.len()];
+        let (mut stiffness, mut relation, mut at_clearance) = (None, None, None);
+        while let Some(key) = map.next_key::<String>()? {
+            let mut parameters = declared.parameters.iter();
+            match (parameters.position(|p| p.key == key), key.as_str()) {
+                (Some(i), _) => {
+                    let parameter = &declared.parameters[i];
+                    stated[i] = map.next_value_seed(Value(parameter.declared()))?;
+                }
+                (None, STIFFNESS) if declared.stiffness.is_some() => {
+                    stiffness = Some(map.next_value()?);
+                }
+                (None, RELATION) => relation = map.next_value()?,
+                (None, AT_CLEARANCE) => at_clearance = map.next_value()?,
+                (None, _) => return Err(A::Error::unknown_field(&key, &KEYS[self.0])),
+            }
+        }
+        if declared.stiffness.is_some() && stiffness.is_none() {
+            return Err(A::Error::missing_field(STIFFNESS));
+        }
+        let each = stated.into_iter().zip(declared.parameters);
+        let value = |(stated, parameter): (Option<f64>, &'static Parameter)| {
+            let value = stated.or(parameter.default);
+            value.ok_or_else(|| A::Error::missing_field(parameter.key))
+        };
+        Ok(Contact {
+            law: self.0,
+            stiffness,
+            values: each.map(value).collect::<Result<_, _>>()?,
+            relation,
+            at_clearance,
+        })
+    }
+}
+
+impl JsonSchema for Contact {
+    fn schema_name() -> Cow<'static, str> {
+        "Contact".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let each = CONTACT_LAWS.iter().enumerate();
+        let each = each.map(|(i, law)| section(law, i == 0, generator));
+        let each: Vec<Schema> = each.collect();
+        json_schema!({
+            "description": "Normal force between two surfaces as a function of the penetration δ and its rate.",
+            "oneOf": each,
+        })
+    }
+}
+
+/// Schema of the section of a law; the default's need not have its name.
+fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Schema {
+    let mut required: Vec<&str> = if is_default { vec![] } else { vec!["law"] };
+    let mut properties = Map::new();
+    properties.insert(
+        "law".to_owned(),
+        json!({"type": "string", "const": law.name}),
+    );
+    let mut add = |key: &str, words: &str, mut schema: Schema| {
+        schema.insert("description".to_owned(), words.into());
+        properties.insert(key.to_owned(), schema.to_value());
+    };
+    if let Some(words) = law.declaration.stiffness {
+        add(
+            STIFFNESS,
+            words,
+            generator.subschema_for::<StiffnessSource>(),
+        );
+        required.push(STIFFNESS);
+    }
+    for parameter in law.declaration.parameters {
+        let mut schema = value::schema(parameter.declared(), generator);
+        if let (Some(default), Quantity::Number) = (parameter.default, parameter.quantity) {
+            schema.insert("default".to_owned(), default.into());
+        }
+        add(parameter.key, parameter.words, schema);
+        if parameter.default.is_none() {
+            required.push(parameter.key);
+        }
+    }
+    add(
+        RELATION,
+        "How the parameters follow the clearance: eq5, conformal, constant, or a section of \
+         exponents. They do not follow it where it is left out.",
+        generator.subschema_for::<RelationSection>(),
+    );
+    add(
+        AT_CLEARANCE,
+        "Clearance at which the parameters are as they stand here; needed with a relation.",
+        generator.subschema_for::<Positive<Length>>(),
+    );
+    json_schema!({
+        "description": law.declaration.about,
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    })
 }
 
 /// A stiffness N/m^n with the n of its unit.
@@ -128,7 +215,7 @@ pub(super) struct Stiffness {
     exponent: f64,
 }
 
-const STIFFNESS: &str =
+const STIFFNESS_TEXT: &str =
     "a contact stiffness greater than 0 with its unit N/m^n, e.g. '24 GN/m^1.5'";
 
 impl<'de> Deserialize<'de> for Stiffness {
@@ -137,7 +224,7 @@ impl<'de> Deserialize<'de> for Stiffness {
         impl Visitor<'_> for Text {
             type Value = Stiffness;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str(STIFFNESS)
+                f.write_str(STIFFNESS_TEXT)
             }
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Stiffness, E> {
                 let wrong = |found: &str| E::invalid_value(Unexpected::Other(found), &self);
@@ -165,7 +252,7 @@ impl JsonSchema for Stiffness {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        text_schema(STIFFNESS, false, &["24 GN/m^1.5", "2.4e10 N/m^1.5"])
+        text_schema(STIFFNESS_TEXT, false, &["24 GN/m^1.5", "2.4e10 N/m^1.5"])
     }
 }
 
@@ -211,49 +298,35 @@ impl Contact {
     }
 
     fn stated(&self) -> Result<Option<Stated>, Error> {
-        match self {
-            Contact::Impact(law) => law.stated(),
-            Contact::Hertz(law) => law.stated(),
-            Contact::KelvinVoigt(law) => law.stated(),
-            Contact::HuntCrossley(law)
-            | Contact::LankaraniNikravesh(law)
-            | Contact::Flores(law) => law.stated(),
-        }
+        Stated::new(self.relation.as_ref(), self.at_clearance)
     }
 
     /// The law with the parameters as they stand.
     fn law(&self, surfaces: Surfaces) -> Result<ContactLaw, Error> {
-        let stiffness = |source: &StiffnessSource, exponent: f64| {
-            resolve_stiffness(source, exponent, surfaces).map_err(|e| e.under("stiffness"))
+        let clearance = surfaces.clearance();
+        let law = |stiffness: f64| {
+            let surfaces = contact::Surfaces {
+                stiffness,
+                clearance,
+            };
+            let law = (CONTACT_LAWS[self.law].law)(&surfaces, &self.values);
+            law.map_err(|clash| Error::clash(clash.key, clash.expected))
         };
-        let restitution = |law: &Restitution| {
-            let slowest = law.slowest_approach.map_or(1e-3, |v| v.si());
-            Ok::<_, Error>(contact::Restitution {
-                stiffness: stiffness(&law.stiffness, law.exponent.get())?,
-                exponent: law.exponent.get(),
-                restitution: law.restitution.get(),
-                slowest_approach: slowest,
-            })
+        let Some(source) = &self.stiffness else {
+            return law(1.0);
         };
-        Ok(match self {
-            Contact::Impact(law) => ContactLaw::Impact(contact::Impact {
-                stiffness: stiffness(&law.stiffness, law.exponent.get())?,
-                exponent: law.exponent.get(),
-                damping: law.damping.si(),
-                depth: law.depth.si(),
-            }),
-            Contact::Hertz(law) => ContactLaw::Hertz(contact::Hertz {
-                stiffness: stiffness(&law.stiffness, law.exponent.get())?,
-                exponent: law.exponent.get(),
-            }),
-            Contact::KelvinVoigt(law) => ContactLaw::KelvinVoigt(contact::KelvinVoigt {
-                stiffness: stiffness(&law.stiffness, 1.0)?,
-                damping: law.damping.si(),
-            }),
-            Contact::HuntCrossley(law) => ContactLaw::HuntCrossley(restitution(law)?),
-            Contact::LankaraniNikravesh(law) => ContactLaw::LankaraniNikravesh(restitution(law)?),
-            Contact::Flores(law) => ContactLaw::Flores(restitution(law)?),
-        })
+        // The law's exponent says what unit its stiffness has.
+        let (_, exponent) = law(1.0)?.spring();
+        let stiffness = resolve_stiffness(source, exponent, surfaces);
+        law(stiffness.map_err(|e| e.under("stiffness"))?)
+    }
+}
+
+impl Surfaces {
+    fn clearance(self) -> f64 {
+        match self {
+            Self::Journal { clearance, .. } | Self::Flat { clearance } => clearance,
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod relation;
 mod sections;
 mod sensors;
 mod shared;
+mod value;
 
 use crate::error::Error;
 use crate::quantity::{Angle, Frequency, Length, Positive, Quantity, Speed};

@@ -86,7 +86,7 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
 
 #[test]
 fn every_parameter_has_bounds_about_its_usual_value_and_words() {
-    for entry in CATALOGUE {
+    for entry in CATALOGUE.iter() {
         assert!(entry.sentence.ends_with('.'), "{}", entry.name);
         for p in entry.parameters {
             let [low, high] = p.bounds;
@@ -123,7 +123,7 @@ fn without_amplitude_every_effect_leaves_the_machine_as_it_is() {
 #[test]
 fn every_effect_changes_the_machine_or_its_sensors_at_all_its_places() {
     let plain = resolve(&tree());
-    for entry in CATALOGUE {
+    for entry in CATALOGUE.iter() {
         let mut places = vec![place(entry)];
         for choice in entry.places {
             for word in choice.words {
@@ -147,7 +147,7 @@ fn every_effect_changes_the_machine_or_its_sensors_at_all_its_places() {
 
 #[test]
 fn every_parameter_can_be_reached_by_its_path() {
-    for entry in CATALOGUE {
+    for entry in CATALOGUE.iter() {
         let mut tree = with(json!([entry.item(&place(entry), &start(entry))]));
         let before = resolve(&tree);
         for p in entry.parameters {

@@ -8,4 +8,5 @@ mod errors;
 mod machine_file;
 mod quantities;
 mod schema;
+mod tables;
 mod two_stage;

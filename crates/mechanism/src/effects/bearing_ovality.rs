@@ -10,7 +10,10 @@
 //! stands on the oval surface. Form of the worn shell to second order (Dufrane, Kannel and McCloskey
 //! 1983). Signature: reversals along the long axis are hard, across it soft; twice the angle.
 
-use super::{Acts, Shape};
+use super::{Acts, Joint, Place, Shape};
+use crate::Machine;
+use crate::declaration;
+use crate::declaration::{Alternatives, Clash};
 use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -25,6 +28,55 @@ parameters! {
         fixed {
             /// What is oval.
             pub oval: Oval,
+        }
+    }
+}
+
+declaration! {
+    /// An oval bearing or journal: clearance + amplitude cos 2(direction of contact − direction).
+    /// Nothing in an ideal joint.
+    BearingOvality at [Throw, Joint, Part], Joint:
+    "The bearing, or its journal, is worn oval: it has more play in one direction than in the other."
+    law "c + c₂ cos 2(γ − γ₀), in the bearing or the journal (`part`)" after "Dufrane and others 1983" {
+        /// By how much the clearance is larger in the widest direction and smaller across it.
+        amplitude: Length(FromZero), 1e-6 to 2e-4, start 3e-5, absent 0.0;
+        /// Widest direction, 0 deg where it is left out: in the bearing from the rod's axis (at the
+        /// main bearing from the cylinder's), in the journal from the crank's direction (at the small
+        /// end from the cylinder's).
+        direction: Angle(Any), half_turn, start 0.0;
+    }
+}
+
+/// The law with these values.
+pub fn of(values: &[f64], alternatives: Alternatives) -> BearingOvality {
+    let Values {
+        amplitude,
+        direction,
+    } = Values::of(values);
+    BearingOvality {
+        amplitude,
+        direction,
+        oval: alternatives.part.unwrap_or(Oval::Bearing),
+    }
+}
+
+impl BearingOvality {
+    /// Refuses a machine in which the surfaces would meet all around.
+    pub(super) fn check(&self, machine: &Machine, place: &Place) -> Result<(), Clash> {
+        let throws = machine.throws.iter().enumerate();
+        let throws = throws.filter(|(i, _)| place.throw.is_none_or(|throw| throw == *i));
+        let joints: Vec<_> = match place.joint {
+            Some(Joint::BigEnd) => throws.map(|(_, t)| &t.big_end).collect(),
+            Some(Joint::SmallEnd) => throws.map(|(_, t)| &t.small_end).collect(),
+            Some(Joint::Main) | None => vec![&machine.main],
+        };
+        let mut clear = joints.into_iter().filter_map(|joint| joint.clear());
+        match clear.find(|clear| self.amplitude >= clear.clearance) {
+            None => Ok(()),
+            Some(clear) => Err(Clash {
+                key: "amplitude",
+                expected: format!("a length below the clearance, {} m", clear.clearance),
+            }),
         }
     }
 }

@@ -19,6 +19,8 @@
 //! positive toward the head.
 
 use super::{Acts, PistonAt};
+use crate::declaration;
+use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -49,6 +51,76 @@ parameters! {
         pub gas_force: S,
         /// c11 and c12: of the offsets of big and small end.
         pub offsets: [S; 2],
+    }
+}
+
+declaration! {
+    /// A force on the crosshead along the cylinder, positive toward the head: a sum of the terms
+    /// that are stated, each with its coefficient. Other terms there are none.
+    EmpiricalForce at [Throw], RunningGear, Separately:
+    "A force acts on the crosshead that nothing in the catalogue gives: its law was found in the recordings."
+    law "force on the crosshead, a sum of terms out of a library: harmonics, springs, dampers, friction, load, journal offsets" after "Brunton, Proctor and Kutz 2016" {
+        /// Coefficient of 1.
+        constant: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of cos α, α the crank angle since top dead centre.
+        cos_1: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of sin α.
+        sin_1: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of cos 2α.
+        cos_2: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of sin 2α.
+        sin_2: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of cos 3α.
+        cos_3: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of sin 3α.
+        sin_3: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of cos 4α.
+        cos_4: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of sin 4α.
+        sin_4: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of X, the displacement from mid-stroke over the length of the crank.
+        displacement: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of X³.
+        displacement_cubed: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of V, the crosshead's velocity over 1 m/s.
+        velocity: Force(Any), -2e4 to 2e4, start 20.0, absent 0.0;
+        /// Coefficient of V |V|.
+        velocity_squared: Force(Any), -3e3 to 3e3, start 3.0, absent 0.0;
+        /// Coefficient of V³.
+        velocity_cubed: Force(Any), -500.0 to 500.0, start 0.5, absent 0.0;
+        /// Coefficient of the sign s of the velocity.
+        velocity_sign: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of P s, P the head-end pressure over 1 bar.
+        pressure_sign: Force(Any), -2e4 to 2e4, start 20.0, absent 0.0;
+        /// Coefficient of |G tan φ| s, G the gas force over that of 1 bar on the piston, φ the rod's angle.
+        side_force_sign: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of an ideal crosshead's acceleration over that of gravity.
+        acceleration: Force(Any), -3e3 to 3e3, start 3.0, absent 0.0;
+        /// Coefficient of G.
+        gas_force: Force(Any), -2e4 to 2e4, start 20.0, absent 0.0;
+        /// Coefficient of the big end's offset along the cylinder over its clearance.
+        big_end_offset: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Coefficient of the small end's offset along the cylinder over its clearance.
+        small_end_offset: Force(Any), -1e5 to 1e5, start 100.0, absent 0.0;
+        /// Speed over which the sign s changes; 0.05 m/s where it is left out.
+        slip_speed: Velocity(AboveZero), 0.001 to 0.5, start 0.05;
+    }
+}
+
+/// The law with these values.
+pub fn of(values: &[f64], _: Alternatives) -> EmpiricalForce {
+    let v = Values::of(values);
+    EmpiricalForce {
+        constant: v.constant,
+        cosines: [v.cos_1, v.cos_2, v.cos_3, v.cos_4],
+        sines: [v.sin_1, v.sin_2, v.sin_3, v.sin_4],
+        displacement: [v.displacement, v.displacement_cubed],
+        velocity: [v.velocity, v.velocity_squared, v.velocity_cubed],
+        friction: [v.velocity_sign, v.pressure_sign, v.side_force_sign],
+        slip_speed: v.slip_speed,
+        acceleration: v.acceleration,
+        gas_force: v.gas_force,
+        offsets: [v.big_end_offset, v.small_end_offset],
     }
 }
 

@@ -9,6 +9,7 @@
 //! the order k; the same share at every pressure, strongest where k times the speed meets a resonance.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::{Scalar, inlined};
 
@@ -26,6 +27,24 @@ parameters! {
         /// Its phase φ, rad.
         pub discharge_phase: S,
     }
+}
+
+declaration! {
+    /// A harmonic of the line pressures: pressure × (1 + amplitude cos(order × crank angle + phase)).
+    GasPulsation at [Throw, End], Gas:
+    "The pressure in the pipes pulsates: while a valve is open, the cylinder's pressure swings with the line."
+    law "line pressure × (1 + b cos(k α + φ))" after "API 618" {
+        /// Cycles a revolution; 2 where it is left out.
+        order: Number(Whole(1, 24)), 1.0 to 8.0, start 2.0;
+        /// Amplitude in the suction line, of its pressure.
+        suction: Ratio(FromZero), 0.001 to 0.2, start 0.02, absent 0.0;
+        /// Its phase; 0 deg where it is left out.
+        suction_phase: Angle(Any), turn, start 0.0;
+        /// Amplitude in the discharge line, of its pressure.
+        discharge: Ratio(FromZero), 0.001 to 0.2, start 0.02, absent 0.0;
+        /// Its phase; 0 deg where it is left out.
+        discharge_phase: Angle(Any), turn, start 0.0;
+    } as GasPulsation
 }
 
 impl<S: Scalar> Acts<S> for GasPulsation<S> {

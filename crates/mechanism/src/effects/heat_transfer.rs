@@ -11,6 +11,7 @@
 //! cp/R = m/(m − 1). Signature: slopes of the polytropes that are not one exponent; other walls.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -22,6 +23,19 @@ parameters! {
         /// Temperature of the walls over that of the gas in the suction line.
         pub wall_temperature: S,
     }
+}
+
+declaration! {
+    /// Heat transfer between the gas and the walls of the cylinder by a Stanton number.
+    HeatTransfer at [Throw, End], Gas:
+    "The cylinder walls heat the cool gas and cool the hot gas, so that its pressure leaves the curve of the exponent."
+    law "d ln p/dt = m St w (A/V) (T_w/T − 1)" after "Reynolds 1874, Woschni 1967" {
+        /// Stanton number: heat that the walls take up over the heat that flows past them.
+        stanton: Number(FromZero), 0.0002 to 0.1, start 0.01, absent 0.0;
+        /// Temperature of the walls over that of the gas in the suction line; 1.2 where it is left
+        /// out.
+        wall_temperature: Number(AboveZero), 0.9 to 1.6, start 1.2;
+    } as HeatTransfer
 }
 
 impl<S: Scalar> Acts<S> for HeatTransfer<S> {

@@ -10,6 +10,7 @@
 //! speed and load change.
 
 use super::{Acts, PistonAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -25,6 +26,22 @@ parameters! {
         /// Its phase φ2, rad.
         pub second_phase: S,
     }
+}
+
+declaration! {
+    /// Forces on the crosshead along the cylinder, once and twice a revolution.
+    Misalignment at [Throw], RunningGear:
+    "Crosshead, piston rod and cylinder are not in line: they bind once or twice a revolution, at every speed alike."
+    law "force F₁ cos(α + φ₁) + F₂ cos(2α + φ₂) on the crosshead" after "Piotrowski 2006" {
+        /// Amplitude of the force once a revolution.
+        first: Force(FromZero), 1.0 to 5000.0, start 200.0, absent 0.0;
+        /// Its phase at top dead centre; 0 deg where it is left out.
+        first_phase: Angle(Any), turn, start 0.0;
+        /// Amplitude of the force twice a revolution.
+        second: Force(FromZero), 1.0 to 5000.0, start 200.0, absent 0.0;
+        /// Its phase at top dead centre; 0 deg where it is left out.
+        second_phase: Angle(Any), turn, start 0.0;
+    } as Misalignment
 }
 
 impl<S: Scalar> Acts<S> for Misalignment<S> {

@@ -1,14 +1,18 @@
 //! The catalogue: physics that a first model leaves out, one effect per file.
 //!
 //! An effect is a line in the machine file; where the list is empty the model is the one of
-//! MODEL.md. A new effect that acts in the equations is a file here and a line in [`catalogue!`]:
-//! a struct of parameters, and those methods of [`Acts`] that say where it acts. Effects that only
-//! change the machine's data (a clearance, the frame) or what sensors make of it need nothing here.
+//! MODEL.md. A new effect that acts in the equations is a file here and a line in [`catalogue!`]: a
+//! struct of parameters, its [`declaration!`](crate::declaration), and those methods of [`Acts`] that
+//! say where it acts. Section of the machine file, schema and tables follow from these. Effects that
+//! only change the machine's data (a clearance, the frame) or what sensors make of it need nothing
+//! here.
 
 mod acting;
 
 pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
 
+use crate::Machine;
+use crate::declaration::{Alternatives, Clash, Declaration};
 use crate::lift::{alternatives, parameters};
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -39,6 +43,13 @@ macro_rules! catalogue {
     ($( $module:ident::$kind:ident, )*) => {
         $( mod $module; pub use $module::$kind; )*
 
+        /// The effects that act in the equations.
+        pub const CATALOGUE: &[Entry] = &[$( Entry {
+            name: stringify!($module),
+            declaration: $module::DECLARATION,
+            law: |values, alternatives| Law::$kind($module::of(values, alternatives)),
+        } ),*];
+
         alternatives! {
             /// What an effect does, with its parameters.
             pub enum Law<S> {
@@ -64,18 +75,42 @@ macro_rules! catalogue {
 
 catalogue! {
     valve_loss::ValveLoss,
-    ring_friction::RingFriction,
     suction_unloading::SuctionUnloading,
     ring_leakage::RingLeakage,
     heat_transfer::HeatTransfer,
     gas_pulsation::GasPulsation,
     valve_flutter::ValveFlutter,
-    rotating_unbalance::RotatingUnbalance,
-    misalignment::Misalignment,
-    rod_flexibility::RodFlexibility,
+    ring_friction::RingFriction,
     squeeze_film::SqueezeFilm,
     bearing_ovality::BearingOvality,
+    rod_flexibility::RodFlexibility,
+    rotating_unbalance::RotatingUnbalance,
+    misalignment::Misalignment,
     empirical_force::EmpiricalForce,
+}
+
+/// An effect that acts in the equations.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Its name in the machine file.
+    pub name: &'static str,
+    /// What files, schemas, tables and searches know of it.
+    pub declaration: Declaration,
+    /// The law with values of the parameters, SI, in their order.
+    pub law: fn(&[f64], Alternatives) -> Law,
+}
+
+impl Law {
+    /// Whether a machine, as it is without effects, can have it at `place`.
+    ///
+    /// # Errors
+    /// The first value that does not go together with the machine.
+    pub fn check(&self, machine: &Machine, place: &Place) -> Result<(), Clash> {
+        match self {
+            Law::BearingOvality(law) => law.check(machine, place),
+            _ => Ok(()),
+        }
+    }
 }
 
 pub use bearing_ovality::Oval;

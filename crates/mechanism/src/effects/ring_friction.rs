@@ -9,6 +9,7 @@
 //! Signature: a step at both dead centres, odd orders; grows with pressure, not with speed.
 
 use super::{Acts, PistonAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -22,6 +23,20 @@ parameters! {
         /// Speed vs over which the sign change is spread, m/s.
         pub slip_speed: S,
     }
+}
+
+declaration! {
+    /// Friction of the rings: a constant part and one that grows with the gas pressure.
+    RingFriction at [Throw], RunningGear:
+    "The piston rings and the packing rub: a force against the motion that changes sign at both dead centres."
+    law "−(F₀ + b p) v/√(v² + v_s²)" after "Rezeka and Henein 1984" {
+        /// Friction force without gas pressure.
+        coulomb_force: Force(FromZero), 1.0 to 5000.0, start 100.0, absent 0.0;
+        /// Friction force per head-end pressure.
+        per_pressure: ForcePerPressure(FromZero), 1e-6 to 5e-3, start 2e-4, absent 0.0;
+        /// Piston speed over which the change of sign is spread; 0.05 m/s where it is left out.
+        slip_speed: Velocity(AboveZero), 0.001 to 0.5, start 0.05;
+    } as RingFriction
 }
 
 impl<S: Scalar> Acts<S> for RingFriction<S> {

@@ -13,6 +13,7 @@
 //! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -27,6 +28,20 @@ parameters! {
         /// √(R T) of the gas in the suction line, m/s; 290 for air.
         pub gas_speed: S,
     }
+}
+
+declaration! {
+    /// Leakage past the piston rings, as through throttles in series: flow = area × root of the
+    /// difference of the squares of the pressures / gas_speed.
+    RingLeakage at [Throw, End], Gas:
+    "The piston rings leak: gas escapes to the other side of the piston, so that the pressure rises too slowly and falls too fast."
+    law "flow = A √((p₁² − p₂²)/RT) to the other side of the piston" after "Stodola 1927" {
+        /// Effective area: that of the gap over the root of the number of rings.
+        area: Area(FromZero), 1e-8 to 3e-4, start 5e-6, absent 0.0;
+        /// Root of gas constant times temperature in the suction line; 290 m/s, as for air, where it
+        /// is left out.
+        gas_speed: Velocity(AboveZero), 150.0 to 500.0, start 290.0;
+    } as RingLeakage
 }
 
 impl<S: Scalar> Acts<S> for RingLeakage<S> {

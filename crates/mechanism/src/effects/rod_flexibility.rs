@@ -11,6 +11,7 @@
 //! hundred Hz after every reversal, of one frequency at every speed.
 
 use super::{Acts, RodSpring};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -22,6 +23,18 @@ parameters! {
         /// Damping as a share of the critical one of the free rod.
         pub damping_ratio: S,
     }
+}
+
+declaration! {
+    /// A connecting rod that is a spring along its axis.
+    RodFlexibility at [Throw], RunningGear:
+    "The connecting rod springs along its length: after every change of load it rings at one and the same pitch."
+    law "rod stretches evenly: one more degree of freedom" after "Rayleigh 1877" {
+        /// How much longer a force makes it: length / (Young's modulus × area of its shank).
+        compliance: Compliance(FromZero), 3e-10 to 1e-7, start 5e-9, absent 0.0;
+        /// Damping, of the critical one of the free rod; 2 % where it is left out.
+        damping_ratio: Ratio(FromZero), 0.002 to 0.2, start 0.02;
+    } as RodFlexibility
 }
 
 impl<S: Scalar> Acts<S> for RodFlexibility<S> {

@@ -13,6 +13,8 @@
 //! order 1, the square of the speed, no load.
 
 use super::{Acts, PistonAt};
+use crate::declaration;
+use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -28,6 +30,33 @@ parameters! {
             /// What it shakes.
             pub body: Shaken,
         }
+    }
+}
+
+declaration! {
+    /// An unbalance that turns with the crank and shakes the frame on soft mounts with the
+    /// acceleration eccentricity × (speed of the crank)², which the sensor on the crosshead feels;
+    /// or the crosshead alone, with that times its mass.
+    RotatingUnbalance at [Body], Frame:
+    "Something that turns with the crank is out of balance and shakes the machine once a revolution, with the square of the speed."
+    law "frame accelerated by e θ̇² in the crank's direction + φ; or the crosshead alone (`body`)" after "ISO 21940-11" {
+        /// Unbalance over the mass that it shakes.
+        eccentricity: Length(FromZero), 1e-6 to 0.02, start 5e-4, absent 0.0;
+        /// Angle by which it leads the crank; 0 deg where it is left out.
+        phase: Angle(Any), turn, start 0.0;
+    }
+}
+
+/// The law with these values.
+pub fn of(values: &[f64], alternatives: Alternatives) -> RotatingUnbalance {
+    let Values {
+        eccentricity,
+        phase,
+    } = Values::of(values);
+    RotatingUnbalance {
+        eccentricity,
+        phase,
+        body: alternatives.body.unwrap_or(Shaken::Frame),
     }
 }
 

@@ -11,6 +11,7 @@
 //! Signature: impacts rounded and late, less ringing, more so the smaller the clearance.
 
 use super::{Acts, JointAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 use std::f64::consts::PI;
@@ -25,6 +26,21 @@ parameters! {
         /// Least value h of 1 − ε².
         pub roughness: S,
     }
+}
+
+declaration! {
+    /// Squeeze force of the oil in a joint with clearance (short bearing); nothing in an ideal joint.
+    SqueezeFilm at [Throw, Joint], Joint:
+    "Oil in the bearing is squeezed out before the metal touches: the blows come late and soft."
+    law "−π μ R l³/c³ (1 + 2ε²)/(1 − ε²)^(5/2) ė" after "DuBois and Ocvirk 1953" {
+        /// Viscosity of the oil.
+        viscosity: Viscosity(FromZero), 1e-4 to 0.2, start 0.02, absent 0.0;
+        /// Length of the film along the journal: a film as long as the bearing is so stiff that
+        /// nothing touches. 2 mm where it is left out.
+        length: Length(AboveZero), 0.0005 to 0.05, start 0.002;
+        /// Share of the clearance that the roughness keeps open; 0.1 where it is left out.
+        roughness: Number(AboveZero), 0.05 to 0.5, start 0.1;
+    } as SqueezeFilm
 }
 
 impl<S: Scalar> Acts<S> for SqueezeFilm<S> {

@@ -17,6 +17,7 @@
 //! has reached.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -28,6 +29,18 @@ parameters! {
         /// Loss coefficient ζ of the held valve; plausible 0 to 0.5.
         pub loss: S,
     }
+}
+
+declaration! {
+    /// Suction valve held open into the compression stroke: gas flows back into the suction line.
+    SuctionUnloading at [Throw, End], Gas, PerEnd:
+    "The suction valve closes late, or is held open: part of the gas is pushed back before the compression starts."
+    law "suction valve open until an angle after the dead centre, throttling by ζ u²; the rest is compressed" after "Bloch and Hoefner 1996" {
+        /// Crank angle after the dead centre at which the valve closes.
+        held: Angle(OnTheStroke), 0.02 to 2.5, start 0.5, absent 0.0;
+        /// Loss coefficient of the valve while it is held; 0 where it is left out.
+        loss: Number(FromZero), 0.002 to 0.5, start 0.05, absent 0.0;
+    } as SuctionUnloading
 }
 
 impl<S: Scalar> Acts<S> for SuctionUnloading<S> {

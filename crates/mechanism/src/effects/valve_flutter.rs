@@ -14,8 +14,11 @@
 //! that moves with the ratio of the pressures.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
+use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use scalar::Scalar;
+use std::f64::consts::TAU;
 
 parameters! {
     /// Parameters of the valves' plates, the same in every chamber.
@@ -28,6 +31,33 @@ parameters! {
         pub suction: S,
         /// Overshoot b at the discharge valve, over the line's pressure.
         pub discharge: S,
+    }
+}
+
+declaration! {
+    /// Valves that open late, and a damped swing of the cylinder's pressure about the line's after it.
+    ValveFlutter at [Throw, End], Gas:
+    "The valves open late and flutter: the pressure overshoots and then ripples, always at the same pitch, until the plate has come to rest."
+    law "valves open a share b late, then p = line × (1 ± b e^(−ζωt) cos ωt), t since they opened" after "Costagliola 1950" {
+        /// Natural frequency of the plates; 100 Hz where it is left out.
+        frequency: Frequency(AboveZero), 20.0 to 2000.0, start 100.0;
+        /// Damping, of the critical one; 5 % where it is left out.
+        damping_ratio: Ratio(ProperPart), 0.005 to 0.7, start 0.05;
+        /// Overshoot at the suction valve, of the line's pressure.
+        suction: Ratio(ProperPart), 0.002 to 0.3, start 0.05, absent 0.0;
+        /// Overshoot at the discharge valve, of the line's pressure.
+        discharge: Ratio(FromZero), 0.002 to 0.3, start 0.05, absent 0.0;
+    }
+}
+
+/// The law with these values.
+pub fn of(values: &[f64], _: Alternatives) -> ValveFlutter {
+    let values = Values::of(values);
+    ValveFlutter {
+        natural_frequency: TAU * values.frequency,
+        damping_ratio: values.damping_ratio,
+        suction: values.suction,
+        discharge: values.discharge,
     }
 }
 

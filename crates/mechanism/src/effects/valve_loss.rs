@@ -10,6 +10,7 @@
 //! orders 2 to 6; dissipates work.
 
 use super::{Acts, ChamberAt};
+use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
@@ -21,6 +22,19 @@ parameters! {
         /// Loss coefficient ζd of the discharge valve; plausible 0 to 0.5.
         pub discharge: S,
     }
+}
+
+declaration! {
+    /// Pressure drop over an open valve: line pressure × coefficient × (piston speed / crank-pin
+    /// speed)².
+    ValveLoss at [Throw, End], Gas:
+    "The valves throttle the gas: while one is open, the pressure in the cylinder stays away from that of the line."
+    law "line pressure × (1 ± ζ u²) while a valve is open, u the piston's speed over the crank pin's" after "Costagliola 1950" {
+        /// Loss coefficient of the suction valve.
+        suction: Number(FromZero), 0.002 to 0.5, start 0.1, absent 0.0;
+        /// Loss coefficient of the discharge valve.
+        discharge: Number(FromZero), 0.002 to 0.5, start 0.1, absent 0.0;
+    } as ValveLoss
 }
 
 impl<S: Scalar> Acts<S> for ValveLoss<S> {

@@ -23,7 +23,7 @@
 //! A linear spring (n = 1) keeps its damping ratio by the conformal relation. A coefficient of
 //! restitution stays as it is. Friction does too: it does not depend on the clearance to first order.
 
-use super::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
+use super::contact::ContactLaw;
 use super::stiffness::{effective_radius_conformal, effective_radius_eq5};
 use scalar::Scalar;
 
@@ -50,10 +50,10 @@ pub enum Relation<S = f64> {
 }
 
 /// Factors on the parameters of a law.
-struct Factors<S> {
-    stiffness: S,
-    damping: S,
-    depth: S,
+pub(super) struct Factors<S> {
+    pub stiffness: S,
+    pub damping: S,
+    pub depth: S,
 }
 
 impl<S: Scalar> Relation<S> {
@@ -103,34 +103,13 @@ impl<S: Scalar> ContactLaw<S> {
     pub fn at_clearance(&self, relation: &Relation<S>, journal: S, clearances: [S; 2]) -> Self {
         let (_, exponent) = self.spring();
         let factors = relation.factors(journal, clearances, exponent);
-        let restitution = |law: &Restitution<S>| Restitution {
-            stiffness: law.stiffness * factors.stiffness,
-            ..law.clone()
-        };
-        match self {
-            ContactLaw::Impact(law) => ContactLaw::Impact(Impact {
-                stiffness: law.stiffness * factors.stiffness,
-                exponent,
-                damping: law.damping * factors.damping,
-                depth: law.depth * factors.depth,
-            }),
-            ContactLaw::Hertz(law) => ContactLaw::Hertz(Hertz {
-                stiffness: law.stiffness * factors.stiffness,
-                exponent,
-            }),
-            ContactLaw::KelvinVoigt(law) => ContactLaw::KelvinVoigt(KelvinVoigt {
-                stiffness: law.stiffness * factors.stiffness,
-                damping: law.damping * factors.damping,
-            }),
-            ContactLaw::HuntCrossley(law) => ContactLaw::HuntCrossley(restitution(law)),
-            ContactLaw::LankaraniNikravesh(law) => ContactLaw::LankaraniNikravesh(restitution(law)),
-            ContactLaw::Flores(law) => ContactLaw::Flores(restitution(law)),
-        }
+        self.carried_over(&factors)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::contact::{Impact, KelvinVoigt};
     use super::*;
 
     const CLEARANCES: [f64; 2] = [1e-4, 3e-4];

@@ -2,6 +2,7 @@
 
 mod cited_sections;
 mod common;
+mod contact_laws;
 mod derivative;
 mod drop;
 mod effects;

@@ -110,6 +110,7 @@ fn rescaled(machine: &Machine, length: f64, mass: f64, time: f64) -> Machine {
             law.stiffness *= force / length.powf(law.exponent);
             law.slowest_approach *= speed;
         }
+        other => panic!("{other:?} is not among the laws that are drawn"),
     };
     let friction = |law: &mut FrictionLaw| match law {
         FrictionLaw::None(_) => {}

@@ -162,7 +162,7 @@ fn step(parameter: &Parameter) -> f64 {
 #[test]
 fn derivatives_of_the_whole_catalogue_equal_differences() {
     let settings = settings();
-    for entry in CATALOGUE {
+    for entry in CATALOGUE.iter() {
         let mut values: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
         if entry.name == "thermal_clearance" {
             // At the speed of the reference the exponent would not count.
@@ -222,7 +222,7 @@ fn derivatives_of_the_whole_catalogue_equal_differences() {
 fn every_effect_is_seen_in_some_channel() {
     let settings = settings();
     let plain = record(&tree(json!([])), &settings);
-    for entry in CATALOGUE {
+    for entry in CATALOGUE.iter() {
         let values: Vec<f64> = entry.parameters.iter().map(|p| p.start).collect();
         let machine = moved(entry, &values, 0, values[0]);
         let found = simulate(&machine.machine, &machine.sensors, &settings, false).unwrap();

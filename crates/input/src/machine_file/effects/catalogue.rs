@@ -1,11 +1,16 @@
 //! The catalogue of effects as data: what a program that looks for a missing effect needs to know.
 
+use super::act::{Act, Place};
 use crate::amount::Amount;
+use crate::machine_file::value;
 use crate::unit::Dimension;
+use mechanism::declaration::{self, Alternatives, Declaration, Kind, PlaceKey, Proposal, Range};
+use mechanism::effects::Law;
 use serde_json::{Map, Value, json};
+use std::sync::LazyLock;
 
 /// An effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Entry {
     /// Its name in the machine file.
     pub name: &'static str,
@@ -19,34 +24,41 @@ pub struct Entry {
     pub parameters: &'static [Parameter],
     /// Where it can act.
     pub places: &'static [Choice],
+    /// All keys of its section.
+    pub(super) keys: &'static [&'static str],
+    declaration: Declaration,
+    make: Make,
 }
 
-/// The part of the machine that an effect acts on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The gas of a cylinder, so that the pressure there shows it.
-    Gas,
-    /// A joint: its clearance, its shape, its oil.
-    Joint,
-    /// Crank, rod or crosshead.
-    RunningGear,
-    /// The frame.
-    Frame,
-    /// A sensor or the encoder: the machine itself is as it was.
-    Sensor,
+/// Two entries are the same if their names are.
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
 }
 
-/// How a program that looks for a missing effect proposes it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Proposal {
-    /// At each place that the machine has, with one set of values.
-    PerPlace,
-    /// The same, but where both ends of a cylinder have it, each end has values of its own: it is a
-    /// fault of one valve.
-    PerEnd,
-    /// By a search of its own: for a frequency that is no order, or for a law without a name.
-    Separately,
+/// How an effect is made of the values of its parameters.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Make {
+    /// It acts in the equations.
+    Law(fn(&[f64], Alternatives) -> Law),
+    /// It changes the file, the machine or its sensors.
+    Own(fn(&[f64]) -> Box<dyn Act>),
 }
+
+/// All effects.
+pub static CATALOGUE: LazyLock<Vec<Entry>> =
+    LazyLock::new(|| {
+        let mut all = Vec::new();
+        for law in mechanism::effects::CATALOGUE {
+            all.push(Entry::new(law.name, law.declaration, Make::Law(law.law)));
+            let own = super::OWN.iter().filter(|(after, ..)| *after == law.name);
+            all.extend(own.map(|(_, name, declaration, make)| {
+                Entry::new(name, *declaration, Make::Own(*make))
+            }));
+        }
+        all
+    });
 
 /// A parameter of an effect. All values are SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +97,21 @@ pub struct Choice {
 }
 
 impl Parameter {
+    fn new(declared: &declaration::Parameter) -> Self {
+        let (dimension, unit) = value::unit(declared.declared());
+        Self {
+            key: declared.key,
+            words: declared.words,
+            dimension,
+            unit,
+            bounds: declared.bounds,
+            start: declared.start,
+            absent: declared.absent,
+            whole: matches!(declared.range, Range::Whole(..)),
+            cyclic: declared.cyclic,
+        }
+    }
+
     /// The value `si` as it stands in a machine file.
     pub fn value(&self, si: f64) -> Value {
         let dimension = self.dimension;
@@ -97,6 +124,65 @@ impl Parameter {
 }
 
 impl Entry {
+    /// The entry of a declaration. Called once an effect: its lists live as long as the program.
+    fn new(name: &'static str, declaration: Declaration, make: Make) -> Self {
+        let parameters = declaration.parameters.iter().map(Parameter::new);
+        let parameters: &[Parameter] = Vec::leak(parameters.collect());
+        let places: &[Choice] =
+            Vec::leak(declaration.places.iter().map(|key| choice(*key)).collect());
+        let keys = parameters.iter().map(|parameter| parameter.key);
+        let keys = keys.chain(places.iter().map(|choice| choice.key));
+        Self {
+            name,
+            sentence: declaration.sentence,
+            kind: declaration.kind,
+            proposal: declaration.proposal,
+            parameters,
+            places,
+            keys: Vec::leak(keys.collect()),
+            declaration,
+            make,
+        }
+    }
+
+    /// What it is.
+    pub fn about(&self) -> &'static str {
+        self.declaration.about
+    }
+
+    /// Its equation, in short.
+    pub fn law(&self) -> &'static str {
+        self.declaration.law
+    }
+
+    /// Its source; empty for none.
+    pub fn source(&self) -> &'static str {
+        self.declaration.source
+    }
+
+    /// Name of its section in a schema.
+    pub(super) fn type_name(&self) -> &'static str {
+        self.declaration.type_name
+    }
+
+    /// Its parameters as they are declared.
+    pub(super) fn declared(&self) -> &'static [declaration::Parameter] {
+        self.declaration.parameters
+    }
+
+    /// The keys of its place as they are declared.
+    pub(super) fn place_keys(&self) -> &'static [PlaceKey] {
+        self.declaration.places
+    }
+
+    /// What it does with `values` (SI) of its parameters at `place`.
+    pub(super) fn effect(&self, values: &[f64], place: &Place) -> Box<dyn Act> {
+        match self.make {
+            Make::Law(law) => Box::new(law(values, place.alternatives())),
+            Make::Own(own) => own(values),
+        }
+    }
+
     /// The parameter whose key is `key`.
     pub fn parameter(&self, key: &str) -> Option<&'static Parameter> {
         self.parameters.iter().find(|p| p.key == key)
@@ -126,9 +212,34 @@ impl Entry {
     }
 }
 
+/// A key of a place, and what may stand there.
+pub(super) fn choice(key: PlaceKey) -> Choice {
+    let (key, words, required): (_, &[&str], _) = match key {
+        PlaceKey::Throw => ("throw", &[], false),
+        PlaceKey::Joint => ("joint", &["main", "big_end", "small_end"], true),
+        PlaceKey::End => ("end", &["head", "crank"], false),
+        PlaceKey::Measure => (
+            "measure",
+            &[
+                "crosshead_acceleration",
+                "frame_acceleration",
+                "cylinder_pressure",
+            ],
+            false,
+        ),
+        PlaceKey::Body => ("body", &["frame", "crosshead"], false),
+        PlaceKey::Part => ("part", &["bearing", "journal"], false),
+    };
+    Choice {
+        key,
+        words,
+        required,
+    }
+}
+
 /// The entry called `name`.
 pub fn entry(name: &str) -> Option<&'static Entry> {
-    super::CATALOGUE.iter().find(|entry| entry.name == name)
+    CATALOGUE.iter().find(|entry| entry.name == name)
 }
 
 /// The parameter that a path of the machine file leads to: `effects.valve_loss.discharge`,

@@ -4,29 +4,30 @@
 //! (see `relation`) follows it here too; an ideal joint becomes clear with the contact that stands in
 //! its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
 
-use super::section::{Act, Section, effect};
+use super::act::{Act, Place};
 use crate::error::Error;
 use crate::machine_file::Sections;
-use crate::quantity::{Length, NonNegative};
+use mechanism::declaration;
 
-effect! {
+declaration! {
     /// Clearance on top of the joint's own. The joint needs a section, with journal_radius and
     /// contact; with `clearance: ideal` it becomes clear.
-    ExtraClearance at [throw, joint], Joint:
-    "The joint has more play than was believed." {
+    ExtraClearance at [Throw, Joint], Joint:
+    "The joint has more play than was believed."
+    law "c + Δc; an ideal joint becomes clear" after "" {
         /// By how much the radial clearance is larger.
-        clearance: NonNegative<Length>, 2e-6 to 5e-4, start 5e-5, absent 0.0;
+        clearance: Length(FromZero), 2e-6 to 5e-4, start 5e-5, absent 0.0;
     }
 }
 
-impl Act for ExtraClearance {
-    fn prepare(&self, file: &mut Sections) -> Result<(), Error> {
-        for bearing in file.bearings(&self.place())? {
+impl Act for Values {
+    fn prepare(&self, file: &mut Sections, place: &Place) -> Result<(), Error> {
+        for bearing in file.bearings(place)? {
             let Some(bearing) = bearing else {
                 let expected = "a joint with a section that has journal_radius and contact";
                 return Err(Error::clash("joint", expected));
             };
-            bearing.widen(self.clearance());
+            bearing.widen(self.clearance);
         }
         Ok(())
     }

@@ -6,35 +6,36 @@
 //! act, which is right to the first order in the ratio of the masses. Signature: orders grow where
 //! they meet one frequency, which is the same at every speed.
 
-use super::section::{Act, effect};
+use super::act::Act;
 use crate::error::Error;
-use crate::quantity::{Frequency, FromZero, Positive, Quantity, Ratio};
 use mechanism::Machine;
-use mechanism::effects::Place;
+use mechanism::effects;
 use mechanism::frame::Frame;
 use std::f64::consts::TAU;
+use mechanism::declaration;
 
-effect! {
+declaration! {
     /// A frame that swings on its mounts, and with it the sensors on the crossheads. It takes the
     /// place of a section `frame`.
     FrameCompliance at [], Frame:
-    "The frame gives on its mounts: the sensor on the crosshead also feels the frame swing, most near its own frequency." {
+    "The frame gives on its mounts: the sensor on the crosshead also feels the frame swing, most near its own frequency."
+    law "frame on a spring, which carries the crossheads' sensors" after "Harris 2002" {
         /// Mass of all crossheads over that of the frame.
-        mass_ratio: Quantity<Ratio, FromZero>, 0.0005 to 0.5, start 0.04, absent 0.0;
+        mass_ratio: Ratio(FromZero), 0.0005 to 0.5, start 0.04, absent 0.0;
         /// Natural frequency without damping; 40 Hz where it is left out.
-        frequency: Positive<Frequency>, 5.0 to 400.0, start 40.0;
+        frequency: Frequency(AboveZero), 5.0 to 400.0, start 40.0;
         /// Damping, of the critical one; 5 % where it is left out.
-        damping_ratio: Quantity<Ratio, FromZero>, 0.002 to 0.5, start 0.05;
+        damping_ratio: Ratio(FromZero), 0.002 to 0.5, start 0.05;
     }
 }
 
-impl Act for FrameCompliance {
-    fn act(&self, machine: &mut Machine, _: &Place) -> Result<(), Error> {
+impl Act for Values {
+    fn act(&self, machine: &mut Machine, _: &effects::Place) -> Result<(), Error> {
         let crossheads: f64 = machine.throws.iter().map(|t| t.crosshead.mass).sum();
-        let mass = crossheads / self.mass_ratio();
-        let rate = TAU * self.frequency();
+        let mass = crossheads / self.mass_ratio;
+        let rate = TAU * self.frequency;
         let stiffness = mass * rate * rate;
-        let damping = 2.0 * self.damping_ratio() * mass * rate;
+        let damping = 2.0 * self.damping_ratio * mass * rate;
         machine.frame = Some(Frame {
             mass,
             stiffness_x: stiffness,

@@ -4,31 +4,32 @@
 //! one, with IMPACT at its corners and Coulomb friction. Signature: lateral blows where the side force
 //! changes its sign, near the dead centres.
 
-use super::section::{Act, effect};
+use super::act::Act;
 use crate::error::Error;
-use crate::quantity::{Damping, FromZero, Length, NonNegative, Number, Positive, StiffnessPerRoot};
 use mechanism::Machine;
-use mechanism::effects::Place;
+use mechanism::effects;
 use mechanism::joints::contact::{ContactLaw, Impact};
 use mechanism::joints::friction::{Coulomb, FrictionLaw};
 use mechanism::joints::guide::{self, Guide};
+use mechanism::declaration;
 
-effect! {
+declaration! {
     /// Clearance of the crosshead in its guide, where the machine has an ideal one.
-    GuideClearance at [throw], Joint:
-    "The crosshead has play in its guide: it knocks from one slide to the other." {
+    GuideClearance at [Throw], Joint:
+    "The crosshead has play in its guide: it knocks from one slide to the other."
+    law "crosshead between two faces, IMPACT at its corners" after "Flores, Leine and Glocker 2010" {
         /// Gap to each face when the crosshead is centred.
-        clearance: NonNegative<Length>, 5e-6 to 5e-4, start 1e-4, absent 0.0;
+        clearance: Length(FromZero), 5e-6 to 5e-4, start 1e-4, absent 0.0;
         /// Half the length of the crosshead's shoes; 90 mm where it is left out.
-        half_length: Positive<Length>, 0.03 to 0.3, start 0.09;
+        half_length: Length(AboveZero), 0.03 to 0.3, start 0.09;
         /// Half the height of the crosshead; 70 mm where it is left out.
-        half_height: Positive<Length>, 0.03 to 0.3, start 0.07;
+        half_height: Length(AboveZero), 0.03 to 0.3, start 0.07;
         /// Stiffness of a corner; 20 GN/m^1.5 where it is left out.
-        stiffness: Positive<StiffnessPerRoot>, 2e9 to 2e11, start 2e10;
+        stiffness: StiffnessPerRoot(AboveZero), 2e9 to 2e11, start 2e10;
         /// Damping of a corner; 2e4 N s/m where it is left out.
-        damping: NonNegative<Damping>, 1e3 to 1e6, start 2e4;
+        damping: Damping(FromZero), 1e3 to 1e6, start 2e4;
         /// Coefficient of friction; 0.05 where it is left out.
-        friction: Number<FromZero>, 0.001 to 0.3, start 0.05;
+        friction: Number(FromZero), 0.001 to 0.3, start 0.05;
     }
 }
 
@@ -37,10 +38,10 @@ effect! {
 const DEPTH: f64 = 1e-5;
 const SLIP_SPEED: f64 = 0.01;
 
-impl Act for GuideClearance {
-    fn act(&self, machine: &mut Machine, place: &Place) -> Result<(), Error> {
-        let (length, height) = (self.half_length(), self.half_height());
-        if self.clearance() >= height {
+impl Act for Values {
+    fn act(&self, machine: &mut Machine, place: &effects::Place) -> Result<(), Error> {
+        let (length, height) = (self.half_length, self.half_height);
+        if self.clearance >= height {
             let expected = format_args!("a length below half_height, {height} m");
             return Err(Error::clash("clearance", expected));
         }
@@ -55,17 +56,17 @@ impl Act for GuideClearance {
                 throw.crosshead.inertia = throw.crosshead.mass * square / 3.0;
             }
             throw.guide = Guide::Clear(guide::GuideClearance {
-                clearance: self.clearance(),
+                clearance: self.clearance,
                 half_length: length,
                 half_height: height,
                 contact: ContactLaw::Impact(Impact {
-                    stiffness: self.stiffness(),
+                    stiffness: self.stiffness,
                     exponent: 1.5,
-                    damping: self.damping(),
+                    damping: self.damping,
                     depth: DEPTH,
                 }),
                 friction: FrictionLaw::Coulomb(Coulomb {
-                    coefficient: self.friction(),
+                    coefficient: self.friction,
                     slip_speed: SLIP_SPEED,
                 }),
             });

@@ -4,32 +4,32 @@
 //! start of the machine, and in the mean over revolutions it fades as they become many, unless it
 //! meets an order (50 Hz is order 6 at 500 rpm).
 
-use super::section::{Act, Measure, Section, effect};
-use crate::quantity::{Acceleration, Angle, Frequency, NonNegative, Positive, Quantity};
+use super::act::{Act, Measure, Place};
 use simulate::{Hum, Sensor};
+use mechanism::declaration;
 
-effect! {
+declaration! {
     /// A sine of constant frequency on accelerometers.
-    MainsHum at [throw, measure], Sensor, Separately:
-    "The cable picks up the mains: a hum of 50 or 60 Hz whatever the speed." {
+    MainsHum at [Throw, Measure], Sensor, Separately:
+    "The cable picks up the mains: a hum of 50 or 60 Hz whatever the speed."
+    law "+ a cos(2π f t + φ)" after "" {
         /// Amplitude, in the unit of the sensor.
-        amplitude: NonNegative<Acceleration>, 0.01 to 200.0, start 5.0, absent 0.0;
+        amplitude: Acceleration(FromZero), 0.01 to 200.0, start 5.0, absent 0.0;
         /// Frequency; 50 Hz where it is left out.
-        frequency: Positive<Frequency>, 45.0 to 400.0, start 50.0;
+        frequency: Frequency(AboveZero), 45.0 to 400.0, start 50.0;
         /// Phase at the start of the machine; 0 deg where it is left out.
-        phase: Quantity<Angle>, turn, start 0.0;
+        phase: Angle(Any), turn, start 0.0;
     }
 }
 
-impl Act for MainsHum {
-    fn sense(&self, sensor: &mut Sensor, throws: &[&str]) {
-        let place = self.place();
+impl Act for Values {
+    fn sense(&self, sensor: &mut Sensor, place: &Place, throws: &[&str]) {
         if place.measure != Some(Measure::CylinderPressure) && place.means(&sensor.measured, throws)
         {
             sensor.chain.hum = Some(Hum {
-                amplitude: self.amplitude(),
-                frequency: self.frequency(),
-                phase: self.phase(),
+                amplitude: self.amplitude,
+                frequency: self.frequency,
+                phase: self.phase,
             });
         }
     }

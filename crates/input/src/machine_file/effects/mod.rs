@@ -1,112 +1,67 @@
-//! The catalogue of effects as the machine file has it, one file per effect.
+//! The catalogue of effects as the machine file has it.
 //!
-//! A new effect is a file here and a line in [`catalogue!`]: its section (see [`section::effect!`])
-//! and what it does, as methods of [`section::Act`]. If it acts in the equations of motion, its law
-//! is a file and a line in [`mechanism::effects`] as well.
+//! An effect that acts in the equations is a file and a line in [`mechanism::effects`], and nothing
+//! here: its section follows from its [`declaration`](mechanism::declaration). An effect that changes
+//! the file, the machine's data or its sensors is a file here and a line in [`own!`]: its declaration,
+//! and what it does, as methods of [`act::Act`].
 
+mod act;
 mod catalogue;
 mod section;
 
-pub use catalogue::{Choice, Entry, Kind, Parameter, Proposal, at_path, entry};
+pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry};
+pub use mechanism::declaration::{Kind, Proposal};
 
 use super::Sections;
 use crate::error::{Error, Problem};
-use mechanism::effects::Effect;
+use act::Act;
+pub(super) use act::{Joint, Place};
+use mechanism::declaration::Declaration;
 use mechanism::{Machine, Throw};
-use schemars::JsonSchema;
-use section::{Act, Described};
-pub(super) use section::{Joint, Place};
-use serde::Deserialize;
+pub(super) use section::EffectSection;
 use simulate::Sensor;
 
-/// The one list of effects: it makes the modules, the sections of the machine file, and
-/// [`CATALOGUE`].
-macro_rules! catalogue {
-    ($( $module:ident::$kind:ident, )*) => {
-        $( mod $module; use $module::$kind; )*
+/// The one list of the effects that act outside the equations, each group after the effect of
+/// [`mechanism::effects`] that it follows in the catalogue.
+macro_rules! own {
+    ($( after $after:ident { $($module:ident),+ } )+) => {
+        $( $( mod $module; )+ )+
 
-        /// Physics beyond the first model.
-        #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-        #[serde(rename_all = "snake_case")]
-        pub(super) enum EffectSection {
-            $( #[schemars(description = <$kind as Described>::SENTENCE)] $kind(Box<$kind>), )*
-        }
+        /// Where in the catalogue, name, declaration, and what the effect does with values.
+        type Own = (&'static str, &'static str, Declaration, fn(&[f64]) -> Box<dyn Act>);
 
-        /// All effects.
-        pub const CATALOGUE: &[Entry] = &[$( Entry {
-            name: stringify!($module),
-            sentence: <$kind as Described>::SENTENCE,
-            kind: <$kind as Described>::KIND,
-            proposal: <$kind as Described>::PROPOSAL,
-            parameters: <$kind as Described>::PARAMETERS,
-            places: <$kind as Described>::PLACES,
-        } ),*];
-
-        impl EffectSection {
-            fn name(&self) -> &'static str {
-                match self {
-                    $( Self::$kind(_) => stringify!($module), )*
-                }
-            }
-
-            fn section(&self) -> &dyn Act {
-                match self {
-                    $( Self::$kind(section) => &**section, )*
-                }
-            }
-        }
+        const OWN: &[Own] = &[$( $( (
+            stringify!($after),
+            stringify!($module),
+            $module::DECLARATION,
+            |values| Box::new($module::Values::of(values)),
+        ) ),+ ),+];
     };
 }
 
-catalogue! {
-    valve_loss::ValveLoss,
-    suction_unloading::SuctionUnloading,
-    ring_leakage::RingLeakage,
-    heat_transfer::HeatTransfer,
-    gas_pulsation::GasPulsation,
-    valve_flutter::ValveFlutter,
-    ring_friction::RingFriction,
-    squeeze_film::SqueezeFilm,
-    guide_clearance::GuideClearance,
-    extra_clearance::ExtraClearance,
-    thermal_clearance::ThermalClearance,
-    bearing_ovality::BearingOvality,
-    rod_flexibility::RodFlexibility,
-    frame_compliance::FrameCompliance,
-    rotating_unbalance::RotatingUnbalance,
-    misalignment::Misalignment,
-    speed_fluctuation::SpeedFluctuation,
-    crank_angle_offset::CrankAngleOffset,
-    sensor_resonance::SensorResonance,
-    sensor_gain::SensorGain,
-    mains_hum::MainsHum,
-    empirical_force::EmpiricalForce,
+own! {
+    after squeeze_film { guide_clearance, extra_clearance, thermal_clearance }
+    after rod_flexibility { frame_compliance }
+    after misalignment {
+        speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum
+    }
 }
 
 impl EffectSection {
     /// Whether nothing is left of it: all its amplitudes are where it vanishes.
     fn is_absent(&self) -> bool {
-        let section = self.section();
-        let values = section.values();
-        let mut amplitudes = section.parameters().iter().zip(values);
-        let mut any = false;
-        amplitudes.all(|(parameter, value)| match parameter.absent {
-            None => true,
-            Some(absent) => {
-                any = true;
-                absent == value
-            }
-        }) && any
+        let values = self.values();
+        let parameters = self.entry.parameters.iter().zip(values);
+        let mut amplitudes = parameters.filter_map(|(p, value)| Some((p.absent?, value)));
+        self.entry.amplitudes().next().is_some() && amplitudes.all(|(absent, v)| absent == v)
     }
 
     /// An effect must say how large it is.
     fn check(&self) -> Result<(), Error> {
-        let section = self.section();
-        let stated = section.stated();
-        let parts = section.parameters().iter().zip(stated);
-        let amplitudes: Vec<_> = parts.filter(|(p, _)| p.absent.is_some()).collect();
-        match amplitudes.first() {
-            Some((first, _)) if amplitudes.iter().all(|(_, stated)| !stated) => {
+        let parameters = self.entry.parameters.iter().zip(&self.stated);
+        let mut amplitudes = parameters.filter(|(p, _)| p.absent.is_some());
+        match self.entry.amplitudes().next() {
+            Some(first) if amplitudes.all(|(_, stated)| stated.is_none()) => {
                 let expected = None;
                 Err(Error::new(first.key, Problem::Missing { expected }))
             }
@@ -125,10 +80,10 @@ impl Effects {
         for (i, effect) in sections.iter().enumerate() {
             effect
                 .check()
-                .map_err(|e| e.under(effect.name()).under(i))?;
+                .map_err(|e| e.under(effect.entry.name).under(i))?;
             let alike = |other: &EffectSection| {
-                let [a, b] = [effect, other].map(EffectSection::section);
-                effect.name() == other.name() && a.place() == b.place() && a.order() == b.order()
+                let same_place = effect.entry == other.entry && effect.place == other.place;
+                same_place && effect.orders() == other.orders()
             };
             if let Some(first) = sections[..i].iter().position(alike) {
                 let found = format_args!("the effect of effects.{first} again");
@@ -144,18 +99,14 @@ impl Effects {
 
     /// Changes what the file says, before the machine is made of it.
     pub fn prepare(&self, file: &mut Sections) -> Result<(), Error> {
-        self.each(|effect| effect.section().prepare(file))
+        self.each(|effect| effect.effect().prepare(file, &effect.place))
     }
 
     /// Changes the machine.
     pub fn act(&self, machine: &mut Machine) -> Result<(), Error> {
         self.each(|effect| {
-            let section = effect.section();
-            let place = section.place().resolve(&machine.throws)?;
-            if let Some(law) = section.law() {
-                machine.effects.push(Effect { law, place });
-            }
-            section.act(machine, &place)
+            let place = effect.place.resolve(&machine.throws)?;
+            effect.effect().act(machine, &place)
         })
     }
 
@@ -163,12 +114,14 @@ impl Effects {
     pub fn sense(&self, sensor: &mut Sensor, throws: &[Throw]) {
         let names: Vec<&str> = throws.iter().map(|t| t.name.as_str()).collect();
         for (_, effect) in &self.0 {
-            effect.section().sense(sensor, &names);
+            effect.effect().sense(sensor, &effect.place, &names);
         }
     }
 
     fn each(&self, mut act: impl FnMut(&EffectSection) -> Result<(), Error>) -> Result<(), Error> {
         let mut each = self.0.iter();
-        each.try_for_each(|(i, effect)| act(effect).map_err(|e| e.under(effect.name()).under(i)))
+        each.try_for_each(|(i, effect)| {
+            act(effect).map_err(|e| e.under(effect.entry.name).under(i))
+        })
     }
 }

@@ -4,29 +4,29 @@
 //! chain's own `mounting`. Signature: one and the same ring after every blow, whatever its cause and
 //! the speed.
 
-use super::section::{Act, effect};
-use crate::quantity::{Frequency, FromZero, Positive, Quantity, Ratio};
+use super::act::{Act, Place};
 use simulate::{Resonance, Sensor};
+use mechanism::declaration;
 
-effect! {
+declaration! {
     /// Resonance of a sensor on its mount; it takes the place of the sensor's own.
-    SensorResonance at [throw, measure], Sensor:
-    "The sensor rings after every blow or sudden change of what it measures, always at the same pitch." {
+    SensorResonance at [Throw, Measure], Sensor:
+    "The sensor rings after every blow or sudden change of what it measures, always at the same pitch."
+    law "mass on a spring with gain 1 at rest" after "Harris 2002" {
         /// Natural frequency; 2 kHz where it is left out. The effect is gone far above the band of
         /// the recording.
-        frequency: Positive<Frequency>, 100.0 to 20000.0, start 2000.0;
+        frequency: Frequency(AboveZero), 100.0 to 20000.0, start 2000.0;
         /// Damping, of the critical one; 5 % where it is left out.
-        damping_ratio: Quantity<Ratio, FromZero>, 0.005 to 0.7, start 0.05;
+        damping_ratio: Ratio(FromZero), 0.005 to 0.7, start 0.05;
     }
 }
 
-impl Act for SensorResonance {
-    fn sense(&self, sensor: &mut Sensor, throws: &[&str]) {
-        use super::section::Section;
-        if self.place().means(&sensor.measured, throws) {
+impl Act for Values {
+    fn sense(&self, sensor: &mut Sensor, place: &Place, throws: &[&str]) {
+        if place.means(&sensor.measured, throws) {
             sensor.chain.mounting = Some(Resonance {
-                frequency: self.frequency(),
-                damping_ratio: self.damping_ratio(),
+                frequency: self.frequency,
+                damping_ratio: self.damping_ratio,
             });
         }
     }

@@ -1,7 +1,8 @@
 //! Hertz 1881: `F = K δⁿ` (n = 3/2 for point contact), without dissipation.
 
-use super::{NormalForce, power};
+use super::{Factors, Normal, NormalForce, contact_law, power};
 use crate::lift::parameters;
+use crate::mode::ContactMode;
 use scalar::Scalar;
 
 parameters! {
@@ -14,14 +15,35 @@ parameters! {
     }
 }
 
-impl<S: Scalar> Hertz<S> {
+contact_law! {
+    /// K δⁿ, without loss (Hertz 1881).
+    Hertz, stiffness "Stiffness K, or what it follows from." {
+        /// Exponent n of the penetration; 1.5 where it is left out.
+        exponent: Number(FromOne), or 1.5;
+    }
+}
+
+impl<S: Scalar> Normal<S> for Law {
+    type Of = Hertz<S>;
+
     #[inline(always)]
-    pub(super) fn force(&self, penetration: S) -> NormalForce<S> {
-        let elastic = self.stiffness * power(penetration, self.exponent);
+    fn force(law: &Hertz<S>, penetration: S, _: S, _: &ContactMode<S>) -> NormalForce<S> {
+        let elastic = law.stiffness * power(penetration, law.exponent);
         NormalForce {
             raw: elastic,
             elastic,
             excess: [S::zero(), S::one()],
+        }
+    }
+
+    fn spring(law: &Hertz<S>) -> (S, S) {
+        (law.stiffness, law.exponent)
+    }
+
+    fn carried_over(law: &Hertz<S>, factors: &Factors<S>) -> Hertz<S> {
+        Hertz {
+            stiffness: law.stiffness * factors.stiffness,
+            exponent: law.exponent,
         }
     }
 }

@@ -8,9 +8,9 @@
 //! Its restitution depends on the speed of impact; while δ stays well below d only C/d² can be
 //! told from the motion.
 
-use super::{NormalForce, power};
+use super::{Factors, Normal, NormalForce, contact_law, power};
 use crate::lift::parameters;
-use crate::mode::flagged;
+use crate::mode::{ContactMode, flagged};
 use scalar::Scalar;
 
 parameters! {
@@ -27,13 +27,46 @@ parameters! {
     }
 }
 
-impl<S: Scalar> Impact<S> {
+contact_law! {
+    /// IMPACT of ADAMS (the default): K δⁿ + STEP(δ, 0, 0, depth, damping) dδ/dt.
+    Impact, stiffness "Stiffness K, or what it follows from." {
+        /// Exponent n of the penetration; 1.5 where it is left out.
+        exponent: Number(FromOne), or 1.5;
+        /// Greatest damping.
+        damping: Damping(FromZero);
+        /// Penetration at which the damping is full.
+        depth: Length(AboveZero);
+    }
+}
+
+impl<S: Scalar> Normal<S> for Law {
+    type Of = Impact<S>;
+
     #[inline(always)]
-    pub(super) fn force(&self, penetration: S, rate: S, deep: S) -> NormalForce<S> {
-        let elastic = self.stiffness * power(penetration, self.exponent);
+    fn force(law: &Impact<S>, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S> {
+        let elastic = law.stiffness * power(penetration, law.exponent);
         // Which side of the kink at u = 1 counts is the mode's to say.
-        let u = flagged(deep, S::one(), (penetration / self.depth).max(S::zero()));
-        let damping = self.damping * u * u * u.mul_add(S::constant(-2.0), S::constant(3.0));
+        let u = (penetration / law.depth).max(S::zero());
+        let u = flagged(mode.deep, S::one(), u);
+        let damping = law.damping * u * u * u.mul_add(S::constant(-2.0), S::constant(3.0));
         NormalForce::damped(elastic, damping * rate)
+    }
+
+    fn spring(law: &Impact<S>) -> (S, S) {
+        (law.stiffness, law.exponent)
+    }
+
+    fn carried_over(law: &Impact<S>, factors: &Factors<S>) -> Impact<S> {
+        Impact {
+            stiffness: law.stiffness * factors.stiffness,
+            exponent: law.exponent,
+            damping: law.damping * factors.damping,
+            depth: law.depth * factors.depth,
+        }
+    }
+
+    #[inline(always)]
+    fn kink(law: &Impact<S>) -> Option<S> {
+        Some(law.depth)
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! The force jumps by `D δ̇` at touch; the pull it would give on the way out is cut off.
 
-use super::NormalForce;
+use super::{Factors, Normal, NormalForce, contact_law};
 use crate::lift::parameters;
+use crate::mode::ContactMode;
 use scalar::Scalar;
 
 parameters! {
@@ -16,10 +17,31 @@ parameters! {
     }
 }
 
-impl<S: Scalar> KelvinVoigt<S> {
+contact_law! {
+    /// Linear spring and damper (Dubowsky and Freudenstein 1971).
+    KelvinVoigt, stiffness "Stiffness, in N/m." {
+        /// Damping.
+        damping: Damping(FromZero);
+    }
+}
+
+impl<S: Scalar> Normal<S> for Law {
+    type Of = KelvinVoigt<S>;
+
     #[inline(always)]
-    pub(super) fn force(&self, penetration: S, rate: S) -> NormalForce<S> {
-        let elastic = self.stiffness * penetration.max(S::zero());
-        NormalForce::damped(elastic, self.damping * rate)
+    fn force(law: &KelvinVoigt<S>, penetration: S, rate: S, _: &ContactMode<S>) -> NormalForce<S> {
+        let elastic = law.stiffness * penetration.max(S::zero());
+        NormalForce::damped(elastic, law.damping * rate)
+    }
+
+    fn spring(law: &KelvinVoigt<S>) -> (S, S) {
+        (law.stiffness, S::one())
+    }
+
+    fn carried_over(law: &KelvinVoigt<S>, factors: &Factors<S>) -> KelvinVoigt<S> {
+        KelvinVoigt {
+            stiffness: law.stiffness * factors.stiffness,
+            damping: law.damping * factors.damping,
+        }
     }
 }

@@ -4,41 +4,120 @@
 //! touch (only the laws with a coefficient of restitution use it). The force that the equations of
 //! motion use is `max(0, raw)`: surfaces do not pull.
 //!
-//! A new law is a file here, a variant and an arm in each `match` below.
+//! A new law is a file here and a line in [`contact_laws!`]: a struct of parameters, its
+//! [`contact_law!`], and the methods of [`Normal`]. Section of the machine file, schema and tables
+//! follow from these.
 
-mod flores;
-mod hertz;
-mod hunt_crossley;
-mod impact;
-mod kelvin_voigt;
-mod lankarani_nikravesh;
+mod declaration;
 mod restitution;
 
-pub use hertz::Hertz;
-pub use impact::Impact;
-pub use kelvin_voigt::KelvinVoigt;
+pub use declaration::{Declaration, Entry, Parameter, Surfaces};
 pub use restitution::Restitution;
 
+pub(self) use declaration::contact_law;
+
+use super::clearance_relation::Factors;
 use crate::lift::alternatives;
 use crate::mode::ContactMode;
 use scalar::{Mask, Scalar};
 
-alternatives! {
-    /// Which normal contact law a joint has.
-    pub enum ContactLaw<S> {
-        /// ADAMS IMPACT: elastic force with damping that grows in over a depth.
-        Impact(Impact),
-        /// Elastic force alone.
-        Hertz(Hertz),
-        /// Linear spring and damper.
-        KelvinVoigt(KelvinVoigt),
-        /// Hunt and Crossley 1975: χ = 3 (1 − e) / 2.
-        HuntCrossley(Restitution),
-        /// Lankarani and Nikravesh 1990: χ = 3 (1 − e²) / 4.
-        LankaraniNikravesh(Restitution),
-        /// Flores et al. 2011: χ = 8 (1 − e) / (5 e).
-        Flores(Restitution),
+/// What a contact law does with its parameters.
+trait Normal<S: Scalar> {
+    /// The parameters.
+    type Of;
+
+    /// The force at penetration δ (m) and rate δ̇ (m/s), in the contact's mode (approach speed, and
+    /// which side of the law's kink).
+    fn force(law: &Self::Of, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S>;
+
+    /// Stiffness K, N/mⁿ, and exponent n of the elastic part K δⁿ.
+    fn spring(law: &Self::Of) -> (S, S);
+
+    /// The law at another clearance, by the factors of a relation.
+    fn carried_over(law: &Self::Of, factors: &Factors<S>) -> Self::Of;
+
+    /// The penetration at which the law has a kink of its own, m.
+    #[inline(always)]
+    fn kink(_law: &Self::Of) -> Option<S> {
+        None
     }
+
+    /// True where the force depends on the approach speed at the last touch.
+    fn remembers() -> bool {
+        false
+    }
+}
+
+/// The one list of contact laws: it makes the modules, [`ContactLaw`] and its dispatch.
+macro_rules! contact_laws {
+    ($( $module:ident::$kind:ident, )*) => {
+        $( mod $module; pub use $module::$kind; )*
+
+        alternatives! {
+            /// Which normal contact law a joint has.
+            pub enum ContactLaw<S> {
+                $( #[doc = concat!("See [`", stringify!($kind), "`].")] $kind($kind), )*
+            }
+        }
+
+        /// All contact laws; the first is the default.
+        pub const CONTACT_LAWS: &[Entry] = &[$( Entry {
+            name: stringify!($module),
+            declaration: $module::DECLARATION,
+            law: |surfaces, values| $module::of(surfaces, values).map(ContactLaw::$kind),
+        } ),*];
+
+        impl<S: Scalar> ContactLaw<S> {
+            /// The force at penetration δ (m) and rate δ̇ (m/s), in the contact's mode (approach
+            /// speed, and which side of the law's kink).
+            #[inline(always)]
+            pub fn force(&self, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S> {
+                match self {
+                    $( ContactLaw::$kind(law) => <$module::Law as Normal<S>>::force(law, penetration, rate, mode), )*
+                }
+            }
+
+            /// Stiffness K, N/mⁿ, and exponent n.
+            pub fn spring(&self) -> (S, S) {
+                match self {
+                    $( ContactLaw::$kind(law) => <$module::Law as Normal<S>>::spring(law), )*
+                }
+            }
+
+            /// The law at another clearance, by the factors of a relation.
+            pub(super) fn carried_over(&self, factors: &Factors<S>) -> Self {
+                match self {
+                    $( ContactLaw::$kind(law) => {
+                        ContactLaw::$kind(<$module::Law as Normal<S>>::carried_over(law, factors))
+                    } )*
+                }
+            }
+
+            /// The penetration at which the law has a kink of its own, m: IMPACT's damping depth.
+            #[inline(always)]
+            pub fn kink(&self) -> Option<S> {
+                match self {
+                    $( ContactLaw::$kind(law) => <$module::Law as Normal<S>>::kink(law), )*
+                }
+            }
+
+            /// True where the force depends on the approach speed at the last touch.
+            pub(crate) fn remembers(&self) -> bool {
+                match self {
+                    $( ContactLaw::$kind(_) => <$module::Law as Normal<S>>::remembers(), )*
+                }
+            }
+        }
+    };
+}
+
+contact_laws! {
+    impact::Impact,
+    hertz::Hertz,
+    kelvin_voigt::KelvinVoigt,
+    hunt_crossley::HuntCrossley,
+    lankarani_nikravesh::LankaraniNikravesh,
+    flores::Flores,
 }
 
 /// A normal force and the part of it that is stored and given back.
@@ -83,66 +162,11 @@ impl<S: Scalar> NormalForce<S> {
 }
 
 impl<S: Scalar> ContactLaw<S> {
-    /// The force at penetration δ (m) and rate δ̇ (m/s), in the contact's mode (approach speed, and
-    /// which side of the law's kink).
-    #[inline(always)]
-    pub fn force(&self, penetration: S, rate: S, mode: &ContactMode<S>) -> NormalForce<S> {
-        let approach = mode.approach;
-        match self {
-            ContactLaw::Impact(law) => law.force(penetration, rate, mode.deep),
-            ContactLaw::Hertz(law) => law.force(penetration),
-            ContactLaw::KelvinVoigt(law) => law.force(penetration, rate),
-            ContactLaw::HuntCrossley(law) => {
-                let factor = hunt_crossley::hysteresis(law.restitution);
-                law.force(penetration, rate, approach, factor)
-            }
-            ContactLaw::LankaraniNikravesh(law) => {
-                let factor = lankarani_nikravesh::hysteresis(law.restitution);
-                law.force(penetration, rate, approach, factor)
-            }
-            ContactLaw::Flores(law) => {
-                let factor = flores::hysteresis(law.restitution);
-                law.force(penetration, rate, approach, factor)
-            }
-        }
-    }
-
     /// Elastic energy stored at penetration δ (m), J; 0 without contact.
     pub fn stored_energy(&self, penetration: S) -> S {
         let (stiffness, exponent) = self.spring();
         let one_more = exponent + 1.0;
         stiffness * power(penetration, exponent) * penetration.max(S::zero()) / one_more
-    }
-
-    /// Stiffness K, N/mⁿ, and exponent n.
-    pub fn spring(&self) -> (S, S) {
-        match self {
-            ContactLaw::Impact(law) => (law.stiffness, law.exponent),
-            ContactLaw::Hertz(law) => (law.stiffness, law.exponent),
-            ContactLaw::KelvinVoigt(law) => (law.stiffness, S::one()),
-            ContactLaw::HuntCrossley(law)
-            | ContactLaw::LankaraniNikravesh(law)
-            | ContactLaw::Flores(law) => (law.stiffness, law.exponent),
-        }
-    }
-
-    /// True where the force depends on the approach speed at the last touch.
-    pub(crate) fn remembers(&self) -> bool {
-        match self {
-            ContactLaw::Impact(_) | ContactLaw::Hertz(_) | ContactLaw::KelvinVoigt(_) => false,
-            ContactLaw::HuntCrossley(_)
-            | ContactLaw::LankaraniNikravesh(_)
-            | ContactLaw::Flores(_) => true,
-        }
-    }
-
-    /// The penetration at which the law has a kink of its own, m: IMPACT's damping depth.
-    #[inline(always)]
-    pub fn kink(&self) -> Option<S> {
-        match self {
-            ContactLaw::Impact(law) => Some(law.depth),
-            _ => None,
-        }
     }
 }
 

@@ -4,8 +4,9 @@
 //! For any χ of this family the restitution e' that a free impact delivers solves
 //! `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, whatever n, K, mass and v₀.
 
-use super::{NormalForce, power};
+use super::{Factors, Normal, NormalForce, power};
 use crate::lift::parameters;
+use crate::mode::ContactMode;
 use scalar::Scalar;
 
 parameters! {
@@ -23,11 +24,25 @@ parameters! {
     }
 }
 
-impl<S: Scalar> Restitution<S> {
+/// A law of the family.
+pub(super) trait Family {
+    /// The hysteresis damping factor χ of a coefficient of restitution.
+    fn hysteresis<S: Scalar>(restitution: S) -> S;
+}
+
+impl<S: Scalar, F: Family> Normal<S> for F {
+    type Of = Restitution<S>;
+
     #[inline(always)]
-    pub(super) fn force(&self, penetration: S, rate: S, approach: S, factor: S) -> NormalForce<S> {
-        let elastic = self.stiffness * power(penetration, self.exponent);
-        let v0 = approach.max(self.slowest_approach);
+    fn force(
+        law: &Restitution<S>,
+        penetration: S,
+        rate: S,
+        mode: &ContactMode<S>,
+    ) -> NormalForce<S> {
+        let factor = F::hysteresis(law.restitution);
+        let elastic = law.stiffness * power(penetration, law.exponent);
+        let v0 = mode.approach.max(law.slowest_approach);
         let sign = factor * rate / v0 + 1.0;
         NormalForce {
             raw: elastic * sign,
@@ -35,4 +50,41 @@ impl<S: Scalar> Restitution<S> {
             excess: [factor * rate, v0],
         }
     }
+
+    fn spring(law: &Restitution<S>) -> (S, S) {
+        (law.stiffness, law.exponent)
+    }
+
+    fn carried_over(law: &Restitution<S>, factors: &Factors<S>) -> Restitution<S> {
+        Restitution {
+            stiffness: law.stiffness * factors.stiffness,
+            ..law.clone()
+        }
+    }
+
+    fn remembers() -> bool {
+        true
+    }
 }
+
+/// Declares a law of the family: what it is, and its name.
+macro_rules! restitution_law {
+    ($(#[doc = $about:literal])+ $name:ident) => {
+        /// The parameters of the law: those of its family.
+        pub type $name<S = f64> = super::restitution::Restitution<S>;
+
+        super::contact_law! {
+            $(#[doc = $about])+
+            $name, stiffness "Stiffness K, or what it follows from." {
+                /// Exponent n of the penetration; 1.5 where it is left out.
+                exponent: Number(FromOne), or 1.5;
+                /// Coefficient of restitution.
+                restitution: Number(Rebound);
+                /// Smallest approach speed that the damping is computed with; 1 mm/s where it is left out.
+                slowest_approach: Velocity(AboveZero), or 1e-3;
+            }
+        }
+    };
+}
+
+pub(super) use restitution_law;

@@ -1,0 +1,90 @@
+//! The tables of the pages follow from the declarations.
+
+use input::effects::{CATALOGUE, Entry};
+use mechanism::joints::contact::CONTACT_LAWS;
+use std::fs;
+use std::path::Path;
+
+/// Most keys that a cell lists one by one.
+const LISTED: usize = 6;
+
+#[test]
+fn the_table_of_effects_is_current() {
+    let mut table = String::from(
+        "| effect | law | amplitudes | other keys | where | after |\n|---|---|---|---|---|---|\n",
+    );
+    for entry in CATALOGUE.iter() {
+        table.push_str(&row(entry));
+    }
+    check("crates/mechanism/README.md", "effects", &table);
+}
+
+#[test]
+fn the_table_of_contact_laws_is_current() {
+    let mut table = String::from("| law | what it is | keys |\n|---|---|---|\n");
+    for law in CONTACT_LAWS {
+        let declared = &law.declaration;
+        let own = declared.parameters.iter();
+        let own = own.map(|parameter| match parameter.default {
+            None => format!("`{}`", parameter.key),
+            Some(_) => format!("(`{}`)", parameter.key),
+        });
+        let stiffness = declared.stiffness.map(|_| "`stiffness`".to_owned());
+        let keys: Vec<String> = stiffness.into_iter().chain(own).collect();
+        let keys = keys.join(", ");
+        table.push_str(&format!(
+            "| `{}` | {} | {keys} |\n",
+            law.name, declared.about
+        ));
+    }
+    check("crates/mechanism/README.md", "contact laws", &table);
+}
+
+fn row(entry: &Entry) -> String {
+    let keys = |amplitude: bool| {
+        let keys = entry.parameters.iter();
+        let keys = keys.filter(|parameter| parameter.absent.is_some() == amplitude);
+        listed(keys.map(|parameter| parameter.key))
+    };
+    let place = match entry.places {
+        [] => "machine".to_owned(),
+        places => listed(places.iter().map(|choice| choice.key)),
+    };
+    format!(
+        "| `{}` | {} | {} | {} | {place} | {} |\n",
+        entry.name,
+        entry.law(),
+        keys(true),
+        keys(false),
+        entry.source(),
+    )
+}
+
+fn listed<'a>(keys: impl Iterator<Item = &'a str>) -> String {
+    let keys: Vec<String> = keys.map(|key| format!("`{key}`")).collect();
+    match &keys[..] {
+        [first, .., last] if keys.len() > LISTED => format!("{first} … {last} ({})", keys.len()),
+        all => all.join(", "),
+    }
+}
+
+/// Fails where the table called `name` in `page` is not `table`; with UPDATE=1 it is rewritten.
+fn check(page: &str, name: &str, table: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../..")
+        .join(page);
+    let text = fs::read_to_string(&path).unwrap();
+    let start = format!("<!-- table: {name} -->\n");
+    let (before, rest) = text.split_once(&start).unwrap();
+    let (committed, after) = rest.split_once("<!-- end of table -->").unwrap();
+    if std::env::var_os("UPDATE").is_some() {
+        let updated = format!("{before}{start}{table}<!-- end of table -->{after}");
+        fs::write(&path, updated).unwrap();
+    } else {
+        assert!(
+            committed == table,
+            "the table of {name} in {page} is stale; rewrite it with\n    \
+             UPDATE=1 cargo test -p input --test all tables"
+        );
+    }
+}
