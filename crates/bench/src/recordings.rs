@@ -8,6 +8,7 @@ use input::MachineFile;
 use input::bundle;
 use rayon::prelude::*;
 use recordings::formats::parquet;
+use recordings::formats::parquet::ROWS_PER_GROUP;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use scalar::random::{Purpose, stream};
 use serde::Serialize;
@@ -21,7 +22,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 /// Accuracy of the recordings: a hundred times that of the fit.
-const TOLERANCE: f64 = 1e-9;
+const RECORDED_TOLERANCE: f64 = 1e-9;
 /// Revolutions before a recording.
 const TRANSIENT: u32 = 60;
 const REVOLUTIONS: u32 = 30;
@@ -35,7 +36,6 @@ const RANGE: [f64; 2] = [1.0, 1.2];
 const BITS: u32 = 16;
 /// Steps of the encoder in a revolution; it counts down to whole ones.
 const STEPS: f64 = 65_536.0;
-const ROWS_PER_GROUP: usize = 65_536;
 
 /// How recordings are made.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +63,7 @@ impl Recorder {
                 revolutions,
                 sample_rate: sample_rate.unwrap_or(SAMPLE_RATE),
                 inner_rate: Settings::default().inner_rate,
-                tolerance: TOLERANCE,
+                tolerance: RECORDED_TOLERANCE,
             },
             seed: u64::from(settings.seed.map_or(0, |seed| seed.get())),
         }

@@ -2,13 +2,12 @@
 
 use crate::error::Error;
 use crate::observation::Run;
+use crate::observation::SPEED;
 use crate::prediction::{Prediction, predict};
 use crate::problem::Problem;
 use rayon::prelude::*;
 use signal::order_lines::OrderLines;
 
-/// Relative difference between stated and recorded speed that is a contradiction.
-const SPEED: f64 = 0.02;
 /// The first order of an acceleration is that of the crank's throw, whatever the contacts do: a
 /// factor beyond this tells another stroke, speed or unit.
 const FACTOR: f64 = 1.5;

@@ -20,6 +20,8 @@ use crate::data_sheet::{Doubt, doubts};
 use crate::error::Error;
 use crate::fit::{ADEQUATE, Estimate, Fit, FitSettings, Optimiser, calibrate};
 use crate::likelihood::Likelihood;
+use crate::likelihood::NOISE;
+use crate::normal::QUANTILE;
 use crate::optimiser::{self, LeastSquares, Progress};
 use crate::problem::Problem;
 use crate::promise::{promises, split};
@@ -32,14 +34,12 @@ const FITTED: usize = 5;
 /// Most evaluations of a descent for a value, and of the search that follows where no descent has reached the
 /// noise; of the latter the best few.
 const DESCENT: u64 = 60;
-const SEARCH: u64 = 300;
+const TRIALS: u64 = 300;
 const SEARCHED: usize = 2;
 /// Probability from which one value alone is corrected.
 const CLEAR: f64 = 0.95;
 /// Probability below which a rival is not named.
 const RIVAL: f64 = 0.01;
-/// Standard deviations that bound 95 % of a normal distribution.
-const QUANTILE: f64 = 1.959_964;
 /// A value whose prior, over its width, moves the residuals by less than this (noise is 1 each) is not felt.
 const FELT: f64 = 1.0;
 
@@ -101,7 +101,7 @@ pub fn correct(
         settings,
         // The search might do as well, or the model is as good already: nothing but noise may be left.
         explains: match depth == Depth::Descents || fit.model_is_adequate() {
-            true => search::NOISE,
+            true => NOISE,
             false => ADEQUATE,
         },
         evaluations: 0,
@@ -117,7 +117,7 @@ pub fn correct(
         tried.push(work.descend(candidate, &mut watch)?);
     }
     tried.sort_by(|a, b| a.misfit.total_cmp(&b.misfit));
-    let above = |best: &Trial| best.misfit > search::NOISE;
+    let above = |best: &Trial| best.misfit > NOISE;
     if depth == Depth::Search && tried.first().is_some_and(above) {
         for trial in tried.iter_mut().take(SEARCHED) {
             work.search(trial, &mut watch)?;
@@ -250,9 +250,7 @@ impl Work<'_> {
         let likelihood = Likelihood::new(&added);
         let mut best: Option<Progress> = None;
         for start in &candidate.starts {
-            let reached = best
-                .as_ref()
-                .is_some_and(|best| best.misfit() < search::NOISE);
+            let reached = best.as_ref().is_some_and(|best| best.misfit() < NOISE);
             let most = self.left().min(DESCENT);
             if most == 0 || reached {
                 break;
@@ -284,7 +282,7 @@ impl Work<'_> {
         trial: &mut Trial,
         watch: &mut impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        let most = self.left().min(SEARCH);
+        let most = self.left().min(TRIALS);
         if most == 0 {
             return Ok(());
         }

@@ -8,7 +8,7 @@ use std::f64::consts::{LN_2, TAU};
 /// Fewer revolutions leave no spectral bins between the orders.
 const ENOUGH: f64 = 2.99;
 /// Orders up to this share of half the samples per revolution are used.
-const PASS_BAND: f64 = 0.8;
+const USED_ORDERS: f64 = 0.8;
 /// The upper part of them is taken for noise.
 const NOISE: f64 = 2.0 / 3.0;
 
@@ -57,7 +57,7 @@ pub(crate) fn lines(angle: &CrankAngle, samples: &[f64]) -> Option<OrderLines> {
         sum * if k == 0 { 1.0 } else { 2.0 } / period
     };
     let per_revolution = count as f64 / revolutions;
-    let highest = (0.5 * PASS_BAND * per_revolution) as usize;
+    let highest = (0.5 * USED_ORDERS * per_revolution) as usize;
     let amplitude: Vec<Complex64> = (0..=highest).map(of_order).collect();
     let first = (NOISE * highest as f64) as usize;
     let mut powers: Vec<f64> = amplitude[first.max(1)..]

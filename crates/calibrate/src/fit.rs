@@ -2,13 +2,14 @@
 
 use crate::error::Error;
 use crate::identifiability::{Information, information, widening};
+use crate::likelihood::NOISE;
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
 use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
 use crate::problem::Problem;
 use crate::relation::{ClearJoint, clearances};
-use crate::search::{self, NOISE};
+use crate::search;
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 

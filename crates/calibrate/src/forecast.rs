@@ -1,6 +1,7 @@
 //! What a fitted machine shows in a run, with the uncertainty that its parameters leave.
 
 use crate::error::Error;
+use crate::normal::QUANTILE;
 use crate::observation::{Observed, POINTS};
 use crate::prediction::{Prediction, predict, predict_with_derivatives};
 use crate::relation::Relation;
@@ -10,9 +11,6 @@ use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-
-/// Standard deviations that bound 95 % of a normal distribution.
-const QUANTILE: f64 = 1.959_964;
 
 /// What a machine shows in a run under a relation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 
 /// Runs are as near as each other where the furthest leaves less than this times what the nearest does, or
 /// than that of the noise.
-const UNEVEN: f64 = 1.5;
+const AS_NEAR: f64 = 1.5;
 
 /// The problem with parts of its runs alone, as they are at the coordinates `x`: the half that is nearer to the
 /// recordings, the other one, and every other run from the nearest on; none of a single run, nor where one
@@ -38,7 +38,7 @@ fn misfits(problem: &Problem, x: &[f64]) -> Option<Vec<f64>> {
 fn are_uneven(misfits: &[f64]) -> bool {
     let least = misfits.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = misfits.iter().copied().fold(0.0, f64::max);
-    greatest > UNEVEN * least.max(1.0)
+    greatest > AS_NEAR * least.max(1.0)
 }
 
 fn with(problem: &Problem, runs: &[usize]) -> Problem {

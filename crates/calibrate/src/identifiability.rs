@@ -7,11 +7,10 @@
 //! other parameters optimised to first order).
 
 use crate::likelihood::misfit;
+use crate::normal::QUANTILE;
 use crate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
 
-/// Standard deviations that bound 95 % of a normal distribution.
-const QUANTILE: f64 = 1.959_964;
 /// A bound is moved out by at most this factor; a likelihood that is flatter tells nothing.
 const FLATTEST: f64 = 10.0;
 /// A parameter is told where its interval is shorter than this share of its search range.

@@ -10,6 +10,9 @@ use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 use signal::order_lines::OrderLines;
 
+/// A misfit below this, in standard deviations of the noise, is noise: no better fit is looked for.
+pub const NOISE: f64 = 1.15;
+
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
 const ACCURACY: f64 = 2e-5;

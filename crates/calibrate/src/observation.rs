@@ -15,7 +15,7 @@ pub const POINTS: usize = 1024;
 /// A recording that stands at its greatest or least value for this many samples is clipped.
 const CLIPPED: usize = 4;
 /// Relative difference between stated and recorded speed that is a contradiction.
-const SPEED: f64 = 0.02;
+pub(crate) const SPEED: f64 = 0.02;
 /// Orders that always count; higher ones do where they stand out of the noise.
 const LOW_ORDERS: usize = 20;
 /// Power over noise from which one order stands out: in noise alone one of fifty does.
@@ -96,7 +96,7 @@ pub struct Observed {
 /// itself: noise of 14 % of the signal.
 const SCATTER: f64 = 0.02;
 /// How many times the least scatter of its runs a channel may have where it repeats itself.
-const ALIKE: f64 = 4.0;
+const REPEATS: f64 = 4.0;
 
 impl Observed {
     /// What its revolutions have in common, and how much they differ from that: mean squares.
@@ -129,7 +129,7 @@ impl Observation {
                 share = share.min(scatter / power);
                 least = least.min(scatter);
             }
-            scatter <= ALIKE * least || scatter <= ALIKE * share * power
+            scatter <= REPEATS * least || scatter <= REPEATS * share * power
         };
         self.repeats() && self.channels.iter().all(of_channel)
     }

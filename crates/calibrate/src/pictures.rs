@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::indicator::Indicator;
 use crate::pressure_gap::PressureGap;
 use recordings::formats::parquet;
+use recordings::formats::parquet::ROWS_PER_GROUP;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use std::path::Path;
 
@@ -15,8 +16,6 @@ pub const WAVEFORMS: &str = "waveforms.parquet";
 pub const ORDERS: &str = "orders.parquet";
 /// Name of the file of pressures over the piston's way.
 pub const INDICATOR: &str = "indicator.parquet";
-/// Rows per group of a Parquet file.
-const ROWS_PER_GROUP: usize = 65_536;
 
 /// Writes the curves over the crank angle and the residuals by order.
 ///

@@ -13,6 +13,7 @@ use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::nonsynchronous::Nonsynchronous;
 use signal::quantisation::quantisation_step;
+use signal::synchronous_average::RESAMPLING;
 use std::collections::BTreeMap;
 
 /// Column of the crank angle.
@@ -20,8 +21,6 @@ pub const CRANK_ANGLE: &str = "crank_angle_rad";
 /// Share of the mean square that has to be the same at every crank angle for it to be noise. The RMS
 /// is then wrong by a tenth at most.
 const STEADY: f64 = 0.8;
-/// Share of a signal's mean square that resampling leaves of what repeats itself.
-const RESAMPLING: f64 = 1e-8;
 /// How many times the least mean square of the runs one may have, in the channel's unit and as a
 /// share of its signal, before it is the motion that scatters.
 const ALIKE: f64 = 4.0;

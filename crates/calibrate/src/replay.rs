@@ -23,9 +23,9 @@ const SETTLED: f64 = 1e-7;
 const AT_MOST: u32 = 100;
 /// Share of a signal's mean square up to which what does not repeat every revolution is passed over;
 /// resampling leaves 1e-8.
-const SAME: f64 = 1e-6;
+const EVERY_REVOLUTION: f64 = 1e-6;
 /// Longest period of a settled motion, revolutions.
-const LONGEST_PERIOD: u32 = 4;
+const LONGEST_CYCLE: u32 = 4;
 
 /// What the model has in place of a recording.
 #[derive(Clone, Debug)]
@@ -121,7 +121,7 @@ pub fn replay(
         same = true;
         let revolution = TAU / speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
         let mut least = apart(&chosen.series, &recordings);
-        for shift in 1..LONGEST_PERIOD {
+        for shift in 1..LONGEST_CYCLE {
             let later = delay + f64::from(shift) * revolution;
             let other = instants.record(&machine, later).map_err(failed)?;
             let difference = apart(&other.series, &recordings);
@@ -332,7 +332,7 @@ impl Seen {
             let split = SynchronousAverage::new(&grid.resample(samples)?)?;
             if split
                 .synchronous_share()
-                .is_ok_and(|share| share < 1.0 - SAME)
+                .is_ok_and(|share| share < 1.0 - EVERY_REVOLUTION)
             {
                 return Ok(false);
             }

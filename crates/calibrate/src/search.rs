@@ -10,6 +10,7 @@
 use crate::envelopes::Envelopes;
 use crate::error::Error;
 use crate::halves::halves;
+use crate::likelihood::NOISE;
 use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares, Progress, Watch};
 use crate::problem::Problem;
@@ -18,8 +19,6 @@ use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use std::ops::ControlFlow;
 
-/// A misfit below this is taken for noise, and no better fit is looked for.
-pub(crate) const NOISE: f64 = 1.15;
 /// For a throw by itself this is near enough: what the encoder does not show of the crank's turning
 /// is left over.
 const NEAR: f64 = 2.0;
@@ -28,14 +27,15 @@ const NEAR: f64 = 2.0;
 const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// Points per parameter that are looked at with the coarsest timing, and the best of them from which
 /// the search descends.
-const POINTS: usize = 4;
+const POINTS_PER_PARAMETER: usize = 4;
 const STARTS: usize = 8;
 /// By how much a coordinate is moved out of a local minimum: a third of a value, about as much as
 /// design values are wrong.
 const KICK: f64 = 0.3;
-/// How many of the kicks are followed, and by how much features may stand elsewhere at first.
+/// How many of the kicks are followed.
 const KICKS: usize = 4;
-const LOOSE: f64 = 0.01;
+/// By how much features may stand elsewhere in a rough descent, rad.
+pub const LOOSE: f64 = 0.01;
 /// Step of the logarithm of a clearance on the grid. The time in which a gap is crossed goes with its root: it
 /// changes by 7 %, some hundredths of a radian of the crank, less than [`TIMINGS`] allow at first.
 const CLEARANCE_STEP: f64 = 0.15;
@@ -435,7 +435,7 @@ fn grid(x: &[f64], i: usize, [low, high]: [f64; 2]) -> Vec<Vec<f64>> {
 /// hypercube (McKay, Beckman and Conover 1979).
 fn spread(start: &[f64], bounds: &[[f64; 2]], seed: u64) -> Vec<Vec<f64>> {
     let mut random = stream(seed, 0, Purpose::Design);
-    let count = POINTS * start.len();
+    let count = POINTS_PER_PARAMETER * start.len();
     let mut points = vec![start.to_vec(); count];
     for (i, bound) in bounds.iter().enumerate() {
         let mut places: Vec<usize> = (0..count).collect();
@@ -473,7 +473,7 @@ mod tests {
     fn points_are_spread_evenly_within_the_bounds() {
         let bounds = [[-2.0, 2.0], [0.0, 1.0]];
         let points = spread(&[1.5, 0.5], &bounds, 4);
-        assert_eq!(points.len(), 2 * POINTS);
+        assert_eq!(points.len(), 2 * POINTS_PER_PARAMETER);
         for point in &points {
             for (x, [low, high]) in point.iter().zip(&bounds) {
                 assert!((low..=high).contains(&x), "{point:?}");

@@ -13,6 +13,7 @@ use crate::fit::Fit;
 use crate::forecast::{Forecast, forecast};
 use crate::identifiability::information;
 use crate::likelihood::{Likelihood, misfit};
+use crate::normal::QUANTILE;
 use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress, Watch, levenberg_marquardt};
 use crate::parameter::Parameter;
@@ -29,8 +30,6 @@ use std::ops::ControlFlow;
 const WORN: f64 = 3.0;
 /// Difference of the criterion from which it counts as strong (Kass and Raftery 1995).
 const STRONG: f64 = 6.0;
-/// Standard deviations that bound 95 % of a normal distribution.
-const QUANTILE: f64 = 1.959_964;
 /// Most evaluations of the model for a fit under another relation: some ten steps. One that needs
 /// more is far off.
 const EVALUATIONS: u64 = 80;

@@ -11,7 +11,7 @@ const LEFT_OUT: usize = 3;
 /// Fewest steps with a neighbour.
 const FEWEST: usize = 40;
 /// Blocks for the standard error.
-const BLOCKS: usize = 20;
+const TIME_BLOCKS: usize = 20;
 
 /// What following one neighbour after the other gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ pub fn wolf(delays: &Delays, theiler: usize, steps: usize) -> Result<Wolf, Error
         });
     }
     let growth: Vec<f64> = before.iter().zip(&after).map(|(b, a)| a - b).collect();
-    let blocks: Vec<f64> = (growth.chunks_exact(growth.len() / BLOCKS))
+    let blocks: Vec<f64> = (growth.chunks_exact(growth.len() / TIME_BLOCKS))
         .map(mean)
         .collect();
     let value = mean(&growth);

@@ -8,6 +8,7 @@ use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
 use mechanism::drive::Drive;
 use recordings::WholeFile;
+use recordings::formats::parquet::ROWS_PER_GROUP;
 use recordings::formats::{csv, parquet};
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
@@ -18,9 +19,6 @@ use simulate::{
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use sweep::run_table::run_table;
-
-/// Rows per group of the Parquet file.
-const ROWS_PER_GROUP: usize = 65_536;
 
 /// Arguments of `crosshead simulate`.
 #[derive(Args, Debug)]

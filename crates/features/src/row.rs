@@ -3,10 +3,8 @@
 use crate::{
     Definition, Group, Reason, Window, definitions, features, missing, motion, motion_definitions,
 };
+pub use chaos::error::FEWEST_SAMPLES;
 use recordings::{Column, Kind, Role};
-
-/// Fewest samples of a window that anything can be said about.
-pub const FEWEST_SAMPLES: usize = 100;
 
 /// What a column of a row holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,11 +1,11 @@
 //! Whether an effect has earned its place, and what an explanation comes to.
 
+pub use calibrate::likelihood::NOISE;
+
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use serde::{Deserialize, Serialize};
 
-/// A misfit below this is noise.
-pub const NOISE: f64 = 1.15;
 /// Pressures this near to the noise show no effect by themselves.
 pub(crate) const GAS_NOISE: f64 = 2.0;
 /// A model this near to the noise explains what was missing.

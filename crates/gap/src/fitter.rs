@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::journal::Finished;
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
+pub(crate) use calibrate::LOOSE;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observation;
@@ -26,8 +27,6 @@ pub(crate) const FEW_EVALUATIONS: u64 = 25;
 const FEW: usize = 3;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
-/// By how much features may stand elsewhere in a rough descent, rad: as in a calibration.
-pub(crate) const LOOSE: f64 = 0.01;
 
 /// By how much features may stand elsewhere in a rough look at a problem, rad. Pressures do not ring:
 /// nothing in them is in the way of a descent, and where their valves work counts from the start.

@@ -5,6 +5,7 @@
 //! cannot be cleaned: that order of it is not compared.
 
 use crate::error::Error;
+use calibrate::observation::POINTS;
 use calibrate::{Channel, Observation, Problem, Run};
 use serde::Serialize;
 use signal::angle_resampling::AngleGrid;
@@ -15,14 +16,12 @@ use std::f64::consts::TAU;
 const MAINS: [f64; 2] = [50.0, 60.0];
 const OFF: f64 = 0.5;
 /// Steps of the frequency per width of a spectral line.
-const STEPS: f64 = 4.0;
+const STEPS_PER_LINE: f64 = 4.0;
 /// Frequencies on either side that tell the noise, in widths of a spectral line.
 const AROUND: std::ops::RangeInclusive<i32> = 3..=14;
 /// A tone in noise has a mean power over noise of 1 in every run; in so many times that it is there.
 /// With one run of noise alone it is exceeded in one of e^20 tests.
 const STANDS_OUT: f64 = 20.0;
-/// Points per revolution over which the synchronous mean is taken.
-const POINTS: usize = 1024;
 
 /// A hum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -128,7 +127,7 @@ fn hum(runs: &[Run], column: &str) -> Option<Hum> {
     let longest = rests
         .iter()
         .map(|(run, x)| x.len() as f64 / run.sample_rate);
-    let step = 1.0 / (STEPS * longest.fold(0.0, f64::max)).max(f64::MIN_POSITIVE);
+    let step = 1.0 / (STEPS_PER_LINE * longest.fold(0.0, f64::max)).max(f64::MIN_POSITIVE);
     let mut best: Option<Hum> = None;
     for mains in MAINS {
         let steps = (OFF / step) as i32;

@@ -14,6 +14,8 @@ use scalar::Scalar;
 use std::f64::consts::PI;
 use std::fmt;
 
+pub use mechanism::GRAVITY;
+
 /// Exponents of the base units. The angle counts as one, so that a speed in rpm cannot pass for a
 /// frequency in Hz.
 #[derive(Clone, Copy, Debug)]
@@ -182,9 +184,6 @@ const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Di
         ..unit(name, false, 0, dimension)
     }
 }
-
-/// Standard gravity, m/s² (3rd CGPM, 1901).
-pub(crate) const GRAVITY: f64 = 9.806_65;
 
 const UNITS: [Unit; 22] = [
     unit("m", true, 0, Dimension::of(1.0, 0.0, 0.0, 0.0)),

@@ -34,3 +34,6 @@ pub use dynamics::Dynamics;
 pub use evaluation::{Evaluation, ThrowEvaluation};
 pub use machine::{Crankshaft, Crosshead, Direction, Machine, Rod, Throw};
 pub use side_by_side::SideBySide;
+
+/// Standard gravity, m/s² (3rd CGPM, 1901).
+pub const GRAVITY: f64 = 9.806_65;

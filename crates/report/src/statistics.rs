@@ -1,5 +1,8 @@
 //! Medians, quartiles and ranks.
 
+/// Half of the interval that holds 95 % of a normal distribution, in standard deviations.
+pub(crate) const HALF: f64 = 1.96;
+
 /// The value below which the share `part` of the finite values lies, linear between neighbours
 /// (Hyndman and Fan 1996, definition 7); none where there is no value.
 pub(crate) fn quantile(values: &[f64], part: f64) -> Option<f64> {

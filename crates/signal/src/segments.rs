@@ -3,7 +3,7 @@
 /// Steps that a segment of one revolution is moved on by, per revolution. The square of a Hann window
 /// has waves of one and two periods; over four equal steps (three at least) they cancel, so that every
 /// crank angle counts alike.
-const STEPS: usize = 4;
+const STEPS_PER_SEGMENT: usize = 4;
 
 /// Segments of one length.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,13 +32,13 @@ impl Segments {
     /// record of less than two revolutions has as many segments as fit, and is without that property.
     pub fn revolutions(samples: usize, per_revolution: f64) -> Self {
         let length = per_revolution.round() as usize;
-        let step = per_revolution / STEPS as f64;
+        let step = per_revolution / STEPS_PER_SEGMENT as f64;
         let starts = (0..).map(|i| (f64::from(i) * step).round() as usize);
         let mut starts: Vec<usize> = starts
             .take_while(|start| start + length <= samples)
             .collect();
-        if starts.len() > STEPS {
-            starts.truncate(starts.len() / STEPS * STEPS);
+        if starts.len() > STEPS_PER_SEGMENT {
+            starts.truncate(starts.len() / STEPS_PER_SEGMENT * STEPS_PER_SEGMENT);
         }
         Self { length, starts }
     }

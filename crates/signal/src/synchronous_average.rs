@@ -5,7 +5,7 @@ use crate::error::Error;
 
 /// The share of the fluctuation below which a residual is taken for what resampling leaves, as a
 /// ratio of mean squares: −80 dB.
-const RESAMPLING: f64 = 1e-8;
+pub const RESAMPLING: f64 = 1e-8;
 
 /// A channel split into its crank-angle synchronous average and the residual,
 /// x(θ) = x̄(θ mod 2π) + r(θ).

@@ -2,6 +2,7 @@
 
 use crate::poincare::{Impact, Joint, JointPoint, Revolution, ThrowPoint, clear_joints};
 use crate::record::Error;
+use crate::run::LONGEST_STEP;
 use integrate::{Integrator, Step, System};
 use mechanism::joints::guide::Guide;
 use mechanism::joints::revolute::Revolute;
@@ -9,8 +10,6 @@ use mechanism::mode::{ContactMode, Mode};
 use mechanism::{Dynamics, Machine};
 use std::f64::consts::TAU;
 
-/// Longest step, as a share of a revolution.
-const LONGEST_STEP: f64 = 0.05;
 /// The integration is asked for so much of a reference period at a time.
 const STRETCH: f64 = 0.25;
 /// Reference periods without a revolution after which a free crank counts as stalled.

@@ -10,7 +10,7 @@ use scalar::Scalar;
 use std::f64::consts::{PI, TAU};
 
 /// Longest step, as a share of a revolution: no event is further from a look than a twentieth.
-const LONGEST_STEP: f64 = 0.05;
+pub(crate) const LONGEST_STEP: f64 = 0.05;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
 /// A machine on its way.

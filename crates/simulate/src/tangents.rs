@@ -7,12 +7,11 @@
 
 use crate::flow::{Cycle, Flow};
 use crate::record::Error;
+use crate::run::LONGEST_STEP;
 use integrate::{Integrator, Real, Step, System};
 use nalgebra::{DMatrix, DVector};
 use scalar::Dual;
 
-/// Longest step, as a share of a revolution.
-const LONGEST_STEP: f64 = 0.05;
 /// A tangent shorter than this share of its length, once its parts along the others are taken
 /// away, is rounding: a rigid impact swallowed its direction, or a contact too stiff to tell.
 const LOST: f64 = 1e-12;

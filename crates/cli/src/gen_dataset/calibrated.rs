@@ -6,6 +6,7 @@ use ::calibrate::calibration::MACHINE;
 use ::calibrate::results::{self, Known, RESULTS, not_excluded};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::{Calibrated, Prepared, Results, Settings};
+use calibrate::normal::QUANTILE;
 use input::bundle::Bundle;
 use input::{Error, paths};
 use serde_json::Value;
@@ -17,9 +18,6 @@ use sweep::calibration::{Calibration, Estimate, Relations, Sweep};
 use sweep::dataset::{CALIBRATION, Claim};
 use sweep::sweep_file::{Amount, Uncertainty};
 use sweep::{Existing, Plan};
-
-/// Standard deviations on either side that bound 95 % of a normal distribution.
-const QUANTILE: f64 = 1.959_964;
 
 /// The plan of `sweep` with the machine calibrated into the locked folder of its dataset; a
 /// calibration that is there and follows from the same recordings, machine and settings is used.

@@ -1,10 +1,8 @@
 //! Units of measured channels: what a file says becomes SI, so that features compare.
 
 use input::bundle_channel::ToSi;
+use input::unit::GRAVITY;
 use recordings::measured::{MeasuredChannel, stem};
-
-/// Standard gravity, m/s^2 (CGPM 1901). A measured `g` is never a gram.
-const GRAVITY: f64 = 9.80665;
 
 /// Pound-force per square inch, Pa (NIST SP 811, 2008, appendix B).
 const PSI: f64 = 6894.757;

@@ -24,7 +24,7 @@ const DENSE: u64 = 400;
 /// The same of a search out of the local minimum in which that has ended.
 const FURTHER: u64 = 1000;
 /// Rounds in which terms may still be exchanged.
-const ROUNDS: usize = 4;
+const EXCHANGES: usize = 4;
 
 /// A force that is missing.
 pub(crate) struct Force {
@@ -111,7 +111,7 @@ fn law(
     let mut values = dense.values;
     let fitted_to = model.problem.with_runs(|run| fitter.effort.fits(&run.id));
     let mut chosen: Option<(Candidate, Model)> = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..EXCHANGES {
         let linear = Linearised::at(&fitted_to, &x, library, &values)?;
         let stable = linear.regression.stable(&groups);
         let each = stable.iter().flat_map(|group| &groups[*group]);

@@ -27,7 +27,7 @@ const SCALED: f64 = 2.0;
 /// A calibrated coordinate further than this from the nominal one may have gone astray, where this misfit
 /// is left: with less, only what is small can be missing.
 const ASTRAY: f64 = 0.1;
-const LEFT: f64 = 3.0;
+const MUCH_LEFT: f64 = 3.0;
 /// The best of each point at which candidates are looked at come before all others: what they explain at
 /// one is not to be compared with what they do at another.
 const LEADING: usize = 2;
@@ -98,7 +98,7 @@ pub(crate) fn screen(
     let loose = loose(&model.problem);
     let likelihood = Likelihood::coarse(&model.problem, loose);
     let mut bases = vec![Base::at(&likelihood, &model.x)];
-    let may_be_astray = model.fitted > LEFT && model.x.iter().any(|x| x.abs() > ASTRAY);
+    let may_be_astray = model.fitted > MUCH_LEFT && model.x.iter().any(|x| x.abs() > ASTRAY);
     if may_be_astray && !is_of_pressures(&model.problem) {
         bases.push(Base::at(&likelihood, &vec![0.0; model.x.len()]));
     }

@@ -12,7 +12,7 @@ use rand::seq::SliceRandom;
 use scalar::random::{Purpose, stream};
 
 /// Most groups of terms: what needs more is no law.
-const MOST: usize = 3;
+const MOST_GROUPS: usize = 3;
 /// Pairs of halves that are drawn.
 const PAIRS: u64 = 50;
 /// Share of the halves in which a group must be chosen to be believed.
@@ -126,7 +126,7 @@ impl Eliminated {
         let terms = |chosen: &[usize]| -> Vec<usize> {
             chosen.iter().flat_map(|g| groups[*g].clone()).collect()
         };
-        while chosen.len() < MOST && left > NOISE * NOISE * count as f64 {
+        while chosen.len() < MOST_GROUPS && left > NOISE * NOISE * count as f64 {
             let with = |group: usize| {
                 let mut more = chosen.clone();
                 more.push(group);

@@ -18,15 +18,15 @@
 //! the offsets of big and small end along the cylinder over their clearances, φ the rod's angle. F is
 //! positive toward the head.
 
+use crate::GRAVITY;
 use super::{Acts, PistonAt};
 use crate::declaration;
 use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use scalar::Scalar;
 
-/// Standard pressure, Pa, and standard gravity, m/s².
+/// Standard pressure, Pa.
 const BAR: f64 = 1e5;
-const GRAVITY: f64 = 9.80665;
 
 parameters! {
     /// Coefficients of the terms, N.

@@ -7,7 +7,7 @@ use std::path::Path;
 const RATE_TOLERANCE: f64 = 0.01;
 
 /// Share of the first steps that must be alike for a rate to be told.
-const ALIKE: f64 = 0.9;
+const REGULAR: f64 = 0.9;
 
 /// A column of time in a file.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl Clock {
                 let slack = resolution(&column, times[times.len() - 1]);
                 let alike = |step: &&f64| (*step - median).abs() <= 0.5 * median + slack;
                 let alike: Vec<f64> = steps.iter().filter(alike).copied().collect();
-                if median <= 0.0 || (alike.len() as f64) < ALIKE * steps.len() as f64 {
+                if median <= 0.0 || (alike.len() as f64) < REGULAR * steps.len() as f64 {
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                     return refuse(format!(

@@ -8,7 +8,7 @@ use crate::text;
 use calibrate::results::{Alternative, ByName, Gas};
 
 /// At most so many chambers have a picture, the first.
-const MOST: usize = 16;
+const MOST_CHAMBERS: usize = 16;
 /// The recording.
 const MEASURED: Colour = Colour::Ink;
 
@@ -138,7 +138,7 @@ impl Chamber<'_> {
 
 /// A picture per chamber.
 pub(super) fn plates(chambers: &[Chamber]) -> Vec<Plate> {
-    chambers.iter().take(MOST).map(plate).collect()
+    chambers.iter().take(MOST_CHAMBERS).map(plate).collect()
 }
 
 fn plate(chamber: &Chamber) -> Plate {

@@ -2,10 +2,9 @@
 
 use super::{CalibrationPage, Misfit, Parameter, words};
 use crate::text;
+use calibrate::likelihood::NOISE;
 use calibrate::results::Known;
 
-/// A misfit up to here is said to be noise: a calibration takes it for that, too.
-const NOISE: f64 = 1.15;
 /// A misfit that shrinks by less than this share has come no closer: nobody sees a twentieth in a figure.
 const CLOSER: f64 = 0.05;
 /// Estimates that are correlated more than this are told only together.

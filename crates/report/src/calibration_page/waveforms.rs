@@ -5,12 +5,11 @@ use super::verdict::size;
 use super::{Channel, OrderResidual, Point, Run, words};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
+use crate::statistics::HALF;
 use crate::text;
 
 /// At most so many runs have a picture, the first.
 const MOST_RUNS: usize = 40;
-/// Half of the interval that holds 95 % of a normal distribution, in standard deviations.
-const HALF: f64 = 1.96;
 /// Points, beyond which dots stand for orders.
 const MANY: usize = 60;
 /// Residuals below this share of the noise are not shown: they are as small by chance.

@@ -5,12 +5,11 @@ use super::levels::Levels;
 use super::{CaseChaos, ChaosPage};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
+use crate::statistics::HALF;
 use crate::{classes, text};
 
-/// Half of a 95 % interval in standard errors.
-const HALF: f64 = 1.96;
 /// With more speeds than this, all share a panel.
-const MOST_SPEEDS: usize = 3;
+pub(super) const MOST_SPEEDS: usize = 3;
 /// At most this many sets of joints.
 const MOST_SETS: usize = 8;
 /// A panel draws at most so many cases, and the scatter so many windows: evenly over the sweep.

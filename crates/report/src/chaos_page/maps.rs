@@ -1,14 +1,13 @@
 //! Maps of the regimes.
 
 use super::agreement::most_frequent;
+use super::exponents::MOST_SPEEDS;
 use super::levels::Levels;
 use super::{CaseChaos, ChaosPage, Regime};
 use crate::figure::{Axis, Colour, Field, Figure, Panel};
 use crate::plate::Plate;
 use crate::text;
 
-/// With more speeds than this, all share a map.
-const MOST_SPEEDS: usize = 3;
 /// At most this many sets of joints have a map over speed.
 const MOST_SETS: usize = 4;
 const KEY: &str = "P periodic (P2: every second revolution), Q quasi-periodic, C chaotic, S as noise, ? undecided";

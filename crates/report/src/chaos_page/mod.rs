@@ -18,6 +18,7 @@ mod spectra;
 mod table;
 
 pub use regime::Regime;
+pub(crate) use spectra::MOST_CLASSES;
 
 /// All that the page tells. Numbers are SI, speeds in rpm; labels are as in the data.
 #[derive(Clone, Debug, Default)]

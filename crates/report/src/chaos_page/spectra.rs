@@ -7,7 +7,7 @@ use crate::plate::Plate;
 use crate::text;
 
 /// At most this many classes.
-const MOST_CLASSES: usize = 12;
+pub(crate) const MOST_CLASSES: usize = 12;
 
 /// Spectra, and spectra of the envelope.
 pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {

@@ -7,7 +7,7 @@ use crate::{Error, text};
 use sweep::reader::{Dataset, Meaning, Side};
 
 /// At most this many classes have an example: as many as the page shows.
-const MOST: usize = 16;
+const MOST_EXAMPLES: usize = 16;
 
 /// The first window of the case of each fault whose largest clearance is nearest to the median of
 /// its class, once for each sensor that judges the fault; of the healthy as the first sensor reads it.
@@ -35,7 +35,7 @@ pub(super) fn examples(
     });
     judged
         .filter_map(|(count, sensor)| Some((count, sensor, of_fault(&count.fault)?)))
-        .take(MOST)
+        .take(MOST_EXAMPLES)
         .map(|(count, sensor, window)| {
             let recording = Recording::read(dataset, window, sensor)?;
             Ok(ClassExample {

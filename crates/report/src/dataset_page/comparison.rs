@@ -13,7 +13,7 @@ use crate::revolutions::Revolutions;
 use crate::{Level, text};
 
 /// At most this many sets of joints are shown, and clearances of each.
-const MOST_SETS: usize = 8;
+const MOST_COMPARED: usize = 8;
 const MOST_CLEARANCES: usize = 5;
 
 /// A response with the words and the colour it has in a figure.
@@ -29,7 +29,7 @@ pub(super) fn plates(page: &DatasetPage, grid: &ClearanceGrid) -> Vec<Plate> {
         .joint_sets
         .iter()
         .filter(|set| !set.responses.is_empty())
-        .take(MOST_SETS)
+        .take(MOST_COMPARED)
         .collect();
     let mut plates: Vec<Plate> = sets.iter().map(|set| by_clearance(grid, set)).collect();
     let common = common_clearance(&sets);

@@ -21,7 +21,7 @@ use crate::{Error, Plan};
 const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// Most rows of a group: as many as the writer collects anyway.
-const ROWS_PER_GROUP: f64 = 4096.0;
+const MOST_ROWS_PER_GROUP: f64 = 4096.0;
 
 /// The name of the file of a table with the rows of a split and a shard.
 fn table_name(folder: &str, split: Split, shard: u64, shards: u64) -> String {
@@ -267,7 +267,7 @@ fn rows_per_group(schema: &Schema, samples: f64) -> usize {
         Kind::Flag => 1.0,
     };
     let row: f64 = schema.columns().iter().map(bytes).sum();
-    (BYTES_PER_GROUP / row.max(1.0)).clamp(1.0, ROWS_PER_GROUP) as usize
+    (BYTES_PER_GROUP / row.max(1.0)).clamp(1.0, MOST_ROWS_PER_GROUP) as usize
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub(super) struct Together {
 }
 
 /// What rounding may leave of a pivot that should be 0.
-const ROUNDING: f64 = 1e-9;
+const PIVOT: f64 = 1e-9;
 
 impl Together {
     /// What the entry of the sweep file says; `machine` is the machine file's tree.
@@ -96,7 +96,7 @@ fn check(rows: &[Vec<f64>], count: usize) -> Result<(), Error> {
             } else {
                 rows[j].get(i).copied().unwrap_or(*value)
             };
-            if (value - expected).abs() > ROUNDING {
+            if (value - expected).abs() > PIVOT {
                 return wrong(format!("{i}.{j}"), value.to_string());
             }
         }
@@ -116,10 +116,10 @@ fn root(rows: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
                 .sum();
             let left = row[j] - known;
             new.push(match j == i {
-                true if left < -ROUNDING => return Err(contradiction()),
+                true if left < -PIVOT => return Err(contradiction()),
                 true => left.max(0.0).sqrt(),
-                false if root[j][j] > ROUNDING => left / root[j][j],
-                false if left.abs() > ROUNDING.sqrt() => return Err(contradiction()),
+                false if root[j][j] > PIVOT => left / root[j][j],
+                false if left.abs() > PIVOT.sqrt() => return Err(contradiction()),
                 false => 0.0,
             });
         }

@@ -1,14 +1,13 @@
 //! Spectra of the recordings of each class.
 
 use crate::Error;
+use crate::chaos_page::MOST_CLASSES;
 use crate::chaos_page::{CaseChaos, ClassSpectra, Quartiles};
 use crate::dataset::recording::Recording;
 use sweep::reader::Dataset;
 
 /// Windows of a class that its spectra are from, at most.
 pub(super) const MOST_WINDOWS: usize = 40;
-/// Classes that have spectra, at most: as many as the page shows.
-const MOST_CLASSES: usize = 12;
 
 /// The spectra of each class, in the order of the sweep; none where the recordings are not at hand.
 ///
