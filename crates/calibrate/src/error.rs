@@ -1,5 +1,7 @@
 //! Why a calibration cannot be made.
 
+use std::path::{Path, PathBuf};
+
 /// Why a calibration cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -88,4 +90,46 @@ pub enum Error {
     /// Nothing to fit, or nothing to fit it to.
     #[error("{0}")]
     Nothing(&'static str),
+    /// A run that cannot be used, or contradicts the machine.
+    #[error("run {run}: {reason} (--leave-out {run} goes on without it)")]
+    Unusable {
+        /// The run.
+        run: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// What is asked for cannot be done.
+    #[error("{0}")]
+    Refused(String),
+    /// A file that cannot be used or written.
+    #[error("{}: {reason}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A file of results that cannot be written.
+    #[error(transparent)]
+    Write(#[from] recordings::Error),
+}
+
+impl Error {
+    /// A run that cannot be used for this reason, which may begin with the run's name.
+    pub fn unusable(run: &str, reason: impl ToString) -> Self {
+        let reason = reason.to_string();
+        let named = format!("run {run}: ");
+        Self::Unusable {
+            run: run.to_owned(),
+            reason: reason.strip_prefix(&named).unwrap_or(&reason).to_owned(),
+        }
+    }
+
+    /// A file that cannot be used or written.
+    pub fn file(path: &Path, reason: impl ToString) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            reason: reason.to_string(),
+        }
+    }
 }

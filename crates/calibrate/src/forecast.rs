@@ -7,7 +7,7 @@ use crate::relation::Relation;
 use crate::transfer::{Bounded, Case, Fitted};
 use nalgebra::DVector;
 use rustfft::num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 const QUANTILE: f64 = 1.959_964;
 
 /// What a machine shows in a run under a relation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// The run whose speed and pressures hold.
     pub run: String,
@@ -35,7 +35,7 @@ pub struct Forecast {
 
 /// What a channel shows: its crank-angle synchronous mean, an acceleration without its constant
 /// part, which is its sensor's.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelForecast {
     /// Root mean square over a revolution, SI.
     pub rms: Bounded,

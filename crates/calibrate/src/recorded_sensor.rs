@@ -8,7 +8,7 @@ use crate::converter::Converter;
 use crate::few_revolutions;
 use crate::observation::{Observation, Run};
 use crate::prediction::Prediction;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::nonsynchronous::Nonsynchronous;
@@ -32,7 +32,7 @@ const FOLLOWS: f64 = 0.5;
 const SAME_RATE: f64 = 1e-3;
 
 /// The measuring chain of a channel, as it is identifiable from the recordings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct RecordedSensor {
     /// Its noise.
     #[serde(flatten)]
@@ -42,6 +42,34 @@ pub struct RecordedSensor {
     pub converter: Converter,
     /// Samples per second; none where the runs differ.
     pub sample_rate_hz: Option<f64>,
+}
+
+/// A sensor as results have it: `bits` and `range` are always there, null where they are not known.
+impl Serialize for RecordedSensor {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Complete<'a> {
+            #[serde(flatten)]
+            noise: &'a RecordedNoise,
+            #[serde(flatten)]
+            converter: &'a Converter,
+            sample_rate_hz: Option<f64>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            bits: Option<()>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            range: Option<()>,
+        }
+        let has_bits = !matches!(self.converter, Converter::Unknown { .. });
+        let has_range = matches!(self.converter, Converter::RangeAssumed { .. });
+        Complete {
+            noise: &self.noise,
+            converter: &self.converter,
+            sample_rate_hz: self.sample_rate_hz,
+            bits: (!has_bits).then_some(()),
+            range: (!has_range).then_some(()),
+        }
+        .serialize(serializer)
+    }
 }
 
 /// The noise of a channel. What is not identifiable is `None`, with a reason.

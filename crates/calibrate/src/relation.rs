@@ -3,14 +3,16 @@
 use crate::error::Error;
 use crate::parameter::Parameter;
 use input::{paths, unit};
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// A relation between the contact parameters of a joint at different clearances; what each does is
 /// told in [`mechanism::joints::clearance_relation`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Relation {
     /// The stiffness by Eq. (5) of the papers.
+    #[serde(rename = "eq5")]
     Equation5,
     /// The stiffness by the conformal form of Hertz's formula.
     Conformal,
@@ -66,12 +68,6 @@ impl Relation {
             paths::set(tree, &relation, self.content())?;
         }
         Ok(())
-    }
-}
-
-impl Serialize for Relation {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }
 

@@ -21,7 +21,7 @@ use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
 use crate::search;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
@@ -36,7 +36,7 @@ const QUANTILE: f64 = 1.959_964;
 const EVALUATIONS: u64 = 80;
 
 /// What the relations between clearances come to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transfer {
     /// Each relation held against the recordings.
     pub relations: Vec<Hypothesis>,
@@ -47,7 +47,7 @@ pub struct Transfer {
 }
 
 /// A relation, and how the machine fits the recordings under it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hypothesis {
     /// The relation.
     pub relation: Relation,
@@ -64,7 +64,7 @@ pub struct Hypothesis {
 }
 
 /// A value with its 95 % interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bounded {
     /// The value.
     pub value: f64,
@@ -75,7 +75,7 @@ pub struct Bounded {
 }
 
 /// What the recordings say about the relation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// The relations that the recordings leave, the best first: one where they decide, several
     /// where the criterion differs by less than 6, none where every run has the same clearances.
@@ -85,7 +85,7 @@ pub struct Decision {
 }
 
 /// What a decision rests on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Basis {
     /// The fitted runs have several clearances.

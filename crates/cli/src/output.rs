@@ -1,4 +1,4 @@
-//! What the programs print.
+//! What the programs print, and the files that they write.
 //!
 //! The standard library's `println!` panics where standard output cannot be written: a full disk, a
 //! closed descriptor. Here it ends the program with one message and exit status 1; `eprintln!` goes on, as
@@ -7,11 +7,23 @@
 //!
 //! Names of runs, cases and files come from others. What is printed is [`Harmless`], whoever wrote it.
 
+use crate::Failure;
+use recordings::WholeFile;
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
+use std::path::Path;
 
 /// Exit status of a program that the signal of a broken pipe has ended, as the shell tells it.
 const BROKEN_PIPE: i32 = 128 + 13;
+
+/// Writes a file that appears whole or not at all.
+///
+/// # Errors
+/// Where it cannot be written.
+pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    let written = WholeFile::write(path, content);
+    written.map(drop).map_err(Failure::work)
+}
 
 /// Writes to standard output, and ends the program where that fails.
 #[allow(clippy::exit)] // A summary that cannot be written: what follows it could not be either.

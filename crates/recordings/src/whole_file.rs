@@ -55,6 +55,16 @@ impl WholeFile {
         })
     }
 
+    /// Writes `content` into the file `destination`.
+    ///
+    /// # Errors
+    /// When the file cannot be written.
+    pub fn write(destination: &Path, content: &[u8]) -> Result<FileRecord, Error> {
+        let mut file = Self::create(&destination.with_extension("part"), destination)?;
+        file.write_all(content).map_err(Error::Write)?;
+        file.commit()
+    }
+
     /// What has been written so far.
     pub fn record(&self) -> FileRecord {
         FileRecord {

@@ -1,8 +1,8 @@
 //! The arguments of `crosshead calibrate`, which override a settings file.
 
-use super::Existing;
 use crate::Failure;
 use crate::bundle::AllowOutside;
+use ::calibrate::Existing;
 use clap::{Args, ValueEnum};
 use input::bundle::Bundle;
 use input::calibration::{Calibration, Optimiser, Parameters, Relation};
@@ -164,8 +164,8 @@ impl Arguments {
         Ok((settings, base, document))
     }
 
-    pub(super) fn outside(&self) -> AllowOutside {
-        self.outside
+    pub(super) fn allow_outside(&self) -> bool {
+        self.outside.allow_outside
     }
 
     pub(super) fn out(&self) -> &Path {

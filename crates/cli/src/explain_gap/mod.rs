@@ -6,10 +6,10 @@ mod words;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
-use crate::calibrate::sensors::{Fitted, Sensors};
-use crate::calibrate::{Settings, pictures, task};
 use crate::{Failure, interrupt, replay, report};
 use ::calibrate::pressure_gap::pressure_gaps_of;
+use ::calibrate::sensors::{Fitted, Sensors};
+use ::calibrate::{Settings, pictures, task};
 use clap::Args;
 use gap::{Effort, Journal};
 use input::calibration::Calibration;
@@ -134,12 +134,13 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
         calibration,
         base,
         machine: None,
-        outside,
+        allow_outside: outside.allow_outside,
         locate: &|error| match document {
             Some(document) => document.locate(error),
             None => error,
         },
-    })?;
+    })
+    .map_err(Failure::input)?;
     let watch = || match cancel.load(Ordering::Relaxed) {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
@@ -174,7 +175,7 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
     }
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
     let compared = ::calibrate::compare_models(models, &task.runs).map_err(Failure::work)?;
-    pictures::write(out, &compared)?;
+    pictures::write(out, &compared).map_err(Failure::work)?;
     let gas = pressure_gaps_of(models, &task.runs).map_err(Failure::work)?;
     let sensors = Sensors::of(&Fitted {
         problem: &after.problem,
@@ -182,7 +183,8 @@ pub fn into_folder(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Val
         misfits: after.by_run.clone(),
         runs: &task.runs,
         encoded: &task.encoded,
-    })?;
+    })
+    .map_err(Failure::work)?;
     let results = output::write(out, &explanation, &effort, &gas, &sensors)?;
     report::write_gap(out, &out.join(report::PAGE))?;
     std::fs::remove_file(&finished).map_err(|error| Failure::unwritten(&finished, error))?;

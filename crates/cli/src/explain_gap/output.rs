@@ -2,13 +2,18 @@
 
 use super::words;
 use crate::Failure;
-use crate::calibrate::output::{told, write_file};
-use crate::calibrate::sensors::{self, Sensors};
+use crate::calibrate::summary;
+use crate::output::write_file;
 use calibrate::fit::Estimate;
 use calibrate::pressure_gap::PressureGap;
+use calibrate::recorded_sensor::RecordedSensor;
+use calibrate::results;
+use calibrate::sensors::Sensors;
 use gap::{Candidate, Effort, Explanation, Found, Tried};
 use input::MachineFile;
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Name of the explained machine.
@@ -32,7 +37,7 @@ pub fn write(
 ) -> Result<Value, Failure> {
     let model = &explanation.explained;
     let mut tree = tree(explanation, |_| true)?;
-    sensors.write(&mut tree)?;
+    sensors.write(&mut tree).map_err(Failure::work)?;
     let machine = MachineFile::from_tree(&tree)
         .and_then(|file| file.to_yaml())
         .map_err(Failure::work)?;
@@ -94,7 +99,7 @@ pub fn write(
         "next_recording": explanation.next_recording,
         "missing_force": explanation.missing_force,
         "refused": explanation.refused.iter().map(|tried| rival(tried, None)).collect::<Vec<_>>(),
-        "noise": sensors.results()?,
+        "noise": sensors.by_column,
         "cost": effort.journal.spent(),
         // No time of this computer: the same inputs give the same bytes.
         "seconds": null,
@@ -143,7 +148,10 @@ fn by_name(values: &[(String, f64)]) -> Value {
 
 /// What was fitted with what is known of it, the parameters of effects included.
 fn parameters(explanation: &Explanation) -> Value {
-    let of = |estimate: &Estimate| (estimate.parameter.path.clone(), told(estimate, true));
+    let of = |estimate: &Estimate| {
+        let found = results::Estimate::of(estimate, true);
+        (estimate.parameter.path.clone(), json!(found))
+    };
     let all = explanation.estimates.iter().map(of);
     all.collect::<Map<_, _>>().into()
 }
@@ -281,6 +289,8 @@ pub fn summary(results: &Value) -> Result<(), Failure> {
             rival["evidence"]["misfit"]
         );
     }
-    sensors::summary(&sensors::read(&results["noise"]).map_err(Failure::work)?);
+    let noise: Result<BTreeMap<String, RecordedSensor>, _> =
+        Deserialize::deserialize(&results["noise"]);
+    summary::sensors(&noise.map_err(Failure::work)?);
     Ok(())
 }

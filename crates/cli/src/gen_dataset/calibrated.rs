@@ -1,13 +1,16 @@
 //! The calibration that a sweep asks for before its first case.
 
 use crate::Failure;
-use crate::bundle::AllowOutside;
-use crate::calibrate::{self, Calibrated, Prepared, Settings, output, relation};
+use crate::calibrate::{finish, summary};
+use ::calibrate::calibration::MACHINE;
+use ::calibrate::results::{self, Known, RESULTS, not_excluded};
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
+use ::calibrate::{Calibrated, Prepared, Results, Settings};
 use input::bundle::Bundle;
 use input::{Error, paths};
 use serde_json::Value;
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use sweep::calibration::{Calibration, Estimate, Relations, Sweep};
@@ -35,9 +38,9 @@ pub fn plan(
     let folder = claim
         .calibration(prepared.is_done())
         .map_err(super::failed)?;
-    let done = prepared.finish(cancel)?;
-    tell(&done, &folder)?;
-    if done.results["complete"] == false {
+    let done = finish(prepared, cancel)?;
+    tell(&done, &folder);
+    if !done.results.complete {
         return Err(Failure::work(format!(
             "stopped during the calibration, before the first case; {} has the best so far, and \
              --resume goes on from there",
@@ -67,19 +70,20 @@ fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
         calibration: &calibrate.settings,
         base: sweep.folder(),
         machine: machine.as_ref(),
-        outside: AllowOutside::default(),
+        allow_outside: false,
         locate: &|error: Error| sweep.locate(error),
     };
     let folder = root.join(CALIBRATION);
-    calibrate::prepare(&settings, &folder, calibrate::Existing::Renew)
+    let existing = ::calibrate::Existing::Renew;
+    ::calibrate::prepare(&settings, &folder, existing).map_err(Failure::input)
 }
 
-fn tell(done: &Calibrated, folder: &Path) -> Result<(), Failure> {
+fn tell(done: &Calibrated, folder: &Path) {
     match done.reused {
         true => println!("calibrated before, and nothing has changed since:"),
         false => println!("calibrated into {}:", folder.display()),
     }
-    output::summary(&done.results)
+    summary::print(&done.results);
 }
 
 fn kept(sweep: &Sweep, folder: &Path) -> Result<Plan, Failure> {
@@ -116,26 +120,25 @@ fn sampled(folder: &Path, calibration: &Calibration) -> Result<(), Failure> {
         "calibrate.uncertainty: sampled draws from the intervals of the calibration, and {} states \
          none: its model is not adequate (model_is_adequate is false). Correct what the machine file \
          has wrong, or use uncertainty: ignored",
-        folder.join(output::RESULTS).display()
+        folder.join(RESULTS).display()
     )))
 }
 
 /// The relations to the clearance that the recordings do not exclude: those that the comparison
 /// leaves, weighted by Schwarz's criterion; where every run has the same clearances, all that have a
 /// name, each as likely. Exponents that were fitted are estimates like others.
-fn relations(results: &Value, machine: &Value) -> Result<Relations, Failure> {
+fn relations(results: &Results, machine: &Value) -> Result<Relations, Failure> {
     let mut joints = Vec::new();
-    for (joint, stated) in results["relation"].as_object().into_iter().flatten() {
+    for (joint, stated) in results.relation.iter() {
         let own = paths::get(machine, &format!("{joint}.contact.relation"))?;
         if own.is_some_and(Value::is_object) {
             return Ok(Relations::default());
         }
-        let at = stated["at_clearance_m"].as_f64();
-        let clearance = at.or_else(|| stated["clearance_m"].as_f64());
-        joints.extend(clearance.map(|clearance| (joint.clone(), clearance)));
+        let clearance = stated.at_clearance_m.unwrap_or(stated.clearance_m);
+        joints.push((joint.to_owned(), clearance));
     }
     Ok(Relations {
-        weights: relation::not_excluded(&results["relations"]),
+        weights: not_excluded(results.relations.as_ref()),
         joints,
     })
 }
@@ -153,86 +156,59 @@ fn conditions(sweep: &Sweep, machine: &Value) -> Result<BTreeSet<String>, Failur
     Ok(conditions)
 }
 
-fn damaged(folder: &Path, reason: &str) -> Failure {
-    let path = folder.join(output::RESULTS);
-    let path = path.display();
-    Failure::work(format!("{path}: {reason}; --overwrite calibrates again"))
-}
-
-/// The content of the `calibration.json` in `folder`.
-fn results(folder: &Path) -> Result<Value, Failure> {
-    let damaged = |reason: String| damaged(folder, &reason);
-    let text = files::read_text(&folder.join(output::RESULTS), files::LONGEST_TEXT);
-    let text = text.map_err(|error| damaged(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))
-}
-
 /// The calibration in `folder`.
 ///
 /// # Errors
 /// A file that is not what a calibration writes.
 fn read(folder: &Path) -> Result<Calibration, Failure> {
-    let results = results(folder)?;
-    let machine = input::machine_file::read(&folder.join(output::MACHINE))?;
+    let damaged =
+        |reason: &dyn Display| Failure::work(format!("{reason}; --overwrite calibrates again"));
+    let path = folder.join(RESULTS);
+    let results = Results::read(&path).map_err(|error| damaged(&error))?;
+    let machine = input::machine_file::read(&folder.join(MACHINE))?;
     let machine = machine.to_tree().clone();
-    let parameters = results["parameters"].as_object();
     let mut estimates = Vec::new();
     // The parameter of each estimate: one value may stand at several places.
     let mut names = Vec::new();
     // The zero of a crank angle and the conditions of a run are the recordings', not the machine's.
-    let of_machine = |name: &&String| *name != CRANK_ANGLE_OFFSET && !name.starts_with("runs.");
-    for (name, found) in parameters
-        .into_iter()
-        .flatten()
-        .filter(|(name, _)| of_machine(name))
+    let of_machine = |name: &str| name != CRANK_ANGLE_OFFSET && !name.starts_with("runs.");
+    for (name, found) in results.parameters.iter() {
         // Told, but without an interval: neither drawn nor open.
-        .filter(|(_, found)| found["identifiable"] == false || found["low"].is_number())
-    {
+        if !of_machine(name) || found.known() == Known::Fitted {
+            continue;
+        }
         for place in paths::matching(&machine, name)? {
             let estimate = estimate(&machine, &place, found);
-            let incomplete = || damaged(folder, &format!("{name} is not complete"));
-            let estimate = estimate.ok_or_else(incomplete)?;
-            estimates.push(estimate);
-            names.push(name.as_str());
+            let incomplete = || damaged(&format!("{}: {name} is not complete", path.display()));
+            estimates.push(estimate.ok_or_else(incomplete)?);
+            names.push(name);
         }
     }
-    let correlation = |a: &str, b: &str| match a == b {
-        true => 1.0,
-        false => results["correlations"][a][b].as_f64().unwrap_or(0.0),
-    };
-    let row = |a: &&str| names.iter().map(|b| correlation(a, b)).collect();
+    let row = |a: &&str| names.iter().map(|b| results.correlation(a, b)).collect();
     Ok(Calibration {
         correlations: names.iter().map(row).collect(),
         relations: relations(&results, &machine)?,
-        is_adequate: results["model_is_adequate"] != false,
+        is_adequate: results.model_is_adequate,
         machine,
         estimates,
     })
 }
 
-/// What `found` says of the value at `place` of the calibrated machine.
-fn estimate(machine: &Value, place: &str, found: &Value) -> Option<Estimate> {
+/// What was `found` of the value at `place` of the calibrated machine; none where the machine has no number
+/// there.
+fn estimate(machine: &Value, place: &str, found: &results::Estimate) -> Option<Estimate> {
     let value = paths::get(machine, place).ok()??.clone();
     let dimension = Amount::of(&value)?.dimension;
-    let amount = |si: &Value| {
-        let si = si.as_f64()?;
-        Some(Amount { si, dimension }.to_value())
-    };
-    let logarithmic = found["logarithmic"].as_bool()?;
-    // One that is not identifiable has no interval, nor has any in a model that is wrong.
-    let interval = match found["identifiable"].as_bool()? && !found["low"].is_null() {
-        true => Some([found["low"].as_f64()?, found["high"].as_f64()?]),
-        false => None,
-    };
-    let width = |[low, high]: [f64; 2]| match logarithmic {
-        true => scalar::elementary::ln(high / low),
-        false => high - low,
+    let width = match (found.known(), found.logarithmic) {
+        (Known::Within([low, high]), true) => Some(scalar::elementary::ln(high / low)),
+        (Known::Within([low, high]), false) => Some(high - low),
+        (Known::Fitted | Known::Nothing, _) => None,
     };
     Some(Estimate {
         path: place.to_owned(),
         value,
-        bounds: [amount(&found["bounds"][0])?, amount(&found["bounds"][1])?],
-        logarithmic,
-        deviation: interval.map(|interval| width(interval) / (2.0 * QUANTILE)),
+        bounds: found.bounds.map(|si| Amount { si, dimension }.to_value()),
+        logarithmic: found.logarithmic,
+        deviation: width.map(|width| width / (2.0 * QUANTILE)),
     })
 }

@@ -12,7 +12,7 @@ mod plan;
 mod recordings;
 mod truth;
 
-use crate::calibrate::output::write_file;
+use crate::output::write_file;
 use crate::{Failure, interrupt};
 use bench::Bench;
 use clap::Args;

@@ -2,7 +2,7 @@
 
 use super::outside::Outside;
 use crate::Failure;
-use crate::calibrate::output::write_file;
+use crate::output::write_file;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs::OpenOptions;

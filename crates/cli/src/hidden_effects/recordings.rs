@@ -3,7 +3,7 @@
 use super::machine::{Machine, RunConditions};
 use super::outside::Outside;
 use crate::Failure;
-use crate::calibrate::output::write_file;
+use crate::output::write_file;
 use input::MachineFile;
 use input::bundle;
 use input::hidden_effects::HiddenEffects;

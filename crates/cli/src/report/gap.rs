@@ -1,8 +1,9 @@
 //! The page of an explanation, from what `crosshead explain-gap` has written.
 
-use super::calibration::{Results, bounded, machine_name, runs};
+use super::calibration::{machine_name, with_curves};
 use crate::Failure;
 use crate::explain_gap::output::{MACHINE, RESULTS};
+use ::report::calibration_page::{Misfit, Run};
 use ::report::gap_page::{Effect, Force, GapPage, Map, Parameter, Rival, Scaling, Step};
 use input::effects::entry;
 use serde_json::Value;
@@ -61,9 +62,56 @@ pub(crate) fn page(folder: &Path) -> Result<GapPage, Failure> {
         forces: list(&content["missing_force"]).iter().map(force).collect(),
         maps: maps(&content["maps"]),
         scaling: list(&content["scaling"]).iter().map(scaling).collect(),
-        runs: runs(folder, &results, ["before", "after"])?,
+        runs: with_curves(folder, results.runs()?)?,
         next_recording: text(&content["next_recording"]),
     })
+}
+
+/// `gap.json`.
+struct Results<'a> {
+    path: &'a Path,
+    content: Value,
+}
+
+impl<'a> Results<'a> {
+    fn read(path: &'a Path) -> Result<Self, Failure> {
+        let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+        let text = files::read_text(path, files::LONGEST_TEXT)
+            .map_err(|error| wrong(error.to_string()))?;
+        let content = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        Ok(Self { path, content })
+    }
+
+    fn wrong(&self, key: &str, expected: &str) -> Failure {
+        Failure::input(format!(
+            "{}: {key}: expected {expected}; this is no result of this program",
+            self.path.display()
+        ))
+    }
+
+    fn number(&self, section: &Value, place: &str, key: &str) -> Result<f64, Failure> {
+        section[key]
+            .as_f64()
+            .ok_or_else(|| self.wrong(place, "a number"))
+    }
+
+    fn runs(&self) -> Result<Vec<Run>, Failure> {
+        let runs = self.content["runs"].as_object();
+        let runs = runs.ok_or_else(|| self.wrong("runs", "a section"))?;
+        let run = |(id, content): (&String, &Value)| {
+            let number = |key: &str| self.number(content, &format!("runs.{id}.{key}"), key);
+            Ok(Run {
+                held_out: content["held_out"] == true,
+                misfit: Misfit {
+                    before: number("before")?,
+                    after: number("after")?,
+                },
+                channels: Vec::new(),
+                id: id.clone(),
+            })
+        };
+        runs.iter().map(run).collect()
+    }
 }
 
 fn rival(content: &Value) -> Rival {
@@ -88,12 +136,12 @@ fn parameters(effect: &Value) -> Vec<Parameter> {
     let name = text(&effect["effect"]);
     let of = |(key, content): (&String, &Value)| {
         let known = entry(&name).and_then(|entry| entry.parameter(key));
-        let bounded = bounded(content);
+        let ends = content["low"].as_f64().zip(content["high"].as_f64());
         Parameter {
             key: key.clone(),
             unit: known.map_or(String::new(), |p| p.unit.to_owned()),
-            value: bounded.value,
-            interval: bounded.interval,
+            value: number(&content["value"]),
+            interval: ends.map(|(low, high)| [low, high]),
         }
     };
     effect["parameters"]

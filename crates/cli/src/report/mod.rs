@@ -2,7 +2,6 @@
 
 mod calibration;
 mod gap;
-mod gas;
 
 use crate::Failure;
 use ::report::chaos_page::ChaosPage;

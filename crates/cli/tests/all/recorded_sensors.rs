@@ -4,7 +4,7 @@
 use calibrate::converter::{ASSUMED_BITS, Converter};
 use calibrate::problem::columns;
 use calibrate::recorded_sensor::{Look, RecordedSensor, recorded_sensors, sample_rate};
-use calibrate::{Channel, Observation, Run, sensor_section};
+use calibrate::{Channel, Observation, Run, bundle, sensor_section};
 use input::bundle::Bundle;
 use input::{MachineFile, machine_file, paths};
 use scalar::random::{Purpose, stream};
@@ -43,7 +43,7 @@ fn sensors(runs: &[Run], columns: &[String]) -> (BTreeMap<String, RecordedSensor
 fn of_bundle(name: &str) -> (BTreeMap<String, RecordedSensor>, Option<f64>, Value) {
     let bundle = Bundle::read(&data("recordings").join(name)).unwrap();
     let mut tree = input::from_bundle(&bundle.machine).unwrap();
-    let runs = cli::bundle::runs(&bundle, &tree, &[]).unwrap();
+    let runs = bundle::runs(&bundle, &tree, &[]).unwrap();
     for (path, value) in &runs[0].settings {
         paths::set(&mut tree, path, value.clone()).unwrap();
     }

@@ -118,10 +118,19 @@ fn another_clearance_gives_a_spread_over_the_relations() {
 
     // Recordings that exclude all but one leave no spread.
     let decided = serde_json::json!({
-        "relation": {},
+        "optimiser": "levenberg-marquardt",
+        "evaluations": 1,
+        "complete": true,
+        "model_is_adequate": true,
+        "fingerprint": "",
+        "parameters": {},
+        "fit": {"unit": "", "noise_floor": 1.0},
+        "runs": {},
         "relations": {
-            "decision": {"relations": ["eq5"]},
-            "compared": [{"relation": "eq5", "criterion": 0.0, "exponents": {}}],
+            "decision": {"relations": ["eq5"], "runs": "fitted"},
+            "compared": [{
+                "relation": "eq5", "exponents": {}, "fitted": 1.0, "runs": {}, "criterion": 0.0
+            }],
         },
     });
     fs::write(folder.path().join("calibration.json"), decided.to_string()).unwrap();

@@ -1,8 +1,9 @@
 //! Values of the data sheet that are wrong, or may be.
 
 use super::verdict::{quantity, size};
-use super::{Correction, words};
+use super::words;
 use crate::text;
+use calibrate::results::Correction;
 
 /// What they come to, in sentences.
 pub(super) fn sentences(corrections: &[Correction]) -> Vec<String> {
@@ -41,7 +42,7 @@ fn stated(correction: &Correction) -> String {
 /// The cells of a row: stated, found, interval, misfit, probability.
 pub(super) fn row(correction: &Correction) -> [String; 5] {
     let said = |value: f64| quantity(value, &correction.unit);
-    let interval = correction.interval.map_or_else(
+    let interval = correction.interval().map_or_else(
         || "not identifiable".to_owned(),
         |[low, high]| format!("{} to {}", said(low), said(high)),
     );
@@ -65,7 +66,8 @@ mod tests {
             unit: "kg".into(),
             nominal: Some(18.54),
             value: 18.0,
-            interval: Some([17.99, 18.01]),
+            low: Some(17.99),
+            high: Some(18.01),
             probability: 0.5,
             misfit: 0.98,
             applied,

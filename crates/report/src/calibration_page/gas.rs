@@ -1,61 +1,23 @@
 //! The gas: indicator diagrams, where in the cycle the fit fails, and when the valves work.
 
 use super::misfits::{AFTER, BEFORE};
-use super::{Misfit, words};
+use super::{CalibrationPage, words};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
+use calibrate::results::{Alternative, ByName, Gas};
 
 /// At most so many chambers have a picture, the first.
 const MOST: usize = 16;
 /// The recording.
 const MEASURED: Colour = Colour::Ink;
 
-/// The gas of a chamber in a run.
-#[derive(Clone, Debug, Default)]
-pub struct Chamber {
-    /// The run.
-    pub run: String,
-    /// Column of its pressure.
-    pub column: String,
-    /// Root mean square of simulated less measured pressure, Pa.
-    pub rms_pa: Misfit,
-    /// The parts of the cycle.
-    pub phases: Vec<Phase>,
-    /// The measured pressure by itself; none where it shows no cycle.
-    pub measured: Option<Diagram>,
-    /// The calibrated pressure, read in the same way.
-    pub calibrated: Option<Diagram>,
-    /// One revolution of pressures.
-    pub points: Vec<Pressure>,
-}
-
-/// A part of the cycle: where it is, and how far the fit is off in it.
-#[derive(Clone, Debug, Default)]
-pub struct Phase {
-    /// Its name.
-    pub name: String,
-    /// Where it begins and ends.
-    pub crank_angle_deg: [f64; 2],
-    /// Root mean square of calibrated less measured pressure, Pa.
-    pub rms_pa: f64,
-    /// Share of the squared differences.
-    pub share: f64,
-}
-
-/// What a pressure tells by itself, at a given clearance.
-#[derive(Clone, Debug, Default)]
-pub struct Diagram {
-    /// Clearance over stroke.
-    pub clearance: f64,
-    /// Exponents of compression and expansion.
-    pub exponents: [f64; 2],
-    /// The two lines: where they begin and end, deg.
-    pub polytropes: [[f64; 2]; 2],
-    /// Effective valve events: name, angle, and the angles at the quartiles of the line, deg.
-    pub events: Vec<(String, f64, [f64; 2])>,
-    /// Other readings of the same curve: clearance over stroke, exponents, scatter of ln p.
-    pub alternatives: Vec<(f64, [f64; 2], f64)>,
+/// The gas of a chamber in a run, and one revolution of its pressures.
+pub(super) struct Chamber<'a> {
+    run: &'a str,
+    column: &'a str,
+    pub(super) found: &'a Gas,
+    points: &'a [Pressure],
 }
 
 /// The pressures at a crank angle.
@@ -80,73 +42,93 @@ pub(super) struct Row {
     pub(super) apart: String,
 }
 
-impl Chamber {
+/// The chambers whose gas was fitted.
+pub(super) fn chambers(page: &CalibrationPage) -> Vec<Chamber<'_>> {
+    let points = |run: &str, column: &str| {
+        let points = page.pressures.get(run)?.get(column);
+        points.map(Vec::as_slice)
+    };
+    let runs = page.results.gas.iter().flat_map(ByName::iter);
+    let chambers =
+        runs.flat_map(|(run, gas)| gas.iter().map(move |(column, found)| (run, column, found)));
+    chambers
+        .map(|(run, column, found)| Chamber {
+            run,
+            column,
+            found,
+            points: points(run, column).unwrap_or_default(),
+        })
+        .collect()
+}
+
+impl Chamber<'_> {
     pub(super) fn name(&self) -> String {
-        format!("{}, {}", self.run, words::column(&self.column).0)
+        format!("{}, {}", self.run, words::column(self.column).0)
     }
 
     /// What the fit cannot follow, in a sentence.
     pub(super) fn verdict(&self) -> String {
         let kilo = |pa: f64| text::quantity(pa / 1e3, "kPa");
-        let worst = self
-            .phases
-            .iter()
-            .max_by(|a, b| a.share.total_cmp(&b.share));
+        let phases = self.found.phases.iter();
+        let worst = phases.max_by(|a, b| a.share.total_cmp(&b.share));
         let place = worst.map_or(String::new(), |phase| {
             let [from, to] = phase.crank_angle_deg.map(|a| text::decimal(a, 0));
             let share = text::decimal(100.0 * phase.share, 0);
             format!(
                 " {share}\u{a0}% of the squared difference lies in the {} ({from}° to {to}°), where it is {}.",
-                phase.name,
+                phase.phase,
                 kilo(phase.rms_pa)
             )
         });
         format!(
             "{} from the recording, root mean square over the revolution; {} with the nominal parameters.{place}",
-            kilo(self.rms_pa.after),
-            kilo(self.rms_pa.before)
+            kilo(self.found.rms_pa.calibrated),
+            kilo(self.found.rms_pa.nominal)
         )
     }
 
     /// What the curve leaves open about clearance and exponents; empty where that is not known.
     pub(super) fn open(&self) -> String {
-        let Some(diagram) = &self.measured else {
+        let Some(diagram) = &self.found.measured else {
             return String::new();
         };
-        let [Some(first), Some(last)] = [diagram.alternatives.first(), diagram.alternatives.last()]
-        else {
-            return String::new();
-        };
+        let [first, last] = diagram.alternatives;
         let share = |value: f64| format!("{}\u{a0}%", text::decimal(100.0 * value, 1));
-        let exponents =
-            |[a, b]: [f64; 2]| format!("{} and {}", text::decimal(a, 2), text::decimal(b, 2));
+        let exponents = |other: Alternative| {
+            let both = [other.compression_exponent, other.expansion_exponent];
+            both.map(|exponent| text::decimal(exponent, 2))
+                .join(" and ")
+        };
         format!(
             "Clearance and exponents are told only together: a clearance of {} of the stroke goes with exponents of {} \
              (compression, expansion), one of {} with {}, and the lines are straight to {} and {} of the pressure.",
-            share(first.0),
-            exponents(first.1),
-            share(last.0),
-            exponents(last.1),
-            share(first.2),
-            share(last.2)
+            share(first.clearance_share),
+            exponents(first),
+            share(last.clearance_share),
+            exponents(last),
+            share(first.scatter),
+            share(last.scatter)
         )
     }
 
     pub(super) fn rows(&self) -> Vec<Row> {
-        let (Some(measured), Some(calibrated)) = (&self.measured, &self.calibrated) else {
+        let (Some(measured), Some(calibrated)) = (&self.found.measured, &self.found.calibrated)
+        else {
             return Vec::new();
         };
         let degrees = |angle: f64| format!("{}°", text::decimal(angle, 1));
-        let pairs = measured.events.iter().zip(&calibrated.events);
+        let [measured, calibrated] = [measured, calibrated].map(|d| d.valve_events.each());
+        let pairs = measured.into_iter().zip(calibrated);
         pairs
-            .map(|((what, angle, [low, high]), (_, fitted, _))| {
+            .map(|((what, measured), (_, calibrated))| {
+                let (angle, fitted) = (measured.crank_angle_deg, calibrated.crank_angle_deg);
                 // The shorter way round.
                 let apart = (fitted - angle + 180.0).rem_euclid(360.0) - 180.0;
                 Row {
                     what: text::words(what),
-                    measured: degrees(*angle),
-                    range: format!("{} to {}", degrees(*low), degrees(*high)),
-                    calibrated: degrees(*fitted),
+                    measured: degrees(angle),
+                    range: format!("{} to {}", degrees(measured.low), degrees(measured.high)),
+                    calibrated: degrees(fitted),
                     apart: degrees(apart),
                 }
             })
@@ -182,7 +164,7 @@ fn plate(chamber: &Chamber) -> Plate {
 
 /// Measured and nominal pressure stand at the nominal clearance, the calibrated one at its own.
 fn over_distance(chamber: &Chamber, logarithmic: bool) -> Panel {
-    let points = &chamber.points;
+    let points = chamber.points;
     let curve = |of: &dyn Fn(&Pressure) -> [f64; 2]| -> Vec<[f64; 2]> {
         let at = points.iter().map(|p| {
             let [distance, pressure] = of(p);
@@ -212,8 +194,9 @@ fn over_distance(chamber: &Chamber, logarithmic: bool) -> Panel {
             curve(&|p| [p.distance_m[0], p.measured_pa]),
         ),
     ];
-    if logarithmic && let Some(diagram) = &chamber.measured {
-        for [from, to] in diagram.polytropes {
+    if logarithmic && let Some(diagram) = &chamber.found.measured {
+        for polytrope in [diagram.compression, diagram.expansion] {
+            let [from, to] = polytrope.crank_angle_deg;
             let length = (to - from).rem_euclid(360.0);
             let inside = |p: &&Pressure| (p.crank_angle_deg - from).rem_euclid(360.0) <= length;
             let line = points.iter().filter(inside);

@@ -1,17 +1,24 @@
 //! The page itself.
 
 use super::{
-    CalibrationPage, Correction, Estimate, Hypothesis, Known, Phase, Sensor, Transfer, corrections,
-    gas, misfits, parameters, sensors, transfers, verdict, waveforms, words,
+    CalibrationPage, Parameter, corrections, gas, misfits, parameters, sensors, transfers, verdict,
+    waveforms, words,
 };
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
+use calibrate::Relation;
+use calibrate::recorded_sensor::RecordedSensor;
+use calibrate::results::{Correction, Known, Phase, Relations, Results};
+use calibrate::transfer::Hypothesis;
 
 #[derive(Template)]
 #[template(path = "calibration_page.html")]
 struct View<'a> {
     page: &'a CalibrationPage,
+    results: &'a Results,
+    parameters: Vec<Parameter<'a>>,
+    chambers: Vec<gas::Chamber<'a>>,
     verdict: String,
     warnings: Vec<String>,
     found: Vec<String>,
@@ -34,23 +41,28 @@ impl CalibrationPage {
     pub fn render(&self) -> Result<Rendered, Error> {
         let mut numbers = Numbers::default();
         let mut numbered = |plates| numbers.give(plates);
+        let parameters = self.parameters();
+        let chambers = gas::chambers(self);
         let view = View {
             page: self,
+            results: &self.results,
             verdict: verdict::verdict(self),
             warnings: verdict::warnings(self),
-            found: verdict::found(&self.parameters),
-            untold: verdict::untold(&self.parameters),
+            found: verdict::found(&parameters),
+            untold: verdict::untold(&parameters),
             together: verdict::together(self),
-            corrections: corrections::sentences(&self.corrections),
+            corrections: corrections::sentences(&self.results.corrections),
             misfits: numbered(misfits::plate(self).into_iter().collect()),
             intervals: numbered(parameters::intervals(self).into_iter().collect()),
             correlations: numbered(parameters::correlations(self).into_iter().collect()),
             transfers: numbered(transfers::plates(self)),
-            gas: numbered(gas::plates(&self.gas)),
+            gas: numbered(gas::plates(&chambers)),
             runs: numbered(waveforms::plates(
                 &self.runs,
                 ["before", "after calibration"],
             )),
+            parameters,
+            chambers,
         };
         let html = view.render()?;
         let plates = [
@@ -77,46 +89,47 @@ impl View<'_> {
     }
 
     fn told(&self) -> String {
-        let all = &self.page.parameters;
-        let told = all.iter().filter(|e| e.is_identifiable()).count();
+        let all = &self.parameters;
+        let told = all.iter().filter(|p| p.found.identifiable).count();
         format!("{told} of {}", all.len())
     }
 
     fn effort(&self) -> String {
-        let evaluations = usize::try_from(self.page.evaluations).unwrap_or(usize::MAX);
+        let evaluations = usize::try_from(self.results.evaluations).unwrap_or(usize::MAX);
         format!("{} evaluations", text::count(evaluations))
     }
 
-    fn name(estimate: &Estimate) -> String {
-        text::capitalised(&words::path(&estimate.path))
+    fn name(parameter: &Parameter) -> String {
+        text::capitalised(&words::path(parameter.path))
     }
 
-    fn value(value: &f64, estimate: &Estimate) -> String {
-        let (scale, _) = text::readable_unit(estimate.nominal, &estimate.unit);
+    fn value(value: &f64, parameter: &Parameter) -> String {
+        let (scale, _) = text::readable_unit(parameter.found.nominal, parameter.unit);
         text::number(value * scale, 4)
     }
 
-    fn unit(estimate: &Estimate) -> String {
-        text::unit(text::readable_unit(estimate.nominal, &estimate.unit).1)
+    fn unit(parameter: &Parameter) -> String {
+        text::unit(text::readable_unit(parameter.found.nominal, parameter.unit).1)
     }
 
-    fn interval(estimate: &Estimate) -> String {
-        match estimate.known {
+    fn interval(parameter: &Parameter) -> String {
+        match parameter.found.known() {
             Known::Within([low, high]) => format!(
                 "{} to {}",
-                Self::value(&low, estimate),
-                Self::value(&high, estimate)
+                Self::value(&low, parameter),
+                Self::value(&high, parameter)
             ),
             Known::Fitted => "none: the model is wrong".to_owned(),
             Known::Nothing => "not identifiable".to_owned(),
         }
     }
 
-    fn change(estimate: &Estimate) -> String {
-        if !estimate.is_identifiable() || !estimate.is_ratio() {
+    fn change(parameter: &Parameter) -> String {
+        let found = parameter.found;
+        if !found.identifiable || !parameter.is_ratio() {
             return String::new();
         }
-        let change = 100.0 * (estimate.value / estimate.nominal - 1.0);
+        let change = 100.0 * (found.value / found.nominal - 1.0);
         let sign = if change > 0.0 { "+" } else { "" };
         format!("{sign}{}\u{a0}%", text::decimal(change, 1))
     }
@@ -125,28 +138,28 @@ impl View<'_> {
         corrections::row(correction)
     }
 
-    fn column(sensor: &Sensor) -> String {
-        text::capitalised(&words::column(&sensor.column).0)
+    fn column(column: &str) -> String {
+        text::capitalised(&words::column(column).0)
     }
 
-    fn sensor(sensor: &Sensor) -> [String; 5] {
-        sensors::row(sensor)
+    fn sensor(column: &str, sensor: &RecordedSensor) -> [String; 5] {
+        sensors::row(column, sensor)
     }
 
-    fn spreads(transfer: &Transfer) -> Vec<transfers::Spread> {
-        transfers::spreads(transfer)
+    fn spreads(&self) -> Vec<transfers::Spread> {
+        transfers::spreads(self.page)
     }
 
     fn none_untold(&self) -> &'static str {
         verdict::none_untold(self.page)
     }
 
-    fn decision(transfer: &Transfer) -> String {
-        transfers::decision(transfer)
+    fn decision(relations: &Relations) -> String {
+        transfers::decision(relations)
     }
 
-    fn relation(name: &str) -> &str {
-        transfers::words(name)
+    fn relation(relation: &Relation) -> &'static str {
+        transfers::words(*relation)
     }
 
     fn exponents(hypothesis: &Hypothesis) -> String {

@@ -1,10 +1,11 @@
 //! The parameters: against their nominal values, and against each other.
 
 use super::misfits::{AFTER, ROW};
-use super::{CalibrationPage, Estimate, Known, words};
+use super::{CalibrationPage, Parameter, words};
 use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::text;
+use calibrate::results::Known;
 
 /// At most so many parameters are drawn, the first.
 const MOST: usize = 60;
@@ -12,36 +13,35 @@ const MOST: usize = 60;
 const WRITTEN: usize = 16;
 
 /// The names of the parameters, from the last to the first, as an upright axis has them.
-fn names(estimates: &[Estimate], numbered: bool) -> Vec<String> {
-    let name = |(i, estimate): (usize, &Estimate)| {
-        let name = text::capitalised(&words::path(&estimate.path));
+fn names(parameters: &[Parameter], numbered: bool) -> Vec<String> {
+    let name = |(i, parameter): (usize, &Parameter)| {
+        let name = text::capitalised(&words::path(parameter.path));
         if numbered {
             format!("{name}\u{a0}\u{a0}{}", i + 1)
         } else {
             name
         }
     };
-    let names = estimates.iter().enumerate().map(name);
+    let names = parameters.iter().enumerate().map(name);
     names.rev().collect()
 }
 
 /// Value and interval of each over the nominal value; none where nothing was fitted.
 pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
-    let ratios = page
-        .parameters
-        .iter()
-        .filter(|estimate| estimate.is_ratio());
-    let estimates: Vec<Estimate> = ratios.take(MOST).cloned().collect();
-    if estimates.is_empty() {
+    let mut ratios = page.parameters();
+    ratios.retain(Parameter::is_ratio);
+    ratios.truncate(MOST);
+    if ratios.is_empty() {
         return None;
     }
-    let top = estimates.len() as f64 - 1.0;
+    let top = ratios.len() as f64 - 1.0;
     let mut bars = Vec::new();
     let (mut told, mut fitted, mut untold) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, estimate) in estimates.iter().enumerate() {
+    for (i, parameter) in ratios.iter().enumerate() {
+        let estimate = parameter.found;
         let y = top - i as f64;
         let place = |value: f64| [value / estimate.nominal, y];
-        match estimate.known {
+        match estimate.known() {
             Known::Within([low, high]) => {
                 told.push(place(estimate.value));
                 bars.extend([place(low), place(high), [f64::NAN; 2]]);
@@ -66,7 +66,7 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
         } else {
             Axis::linear(label)
         },
-        y: Axis::named("", names(&estimates, false)),
+        y: Axis::named("", names(&ratios, false)),
         series: vec![
             Series::new(
                 "nominal",
@@ -106,7 +106,7 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],
-            row_height: ROW * (estimates.len() as f64 + 0.5),
+            row_height: ROW * (ratios.len() as f64 + 0.5),
             ..Figure::default()
         }
         .svg(),
@@ -115,14 +115,17 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
 
 /// The correlations as a map; none where there is no pair.
 pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
-    let count = page.parameters.len().min(page.correlations.len()).min(MOST);
+    let mut parameters = page.parameters();
+    parameters.truncate(MOST);
+    let count = parameters.len();
     if count < 2 {
         return None;
     }
-    let estimates = &page.parameters[..count];
-    let told = |i: usize| estimates[i].is_identifiable();
+    let told = |i: usize| parameters[i].found.identifiable;
     let field = |i: usize, j: usize| {
-        let r = page.correlations[i].get(j).copied().unwrap_or(0.0);
+        let r = page
+            .results
+            .correlation(parameters[i].path, parameters[j].path);
         let both = told(i) && told(j);
         let letters = match both {
             _ if i == j || count > WRITTEN => String::new(),
@@ -137,7 +140,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
     };
     let panel = Panel {
         x: Axis::named("parameter", (1..=count).map(|i| i.to_string()).collect()),
-        y: Axis::named("", names(estimates, true)),
+        y: Axis::named("", names(&parameters, true)),
         fields: (0..count)
             .flat_map(|i| (0..count).map(move |j| (i, j)))
             .map(|(i, j)| field(i, j))

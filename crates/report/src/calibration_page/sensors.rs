@@ -1,30 +1,31 @@
 //! The measuring chain that the recordings show.
 
 use super::verdict::quantity;
-use super::{Converter, Noise, Sensor, words};
+use super::words;
 use crate::text;
+use calibrate::converter::Converter;
+use calibrate::recorded_sensor::RecordedSensor;
 
 /// The cells of a row: noise, share of 1/f, step, bits and range, sample rate.
-pub(super) fn row(sensor: &Sensor) -> [String; 5] {
-    let (_, unit) = words::column(&sensor.column);
+pub(super) fn row(column: &str, sensor: &RecordedSensor) -> [String; 5] {
+    let (_, unit) = words::column(column);
     let percent = |share: f64| format!("{}\u{a0}%", text::number(100.0 * share, 2));
-    let (noise, pink) = match &sensor.noise {
-        Noise::Known {
-            rms,
-            of_signal,
-            pink_share,
-        } => {
+    let found = &sensor.noise;
+    let reason = found.noise_reason.as_deref().unwrap_or_default();
+    let (noise, pink) = match (found.rms, found.at_most) {
+        (Some(rms), _) => {
+            let of_signal = found.of_signal;
             let of_signal = of_signal.map(|share| format!(", {} of the signal", percent(share)));
             (
-                format!("{}{}", quantity(*rms, unit), of_signal.unwrap_or_default()),
-                percent(*pink_share),
+                format!("{}{}", quantity(rms, unit), of_signal.unwrap_or_default()),
+                percent(found.pink_share.unwrap_or(0.0)),
             )
         }
-        Noise::AtMost { rms, reason } => (
-            format!("at most {}: {reason}", quantity(*rms, unit)),
+        (None, Some(rms)) => (
+            format!("at most {}: {reason}", quantity(rms, unit)),
             String::new(),
         ),
-        Noise::Unknown { reason } => (format!("not identifiable: {reason}"), String::new()),
+        (None, None) => (format!("not identifiable: {reason}"), String::new()),
     };
     let (step, bits) = match &sensor.converter {
         Converter::RangeAssumed {
@@ -55,7 +56,10 @@ pub(super) fn row(sensor: &Sensor) -> [String; 5] {
             quantity(*resolution, unit),
             format!("{bits} bits to the turn"),
         ),
-        Converter::Unknown { reason } => (String::new(), format!("not identifiable: {reason}")),
+        Converter::Unknown { converter_reason } => (
+            String::new(),
+            format!("not identifiable: {converter_reason}"),
+        ),
     };
     let rate = sensor.sample_rate_hz;
     let rate = rate.map_or_else(|| "not known".to_owned(), |hz| quantity(hz, "Hz"));
@@ -65,15 +69,16 @@ pub(super) fn row(sensor: &Sensor) -> [String; 5] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use calibrate::recorded_sensor::RecordedNoise;
 
     #[test]
     fn an_assumed_range_is_called_so() {
-        let sensor = Sensor {
-            column: "crosshead_acceleration_m_s2".into(),
-            noise: Noise::Known {
-                rms: 4.78,
+        let sensor = RecordedSensor {
+            noise: RecordedNoise {
+                rms: Some(4.78),
                 of_signal: Some(0.02),
-                pink_share: 0.3,
+                pink_share: Some(0.3),
+                ..RecordedNoise::default()
             },
             converter: Converter::RangeAssumed {
                 resolution: 0.0625,
@@ -83,7 +88,7 @@ mod tests {
             },
             sample_rate_hz: Some(20_000.0),
         };
-        let [noise, pink, step, bits, rate] = row(&sensor);
+        let [noise, pink, step, bits, rate] = row("crosshead_acceleration_m_s2", &sensor);
         assert_eq!(noise, "4.78\u{a0}m/s², 2\u{a0}% of the signal");
         assert_eq!(pink, "30\u{a0}%");
         assert_eq!(step, "0.0625\u{a0}m/s²");
@@ -93,17 +98,17 @@ mod tests {
 
     #[test]
     fn what_is_unknown_has_its_reason() {
-        let sensor = Sensor {
-            column: "x".into(),
-            noise: Noise::Unknown {
-                reason: "too few revolutions".into(),
+        let sensor = RecordedSensor {
+            noise: RecordedNoise {
+                noise_reason: Some("too few revolutions".into()),
+                ..RecordedNoise::default()
             },
             converter: Converter::Unknown {
-                reason: "no lattice".into(),
+                converter_reason: "no lattice".into(),
             },
             sample_rate_hz: None,
         };
-        let [noise, pink, step, bits, rate] = row(&sensor);
+        let [noise, pink, step, bits, rate] = row("x", &sensor);
         assert_eq!(noise, "not identifiable: too few revolutions");
         assert_eq!(bits, "not identifiable: no lattice");
         assert_eq!([pink, step, rate], ["", "", "not known"]);

@@ -1,10 +1,15 @@
 //! What the machine shows at other clearances, under each relation.
 
+use super::CalibrationPage;
 use super::misfits::ROW;
-use super::{Bounded, CalibrationPage, Forecast, Hypothesis, Transfer};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
 use crate::plate::Plate;
 use crate::text;
+use calibrate::Relation;
+use calibrate::forecast::Forecast;
+use calibrate::results::Relations;
+use calibrate::transfer::{Basis, Bounded, Hypothesis};
+use std::collections::BTreeMap;
 
 /// At most so many sets of clearances have a picture, and so many runs stand in it.
 const MOST_STATES: usize = 12;
@@ -13,20 +18,20 @@ const MOST_RUNS: usize = 20;
 const APART: f64 = 0.2;
 
 /// A relation in words.
-pub(super) fn words(name: &str) -> &str {
-    match name {
-        "eq5" => "Eq. (5) of the two-stage study",
-        "conformal" => "conformal contact",
-        "constant" => "parameters carried over unchanged",
-        "fitted" => "powers of the clearance, fitted",
-        other => other,
+pub(super) fn words(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Equation5 => "Eq. (5) of the two-stage study",
+        Relation::Conformal => "conformal contact",
+        Relation::Constant => "parameters carried over unchanged",
+        Relation::Fitted => "powers of the clearance, fitted",
     }
 }
 
 /// What the recordings say about the relations.
-pub(super) fn decision(transfer: &Transfer) -> String {
-    let names: Vec<&str> = transfer.left.iter().map(|name| words(name)).collect();
-    let which = if transfer.by_held_out {
+pub(super) fn decision(relations: &Relations) -> String {
+    let decision = &relations.decision;
+    let names: Vec<&str> = decision.relations.iter().map(|r| words(*r)).collect();
+    let which = if decision.runs == Basis::HeldOut {
         "The fitted runs have one clearance and those held back have others, so that these decide how the contact parameters \
          follow the clearance."
     } else {
@@ -47,17 +52,11 @@ pub(super) fn decision(transfer: &Transfer) -> String {
 
 /// The fitted exponents of a relation.
 pub(super) fn exponents(hypothesis: &Hypothesis) -> String {
-    let said = |(path, bounded): &(String, Bounded)| {
+    let said = |(path, bounded): (&String, &Bounded)| {
         let name = path.rsplit('.').next().unwrap_or(path);
-        let value = text::decimal(bounded.value, 2);
-        match bounded.interval {
-            Some([low, high]) => format!(
-                "{name} {value} ({} to {})",
-                text::decimal(low, 2),
-                text::decimal(high, 2)
-            ),
-            None => format!("{name} {value} (not told)"),
-        }
+        let [value, low, high] =
+            [bounded.value, bounded.low, bounded.high].map(|x| text::decimal(x, 2));
+        format!("{name} {value} ({low} to {high})")
     };
     let said: Vec<String> = hypothesis.exponents.iter().map(said).collect();
     said.join("; ")
@@ -77,18 +76,21 @@ pub(super) struct Spread {
 
 /// The spread of each run, set of clearances and channel. Where the recordings have no say, all relations
 /// that have a name are possible.
-pub(super) fn spreads(transfer: &Transfer) -> Vec<Spread> {
-    let possible = |f: &&Forecast| match transfer.left.is_empty() {
-        true => f.relation != "fitted",
-        false => transfer.left.contains(&f.relation),
+pub(super) fn spreads(page: &CalibrationPage) -> Vec<Spread> {
+    let results = &page.results;
+    let left = results.relations.as_ref().map(|r| &r.decision.relations);
+    let possible = |f: &&Forecast| match left {
+        Some(left) if !left.is_empty() => left.contains(&f.relation),
+        _ => f.relation != Relation::Fitted,
     };
     let mut ranges: Vec<(&Forecast, &str, [f64; 2])> = Vec::new();
-    for forecast in transfer.forecasts.iter().filter(possible) {
-        for (column, peak, _) in &forecast.peaks {
-            let [low, high] = peak.interval.unwrap_or([peak.value; 2]);
+    let forecasts = results.predictions.iter().flatten();
+    for forecast in forecasts.filter(possible) {
+        for (column, shown) in &forecast.channels {
+            let Bounded { low, high, .. } = shown.peak;
             let same = |(other, c, _): &&mut (&Forecast, &str, [f64; 2])| {
-                let state = (&other.run, &other.clearances);
-                c == column && state == (&forecast.run, &forecast.clearances)
+                let state = (&other.run, &other.clearance_m);
+                c == column && state == (&forecast.run, &forecast.clearance_m)
             };
             match ranges.iter_mut().find(same) {
                 Some((.., range)) => *range = [range[0].min(low), range[1].max(high)],
@@ -99,7 +101,7 @@ pub(super) fn spreads(transfer: &Transfer) -> Vec<Spread> {
     let spread = |(forecast, column, range): (&Forecast, &str, [f64; 2])| {
         let (channel, unit) = super::words::column(column);
         Spread {
-            state: state(&forecast.clearances),
+            state: state(&forecast.clearance_m),
             run: forecast.run.clone(),
             channel,
             peak: range.map(|peak| super::verdict::quantity(peak, unit)),
@@ -109,7 +111,7 @@ pub(super) fn spreads(transfer: &Transfer) -> Vec<Spread> {
 }
 
 /// Clearances in words.
-fn state(clearances: &[(String, f64)]) -> String {
+fn state(clearances: &BTreeMap<String, f64>) -> String {
     let joints = clearances.iter();
     let joints = joints
         .map(|(path, metres)| format!("{} {}", super::words::path(path), text::clearance(*metres)));
@@ -118,24 +120,32 @@ fn state(clearances: &[(String, f64)]) -> String {
 
 /// A picture for each set of clearances.
 pub(super) fn plates(page: &CalibrationPage) -> Vec<Plate> {
-    let Some(transfer) = &page.transfer else {
+    let results = &page.results;
+    let (Some(relations), Some(forecasts)) = (&results.relations, &results.predictions) else {
         return Vec::new();
     };
-    let mut states: Vec<&[(String, f64)]> = Vec::new();
-    for forecast in &transfer.forecasts {
-        if !forecast.peaks.is_empty() && !states.contains(&forecast.clearances.as_slice()) {
-            states.push(&forecast.clearances);
+    let shown: Vec<&Forecast> = forecasts
+        .iter()
+        .filter(|forecast| !forecast.channels.is_empty())
+        .collect();
+    let mut states: Vec<&BTreeMap<String, f64>> = Vec::new();
+    for forecast in &shown {
+        if !states.contains(&&forecast.clearance_m) {
+            states.push(&forecast.clearance_m);
         }
     }
     states.truncate(MOST_STATES);
-    states.iter().map(|state| plate(transfer, state)).collect()
+    states
+        .iter()
+        .map(|state| plate(relations, &shown, state))
+        .collect()
 }
 
-fn plate(transfer: &Transfer, state: &[(String, f64)]) -> Plate {
-    let forecasts: Vec<&Forecast> = transfer
-        .forecasts
+fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>) -> Plate {
+    let forecasts: Vec<&Forecast> = all
         .iter()
-        .filter(|f| f.clearances == state && !f.peaks.is_empty())
+        .filter(|f| f.clearance_m == *state)
+        .copied()
         .collect();
     let mut runs: Vec<&str> = Vec::new();
     let mut columns: Vec<&str> = Vec::new();
@@ -143,7 +153,7 @@ fn plate(transfer: &Transfer, state: &[(String, f64)]) -> Plate {
         if !runs.contains(&forecast.run.as_str()) {
             runs.push(&forecast.run);
         }
-        for (column, ..) in &forecast.peaks {
+        for column in forecast.channels.keys() {
             if !columns.contains(&column.as_str()) {
                 columns.push(column);
             }
@@ -156,7 +166,7 @@ fn plate(transfer: &Transfer, state: &[(String, f64)]) -> Plate {
     }
     let panels = columns
         .iter()
-        .map(|column| panel(transfer, &forecasts, &runs, column));
+        .map(|column| panel(&relations.compared, &forecasts, &runs, column));
     Plate {
         heading: self::state(state),
         caption: "Greatest acceleration within a revolution at this clearance, under each relation, with the 95 % interval that the \
@@ -172,34 +182,33 @@ fn plate(transfer: &Transfer, state: &[(String, f64)]) -> Plate {
     }
 }
 
-fn panel(transfer: &Transfer, forecasts: &[&Forecast], runs: &[&str], column: &str) -> Panel {
+fn panel(compared: &[Hypothesis], forecasts: &[&Forecast], runs: &[&str], column: &str) -> Panel {
     let (name, unit) = super::words::column(column);
     let top = runs.len() as f64 - 1.0;
     let row = |run: &str| Some(top - runs.iter().position(|r| *r == run)? as f64);
-    let middle = (transfer.relations.len() as f64 - 1.0) / 2.0;
+    let middle = (compared.len() as f64 - 1.0) / 2.0;
     let mut series = Vec::new();
     let mut recorded = Vec::new();
-    for (i, hypothesis) in transfer.relations.iter().enumerate() {
+    for (i, hypothesis) in compared.iter().enumerate() {
         let (mut points, mut bars) = (Vec::new(), Vec::new());
         for forecast in forecasts {
-            let of_column = forecast.peaks.iter().find(|(c, ..)| c == column);
-            let (Some((_, peak, measured)), Some(y)) = (of_column, row(&forecast.run)) else {
+            let of_column = forecast.channels.get(column);
+            let (Some(shown), Some(y)) = (of_column, row(&forecast.run)) else {
                 continue;
             };
             if forecast.relation != hypothesis.relation {
                 continue;
             }
             let y = y + (middle - i as f64) * APART;
-            points.push([peak.value, y]);
-            if let Some([low, high]) = peak.interval {
-                bars.extend([[low, y], [high, y], [f64::NAN; 2]]);
-            }
-            recorded.extend(measured.map(|measured| [measured, y]));
+            let Bounded { value, low, high } = shown.peak;
+            points.push([value, y]);
+            bars.extend([[low, y], [high, y], [f64::NAN; 2]]);
+            recorded.extend(shown.recorded.map(|[_, peak]| [peak, y]));
         }
         let colour = Colour::Class(i);
         series.push(Series::new("", colour, Mark::Line, bars));
         series.push(Series::new(
-            words(&hypothesis.relation),
+            words(hypothesis.relation),
             colour,
             Mark::Discs,
             points,
@@ -219,44 +228,72 @@ fn panel(transfer: &Transfer, forecasts: &[&Forecast], runs: &[&str], column: &s
 #[cfg(test)]
 mod tests {
     use super::*;
+    use calibrate::forecast::ChannelForecast;
+    use calibrate::results::Results;
+    use calibrate::transfer::Decision;
+
+    fn left(relations: &[Relation]) -> Relations {
+        Relations {
+            decision: Decision {
+                relations: relations.to_vec(),
+                runs: Basis::Fitted,
+            },
+            compared: Vec::new(),
+        }
+    }
 
     #[test]
     fn the_spread_is_over_the_relations_that_are_left() {
-        let of = |relation: &str, value: f64| Forecast {
-            run: "run01".into(),
-            relation: relation.into(),
-            clearances: vec![("joints.big_end".into(), 2e-4)],
-            peaks: vec![(
-                "crosshead_acceleration_m_s2".into(),
-                Bounded {
-                    value,
-                    interval: Some([value - 10.0, value + 10.0]),
+        let of = |relation, value: f64| {
+            let shown = Bounded {
+                value,
+                low: value - 10.0,
+                high: value + 10.0,
+            };
+            let channel = ChannelForecast {
+                rms: shown,
+                peak: shown,
+                recorded: None,
+                difference: None,
+            };
+            Forecast {
+                run: "run01".into(),
+                clearance_m: [("joints.big_end".into(), 2e-4)].into(),
+                relation,
+                recorded: false,
+                misfit: None,
+                failure: None,
+                channels: [("crosshead_acceleration_m_s2".into(), channel)].into(),
+            }
+        };
+        let peaks = |relations: &[Relation]| {
+            let page = CalibrationPage {
+                results: Results {
+                    relations: Some(left(relations)),
+                    predictions: Some(vec![
+                        of(Relation::Equation5, 500.0),
+                        of(Relation::Constant, 700.0),
+                        of(Relation::Fitted, 900.0),
+                    ]),
+                    ..Results::default()
                 },
-                None,
-            )],
-        };
-        let mut transfer = Transfer {
-            forecasts: vec![of("eq5", 500.0), of("constant", 700.0), of("fitted", 900.0)],
-            ..Transfer::default()
-        };
-        let peaks = |transfer: &Transfer| {
-            let spreads = spreads(transfer);
+                ..CalibrationPage::default()
+            };
+            let spreads = spreads(&page);
             assert_eq!(spreads.len(), 1);
             spreads[0].peak.clone()
         };
-        assert_eq!(peaks(&transfer), ["490\u{a0}m/s²", "710\u{a0}m/s²"]);
-        transfer.left = vec!["fitted".into()];
-        assert_eq!(peaks(&transfer), ["890\u{a0}m/s²", "910\u{a0}m/s²"]);
+        assert_eq!(peaks(&[]), ["490\u{a0}m/s²", "710\u{a0}m/s²"]);
+        let fitted = peaks(&[Relation::Fitted]);
+        assert_eq!(fitted, ["890\u{a0}m/s²", "910\u{a0}m/s²"]);
     }
 
     #[test]
     fn the_decision_names_what_the_recordings_leave() {
-        let of = |left: &[&str]| Transfer {
-            left: left.iter().map(|name| (*name).to_owned()).collect(),
-            ..Transfer::default()
-        };
-        assert!(decision(&of(&[])).contains("One recording at another clearance would decide"));
-        assert!(decision(&of(&["constant"])).ends_with("for: parameters carried over unchanged."));
-        assert!(decision(&of(&["fitted", "eq5"])).contains("do not rule out: Eq. (5)"));
+        let of = |relations: &[Relation]| decision(&left(relations));
+        assert!(of(&[]).contains("One recording at another clearance would decide"));
+        assert!(of(&[Relation::Constant]).ends_with("for: parameters carried over unchanged."));
+        let two = of(&[Relation::Fitted, Relation::Equation5]);
+        assert!(two.contains("do not rule out: Eq. (5)"));
     }
 }

@@ -1,7 +1,8 @@
 //! What came out, in sentences.
 
-use super::{CalibrationPage, Estimate, Known, Misfit, words};
+use super::{CalibrationPage, Misfit, Parameter, words};
 use crate::text;
+use calibrate::results::Known;
 
 /// A misfit up to here is said to be noise: a calibration takes it for that, too.
 const NOISE: f64 = 1.15;
@@ -19,37 +20,36 @@ pub(super) fn verdict(page: &CalibrationPage) -> String {
             size(misfit.before)
         )
     };
-    let held_out = page.held_out.map_or_else(String::new, |misfit| {
+    let fitted = page.fitted();
+    let held_out = page.held_out().map_or_else(String::new, |misfit| {
         format!(
             "; the runs that were held back, and that it had not seen, it predicts to {}",
             shrank(misfit)
         )
     });
-    let how = match page.fitted.after {
+    let how = match fitted.after {
         after if after <= NOISE => {
             "agrees with the recordings as well as their noise allows: what is left is"
         }
-        after if after < (1.0 - CLOSER) * page.fitted.before => {
+        after if after < (1.0 - CLOSER) * fitted.before => {
             "is closer to the recordings than the nominal one, but something is left that is no noise:"
         }
         _ => "is no closer to the recordings than the nominal one: what is left is",
     };
-    format!(
-        "The calibrated model {how} {}{held_out}.",
-        shrank(page.fitted)
-    )
+    format!("The calibrated model {how} {}{held_out}.", shrank(fitted))
 }
 
 /// What the reader should be warned of.
 pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
     let mut warnings = Vec::new();
-    if !page.complete {
+    let fitted = page.fitted().after;
+    if !page.results.complete {
         warnings.push(
             "The search was stopped before its end. These are the best values it had found; the bounds are those around them."
                 .to_owned(),
         );
     }
-    if !page.adequate && !page.runs.is_empty() {
+    if !page.results.model_is_adequate && !page.runs.is_empty() {
         warnings.push(
             "The model is wrong: it does not explain the recordings, so that no interval is known for any parameter. Do not \
              rely on the values below. The machine does something that the model does not have, or a value of its data sheet \
@@ -57,7 +57,7 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
              or more evaluations may help."
                 .to_owned(),
         );
-    } else if page.fitted.after > NOISE {
+    } else if fitted > NOISE {
         warnings.push(
             "No choice of these parameters that was tried explains the recordings to within their noise. Either the machine \
              does something that the model does not have, or a better fit was not found: try other parameters, wider bounds \
@@ -65,9 +65,9 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if let Some(held_out) = page.held_out
-        && page.fitted.after <= NOISE
-        && held_out.after > NOISE * page.fitted.after.max(1.0)
+    if let Some(held_out) = page.held_out()
+        && fitted <= NOISE
+        && held_out.after > NOISE * fitted.max(1.0)
     {
         warnings.push(
             "The runs that were held back are predicted less well than the fitted ones: do not rely on the model far from the \
@@ -84,38 +84,41 @@ pub(crate) fn size(misfit: f64) -> String {
 }
 
 /// What was found of each parameter that is told, as a mechanic would say it.
-pub(super) fn found(estimates: &[Estimate]) -> Vec<String> {
-    let say = |estimate: &Estimate| {
-        let name = text::capitalised(&words::path(&estimate.path));
-        if estimate.known == Known::Fitted {
-            let value = quantity(estimate.value, &estimate.unit);
-            return Some(format!(
-                "{name}: {value} in a model that is wrong; no interval is known."
-            ));
-        }
-        let [low, high] = estimate.interval()?;
-        if !estimate.is_ratio() {
-            let [value, low, high] =
-                [estimate.value, low, high].map(|value| quantity(value, &estimate.unit));
+pub(super) fn found(parameters: &[Parameter]) -> Vec<String> {
+    let say = |parameter: &Parameter| {
+        let Parameter { path, unit, found } = *parameter;
+        let name = text::capitalised(&words::path(path));
+        let [low, high] = match found.known() {
+            Known::Within(interval) => interval,
+            Known::Fitted => {
+                let value = quantity(found.value, unit);
+                return Some(format!(
+                    "{name}: {value} in a model that is wrong; no interval is known."
+                ));
+            }
+            Known::Nothing => return None,
+        };
+        if !parameter.is_ratio() {
+            let [value, low, high] = [found.value, low, high].map(|value| quantity(value, unit));
             return Some(format!("{name}: {value} ({low} to {high})."));
         }
-        let change = |value: f64| value / estimate.nominal - 1.0;
-        let holds = low.min(high) <= estimate.nominal && estimate.nominal <= low.max(high);
-        let percent = percent(change(estimate.value).abs());
-        let said = match change(estimate.value) {
+        let change = |value: f64| value / found.nominal - 1.0;
+        let holds = low.min(high) <= found.nominal && found.nominal <= low.max(high);
+        let percent = percent(change(found.value).abs());
+        let said = match change(found.value) {
             _ if holds => "its nominal value, as far as the recordings tell".to_owned(),
             up if up > 0.0 => format!("{percent} above its nominal value"),
             _ => format!("{percent} below its nominal value"),
         };
-        let half = (high - low).abs() / 2.0 / estimate.value.abs();
-        let edge = match estimate.at_bound {
+        let half = (high - low).abs() / 2.0 / found.value.abs();
+        let edge = match found.at_bound {
             true => " It lies at the edge of its search range: give it wider bounds.",
             false => "",
         };
         let half = self::percent(half);
         Some(format!("{name}: {said}, known to ±{half}.{edge}"))
     };
-    estimates.iter().filter_map(say).collect()
+    parameters.iter().filter_map(say).collect()
 }
 
 fn percent(share: f64) -> String {
@@ -128,26 +131,23 @@ fn round(share: f64) -> f64 {
 }
 
 /// What is not told, and why.
-pub(super) fn untold(estimates: &[Estimate]) -> Vec<String> {
-    let say = |estimate: &Estimate| {
-        let why = if estimate.reason.is_empty() {
-            "the recordings look the same over more than half of its range, the other parameters making up for it"
-        } else {
-            &estimate.reason
-        };
+pub(super) fn untold(parameters: &[Parameter]) -> Vec<String> {
+    let say = |Parameter { path, unit, found }: &Parameter| {
         format!(
-            "{} keeps its nominal value {}: {why}.",
-            text::capitalised(&words::path(&estimate.path)),
-            quantity(estimate.nominal, &estimate.unit),
+            "{} keeps its nominal value {}: the recordings look the same over more than half of its range, the other \
+             parameters making up for it.",
+            text::capitalised(&words::path(path)),
+            quantity(found.nominal, unit),
         )
     };
-    let not_told = estimates.iter().filter(|e| !e.is_identifiable());
+    let not_told = parameters.iter().filter(|p| !p.found.identifiable);
     not_told.map(say).collect()
 }
 
 /// What stands in the place of parameters that are not identifiable, where there are none.
 pub(super) fn none_untold(page: &CalibrationPage) -> &'static str {
-    match (page.parameters.is_empty(), page.adequate) {
+    let results = &page.results;
+    match (results.parameters.is_empty(), results.model_is_adequate) {
         (true, _) => "No parameter was fitted.",
         (_, true) => "Every parameter that was fitted is identifiable.",
         (_, false) => {
@@ -158,12 +158,12 @@ pub(super) fn none_untold(page: &CalibrationPage) -> &'static str {
 
 /// The pairs that are told only together.
 pub(super) fn together(page: &CalibrationPage) -> Vec<String> {
-    let name = |i: usize| words::path(&page.parameters[i].path);
-    let count = page.parameters.len().min(page.correlations.len());
+    let results = &page.results;
+    let paths: Vec<&str> = results.parameters.iter().map(|(path, _)| path).collect();
     let mut pairs: Vec<(f64, String)> = Vec::new();
-    for i in 0..count {
-        for j in 0..i.min(page.correlations[i].len()) {
-            let r = page.correlations[i][j];
+    for (i, later) in paths.iter().enumerate() {
+        for earlier in &paths[..i] {
+            let r = results.correlation(later, earlier);
             if r.abs() > TOGETHER {
                 let change = if r > 0.0 {
                     "rise together"
@@ -173,7 +173,11 @@ pub(super) fn together(page: &CalibrationPage) -> Vec<String> {
                 let number = text::decimal(r, 2);
                 pairs.push((
                     r,
-                    format!("{} and {} {change} ({number})", name(j), name(i)),
+                    format!(
+                        "{} and {} {change} ({number})",
+                        words::path(earlier),
+                        words::path(later)
+                    ),
                 ));
             }
         }
@@ -196,15 +200,23 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
 mod tests {
     use super::*;
     use crate::calibration_page::Run;
+    use calibrate::results::{Estimate, Misfits, Results};
 
     fn page(fitted: [f64; 2], held_out: Option<[f64; 2]>) -> CalibrationPage {
-        let misfit = |[before, after]: [f64; 2]| Misfit { before, after };
         CalibrationPage {
-            complete: true,
-            adequate: fitted[1] <= 1.5,
+            results: Results {
+                complete: true,
+                model_is_adequate: fitted[1] <= 1.5,
+                fit: Misfits {
+                    nominal: Some(fitted[0]),
+                    calibrated: Some(fitted[1]),
+                    heldout_nominal: held_out.map(|[before, _]| before),
+                    heldout_calibrated: held_out.map(|[_, after]| after),
+                    ..Misfits::default()
+                },
+                ..Results::default()
+            },
             runs: vec![Run::default()],
-            fitted: misfit(fitted),
-            held_out: held_out.map(misfit),
             ..CalibrationPage::default()
         }
     }
@@ -229,29 +241,35 @@ mod tests {
         assert!(verdict(&page([204.3, 203.9], None)).contains("no closer"));
         let narrow = page([14.0, 1.0], Some([14.0, 9.0]));
         assert!(warnings(&narrow)[0].contains("held back"));
-        let stopped = CalibrationPage {
-            complete: false,
-            ..good
-        };
+        let mut stopped = good;
+        stopped.results.complete = false;
         assert!(warnings(&stopped)[0].contains("stopped"));
     }
 
     #[test]
     fn what_was_found_is_said_against_the_nominal_values() {
-        let of = |value: f64, known| Estimate {
-            path: "joints.big_end.contact.stiffness".into(),
-            unit: "N/m^1.5".into(),
-            nominal: 2e10,
+        let of = |value: f64, interval: Option<[f64; 2]>, identifiable| Estimate {
             value,
-            known,
-            ..Estimate::default()
+            low: interval.map(|[low, _]| low),
+            high: interval.map(|[_, high]| high),
+            nominal: 2e10,
+            identifiable,
+            at_bound: false,
+            bounds: [2e9, 2e11],
+            logarithmic: true,
         };
-        let found = found(&[
-            of(1.6e10, Known::Within([1.52e10, 1.68e10])),
-            of(2.1e10, Known::Within([1.9e10, 2.3e10])),
-            of(1.6e10, Known::Fitted),
-            of(2e10, Known::Nothing),
-        ]);
+        let estimates = [
+            of(1.6e10, Some([1.52e10, 1.68e10]), true),
+            of(2.1e10, Some([1.9e10, 2.3e10]), true),
+            of(1.6e10, None, true),
+            of(2e10, None, false),
+        ];
+        let parameters = estimates.each_ref().map(|found| Parameter {
+            path: "joints.big_end.contact.stiffness",
+            unit: "N/m^1.5",
+            found,
+        });
+        let found = found(&parameters);
         assert_eq!(
             found,
             [
@@ -260,7 +278,7 @@ mod tests {
                 "Big end contact stiffness: 1.6 × 10¹⁰\u{a0}N/m^1.5 in a model that is wrong; no interval is known.",
             ]
         );
-        let untold = untold(&[of(2e10, Known::Nothing)]);
+        let untold = untold(&parameters[3..]);
         assert!(
             untold[0].starts_with(
                 "Big end contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: the"

@@ -1,7 +1,8 @@
 //! The page of a calibration: every section, its numbers, and what it says where data are missing.
 
 use crate::synthetic::calibration;
-use report::calibration_page::{CalibrationPage, Channel, Estimate, Known, Misfit, Run};
+use calibrate::results::{Estimate, Results};
+use report::calibration_page::{CalibrationPage, Channel, Misfit, Run};
 
 #[test]
 fn every_section_is_there_and_every_figure_is_well_formed() {
@@ -67,16 +68,22 @@ fn empty_hostile_and_infinite_content_is_borne() {
             .html
             .contains("The recordings tell none of the parameters.")
     );
+    let estimate = Estimate {
+        value: f64::NAN,
+        low: Some(f64::NEG_INFINITY),
+        high: Some(0.0),
+        nominal: -1.0,
+        identifiable: true,
+        at_bound: false,
+        bounds: [0.0; 2],
+        logarithmic: false,
+    };
     let hostile = CalibrationPage {
         name: "<b>&".into(),
-        parameters: vec![Estimate {
-            path: "a.<i>".into(),
-            nominal: -1.0,
-            value: f64::NAN,
-            known: Known::Within([f64::NEG_INFINITY, 0.0]),
-            ..Estimate::default()
-        }],
-        correlations: vec![vec![]],
+        results: Results {
+            parameters: [("a.<i>".to_owned(), estimate)].into_iter().collect(),
+            ..Results::default()
+        },
         runs: vec![Run {
             id: "<script>".into(),
             misfit: Misfit {

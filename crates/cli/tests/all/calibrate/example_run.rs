@@ -1,6 +1,6 @@
 //! A bundle of a part of one recorded run, and calibrations of it.
 
-use cli::calibrate::{Settings, Task, task};
+use ::calibrate::{Settings, Task, task};
 use input::calibration::Calibration;
 use recordings::measured::{MeasuredFile, Options};
 use std::fs;
@@ -128,7 +128,7 @@ pub fn task_of(folder: &Path, text: &str) -> Task {
         machine: None,
         calibration: &calibration,
         base: folder,
-        outside: cli::bundle::AllowOutside::default(),
+        allow_outside: false,
         locate: &|error| error,
     };
     task(&settings)

@@ -1,7 +1,7 @@
 //! What a calibration makes of its input: what is fitted, the zero of the crank angle, swapped runs.
 
 use super::example_run::*;
-use cli::calibrate::Task;
+use ::calibrate::Task;
 use std::f64::consts::TAU;
 use std::fs;
 

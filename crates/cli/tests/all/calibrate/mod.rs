@@ -7,15 +7,26 @@ mod example_run;
 mod input;
 mod recorder;
 
+use ::calibrate::{Calibrated, Existing, Settings, Task, bundle, prepare};
 use ::input::bundle::Bundle;
-use cli::bundle;
-use cli::calibrate::{Existing, Settings, Task, into_folder};
+use cli::calibrate::finish;
 use example_run::*;
-use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fs;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use tempfile::TempDir;
+
+/// A calibration into `out`, stopped at its first step or not.
+fn into_folder(
+    settings: &Settings,
+    out: &Path,
+    existing: Existing,
+    stop: bool,
+) -> Result<Calibrated, String> {
+    let prepared = prepare(settings, out, existing).map_err(|error| error.to_string())?;
+    finish(prepared, &AtomicBool::new(stop)).map_err(|failure| format!("{failure:?}"))
+}
 
 #[test]
 fn names_units_and_angles_of_any_kind_are_read_alike() {
@@ -310,19 +321,18 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
         machine: None,
         calibration: &calibration,
         base: folder.path(),
-        outside: bundle::AllowOutside::default(),
+        allow_outside: false,
         locate: &|error| error,
     };
     let out = folder.path().join("out");
-    let run = |existing, stop| into_folder(&settings, &out, existing, &AtomicBool::new(stop));
+    let run = |existing, stop| into_folder(&settings, &out, existing, stop);
     let stopped = run(Existing::Refuse, true).unwrap();
-    assert_eq!(stopped.results["complete"], false);
+    assert_eq!(stopped.results.complete, false);
     assert!(run(Existing::Refuse, false).is_err());
     let whole = run(Existing::Resume, false).unwrap();
-    assert_eq!(whole.results["complete"], true);
+    assert_eq!(whole.results.complete, true);
     assert!(!whole.reused);
-    let spent = |results: &Value| results["evaluations"].as_u64().unwrap();
-    assert!(spent(&whole.results) > spent(&stopped.results));
+    assert!(whole.results.evaluations > stopped.results.evaluations);
     let results = fs::read(out.join("calibration.json")).unwrap();
     let again = run(Existing::Resume, false).unwrap();
     assert!(again.reused);
@@ -332,8 +342,7 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
     let machine = fs::read(out.join("machine.yaml")).unwrap();
     let other = run(Existing::Overwrite, false).unwrap().results;
     let second = folder.path().join("second");
-    let cancel = AtomicBool::new(false);
-    let fresh = into_folder(&settings, &second, Existing::Refuse, &cancel)
+    let fresh = into_folder(&settings, &second, Existing::Refuse, false)
         .unwrap()
         .results;
     assert_eq!(other, fresh);
@@ -350,12 +359,18 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
         calibration: &calibration,
         ..settings
     };
-    let changed = into_folder(&settings, &out, Existing::Resume, &cancel);
+    let changed = into_folder(&settings, &out, Existing::Resume, false);
     assert!(format!("{changed:?}").contains("--overwrite"));
-    let renewed = into_folder(&settings, &out, Existing::Renew, &cancel).unwrap();
+    let renewed = into_folder(&settings, &out, Existing::Renew, false).unwrap();
     assert!(!renewed.reused);
-    assert!(renewed.results["parameters"]["joints.big_end.contact.stiffness"].is_object());
+    assert!(
+        renewed
+            .results
+            .parameters
+            .get("joints.big_end.contact.stiffness")
+            .is_some()
+    );
     // A folder with something else in it is left alone.
-    let full = into_folder(&settings, folder.path(), Existing::Overwrite, &cancel);
+    let full = into_folder(&settings, folder.path(), Existing::Overwrite, false);
     assert!(format!("{full:?}").contains("no calibration"), "{full:?}");
 }

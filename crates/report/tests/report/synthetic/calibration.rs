@@ -1,9 +1,17 @@
 //! A made-up calibration: two joints, five runs, one of them held out.
 
 use super::Uniform;
+use calibrate::Relation;
+use calibrate::converter::Converter;
+use calibrate::forecast::{ChannelForecast, Forecast};
+use calibrate::recorded_sensor::{RecordedNoise, RecordedSensor};
+use calibrate::results::{
+    self, Alternative, ByName, Diagram, Estimate, Event, Gas, Misfits, Phase, Polytrope, Relations,
+    Results, Rms, ValveEvents,
+};
+use calibrate::transfer::{Basis, Bounded, Decision, Hypothesis};
 use report::calibration_page::{
-    Bounded, CalibrationPage, Chamber, Channel, Converter, Diagram, Estimate, Forecast, Hypothesis,
-    Known, Misfit, Noise, OrderResidual, Phase, Point, Pressure, Run, Sensor, Transfer,
+    CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run,
 };
 use std::f64::consts::TAU;
 
@@ -11,7 +19,7 @@ use std::f64::consts::TAU;
 pub fn page() -> CalibrationPage {
     let mut random = Uniform(7);
     let runs: Vec<Run> = (1..=5).map(|i| run(i, &mut random)).collect();
-    let parameters = vec![
+    let parameters = [
         estimate("joints.big_end.contact.stiffness", 2.4e10, 0.79, Some(0.03)),
         estimate("joints.big_end.contact.damping", 2e4, 0.81, Some(0.12)),
         estimate("joints.big_end.friction.coefficient", 0.05, 1.0, None),
@@ -20,55 +28,82 @@ pub fn page() -> CalibrationPage {
         estimate("cylinder.head_clearance", 0.024, 1.001, Some(0.002)),
     ];
     let correlation = |i: usize, j: usize| match (i, j) {
-        _ if i == j => 1.0,
         (2, _) | (_, 2) => 0.0,
         (0, 3) | (3, 0) => -0.94,
         _ => 0.9 - 0.4 * i.abs_diff(j) as f64,
     };
-    let count = parameters.len();
-    CalibrationPage {
-        name: "single-stage compressor".into(),
-        version: "1.0.0".into(),
+    let names = || parameters.iter().map(|(path, _)| path.clone()).enumerate();
+    let row = |i: usize| {
+        names()
+            .map(move |(j, other)| (other, correlation(i, j)))
+            .collect()
+    };
+    let units = ["N/m^1.5", "N s/m", "", "N/m^1.5", "N s/m", "m"];
+    let misfits = |run: &Run| {
+        let misfits = results::Run {
+            held_out: run.held_out,
+            nominal: run.misfit.before,
+            calibrated: run.misfit.after,
+        };
+        (run.id.clone(), misfits)
+    };
+    let (relations, predictions) = transfer();
+    let results = Results {
         optimiser: "levenberg-marquardt, cma-es".into(),
         evaluations: 48,
         complete: true,
-        adequate: true,
-        corrections: Vec::new(),
-        fitted: Misfit {
-            before: 14.2,
-            after: 1.04,
+        model_is_adequate: true,
+        correlations: names().map(|(i, path)| (path, row(i))).collect(),
+        fit: Misfits {
+            nominal: Some(14.2),
+            calibrated: Some(1.04),
+            heldout_nominal: Some(15.8),
+            heldout_calibrated: Some(1.09),
+            ..Misfits::default()
         },
-        held_out: Some(Misfit {
-            before: 15.8,
-            after: 1.09,
-        }),
-        parameters,
-        correlations: (0..count)
-            .map(|i| (0..count).map(|j| correlation(i, j)).collect())
-            .collect(),
+        runs: runs.iter().map(misfits).collect(),
+        relations: Some(relations),
+        predictions: Some(predictions),
+        noise: [("crosshead_acceleration_m_s2".to_owned(), sensor())].into(),
+        gas: Some(one("run1", one("cylinder_pressure_pa", gas()))),
+        parameters: parameters.into_iter().collect(),
+        ..Results::default()
+    };
+    let pressures = [("cylinder_pressure_pa".to_owned(), pressures())];
+    CalibrationPage {
+        name: "single-stage compressor".into(),
+        version: "1.0.0".into(),
+        results,
+        units: units.map(str::to_owned).to_vec(),
         runs,
-        sensors: vec![Sensor {
-            column: "crosshead_acceleration_m_s2".into(),
-            noise: Noise::Known {
-                rms: 4.78,
-                of_signal: Some(0.02),
-                pink_share: 0.3,
-            },
-            converter: Converter::RangeAssumed {
-                resolution: 0.0625,
-                bits_needed: 14,
-                bits: 24,
-                range: 524_288.0,
-            },
-            sample_rate_hz: Some(20_000.0),
-        }],
-        gas: vec![chamber()],
-        transfer: Some(transfer()),
+        pressures: [("run1".to_owned(), pressures.into())].into(),
     }
 }
 
-/// A double-acting cylinder's head end whose suction valve closes 70° late.
-fn chamber() -> Chamber {
+fn one<T>(name: &str, entry: T) -> ByName<T> {
+    std::iter::once((name.to_owned(), entry)).collect()
+}
+
+fn sensor() -> RecordedSensor {
+    RecordedSensor {
+        noise: RecordedNoise {
+            rms: Some(4.78),
+            of_signal: Some(0.02),
+            pink_share: Some(0.3),
+            ..RecordedNoise::default()
+        },
+        converter: Converter::RangeAssumed {
+            resolution: 0.0625,
+            bits_needed: 14,
+            bits: 24,
+            range: 524_288.0,
+        },
+        sample_rate_hz: Some(20_000.0),
+    }
+}
+
+/// The pressures of a double-acting cylinder's head end whose suction valve closes 70° late.
+fn pressures() -> Vec<Pressure> {
     let points = (0..720).map(|i| {
         let angle = f64::from(i) / 2.0;
         let distance = 0.047 + 0.16 * (1.0 - angle.to_radians().cos());
@@ -85,59 +120,75 @@ fn chamber() -> Chamber {
             simulated_pa: [1e6 * pressure(180.0, 0.367), 1e6 * pressure(180.0, 0.35)],
         }
     });
-    let events = |closes: f64| {
-        [
-            ("suction_opens", 30.0),
-            ("suction_closes", closes),
-            ("discharge_opens", 290.0),
-        ]
-        .map(|(name, angle)| (name.to_owned(), angle, [angle - 2.0, angle + 3.0]))
-        .to_vec()
+    points.collect()
+}
+
+/// What is told of them.
+fn gas() -> Gas {
+    let event = |angle: f64| Event {
+        crank_angle_deg: angle,
+        low: angle - 2.0,
+        high: angle + 3.0,
     };
+    let polytrope = |crank_angle_deg| Polytrope {
+        crank_angle_deg,
+        exponent: 1.3,
+        exponent_per_clearance_share: 5.0,
+        scatter: 0.004,
+    };
+    let alternative =
+        |clearance_share, compression_exponent, expansion_exponent, scatter| Alternative {
+            clearance_share,
+            compression_exponent,
+            expansion_exponent,
+            scatter,
+        };
     let diagram = |closes: f64| Diagram {
-        clearance: 0.147,
-        exponents: [1.3, 1.3],
-        polytropes: [[260.0, 285.0], [4.0, 25.0]],
-        events: events(closes),
-        alternatives: vec![(0.1, [1.2, 1.0], 0.004), (0.18, [1.4, 1.667], 0.005)],
+        suction_pa: 1.7e6,
+        discharge_pa: 3e6,
+        clearance_share: 0.147,
+        compression: polytrope([260.0, 285.0]),
+        expansion: polytrope([4.0, 25.0]),
+        alternatives: [
+            alternative(0.1, 1.2, 1.0, 0.004),
+            alternative(0.18, 1.4, 1.667, 0.005),
+        ],
+        valve_events: ValveEvents {
+            suction_opens: event(30.0),
+            suction_closes: event(closes),
+            discharge_opens: event(290.0),
+            discharge_closes: event(360.0),
+        },
     };
-    Chamber {
-        run: "run1".into(),
-        column: "cylinder_pressure_pa".into(),
-        rms_pa: Misfit {
-            before: 3e5,
-            after: 1.5e5,
+    Gas {
+        rms_pa: Rms {
+            nominal: 3e5,
+            calibrated: 1.5e5,
         },
         phases: vec![Phase {
-            name: "compression".into(),
+            phase: "compression".into(),
             crank_angle_deg: [250.0, 290.0],
             rms_pa: 3.4e5,
             share: 0.62,
         }],
         measured: Some(diagram(250.0)),
         calibrated: Some(diagram(180.0)),
-        points: points.collect(),
     }
 }
 
-fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> Estimate {
+fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> (String, Estimate) {
     let value = nominal * factor;
-    let unit = match path.rsplit('.').next() {
-        Some("stiffness") => "N/m^1.5",
-        Some("damping") => "N s/m",
-        Some("head_clearance") => "m",
-        _ => "",
-    };
-    Estimate {
-        path: path.into(),
-        unit: unit.into(),
-        nominal,
+    let estimate = Estimate {
         value,
-        known: half.map_or(Known::Nothing, |half| {
-            Known::Within([value * (1.0 - half), value * (1.0 + half)])
-        }),
-        ..Estimate::default()
-    }
+        low: half.map(|half| value * (1.0 - half)),
+        high: half.map(|half| value * (1.0 + half)),
+        nominal,
+        identifiable: half.is_some(),
+        at_bound: false,
+        bounds: [0.1 * nominal, 10.0 * nominal],
+        logarithmic: true,
+    };
+    (path.into(), estimate)
 }
 
 fn run(number: usize, random: &mut Uniform) -> Run {
@@ -182,38 +233,49 @@ fn run(number: usize, random: &mut Uniform) -> Run {
     }
 }
 
-fn transfer() -> Transfer {
-    let relations = ["eq5", "conformal", "constant"];
-    let states = ["joints.big_end", "joints.small_end"].map(|joint| vec![(joint.into(), 3e-4)]);
-    let forecast = |run: &str, i: usize, clearances: &Vec<(String, f64)>| {
+fn transfer() -> (Relations, Vec<Forecast>) {
+    let relations = [Relation::Equation5, Relation::Conformal, Relation::Constant];
+    let forecast = |run: &str, joint: &str, i: usize| {
         let value = 480.0 + 60.0 * i as f64;
-        let peak = Bounded {
+        let shown = Bounded {
             value,
-            interval: Some([value - 15.0, value + 15.0]),
+            low: value - 15.0,
+            high: value + 15.0,
+        };
+        let channel = ChannelForecast {
+            rms: shown,
+            peak: shown,
+            recorded: None,
+            difference: None,
         };
         Forecast {
             run: run.into(),
-            relation: relations[i].into(),
-            clearances: clearances.clone(),
-            peaks: vec![("crosshead_acceleration_m_s2".into(), peak, None)],
+            clearance_m: [(joint.to_owned(), 3e-4)].into(),
+            relation: relations[i],
+            recorded: false,
+            misfit: None,
+            failure: None,
+            channels: [("crosshead_acceleration_m_s2".to_owned(), channel)].into(),
         }
     };
-    Transfer {
-        left: Vec::new(),
-        by_held_out: false,
-        relations: relations
-            .iter()
-            .map(|relation| Hypothesis {
-                relation: (*relation).into(),
-                fitted: 1.04,
-                held_out: Some(1.09),
-                ..Hypothesis::default()
-            })
-            .collect(),
-        forecasts: states
-            .iter()
-            .flat_map(|state| (0..3).map(move |i| (state, i)))
-            .flat_map(|(state, i)| ["run01", "run02"].map(|run| forecast(run, i, state)))
-            .collect(),
-    }
+    let forecasts = ["joints.big_end", "joints.small_end"]
+        .into_iter()
+        .flat_map(|joint| (0..3).map(move |i| (joint, i)))
+        .flat_map(|(joint, i)| ["run01", "run02"].map(|run| forecast(run, joint, i)));
+    let compared = relations.map(|relation| Hypothesis {
+        relation,
+        exponents: [].into(),
+        fitted: 1.04,
+        held_out: Some(1.09),
+        runs: [].into(),
+        criterion: None,
+    });
+    let found = Relations {
+        decision: Decision {
+            relations: Vec::new(),
+            runs: Basis::None,
+        },
+        compared: compared.to_vec(),
+    };
+    (found, forecasts.collect())
 }

@@ -1,8 +1,9 @@
 //! A calibration that is in the folder already.
 
-use super::{Existing, output};
-use crate::Failure;
-use ::calibrate::checkpoint::Checkpoint;
+use crate::calibration::{Existing, MACHINE};
+use crate::checkpoint::Checkpoint;
+use crate::error::Error;
+use crate::results::{RESULTS, Results};
 use serde_json::Value;
 use std::path::Path;
 
@@ -10,15 +11,15 @@ use std::path::Path;
 const CHECKPOINT: &str = "checkpoint.bin";
 
 /// What an earlier calibration of the same inputs has left.
-pub struct Earlier {
+pub(crate) struct Earlier {
     /// The content of its `calibration.json`.
-    pub results: Value,
+    pub results: Results,
 }
 
 impl Earlier {
     /// Whether it went to its end.
     pub fn is_complete(&self) -> bool {
-        self.results["complete"] == true
+        self.results.complete
     }
 }
 
@@ -27,13 +28,13 @@ impl Earlier {
 ///
 /// # Errors
 /// A calibration that is not to be touched, or a folder with something else in it.
-pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
+pub(crate) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Error> {
     if existing == Existing::Renew {
         return Ok(());
     }
-    if folder.join(output::RESULTS).is_file() {
+    if folder.join(RESULTS).is_file() {
         return match existing {
-            Existing::Refuse => Err(Failure::input(format!(
+            Existing::Refuse => Err(Error::Refused(format!(
                 "{} holds a calibration already: --resume goes on with it, --overwrite replaces it, \
                  --out DIR writes elsewhere",
                 folder.display()
@@ -44,7 +45,7 @@ pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
     let entries = match std::fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(Failure::input(format!("{}: {error}", folder.display()))),
+        Err(error) => return Err(Error::file(folder, error)),
     };
     let names = entries
         .filter_map(Result::ok)
@@ -52,13 +53,13 @@ pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
     let names: Vec<_> = names.collect();
     match names.iter().any(|name| name == CHECKPOINT) {
         _ if names.is_empty() => Ok(()),
-        true if existing == Existing::Refuse => Err(Failure::input(format!(
+        true if existing == Existing::Refuse => Err(Error::Refused(format!(
             "{} holds a calibration that was interrupted: --resume goes on with it, --overwrite begins anew, \
              --out DIR writes elsewhere",
             folder.display()
         ))),
         true => Ok(()),
-        false => Err(Failure::input(format!(
+        false => Err(Error::Refused(format!(
             "{} is not empty and no calibration, so it is left alone: choose another folder",
             folder.display()
         ))),
@@ -69,13 +70,13 @@ pub fn check_folder(folder: &Path, existing: Existing) -> Result<(), Failure> {
 ///
 /// # Errors
 /// One of other inputs that is to be resumed, or a file that cannot be read.
-pub fn look(
+pub(crate) fn look(
     folder: &Path,
     existing: Existing,
     fingerprint: &str,
-) -> Result<Option<Earlier>, Failure> {
+) -> Result<Option<Earlier>, Error> {
     let checkpoint = folder.join(CHECKPOINT);
-    let path = folder.join(output::RESULTS);
+    let path = folder.join(RESULTS);
     if existing == Existing::Resume && !path.is_file() && checkpoint.is_file() {
         return match Checkpoint::is_of(&checkpoint, fingerprint) {
             true => Ok(None),
@@ -85,20 +86,22 @@ pub fn look(
     if !path.is_file() || !matches!(existing, Existing::Resume | Existing::Renew) {
         return Ok(None);
     }
-    let wrong = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let wrong = |reason: String| Error::file(&path, reason);
     let text =
         files::read_text(&path, files::LONGEST_TEXT).map_err(|error| wrong(error.to_string()))?;
-    let results: Value = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    let same = results["fingerprint"] == fingerprint && folder.join(output::MACHINE).is_file();
+    let content: Value = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    // Results of another version may have another form: they are of something else.
+    let results = serde_json::from_value::<Results>(content).ok();
+    let same = results.filter(|r| r.fingerprint == fingerprint && folder.join(MACHINE).is_file());
     match (same, existing) {
-        (true, _) => Ok(Some(Earlier { results })),
-        (false, Existing::Resume) => Err(other(&path)),
-        (false, _) => Ok(None),
+        (Some(results), _) => Ok(Some(Earlier { results })),
+        (None, Existing::Resume) => Err(other(&path)),
+        (None, _) => Ok(None),
     }
 }
 
-fn other(path: &Path) -> Failure {
-    Failure::input(format!(
+fn other(path: &Path) -> Error {
+    Error::Refused(format!(
         "{}: it was made from other recordings, another machine, other settings or by another version: --overwrite \
          makes it anew, --out DIR writes elsewhere",
         path.display()
@@ -109,13 +112,13 @@ fn other(path: &Path) -> Failure {
 ///
 /// # Errors
 /// A file that cannot be written, or that another process is at work with.
-pub fn checkpoint(
+pub(crate) fn checkpoint(
     folder: &Path,
     existing: Existing,
     fingerprint: &str,
-) -> Result<Checkpoint, Failure> {
+) -> Result<Checkpoint, Error> {
     let path = folder.join(CHECKPOINT);
-    let unwritten = |error| Failure::unwritten(&path, error);
+    let unwritten = |error| Error::file(&path, error);
     std::fs::create_dir_all(folder).map_err(unwritten)?;
     let anew = !matches!(existing, Existing::Resume | Existing::Renew);
     Checkpoint::open(&path, fingerprint, anew).map_err(unwritten)
@@ -125,7 +128,7 @@ pub fn checkpoint(
 ///
 /// # Errors
 /// A file that cannot be removed.
-pub fn remove_checkpoint(folder: &Path) -> Result<(), Failure> {
+pub(crate) fn remove_checkpoint(folder: &Path) -> Result<(), Error> {
     let path = folder.join(CHECKPOINT);
-    std::fs::remove_file(&path).map_err(|error| Failure::unwritten(&path, error))
+    std::fs::remove_file(&path).map_err(|error| Error::file(&path, error))
 }

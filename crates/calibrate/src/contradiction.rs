@@ -1,8 +1,9 @@
 //! Whether recordings and machine can be of one another, before anything is fitted.
 
-use crate::{Failure, bundle};
-use ::calibrate::prediction::{Prediction, predict};
-use ::calibrate::{Problem, Run};
+use crate::error::Error;
+use crate::observation::Run;
+use crate::prediction::{Prediction, predict};
+use crate::problem::Problem;
 use rayon::prelude::*;
 use signal::order_lines::OrderLines;
 
@@ -26,23 +27,23 @@ const POINTS: usize = 360;
 ///
 /// # Errors
 /// Where the two differ by more than 2 %.
-pub fn speed(run: &Run, measured: f64) -> Result<(), Failure> {
+pub fn speed(run: &Run, measured: f64) -> Result<(), Error> {
     if (measured / run.speed_rpm - 1.0).abs() <= SPEED {
         return Ok(());
     }
-    let error = ::calibrate::Error::Speed {
+    let error = Error::Speed {
         run: run.id.clone(),
         stated: run.speed_rpm,
         measured,
     };
-    Err(bundle::unusable(&run.id, &error.to_string()))
+    Err(Error::unusable(&run.id, error))
 }
 
 /// Holds every run against what the machine shows at the coordinates `x`.
 ///
 /// # Errors
 /// The first run that no parameters could bring together with the machine, or two that seem to be each other.
-pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Failure> {
+pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Error> {
     let predictions = predictions(problem, x)?;
     for (run, prediction) in problem.runs.iter().zip(&predictions) {
         for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
@@ -55,7 +56,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Failure> {
             };
             if let Some(reason) = found {
                 let reason = format!("channel {}: {reason}", observed.column);
-                return Err(bundle::unusable(&run.id, &reason));
+                return Err(Error::unusable(&run.id, reason));
             }
         }
     }
@@ -66,14 +67,13 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Failure> {
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-fn predictions(problem: &Problem, x: &[f64]) -> Result<Vec<Prediction>, Failure> {
+fn predictions(problem: &Problem, x: &[f64]) -> Result<Vec<Prediction>, Error> {
     let runs = problem.runs.par_iter();
-    let predictions: Result<Vec<_>, _> = runs.map(|run| predict(problem, run, x)).collect();
-    predictions.map_err(Failure::input)
+    runs.map(|run| predict(problem, run, x)).collect()
 }
 
 /// Refuses two runs of which each has recorded the load that is stated for the other.
-fn swapped(problem: &Problem, predictions: &[Prediction]) -> Result<(), Failure> {
+fn swapped(problem: &Problem, predictions: &[Prediction]) -> Result<(), Error> {
     let runs = problem.runs.iter().zip(predictions);
     let mut seen: Vec<(&str, &str, [f64; 2], [f64; 2])> = Vec::new();
     for (run, prediction) in runs {
@@ -98,7 +98,7 @@ fn swapped(problem: &Problem, predictions: &[Prediction]) -> Result<(), Failure>
                              recordings or their loads swapped?",
                             shown[0], shown[1], given[0], given[1]
                         );
-                        return Err(bundle::unusable(&run.id, &reason));
+                        return Err(Error::unusable(&run.id, reason));
                     }
                 }
             }

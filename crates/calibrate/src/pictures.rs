@@ -1,7 +1,10 @@
-//! What the pictures of a calibration or an explanation are drawn from: `waveforms.parquet` and `orders.parquet`.
+//! What the pictures of a calibration or an explanation are drawn from: `waveforms.parquet`, `orders.parquet` and
+//! `indicator.parquet`.
 
-use crate::Failure;
-use ::calibrate::Comparison;
+use crate::comparison::Comparison;
+use crate::error::Error;
+use crate::indicator::Indicator;
+use crate::pressure_gap::PressureGap;
 use recordings::formats::parquet;
 use recordings::{Column, Data, Kind, Schema, Table, WholeFile};
 use std::path::Path;
@@ -10,26 +13,36 @@ use std::path::Path;
 pub const WAVEFORMS: &str = "waveforms.parquet";
 /// Name of the file of residuals by order.
 pub const ORDERS: &str = "orders.parquet";
+/// Name of the file of pressures over the piston's way.
+pub const INDICATOR: &str = "indicator.parquet";
 /// Rows per group of a Parquet file.
 const ROWS_PER_GROUP: usize = 65_536;
 
-/// Writes both files.
+/// Writes the curves over the crank angle and the residuals by order.
 ///
 /// # Errors
 /// A file that cannot be written.
-pub fn write(folder: &Path, comparisons: &[Comparison]) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))?;
-    for (name, table) in [
-        (WAVEFORMS, waveforms(comparisons)),
-        (ORDERS, orders(comparisons)),
-    ] {
-        let path = folder.join(name);
-        let table = table.map_err(Failure::work)?;
-        WholeFile::create(&path.with_extension("part"), &path)
-            .and_then(|file| parquet::write_table(file, &table, ROWS_PER_GROUP))
-            .and_then(WholeFile::commit)
-            .map_err(Failure::work)?;
-    }
+pub fn write(folder: &Path, comparisons: &[Comparison]) -> Result<(), Error> {
+    std::fs::create_dir_all(folder).map_err(|error| Error::file(folder, error))?;
+    write_table(&folder.join(WAVEFORMS), &waveforms(comparisons)?)?;
+    write_table(&folder.join(ORDERS), &orders(comparisons)?)
+}
+
+/// Writes the pressures over the crank angle and the piston's distance from the cover.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn write_indicator(folder: &Path, gaps: &[PressureGap]) -> Result<(), Error> {
+    write_table(&folder.join(INDICATOR), &indicator(gaps)?)
+}
+
+/// Writes a table that appears whole or not at all.
+///
+/// # Errors
+/// A file that cannot be written.
+pub(crate) fn write_table(path: &Path, table: &Table) -> Result<(), Error> {
+    let file = WholeFile::create(&path.with_extension("part"), path)?;
+    parquet::write_table(file, table, ROWS_PER_GROUP)?.commit()?;
     Ok(())
 }
 
@@ -140,4 +153,63 @@ fn table<'a, T: 'a>(
         data.push(Data::Real(all.collect()));
     }
     Table::from_columns(Schema::new(columns)?, data)
+}
+
+fn indicator(gaps: &[PressureGap]) -> Result<Table, recordings::Error> {
+    let text = |of: fn(&PressureGap) -> &String| {
+        let rows = gaps
+            .iter()
+            .flat_map(|gap| std::iter::repeat_n(Some(of(gap).clone()), gap.angles.len()));
+        Data::Text(rows.collect())
+    };
+    let real = |of: &dyn Fn(&PressureGap, usize) -> Option<f64>| {
+        let rows = gaps
+            .iter()
+            .flat_map(|gap| (0..gap.angles.len()).map(move |i| of(gap, i)));
+        Data::Real(rows.collect())
+    };
+    let column =
+        |name: &str, unit: &str, about: &str| Column::new(name, Kind::Real, about).unit(unit);
+    let distance = |indicator: &Option<Indicator>, angle: f64| {
+        let chamber = indicator.as_ref()?.chamber;
+        Some(chamber.distance(angle))
+    };
+    Table::from_columns(
+        Schema::new(vec![
+            Column::new("run", Kind::Text, "the run"),
+            Column::new("channel", Kind::Text, "column of the recording"),
+            column(
+                "crank_angle_deg",
+                "deg",
+                "crank angle, a fitted offset taken off",
+            ),
+            column(
+                "distance_m",
+                "m",
+                "piston to cover, at the nominal clearance",
+            ),
+            column(
+                "fitted_distance_m",
+                "m",
+                "piston to cover, at the calibrated clearance",
+            ),
+            column("measured_pa", "Pa", "recorded pressure"),
+            column("nominal_pa", "Pa", "pressure with the nominal parameters"),
+            column(
+                "calibrated_pa",
+                "Pa",
+                "pressure with the calibrated parameters",
+            ),
+        ])?,
+        vec![
+            text(|gap| &gap.run),
+            text(|gap| &gap.column),
+            real(&|gap, i| Some(gap.angles[i].to_degrees())),
+            real(&|gap, i| distance(&gap.indicator, gap.angles[i])),
+            real(&|gap, i| distance(&gap.fitted_indicator, gap.angles[i])),
+            real(&|gap, i| Some(gap.measured[i])),
+            real(&|gap, i| Some(gap.nominal[i])),
+            real(&|gap, i| Some(gap.fitted[i])),
+        ],
+    )
 }

@@ -1,6 +1,6 @@
 //! The recording of a run: its channels in SI units, and where its crank stood.
 
-use ::calibrate::Channel;
+use crate::observation::Channel;
 use input::bundle::{self, Bundle};
 use input::bundle_channel::Meaning;
 use recordings::measured::{MeasuredFile, Options};

@@ -1,0 +1,229 @@
+//! From settings to what is to be fitted to what.
+
+mod bundles;
+mod fingerprint;
+mod fit_settings;
+mod parameters;
+mod relation;
+
+use crate::crank_motion::CrankMotion;
+use crate::error::Error;
+use crate::fit::FitSettings;
+use crate::meter::Meter;
+use crate::observation::{Observation, Run};
+use crate::prediction::predict;
+use crate::problem::{Problem, columns};
+use crate::{alignment, bundle, contradiction, zero};
+use input::bundle_channel::Meaning;
+use input::calibration::Calibration;
+use input::{MachineFile, paths};
+use serde_json::Value;
+use signal::crank_angle::CrankAngle;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Change of a run's zero of the crank angle that is worth another fit, rad: a tenth of the noise of
+/// usual lines.
+const ALIGNED: f64 = 1e-5;
+
+/// Relative difference from which a measured speed takes the place of the stated one: an encoder
+/// tells it better than a recording's other errors.
+const SPEED: f64 = 2e-5;
+
+/// What is calibrated, and how.
+pub struct Settings<'a> {
+    /// The settings as a file has them.
+    pub calibration: &'a Calibration,
+    /// The folder from which their paths start.
+    pub base: &'a Path,
+    /// The tree of the machine file, in the place of the file that the settings name.
+    pub machine: Option<&'a Value>,
+    /// Whether its bundles may name recordings outside of their folders.
+    pub allow_outside: bool,
+    /// Gives a mistake in the settings the place where they stand.
+    pub locate: &'a dyn Fn(input::Error) -> input::Error,
+}
+
+impl Settings<'_> {
+    /// Whether there is a machine file beside the bundle's machine section.
+    fn has_machine_file(&self) -> bool {
+        self.machine.is_some() || self.calibration.machine.is_some()
+    }
+}
+
+/// What a calibration works on.
+pub struct Task {
+    /// What is fitted to what.
+    pub problem: Problem,
+    /// The runs, in the same order, as they were recorded.
+    pub runs: Vec<Run>,
+    /// How it is fitted.
+    pub settings: FitSettings,
+    /// For each run whether the zero of its crank angle was recorded.
+    pub zeroed: Vec<bool>,
+    /// For each run whether an encoder gave the crank angle.
+    pub encoded: Vec<bool>,
+    /// The columns that the machine has.
+    columns: Vec<String>,
+}
+
+/// The task that the settings state.
+///
+/// # Errors
+/// Settings, a machine or runs that cannot be used or contradict each other.
+pub fn task(settings: &Settings) -> Result<Task, Error> {
+    let asked = settings.calibration;
+    let bundles = bundles::read(settings)?;
+    let machine = asked.machine.as_ref().map(|path| settings.base.join(path));
+    let mut tree = match settings.machine {
+        Some(tree) => tree.clone(),
+        None => bundle::machine(&bundles[0].bundle, machine.as_deref())?,
+    };
+    let mut runs = Vec::new();
+    let mut zeroed = Vec::new();
+    let mut encoded = Vec::new();
+    for listed in &bundles {
+        for (run, meanings) in listed.runs(settings, &tree)? {
+            let any = |wanted: fn(&Meaning) -> bool| meanings.iter().any(wanted);
+            zeroed.push(any(|m| {
+                matches!(m, Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) })
+            }));
+            encoded.push(any(|m| matches!(m, Meaning::CrankAngle(_))));
+            runs.push(run);
+        }
+    }
+    let free = tree["crank"]["drive"]["free"].is_object();
+    for run in &mut runs {
+        turn(run, free)?;
+    }
+    let Some(first) = runs.first() else {
+        return Err(Error::Refused("every run is left out".into()));
+    };
+    // The machine stands at the conditions of the first run where it has none of its own.
+    for (path, value) in &first.settings {
+        paths::set(&mut tree, path, value.clone())?;
+    }
+    let fit_settings = fit_settings::of(settings, &tree, &runs)?;
+    let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
+    let source = machine.unwrap_or_else(|| bundles[0].bundle.folder.join(input::bundle::FILE));
+    let resolved = MachineFile::from_tree(&tree).and_then(|file| file.resolve());
+    let resolved =
+        resolved.map_err(|error| Error::Refused(format!("{}: {error}", source.display())))?;
+    let mut parameters = parameters::of(settings, &tree, &runs)?;
+    for exponent in exponents {
+        let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
+        if !exponent.places.iter().any(free) {
+            parameters.push(exponent);
+        }
+    }
+    let mut task = Task {
+        settings: fit_settings,
+        problem: Problem {
+            tree,
+            parameters,
+            runs: Vec::new(),
+            crank: CrankMotion::Driven,
+            meter: Meter::default(),
+        },
+        runs,
+        zeroed,
+        encoded,
+        columns: columns(&resolved),
+    };
+    task.observe()?;
+    Ok(task)
+}
+
+impl Task {
+    /// Looks at all runs, and holds them against the nominal machine.
+    fn observe(&mut self) -> Result<(), Error> {
+        let seen = self.runs.iter().map(|run| observe(run, &self.columns));
+        self.problem.runs = seen.collect::<Result<_, _>>()?;
+        let nominal = vec![0.0; self.problem.parameters.len()];
+        self.align(&nominal)?;
+        let start = self.start_at_zero()?;
+        contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
+        self.settings.start = start;
+        Ok(())
+    }
+
+    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre; the bounds of
+    /// the offset are opened that far.
+    fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Error> {
+        let parameters = self.problem.parameters.iter();
+        let mut offsets = parameters
+            .clone()
+            .enumerate()
+            .filter(|(_, p)| p.is_crank_angle_offset());
+        let (Some((i, _)), None) = (offsets.next(), offsets.next()) else {
+            return Ok(None);
+        };
+        let Some(offset) = zero::crank_angle_offset(&self.problem)? else {
+            return Ok(None);
+        };
+        let parameter = &mut self.problem.parameters[i];
+        if parameter.run.is_some() || !parameter.open_for_offset(offset) {
+            return Ok(None);
+        }
+        let mut start = vec![0.0; self.problem.parameters.len()];
+        start[i] = self.problem.parameters[i].coordinate(offset);
+        Ok(Some(start))
+    }
+
+    /// Sets the zero of the crank angle of every run where it was not recorded to what the machine
+    /// with the parameters at `x` shows; whether that has moved one.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated.
+    pub fn align(&mut self, x: &[f64]) -> Result<bool, Error> {
+        let mut moved = false;
+        for i in (0..self.runs.len())
+            .filter(|i| !self.zeroed[*i])
+            .collect::<Vec<_>>()
+        {
+            let observed = &self.problem.runs[i];
+            let predicted = predict(&self.problem, observed, x)?;
+            let shift = alignment::phase(observed, &predicted);
+            if shift.abs() < ALIGNED {
+                continue;
+            }
+            moved = true;
+            for angle in self.runs[i].crank_angle.iter_mut().flatten() {
+                *angle = (*angle + shift).rem_euclid(TAU);
+            }
+            self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
+        }
+        Ok(moved)
+    }
+}
+
+/// Gives a run the speed at which it turns, and a crank angle of that speed where it has none.
+fn turn(run: &mut Run, free: bool) -> Result<(), Error> {
+    let measured = match &run.crank_angle {
+        Some(angle) => {
+            let angle = CrankAngle::from_encoder(angle);
+            let angle = angle.map_err(|error| Error::unusable(&run.id, error))?;
+            60.0 * run.sample_rate / angle.samples_per_revolution()
+        }
+        None => alignment::speed(run),
+    };
+    contradiction::speed(run, measured)?;
+    if run.crank_angle.is_none() {
+        let step = TAU * measured / 60.0 / run.sample_rate;
+        let samples = run.channels.first().map_or(0, |c| c.samples.len());
+        let angles = (0..samples).map(|i| (step * i as f64).rem_euclid(TAU));
+        run.crank_angle = Some(angles.collect());
+    }
+    // A free crank's setting is another speed, that of its motor's torque.
+    if !free && (measured / run.speed_rpm - 1.0).abs() > SPEED {
+        run.speed_rpm = measured;
+        for (_, value) in run.settings.iter_mut().filter(|(path, _)| path == "speed") {
+            *value = format!("{measured} rpm").into();
+        }
+    }
+    Ok(())
+}
+
+fn observe(run: &Run, columns: &[String]) -> Result<Observation, Error> {
+    Observation::of(run, columns).map_err(|error| Error::unusable(&run.id, error))
+}

@@ -1,0 +1,57 @@
+//! How contact parameters follow the clearance: `--relation`, or what stands in for it.
+
+use super::Settings;
+use crate::error::Error;
+use crate::observation::Run;
+use crate::parameter::Parameter;
+use crate::relation::{ClearJoint, Relation, clearances, exponents, several};
+use input::calibration;
+use serde_json::Value;
+
+/// Gives every clear joint of the machine its relation, and returns the exponents to be fitted.
+///
+/// It is that of the settings. Without one the machine file says. Where the bundle's own machine
+/// section says nothing, it is Eq. (5), unless the fitted runs have several clearances and so can
+/// tell: then its exponents are fitted.
+///
+/// # Errors
+/// A clearance that is no length.
+pub(super) fn set(
+    settings: &Settings,
+    tree: &mut Value,
+    runs: &[Run],
+    held_out: &[String],
+) -> Result<Vec<Parameter>, Error> {
+    let of_runs = runs.iter().map(|run| &run.settings[..]);
+    let joints = ClearJoint::of(tree, of_runs)?;
+    let mut silent = Vec::new();
+    for joint in &joints {
+        if joint.relation(tree)?.is_none() {
+            silent.push(joint.clone());
+        }
+    }
+    let fitted = runs.iter().filter(|run| !held_out.contains(&run.id));
+    let states = fitted.map(|run| clearances(tree, &joints, &run.settings));
+    let states: Vec<_> = states.collect::<Result<_, _>>()?;
+    let asked = settings.calibration;
+    let (relation, joints) = match (asked.relation, settings.has_machine_file()) {
+        (Some(asked), _) => (named(asked), joints),
+        (None, true) => return Ok(Vec::new()),
+        (None, false) if several(&states) => (Relation::Fitted, silent),
+        (None, false) => (Relation::Equation5, silent),
+    };
+    relation.set(tree, &joints)?;
+    if relation == Relation::Fitted && !joints.is_empty() {
+        return exponents(tree);
+    }
+    Ok(Vec::new())
+}
+
+fn named(asked: calibration::Relation) -> Relation {
+    match asked {
+        calibration::Relation::Eq5 => Relation::Equation5,
+        calibration::Relation::Conformal => Relation::Conformal,
+        calibration::Relation::Constant => Relation::Constant,
+        calibration::Relation::Fitted => Relation::Fitted,
+    }
+}
