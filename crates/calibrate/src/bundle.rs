@@ -5,7 +5,6 @@ mod recording;
 use crate::error::Error;
 use crate::observation::Run;
 use input::bundle::{self, Bundle};
-use input::bundle_channel::{Meaning, meaning};
 use serde_json::Value;
 use std::path::Path;
 
@@ -36,11 +35,11 @@ pub fn machine(bundle: &Bundle, machine: Option<&Path>) -> Result<Value, Error> 
 pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Run>, Error> {
     let ids: Vec<&str> = bundle.runs.iter().map(|run| run.id.as_str()).collect();
     known_runs("--leave-out", left_out, &ids)?;
-    let throws = throws(tree);
+    let throws = bundle::throws(tree);
     let kept = bundle.runs.iter().enumerate();
     let kept = kept.filter(|(_, run)| !left_out.contains(&run.id));
     kept.map(|(i, run)| {
-        let meanings = meanings(bundle, i, &throws)?;
+        let meanings = bundle.meanings(i, &throws)?;
         let recording = recording::read(bundle, run, &meanings)
             .map_err(|reason| Error::unusable(&run.id, reason))?;
         let mut section = run.section.clone();
@@ -62,34 +61,6 @@ pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Ru
         })
     })
     .collect()
-}
-
-/// What the channels of run `i` are, in their order.
-///
-/// # Errors
-/// A channel whose unit or name is not understood.
-pub fn meanings(bundle: &Bundle, i: usize, throws: &[String]) -> Result<Vec<Meaning>, Error> {
-    let names: Vec<&str> = throws.iter().map(String::as_str).collect();
-    let channels = bundle.runs[i].channels.iter().enumerate();
-    channels
-        .map(|(j, channel)| {
-            meaning(channel, &names).map_err(|error| {
-                let key = format!("runs.{i}.channels.{j}");
-                bundle.locate(error.under(key)).into()
-            })
-        })
-        .collect()
-}
-
-/// The names of a machine's throws; one without letters for a machine of one.
-pub fn throws(tree: &Value) -> Vec<String> {
-    let Some(throws) = tree["throws"].as_array() else {
-        return vec![String::new()];
-    };
-    let names = throws.iter().map(|throw| throw["name"].as_str());
-    names
-        .map(|name| name.unwrap_or_default().to_owned())
-        .collect()
 }
 
 /// Checks that each of `asked` is the id of a run.

@@ -11,7 +11,7 @@ use crate::prediction::predict;
 use crate::problem::{Problem, columns};
 use crate::replay::{Replay, replay};
 use crate::{alignment, bundle, pictures};
-use input::bundle::{Bundle, Channel};
+use input::bundle::{Bundle, Channel, throws};
 use input::bundle_channel::Meaning;
 use input::{MachineFile, paths};
 use rayon::prelude::*;
@@ -127,12 +127,12 @@ fn listed<'a>(
     bundle: &'a Bundle,
     tree: &Value,
 ) -> Result<Vec<Listed<'a>>, Error> {
-    let throws = bundle::throws(tree);
+    let throws = throws(tree);
     let mut all = Vec::new();
     for run in bundle::runs(bundle, tree, leave_out)? {
         let i = bundle.runs.iter().position(|listed| listed.id == run.id);
         let i = i.unwrap_or_default();
-        let meanings = bundle::meanings(bundle, i, &throws)?;
+        let meanings = bundle.meanings(i, &throws)?;
         let channels = bundle.runs[i].channels.iter().zip(meanings).collect();
         all.push(Listed { run, channels });
     }

@@ -192,22 +192,16 @@ impl Bundle {
         }
     }
 
-    /// What the channels of run `index` are, in their order; throws are those of the bundle's own machine.
+    /// What the channels of run `index` are, in their order, on a machine with these throws.
     ///
     /// # Errors
     /// A channel whose unit or name is not understood.
-    pub fn meanings(&self, index: usize) -> Result<Vec<Meaning>, Error> {
-        let throws = match self.machine["throws"].as_array() {
-            None => vec![""],
-            Some(throws) => {
-                let names = throws.iter().map(|throw| throw["name"].as_str());
-                names.map(Option::unwrap_or_default).collect()
-            }
-        };
+    pub fn meanings(&self, index: usize, throws: &[String]) -> Result<Vec<Meaning>, Error> {
+        let names: Vec<&str> = throws.iter().map(String::as_str).collect();
         let channels = self.runs[index].channels.iter().enumerate();
         channels
             .map(|(i, channel)| {
-                meaning(channel, &throws)
+                meaning(channel, &names)
                     .map_err(|error| self.locate(error.under(format!("runs.{index}.channels.{i}"))))
             })
             .collect()
@@ -217,6 +211,17 @@ impl Bundle {
     pub fn locate(&self, error: Error) -> Error {
         self.document.locate(error)
     }
+}
+
+/// The names of the throws of a machine file's content; one empty name for a machine of one.
+pub fn throws(machine: &Value) -> Vec<String> {
+    let Some(throws) = machine["throws"].as_array() else {
+        return vec![String::new()];
+    };
+    let names = throws.iter().map(|throw| throw["name"].as_str());
+    names
+        .map(|name| name.unwrap_or_default().to_owned())
+        .collect()
 }
 
 /// Checks that the file is of the format that is read here; one that does not say is taken for it.

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::bundle;
 use crate::error::Error;
 use crate::observation::Run;
-use input::bundle::Bundle;
+use input::bundle::{Bundle, throws};
 use input::bundle_channel::Meaning;
 use serde_json::Value;
 
@@ -71,12 +71,12 @@ impl Listed {
             let error = input::Error::unknown_name("leave_out", unknown, &known);
             return Err((settings.locate)(error).into());
         }
-        let throws = bundle::throws(tree);
+        let throws = throws(tree);
         let kept = (0..known.len()).filter(|i| !own.iter().any(|id| id == known[*i]));
         let runs = bundle::runs(&self.bundle, tree, &own)?;
         let runs = runs.into_iter().zip(kept).map(|(mut run, i)| {
             run.id = format!("{}{}", self.prefix, run.id);
-            Ok((run, bundle::meanings(&self.bundle, i, &throws)?))
+            Ok((run, self.bundle.meanings(i, &throws)?))
         });
         runs.collect()
     }

@@ -155,7 +155,7 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 
 fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
     let run = &bundle.runs[index];
-    let meanings = bundle.meanings(index)?;
+    let meanings = bundle.meanings(index, &bundle::throws(&bundle.machine))?;
     let rate = run.sample_rate_hz.map(|rate| rate.get());
     let wrong = |key: &str, expected: String| {
         let error = input::Error::clash(format!("runs.{index}.{key}"), expected);
