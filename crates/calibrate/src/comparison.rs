@@ -103,7 +103,7 @@ fn of_channel(
         channels: vec![channel.clone()],
         ..run.clone()
     };
-    let has_mean = !channel.column.contains("acceleration");
+    let has_mean = channel.quantity().has_mean();
     let measured = wave(&channel.lines, has_mean);
     let root = (channel.lines.revolutions as f64).sqrt();
     // Where revolutions cannot be compared, the noise of the orders stands for all angles alike.

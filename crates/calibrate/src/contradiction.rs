@@ -48,9 +48,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Error> {
         for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
             let found = match observed.column.contains("crosshead_acceleration") {
                 true => acceleration(&observed.lines, predicted),
-                false if observed.column.contains("pressure") => {
-                    pressure(&observed.lines, predicted)
-                }
+                false if observed.quantity().is_pressure() => pressure(&observed.lines, predicted),
                 false => None,
             };
             if let Some(reason) = found {
@@ -77,7 +75,7 @@ fn swapped(problem: &Problem, predictions: &[Prediction]) -> Result<(), Error> {
     let mut seen: Vec<(&str, &str, [f64; 2], [f64; 2])> = Vec::new();
     for (run, prediction) in runs {
         for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
-            if !observed.column.contains("pressure") {
+            if !observed.quantity().is_pressure() {
                 continue;
             }
             let [recorded, stated] = [&observed.lines, predicted].map(extremes);

@@ -11,6 +11,7 @@ use crate::problem::Problem;
 use crate::relation::{ClearJoint, clearances};
 use input::{MachineFile, paths};
 use serde_json::{Value, json};
+use simulate::sensor::Quantity;
 
 /// Standard deviation of a stated mass: castings differ from their drawings by 3 to 5 %, and a crosshead is
 /// stated with its pin and piston rod, or without.
@@ -198,7 +199,7 @@ fn of_sensors(problem: &Problem) -> Result<Vec<Doubt>, Error> {
             });
         }
         // Pressures have next to nothing where a cable ends.
-        if column.contains("pressure") {
+        if Quantity::of_column(column).is_pressure() {
             continue;
         }
         let (filtered, path, stated) = with(

@@ -106,7 +106,7 @@ fn channels(case: &Case, machine: &Fitted) -> Result<BTreeMap<String, ChannelFor
 fn counted(observed: &Observed, amplitude: &[Complex64]) -> Vec<Complex64> {
     let within = amplitude.iter().take(observed.lines.amplitude.len());
     let mut lines: Vec<Complex64> = within.copied().collect();
-    if observed.column.contains("acceleration")
+    if !observed.quantity().has_mean()
         && let Some(mean) = lines.first_mut()
     {
         *mean = Complex64::default();

@@ -8,6 +8,7 @@ use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::{OrderLines, order_lines};
+use simulate::sensor::Quantity;
 use std::f64::consts::TAU;
 
 /// Points per revolution over which orders are found.
@@ -66,6 +67,20 @@ pub struct Channel {
     pub column: String,
     /// The samples, SI.
     pub samples: Vec<f64>,
+}
+
+impl Channel {
+    /// What kind of quantity it is.
+    pub fn quantity(&self) -> Quantity {
+        Quantity::of_column(&self.column)
+    }
+}
+
+impl Observed {
+    /// What kind of quantity it is.
+    pub fn quantity(&self) -> Quantity {
+        Quantity::of_column(&self.column)
+    }
 }
 
 /// What a run shows of what the model predicts.
@@ -231,7 +246,7 @@ pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
 
 /// A pressure may stay at its greatest value while a valve is open; an acceleration never does.
 fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
-    if !channel.column.contains("acceleration") {
+    if !channel.quantity().is_acceleration() {
         return Ok(());
     }
     let samples = || channel.samples.iter().copied();

@@ -141,7 +141,7 @@ pub fn replay(
                 ..observation.clone()
             };
             let prediction = prediction(vec![lines.clone()], same);
-            let has_mean = !observed.column.contains("acceleration");
+            let has_mean = observed.quantity().has_mean();
             let replayed = Replayed {
                 column: observed.column.clone(),
                 recording_rms: deviation(recording),

@@ -198,13 +198,8 @@ impl Bundle {
     /// # Errors
     /// A channel whose unit or name is not understood.
     pub fn meanings(&self, index: usize, machine: &Value) -> Result<Vec<Meaning>, Error> {
-        let throws = match machine["throws"].as_array() {
-            None => vec![""],
-            Some(throws) => {
-                let names = throws.iter().map(|throw| throw["name"].as_str());
-                names.map(Option::unwrap_or_default).collect()
-            }
-        };
+        let throws = throws(machine);
+        let throws: Vec<&str> = throws.iter().map(String::as_str).collect();
         let channels = self.runs[index].channels.iter().enumerate();
         channels
             .map(|(i, channel)| {
@@ -218,6 +213,17 @@ impl Bundle {
     pub fn locate(&self, error: Error) -> Error {
         self.document.locate(error)
     }
+}
+
+/// The names of the throws of a machine file's content; one empty name for a machine of one.
+fn throws(machine: &Value) -> Vec<String> {
+    let Some(throws) = machine["throws"].as_array() else {
+        return vec![String::new()];
+    };
+    let names = throws.iter().map(|throw| throw["name"].as_str());
+    names
+        .map(|name| name.unwrap_or_default().to_owned())
+        .collect()
 }
 
 /// Checks that the file is of the format that is read here; one that does not say is taken for it.

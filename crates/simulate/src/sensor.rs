@@ -57,6 +57,46 @@ pub enum Measured {
     CrankAngle,
 }
 
+/// What kind of quantity a channel holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// An acceleration, m/s². Sensors of it do not see its mean.
+    Acceleration,
+    /// A gas pressure, Pa.
+    Pressure,
+    /// Anything else.
+    Other,
+}
+
+impl Quantity {
+    /// By the name of a column, as [`Measured::column`] gives it.
+    pub fn of_column(column: &str) -> Self {
+        let name = column.rsplit('.').next().unwrap_or(column);
+        if name.contains("acceleration") {
+            Self::Acceleration
+        } else if name.contains("pressure") {
+            Self::Pressure
+        } else {
+            Self::Other
+        }
+    }
+
+    /// Whether the mean of a recording says something of the quantity.
+    pub fn has_mean(self) -> bool {
+        self != Self::Acceleration
+    }
+
+    /// Whether it is an acceleration.
+    pub fn is_acceleration(self) -> bool {
+        self == Self::Acceleration
+    }
+
+    /// Whether it is a pressure.
+    pub fn is_pressure(self) -> bool {
+        self == Self::Pressure
+    }
+}
+
 /// A direction of the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {

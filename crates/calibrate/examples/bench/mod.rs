@@ -12,6 +12,7 @@ use input::{MachineFile, paths};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 use serde_json::Value;
+use simulate::sensor::Quantity;
 use simulate::{ChamberEnd, Measured, Sensor, Settings, Transient};
 use std::error::Error;
 use std::path::Path;
@@ -168,7 +169,7 @@ fn noisy(clean: &Clean, seed: u64, index: u64) -> Result<Run, Box<dyn Error>> {
     let mut channels = Vec::new();
     let (angle, series) = clean.series.split_last().ok_or("no series")?;
     for (column, x) in clean.columns.iter().zip(series) {
-        let share = if column.contains("acceleration") {
+        let share = if Quantity::of_column(column).is_acceleration() {
             level
         } else {
             0.005

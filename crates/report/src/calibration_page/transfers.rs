@@ -9,6 +9,7 @@ use calibrate::Relation;
 use calibrate::forecast::Forecast;
 use calibrate::results::Relations;
 use calibrate::transfer::{Basis, Bounded, Hypothesis};
+use simulate::sensor::Quantity;
 use std::collections::BTreeMap;
 
 /// At most so many sets of clearances have a picture, and so many runs stand in it.
@@ -161,8 +162,9 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
     }
     runs.truncate(MOST_RUNS);
     // Wear is heard, and hardly felt by the gas.
-    if columns.iter().any(|c| c.contains("acceleration")) {
-        columns.retain(|c| c.contains("acceleration"));
+    let is_heard = |column: &str| Quantity::of_column(column).is_acceleration();
+    if columns.iter().any(|column| is_heard(column)) {
+        columns.retain(|column| is_heard(column));
     }
     let panels = columns
         .iter()

@@ -327,10 +327,10 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
     let out = folder.path().join("out");
     let run = |existing, stop| into_folder(&settings, &out, existing, stop);
     let stopped = run(Existing::Refuse, true).unwrap();
-    assert_eq!(stopped.results.complete, false);
+    assert!(!stopped.results.complete);
     assert!(run(Existing::Refuse, false).is_err());
     let whole = run(Existing::Resume, false).unwrap();
-    assert_eq!(whole.results.complete, true);
+    assert!(whole.results.complete);
     assert!(!whole.reused);
     assert!(whole.results.evaluations > stopped.results.evaluations);
     let results = fs::read(out.join("calibration.json")).unwrap();
