@@ -2,7 +2,7 @@
 
 use crate::delay::Delay;
 use crate::record::Error;
-use crate::sensor::{Axis, ChamberEnd, Measured, Sensor};
+use crate::sensor::{Axis, Chain, ChamberEnd, Measured, Sensor};
 use crate::settings::Settings;
 use integrate::Real;
 use mechanism::{Evaluation, Machine};
@@ -193,13 +193,20 @@ impl UnderWay {
     pub(crate) fn end(mut self, start: f64) -> Vec<f64> {
         self.decimate();
         let rate = self.sampling.inner_rate / self.sampling.factor as f64;
-        let hum = self.sensor.chain.hum;
-        if let Some(hum) = hum.filter(|_| self.sensor.measured != Measured::CrankAngle) {
+        let Chain { hum, offset, .. } = self.sensor.chain;
+        if self.sensor.measured == Measured::CrankAngle {
+            return self.recorded;
+        }
+        if let Some(hum) = hum {
             for (i, x) in self.recorded.iter_mut().enumerate() {
                 let time = start + i as f64 / rate;
                 let (_, cosine) = Scalar::sin_cos(TAU * hum.frequency * time + hum.phase);
                 *x += hum.amplitude * cosine;
             }
+        }
+        // Not where it is 0, which would change the sign of a 0.
+        if offset != 0.0 {
+            self.recorded.iter_mut().for_each(|x| *x += offset);
         }
         self.recorded
     }

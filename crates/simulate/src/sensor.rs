@@ -14,6 +14,7 @@ impl Sensor {
     pub(crate) fn without_additions(&self) -> Self {
         let mut sensor = self.clone();
         sensor.chain.hum = None;
+        sensor.chain.offset = 0.0;
         sensor.chain.angle_offset = 0.0;
         sensor
     }
@@ -116,7 +117,7 @@ pub enum ChamberEnd {
 }
 
 /// What happens between the quantity and the recorded number, in this order: delay, mounting resonance,
-/// low-pass, gain, hum, noise, range, quantisation; of an encoder the offset of its zero alone.
+/// low-pass, gain, hum, offset, noise, range, quantisation; of an encoder the offset of its zero alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// By how much the recorded number is late, s.
@@ -129,6 +130,8 @@ pub struct Chain {
     pub gain: f64,
     /// Mains hum on the cable, after the gain.
     pub hum: Option<Hum>,
+    /// Constant that is added after the gain, in the channel's unit; 0 when the sensor's zero is right.
+    pub offset: f64,
     /// What an encoder reads at angle 0, rad.
     pub angle_offset: f64,
     /// Noise added.
@@ -147,6 +150,7 @@ impl Default for Chain {
             low_pass: None,
             gain: 1.0,
             hum: None,
+            offset: 0.0,
             angle_offset: 0.0,
             noise: None,
             range: None,

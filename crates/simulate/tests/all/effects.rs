@@ -73,6 +73,19 @@ fn gain_offset_and_hum_are_what_they_say() {
 }
 
 #[test]
+fn a_drifted_zero_shifts_accelerations_and_pressures() {
+    let plain = record(&tree(json!([])), &settings());
+    let section = json!({"acceleration": "-3 m/s^2", "pressure": "0.1 bar"});
+    let found = record(&tree(json!([{"sensor_offset": section}])), &settings());
+    // Crosshead and frame, cylinder, crank.
+    for (channel, offset) in [(0, -3.0), (3, -3.0), (1, 1e4), (2, 0.0)] {
+        for (found, plain) in found[channel].iter().zip(&plain[channel]) {
+            assert_eq!(*found, plain + offset, "{channel}");
+        }
+    }
+}
+
+#[test]
 fn a_sensor_on_its_mount_passes_each_order_by_its_frequency_response() {
     let section = json!({"frequency": "400 Hz", "damping_ratio": "5 %"});
     let settled = Settings {

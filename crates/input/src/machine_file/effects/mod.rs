@@ -43,7 +43,8 @@ own! {
     after squeeze_film { guide_clearance, extra_clearance, thermal_clearance }
     after rod_flexibility { frame_compliance }
     after misalignment {
-        speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, mains_hum
+        speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, sensor_offset,
+        mains_hum
     }
 }
 

@@ -14,7 +14,7 @@ mod restitution;
 pub use declaration::{Declaration, Entry, Parameter, Surfaces};
 pub use restitution::Restitution;
 
-pub(self) use declaration::contact_law;
+use declaration::contact_law;
 
 use super::clearance_relation::Factors;
 use crate::lift::alternatives;
@@ -118,6 +118,7 @@ contact_laws! {
     hunt_crossley::HuntCrossley,
     lankarani_nikravesh::LankaraniNikravesh,
     flores::Flores,
+    cylinder::Cylinder,
 }
 
 /// A normal force and the part of it that is stored and given back.
