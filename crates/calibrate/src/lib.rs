@@ -8,6 +8,10 @@
 //!                                  optimiser ──> θ ──identifiability──> bounds, what is not told
 //! ```
 //!
+//! From files to files: [`prepare`] reads settings and a [`bundle`] into a [`Task`] and refuses what cannot be
+//! used; [`Prepared::finish`] searches, and writes [`Results`] as `calibration.json` beside the calibrated
+//! `machine.yaml`. [`bundle_replay`] simulates a bundle in place of its recordings.
+//!
 //! What is compared are the complex amplitudes of the shaft's orders: the crank-angle synchronous
 //! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
 //! Weights come from that noise alone.

@@ -122,6 +122,16 @@ pub enum Error {
         /// What is missing, or cannot be read.
         reason: String,
     },
+    /// The calibration of a dataset is damaged.
+    #[error("{0}; --overwrite calibrates again")]
+    DamagedCalibration(String),
+    /// A calibration without intervals, from which a sweep is to draw.
+    #[error(
+        "calibrate.uncertainty: sampled draws from the intervals of the calibration, and {} states \
+         none: its model is not adequate (model_is_adequate is false). Correct what the machine file \
+         has wrong, or use uncertainty: ignored", .0.display()
+    )]
+    NoIntervals(PathBuf),
     /// A URL that has a password in it.
     #[error(
         "a URL of object storage cannot have a user or a password: give AWS_ACCESS_KEY_ID and \
