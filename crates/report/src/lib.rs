@@ -47,6 +47,23 @@ pub enum Error {
     /// The dataset cannot be read.
     #[error(transparent)]
     Dataset(#[from] sweep::reader::Error),
+    /// The results of a calibration cannot be read.
+    #[error(transparent)]
+    Calibration(#[from] calibrate::Error),
+    /// The results of an explanation cannot be read.
+    #[error(transparent)]
+    Explanation(#[from] gap::Error),
+    /// The machine file beside them cannot be read.
+    #[error(transparent)]
+    Machine(#[from] input::Error),
+    /// The curves beside them cannot be read.
+    #[error("{}: {error}", path.display())]
+    Curves {
+        /// Their file.
+        path: PathBuf,
+        /// Why not.
+        error: recordings::Error,
+    },
     /// A recording whose crank angle is not that of a turning crank.
     #[error("{place}, {case_id}: {error}")]
     Recording {
@@ -86,7 +103,8 @@ impl Error {
     pub fn is_input(&self) -> bool {
         match self {
             Self::Dataset(error) => error.is_input(),
-            Self::Recording { .. } => true,
+            Self::Calibration(_) | Self::Explanation(_) | Self::Machine(_) => true,
+            Self::Curves { .. } | Self::Recording { .. } => true,
             _ => false,
         }
     }

@@ -1,12 +1,11 @@
 //! `crosshead report`: the HTML pages of a dataset, of a calibration, or of an explanation.
 
-mod calibration;
-mod gap;
-
 use crate::Failure;
+use ::report::calibration_page::CalibrationPage;
 use ::report::chaos_page::ChaosPage;
 use ::report::dataset_page::{DatasetPage, Design};
 use ::report::features_page::FeaturesPage;
+use ::report::gap_page::GapPage;
 use ::report::{Error, write_page, write_pages};
 use ::sweep::reader::Dataset;
 use clap::Args;
@@ -45,9 +44,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let out = arguments.out.clone().unwrap_or_else(|| dir.join(PAGE));
-    if calibration::is_at(dir) {
+    if CalibrationPage::is_at(dir) {
         println!("{}", write_calibration(dir, &out)?.display());
-    } else if gap::is_at(dir) {
+    } else if GapPage::is_at(dir) {
         println!("{}", write_gap(dir, &out)?.display());
     } else {
         let page = write_dataset(dir, &out).map_err(failed)?;
@@ -85,7 +84,10 @@ fn failed(error: Error) -> Failure {
 /// # Errors
 /// A folder that is no calibration, or a page that cannot be made or written.
 pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = calibration::page(folder)?.render().map_err(Failure::work)?;
+    let page = CalibrationPage::of(folder)
+        .map_err(failed)?
+        .render()
+        .map_err(Failure::work)?;
     write_page(out, &page.html).map_err(failed)?;
     Ok(out.to_owned())
 }
@@ -95,7 +97,10 @@ pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Fa
 /// # Errors
 /// A folder that is no explanation, or a page that cannot be made or written.
 pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = gap::page(folder)?.render().map_err(Failure::work)?;
+    let page = GapPage::of(folder)
+        .map_err(failed)?
+        .render()
+        .map_err(Failure::work)?;
     write_page(out, &page.html).map_err(failed)?;
     Ok(out.to_owned())
 }

@@ -5,6 +5,7 @@
 //! whatever the calibration.
 
 mod corrections;
+pub(crate) mod folder;
 mod gas;
 pub(crate) mod misfits;
 mod page;

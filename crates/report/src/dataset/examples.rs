@@ -2,12 +2,10 @@
 
 use super::recording::Recording;
 use super::words;
+use crate::dataset_page::MOST_EXAMPLES;
 use crate::dataset_page::{ClassExample, FaultCount};
 use crate::{Error, text};
 use sweep::reader::{Dataset, Meaning, Side};
-
-/// At most this many classes have an example: as many as the page shows.
-const MOST_EXAMPLES: usize = 16;
 
 /// The first window of the case of each fault whose largest clearance is nearest to the median of
 /// its class, once for each sensor that judges the fault; of the healthy as the first sensor reads it.

@@ -9,7 +9,7 @@ use crate::revolutions::{Revolutions, last_turns};
 use crate::text;
 
 /// At most this many classes have an example on the page.
-pub(super) const MOST_EXAMPLES: usize = 16;
+pub(crate) const MOST_EXAMPLES: usize = 16;
 /// A portrait shows at most this many revolutions: with more, the lines of one that repeats itself
 /// only get thicker, and those of one that does not cannot be told apart.
 pub(super) const PORTRAIT_REVOLUTIONS: usize = 10;

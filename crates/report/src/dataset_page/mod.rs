@@ -15,6 +15,7 @@ mod page;
 mod settings;
 mod warnings;
 
+pub(crate) use examples::MOST_EXAMPLES;
 pub use warnings::CaseWarning;
 
 use crate::Level;

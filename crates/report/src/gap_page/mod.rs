@@ -2,6 +2,7 @@
 //! and how far the gap has shrunk.
 
 mod figures;
+mod folder;
 mod page;
 
 use crate::calibration_page::Run;

@@ -1,58 +1,58 @@
-//! The page of a calibration, from what `crosshead calibrate` has written.
+//! What a calibration has written, read back for its page.
 
-use crate::Failure;
-use ::calibrate::calibration::MACHINE;
-use ::calibrate::parameter::unit;
-use ::calibrate::pictures::{INDICATOR, ORDERS, WAVEFORMS};
-use ::calibrate::results::{RESULTS, Results};
-use ::report::calibration_page::{
-    CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run,
-};
+use super::{CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run};
+use crate::Error;
+use calibrate::calibration::MACHINE;
+use calibrate::parameter::unit;
+use calibrate::pictures::{INDICATOR, ORDERS, WAVEFORMS};
+use calibrate::results::{RESULTS, Results};
 use recordings::Table;
 use recordings::formats::parquet::read_table;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Whether a calibration has written into `folder`.
-pub(crate) fn is_at(folder: &Path) -> bool {
-    folder.join(RESULTS).is_file()
+impl CalibrationPage {
+    /// Whether a calibration has written into `folder`.
+    pub fn is_at(folder: &Path) -> bool {
+        folder.join(RESULTS).is_file()
+    }
+
+    /// The page of the calibration in `folder`.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that no calibration writes.
+    pub fn of(folder: &Path) -> Result<Self, Error> {
+        let results = Results::read(&folder.join(RESULTS))?;
+        let machine = input::machine_file::read(&folder.join(MACHINE))?;
+        let tree = machine.to_tree();
+        let parameters = results.parameters.iter();
+        let runs = results.runs.iter().map(|(id, run)| Run {
+            id: id.to_owned(),
+            held_out: run.held_out,
+            misfit: Misfit {
+                before: run.nominal,
+                after: run.calibrated,
+            },
+            channels: Vec::new(),
+        });
+        Ok(Self {
+            name: machine_name(tree),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            units: parameters.map(|(path, _)| unit(tree, path)).collect(),
+            runs: with_curves(folder, runs.collect())?,
+            pressures: pressures(folder)?,
+            results,
+        })
+    }
 }
 
-/// What the page of the calibration in `folder` tells.
-///
-/// # Errors
-/// A file that cannot be read, or is none that a calibration writes.
-pub(crate) fn page(folder: &Path) -> Result<CalibrationPage, Failure> {
-    let results = Results::read(&folder.join(RESULTS)).map_err(Failure::input)?;
-    let machine = input::machine_file::read(&folder.join(MACHINE))?;
-    let tree = machine.to_tree();
-    let parameters = results.parameters.iter();
-    let runs = results.runs.iter().map(|(id, run)| Run {
-        id: id.to_owned(),
-        held_out: run.held_out,
-        misfit: Misfit {
-            before: run.nominal,
-            after: run.calibrated,
-        },
-        channels: Vec::new(),
-    });
-    Ok(CalibrationPage {
-        name: machine_name(tree),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        units: parameters.map(|(path, _)| unit(tree, path)).collect(),
-        runs: with_curves(folder, runs.collect())?,
-        pressures: pressures(folder)?,
-        results,
-    })
-}
-
-pub(super) fn machine_name(tree: &Value) -> String {
+pub(crate) fn machine_name(tree: &Value) -> String {
     tree["name"].as_str().unwrap_or("machine").to_owned()
 }
 
 /// The runs with their curves, where the files of these are there.
-pub(super) fn with_curves(folder: &Path, mut runs: Vec<Run>) -> Result<Vec<Run>, Failure> {
+pub(crate) fn with_curves(folder: &Path, mut runs: Vec<Run>) -> Result<Vec<Run>, Error> {
     let names = [
         "crank_angle_deg",
         "measured",
@@ -103,7 +103,7 @@ fn channel<'a>(runs: &'a mut [Run], run: &str, column: &str) -> Option<&'a mut C
 }
 
 /// The pressures of each chamber, by run and column.
-fn pressures(folder: &Path) -> Result<BTreeMap<String, BTreeMap<String, Vec<Pressure>>>, Failure> {
+fn pressures(folder: &Path) -> Result<BTreeMap<String, BTreeMap<String, Vec<Pressure>>>, Error> {
     let names = [
         "crank_angle_deg",
         "distance_m",
@@ -139,11 +139,14 @@ fn rows<const N: usize>(
     path: &Path,
     names: [&str; N],
     mut add: impl FnMut(&str, &str, [f64; N]),
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     if !path.is_file() {
         return Ok(());
     }
-    let wrong = |error: recordings::Error| Failure::input(format!("{}: {error}", path.display()));
+    let wrong = |error: recordings::Error| Error::Curves {
+        path: path.to_owned(),
+        error,
+    };
     let table: Table = read_table(path).map_err(wrong)?;
     let ids = table.values::<String>("run").map_err(wrong)?;
     let columns = table.values::<String>("channel").map_err(wrong)?;
