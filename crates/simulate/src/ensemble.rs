@@ -16,15 +16,22 @@ pub fn simulate_together<T>(
     mut keep: impl FnMut(usize, Result<Record, Error>) -> T,
 ) -> Vec<T> {
     let mut kept: Vec<_> = asked.iter().map(|_| None).collect();
-    let mut file = |index: usize, record| kept[index] = Some(keep(index, record));
+    run_groups(asked, &mut |index, record| {
+        kept[index] = Some(keep(index, record));
+    });
+    kept.into_iter().flatten().collect()
+}
+
+/// Knows nothing of what is kept, so that the equations are compiled in this crate, as fast as its profile says,
+/// and not in each that calls it.
+fn run_groups(asked: &[Asked], file: &mut File) {
     for alike in of_one_build(asked) {
         in_lanes(Group {
             asked,
             alike: &alike,
-            file: &mut file,
+            file,
         });
     }
-    kept.into_iter().flatten().collect()
 }
 
 fn start(asked: Asked) -> Result<Task, Error> {
