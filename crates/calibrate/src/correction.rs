@@ -34,7 +34,7 @@ const FITTED: usize = 5;
 /// Most evaluations of a descent for a value, and of the search that follows where no descent has reached the
 /// noise; of the latter the best few.
 const DESCENT: u64 = 60;
-const TRIALS: u64 = 300;
+const TRIED: u64 = 300;
 const SEARCHED: usize = 2;
 /// Probability from which one value alone is corrected.
 const CLEAR: f64 = 0.95;
@@ -282,7 +282,7 @@ impl Work<'_> {
         trial: &mut Trial,
         watch: &mut impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(), Error> {
-        let most = self.left().min(TRIALS);
+        let most = self.left().min(TRIED);
         if most == 0 {
             return Ok(());
         }

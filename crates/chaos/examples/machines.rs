@@ -2,7 +2,7 @@
 //! chaotic: 14 kinds, three memories of chance, two spreads, with and without a crank angle.
 //!
 //! ```sh
-//! cargo run --release -p chaos --example machines -- 1     # seed
+//! cargo run --release -p crosshead-chaos --example machines -- 1     # seed
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
 use chaos::regime::{Regime, Verdict, chance_at_a_phase, driven_verdict, verdict};

@@ -2,7 +2,7 @@
 //! noise.
 //!
 //! ```sh
-//! cargo run --release -p chaos --example recordings
+//! cargo run --release -p crosshead-chaos --example recordings
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
 use chaos::correlation_dimension::correlation_dimension;

@@ -1,7 +1,7 @@
 //! Counts the verdicts on chaotic, regular and stochastic signals.
 //!
 //! ```sh
-//! cargo run --release -p chaos --example regimes -- 2000 50     # samples, seeds
+//! cargo run --release -p crosshead-chaos --example regimes -- 2000 50     # samples, seeds
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
 use chaos::regime::{Regime, verdict};

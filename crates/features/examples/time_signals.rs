@@ -2,7 +2,7 @@
 //! with that of Python packages.
 //!
 //! ```sh
-//! cargo run --release -p features --example time_signals -- SIGNAL.txt
+//! cargo run --release -p crosshead-features --example time_signals -- SIGNAL.txt
 //! ```
 //!
 //! The file holds one sample per line, the first line its rate (Hz). Each line printed is a

@@ -1,9 +1,9 @@
 //! Counts how often the interval of the exponent covers the truth.
 //!
 //! ```sh
-//! cargo run --release -p chaos --example intervals              # systems to develop on
-//! cargo run --release -p chaos --example intervals -- held-out  # systems to be judged by
-//! cargo run --release -p chaos --example intervals -- second    # others, likewise
+//! cargo run --release -p crosshead-chaos --example intervals              # systems to develop on
+//! cargo run --release -p crosshead-chaos --example intervals -- held-out  # systems to be judged by
+//! cargo run --release -p crosshead-chaos --example intervals -- second    # others, likewise
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
 mod second;

@@ -115,7 +115,7 @@ fn what_is_hidden_is_named_and_where_nothing_is_nothing_is() {
 
 /// The figures that the whole must reach, on a bench that takes a night.
 #[test]
-#[ignore = "takes a night: cargo test -p cli --test all hidden_effects -- --ignored"]
+#[ignore = "takes a night: cargo test -p crosshead-cli --test all hidden_effects -- --ignored"]
 fn a_night_of_hidden_effects_reaches_its_figures() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("proof");

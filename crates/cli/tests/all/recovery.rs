@@ -71,7 +71,7 @@ fn random_kills_change_no_byte_and_fail_no_case() {
     kill_at_random(&one_shard(), 1, 8);
 }
 
-/// `cargo test -p cli --test all recovery -- --ignored` (minutes).
+/// `cargo test -p crosshead-cli --test all recovery -- --ignored` (minutes).
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_random_kills_of_one_shard_and_of_many() {

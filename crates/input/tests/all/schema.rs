@@ -23,7 +23,7 @@ fn the_committed_schemas_are_current() {
         assert!(
             committed == current,
             "data/schema/{file} is stale; rewrite it with\n    \
-             UPDATE=1 cargo test -p input --test all schema"
+             UPDATE=1 cargo test -p crosshead-input --test all schema"
         );
     }
 }

@@ -84,7 +84,7 @@ fn check(page: &str, name: &str, table: &str) {
         assert!(
             committed == table,
             "the table of {name} in {page} is stale; rewrite it with\n    \
-             UPDATE=1 cargo test -p input --test all tables"
+             UPDATE=1 cargo test -p crosshead-input --test all tables"
         );
     }
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use calibrate::normal::QUANTILE;
 use calibrate::Results;
 use calibrate::calibration::MACHINE;
+use calibrate::normal::QUANTILE;
 use calibrate::results::{self, Known, RESULTS, not_excluded};
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use input::bundle::Bundle;
@@ -16,7 +16,6 @@ use serde_json::Value;
 use super::{Calibration, Estimate, Relations, Sweep};
 use crate::sweep_file::{Amount, Uncertainty};
 use crate::{Error, Plan};
-
 
 impl Sweep {
     /// The plan with the calibration that `folder` holds.

@@ -112,7 +112,7 @@ fn flipped_bits_are_found() {
     assert!(flips(30) > 20);
 }
 
-/// `cargo test -p sweep --test all damage -- --ignored`.
+/// `cargo test -p crosshead-sweep --test all damage -- --ignored`.
 #[test]
 #[ignore = "takes minutes"]
 fn a_thousand_flipped_bits_are_found() {
