@@ -30,7 +30,8 @@
 //! };
 //! let record = simulate::simulate(&machine.machine, &machine.sensors, &settings, false)?;
 //! let mut noise = stream(1, 0, Purpose::Noise);
-//! let channels = simulate::measure(&record, &machine.sensors, &["throw"], &mut noise);
+//! let throws: Vec<&str> = machine.machine.throws.iter().map(|t| t.name.as_str()).collect();
+//! let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
 //! assert_eq!(channels.len(), machine.sensors.len());
 //!
 //! // The recording becomes one row of named numbers; those of measured recordings are the same.
@@ -43,8 +44,8 @@
 //!     channels: &channels,
 //! };
 //! let values = row(&window, false);
-//! let rms = names.iter().position(|(name, _)| name.name == "crosshead_acceleration.rms_m_s2");
-//! assert!(matches!(values[rms.unwrap()], Some(Cell::Number(rms)) if rms > 10.0));
+//! let kurtosis = names.iter().position(|(name, _)| name.name == "crosshead_acceleration.kurtosis");
+//! assert!(matches!(values[kurtosis.unwrap()], Some(Cell::Number(kurtosis)) if kurtosis > 1.0));
 //! # Ok(())
 //! # }
 //! ```
