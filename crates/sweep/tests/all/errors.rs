@@ -75,7 +75,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      joints.big_end.contact.dampign: [2e4 N s/m]",
-        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, relation, at_clearance, restitution, slowest_approach; did you mean 'damping'?",
+        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, relation, at_clearance, restitution, slowest_approach, length, modulus; did you mean 'damping'?",
     ),
     (
         "cases:\n  - grid:\n      crank.radius: [120 mm, 700 mm]",
