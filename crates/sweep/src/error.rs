@@ -139,7 +139,7 @@ pub enum Error {
     )]
     Password,
     /// The program was built without object storage.
-    #[error("`{}`: this program was built without object storage (feature `s3`)", .0.display())]
+    #[error("`{}`: this program was built without object storage: build it with `--features s3`", .0.display())]
     NoObjectStorage(PathBuf),
     /// Another process writes to the output folder.
     #[error("`{}` is being written by another process ({by})", path.display())]
