@@ -1,6 +1,6 @@
 //! An `f64` as a number of the equations.
 
-use crate::{Mask, Scalar, elementary, fused};
+use crate::{Lanes, Mask, Scalar, elementary, fused};
 
 impl Mask for bool {
     #[inline(always)]
@@ -65,5 +65,33 @@ impl Scalar for f64 {
     #[inline(always)]
     fn vectorised<T>(work: impl FnOnce() -> T) -> T {
         fused::vectorised(work)
+    }
+}
+
+/// One lane, for processors that have no instructions for more.
+impl Lanes<1> for f64 {
+    #[inline(always)]
+    fn to_array(self) -> [f64; 1] {
+        [self]
+    }
+    #[inline(always)]
+    fn from_array([number]: [f64; 1]) -> Self {
+        number
+    }
+    #[inline(always)]
+    fn get(&self, _lane: usize) -> f64 {
+        *self
+    }
+    #[inline(always)]
+    fn set(&mut self, _lane: usize, number: f64) {
+        *self = number;
+    }
+    #[inline(always)]
+    fn truths(mask: bool) -> [bool; 1] {
+        [mask]
+    }
+    #[inline(always)]
+    fn mask([truth]: [bool; 1]) -> bool {
+        truth
     }
 }

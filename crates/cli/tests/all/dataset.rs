@@ -115,7 +115,7 @@ fn the_bytes_do_not_depend_on_how_many_lanes_there_are() {
         bytes(&out)
     };
     let widest = run("8");
-    for narrower in ["4", "2"] {
+    for narrower in ["4", "1"] {
         assert!(run(narrower) == widest, "{narrower} lanes");
     }
 }

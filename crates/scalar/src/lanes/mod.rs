@@ -1,15 +1,14 @@
 //! Several numbers side by side: every operation acts on each lane alone.
 //!
-//! There is one type for each instruction set, whose numbers fill one register, or two of AVX2. Which of them a
-//! processor has is known when the program runs: [`in_lanes`] chooses. No other way leads to the
-//! types, so that nobody can use them on a processor that lacks them.
+//! There is one type for each instruction set, whose numbers fill one register, or two of AVX2. Where the processor
+//! has neither, a plain number is the one lane. Which of them it has is known when the program runs: [`in_lanes`]
+//! chooses. No other way leads to the types, so nobody can use them on a processor that lacks them.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod operations;
-mod portable;
 
 pub use operations::Lanes;
 
@@ -26,7 +25,7 @@ pub trait InLanes {
 /// The environment variable that holds the width of registers down.
 pub const WIDTH_VARIABLE: &str = "CROSSHEAD_LANES";
 
-/// Does `work` in lanes: 8 in a register of AVX-512 or in two of AVX2, 2 elsewhere. The results do not depend on
+/// Does `work` in lanes: 8 in a register of AVX-512 or in two of AVX2, 1 elsewhere. The results do not depend on
 /// it.
 pub fn in_lanes<T: InLanes>(work: T) -> T::Output {
     match width() {
@@ -34,11 +33,11 @@ pub fn in_lanes<T: InLanes>(work: T) -> T::Output {
         8 => work.run::<avx512::F64x8, 8>(),
         #[cfg(target_arch = "x86_64")]
         4 => work.run::<avx2::F64x8, 8>(),
-        _ => work.run::<portable::F64x2, 2>(),
+        _ => work.run::<f64, 1>(),
     }
 }
 
-/// How many numbers the registers hold that [`in_lanes`] takes: 8 with AVX-512, 4 with AVX2, 2 elsewhere.
+/// How many numbers the registers hold that [`in_lanes`] takes: 8 with AVX-512, 4 with AVX2, 1 elsewhere.
 /// `CROSSHEAD_LANES` in the environment holds them down, for those who want to measure what they are worth; it
 /// never asks for more than the processor has.
 pub fn width() -> usize {
@@ -47,7 +46,7 @@ pub fn width() -> usize {
         let asked = std::env::var(WIDTH_VARIABLE).ok();
         let most = asked.and_then(|text| text.parse().ok());
         let most = most.unwrap_or(usize::MAX);
-        widths().into_iter().find(|w| *w <= most).unwrap_or(2)
+        widths().into_iter().find(|w| *w <= most).unwrap_or(1)
     })
 }
 
@@ -56,11 +55,11 @@ fn widths() -> Vec<usize> {
     #[cfg(target_arch = "x86_64")]
     {
         let has = [avx512::is_present(), avx2::is_present(), true];
-        let widths = [8, 4, 2].into_iter().zip(has);
+        let widths = [8, 4, 1].into_iter().zip(has);
         widths.filter_map(|(w, has)| has.then_some(w)).collect()
     }
     #[cfg(not(target_arch = "x86_64"))]
-    vec![2]
+    vec![1]
 }
 
 /// Does `work` in lanes of every width that this processor has: for tests.
@@ -70,7 +69,7 @@ pub fn in_all_lanes<T: InLanes + Copy>(work: T) -> Vec<T::Output> {
         8 => work.run::<avx512::F64x8, 8>(),
         #[cfg(target_arch = "x86_64")]
         4 => work.run::<avx2::F64x8, 8>(),
-        _ => work.run::<portable::F64x2, 2>(),
+        _ => work.run::<f64, 1>(),
     };
     widths().into_iter().map(run).collect()
 }
@@ -115,6 +114,6 @@ mod tests {
     fn each_lane_has_the_bits_of_the_plain_number_at_every_width() {
         let widths = in_all_lanes(Bits);
         assert_eq!(widths.len(), super::widths().len());
-        assert_eq!(widths.last(), Some(&2));
+        assert_eq!(widths.last(), Some(&1));
     }
 }
