@@ -2,37 +2,20 @@
 //! pictures are drawn from.
 
 use crate::comparison::compare;
-use crate::earlier::{self, Earlier};
+use crate::earlier::{self, Earlier, Existing};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::meter::Meter;
 use crate::pictures;
 use crate::pressure_gap::pressure_gaps;
 use crate::problem::Problem;
-use crate::results::{Found, RESULTS, Results};
+use crate::results::{Found, MACHINE, RESULTS, Results};
 use crate::sensors::{Fitted, Sensors};
 use crate::stages::{self, Searched, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
 use recordings::WholeFile;
 use std::path::{Path, PathBuf};
-
-/// Name of the calibrated machine.
-pub const MACHINE: &str = "machine.yaml";
-
-/// What becomes of a calibration that is there already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
-    /// It is left alone, and that is an error.
-    Refuse,
-    /// It is kept where it is complete and goes on where it is not; one of other recordings,
-    /// another machine or other settings is an error.
-    Resume,
-    /// The same, but one that was made from something else is made anew.
-    Renew,
-    /// It is made anew.
-    Overwrite,
-}
 
 /// A calibration that is on the disk.
 #[derive(Clone, Debug)]

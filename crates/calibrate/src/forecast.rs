@@ -1,11 +1,13 @@
 //! What a fitted machine shows in a run, with the uncertainty that its parameters leave.
 
+use crate::bounded::Bounded;
 use crate::error::Error;
 use crate::normal::QUANTILE;
 use crate::observation::{Observed, POINTS};
 use crate::prediction::{Prediction, predict, predict_with_derivatives};
 use crate::relation::Relation;
-use crate::transfer::{Bounded, Case, Fitted};
+use crate::transfer::case::Case;
+use crate::transfer::refit::Fitted;
 use nalgebra::DVector;
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};

@@ -17,6 +17,7 @@
 //! Weights come from that noise alone.
 
 pub mod alignment;
+mod bounded;
 pub mod bundle;
 pub mod bundle_replay;
 pub mod calibration;
@@ -62,10 +63,12 @@ pub mod throw_alone;
 pub mod transfer;
 pub mod zero;
 
-pub use calibration::{Calibrated, Existing, Prepared, prepare};
+pub use bounded::Bounded;
+pub use calibration::{Calibrated, Prepared, prepare};
 pub use comparison::{Comparison, compare, compare_models};
 pub use correction::{Corrected, Correction, Depth, correct};
 pub use crank_motion::CrankMotion;
+pub use earlier::Existing;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use halves::nearer_half;

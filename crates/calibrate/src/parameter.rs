@@ -1,7 +1,6 @@
 //! What is fitted: paths of the machine file, and the coordinates in which they are searched.
 
 use crate::error::Error;
-use crate::run_condition::CRANK_ANGLE_OFFSET;
 use input::paths;
 use input::unit::{self, Dimension, Measure};
 use serde_json::Value;
@@ -25,27 +24,6 @@ pub struct Parameter {
     pub scale: Scale,
     /// Least and greatest value, SI.
     pub bounds: [f64; 2],
-}
-
-/// The unit of the value at `path` of the machine file `tree`, as a run's condition or for the machine; empty
-/// for a pure number.
-pub fn unit(tree: &Value, path: &str) -> String {
-    let offset = format!(".{path}");
-    if offset.ends_with(&format!(".{CRANK_ANGLE_OFFSET}")) {
-        return "rad".to_owned();
-    }
-    // A value of one run alone stands behind the run's name.
-    let names = offset.match_indices('.').map(|(i, _)| &offset[i + 1..]);
-    let value = names
-        .filter_map(|name| paths::get(tree, name).ok().flatten())
-        .next();
-    let measure = value
-        .and_then(Value::as_str)
-        .and_then(|text| unit::parse(text).ok());
-    match measure {
-        Some(measure) if measure.dimension != Dimension::NONE => measure.dimension.to_string(),
-        _ => String::new(),
-    }
 }
 
 /// The scale on which a parameter is searched.

@@ -30,6 +30,8 @@ pub use relations::{Relations, bounds_of_not_excluded, not_excluded};
 
 /// Name of the file of results.
 pub const RESULTS: &str = "calibration.json";
+/// Name of the calibrated machine.
+pub const MACHINE: &str = "machine.yaml";
 
 /// What a calibration finds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -5,6 +5,9 @@ mod fingerprint;
 mod fit_settings;
 mod parameters;
 mod relation;
+mod settings;
+
+pub use settings::Settings;
 
 use crate::crank_motion::CrankMotion;
 use crate::error::Error;
@@ -15,12 +18,9 @@ use crate::prediction::predict;
 use crate::problem::{Problem, columns};
 use crate::{alignment, bundle, contradiction, zero};
 use input::bundle_channel::Meaning;
-use input::calibration::Calibration;
 use input::{MachineFile, paths};
-use serde_json::Value;
 use signal::crank_angle::CrankAngle;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Change of a run's zero of the crank angle that is worth another fit, rad: a tenth of the noise of
 /// usual lines.
@@ -29,27 +29,6 @@ const ALIGNED: f64 = 1e-5;
 /// Relative difference from which a measured speed takes the place of the stated one: an encoder
 /// tells it better than a recording's other errors.
 const SPEED: f64 = 2e-5;
-
-/// What is calibrated, and how.
-pub struct Settings<'a> {
-    /// The settings as a file has them.
-    pub calibration: &'a Calibration,
-    /// The folder from which their paths start.
-    pub base: &'a Path,
-    /// The tree of the machine file, in the place of the file that the settings name.
-    pub machine: Option<&'a Value>,
-    /// Whether its bundles may name recordings outside of their folders.
-    pub allow_outside: bool,
-    /// Gives a mistake in the settings the place where they stand.
-    pub locate: &'a dyn Fn(input::Error) -> input::Error,
-}
-
-impl Settings<'_> {
-    /// Whether there is a machine file beside the bundle's machine section.
-    fn has_machine_file(&self) -> bool {
-        self.machine.is_some() || self.calibration.machine.is_some()
-    }
-}
 
 /// What a calibration works on.
 pub struct Task {

@@ -1,7 +1,8 @@
 //! How the relations between clearances compare, and which of them the recordings leave.
 
+use crate::bounded::Bounded;
 use crate::relation::Relation;
-use crate::transfer::{Bounded, Decision, Hypothesis};
+use crate::transfer::{Decision, Hypothesis};
 use scalar::elementary::exp;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};

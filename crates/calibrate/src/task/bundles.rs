@@ -1,6 +1,6 @@
 //! The bundles that settings name, and their runs.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::bundle;
 use crate::error::Error;
 use crate::observation::Run;

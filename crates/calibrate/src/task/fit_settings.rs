@@ -1,6 +1,6 @@
 //! How it is fitted, and which runs are held out.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::fit::{FitSettings, Optimiser};
 use crate::observation::Run;

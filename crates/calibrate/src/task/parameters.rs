@@ -1,6 +1,6 @@
 //! Which parameters are fitted.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::observation::Run;
 use crate::parameter::Parameter;

@@ -1,6 +1,6 @@
 //! How contact parameters follow the clearance: `--relation`, or what stands in for it.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::observation::Run;
 use crate::parameter::Parameter;
