@@ -12,7 +12,7 @@ use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::{CrankAngle, unwrap};
 use signal::order_lines::OrderLines;
 use signal::synchronous_average::SynchronousAverage;
-use simulate::{Settings, Transient, simulate, simulate_later};
+use simulate::{LONGEST_PERIOD, Settings, Transient, simulate, simulate_later};
 use std::f64::consts::TAU;
 
 /// Relative local error of the integration.
@@ -24,8 +24,6 @@ const AT_MOST: u32 = 100;
 /// Share of a signal's mean square up to which what does not repeat every revolution is passed over;
 /// resampling leaves 1e-8.
 const EVERY_REVOLUTION: f64 = 1e-6;
-/// Longest period of a settled motion, revolutions.
-const LONGEST_CYCLE: u32 = 4;
 
 /// What the model has in place of a recording.
 #[derive(Clone, Debug)]
@@ -121,7 +119,7 @@ pub fn replay(
         same = true;
         let revolution = TAU / speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
         let mut least = apart(&chosen.series, &recordings);
-        for shift in 1..LONGEST_CYCLE {
+        for shift in 1..LONGEST_PERIOD {
             let later = delay + f64::from(shift) * revolution;
             let other = instants.record(&machine, later).map_err(failed)?;
             let difference = apart(&other.series, &recordings);

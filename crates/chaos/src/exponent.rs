@@ -8,6 +8,7 @@
 //! predict better than the smooth one (a law with corners or jumps), their tangents tell the exponent. It
 //! knows nothing of states that the delay vectors do not hold.
 
+use crate::blocks::{block_means, mean};
 use crate::delay::Times;
 use crate::dimension::unfolding;
 use crate::divergence::rosenstein;
@@ -48,9 +49,7 @@ const TRIAL: usize = 4000;
 const TRIAL_PASSES: usize = 1;
 const PASSES: usize = 3;
 const SECOND_PASSES: usize = 2;
-/// Blocks for the standard error over time.
-const BLOCKS: usize = 20;
-/// Two-sided 95 % quantile of Student's t for as many blocks.
+/// Two-sided 95 % quantile of Student's t for [`BLOCKS`](crate::blocks::BLOCKS) blocks.
 const QUANTILE: f64 = 2.093;
 /// Fewest samples of a signal (after taking means).
 const FEWEST: usize = 300;
@@ -308,10 +307,7 @@ impl Growth {
 
     fn along(model: &Model, linear: &Linear, of_map: f64) -> Self {
         let growth = linear.growth();
-        let blocks: Vec<f64> = growth
-            .chunks_exact((growth.len() / BLOCKS).max(1))
-            .map(mean)
-            .collect();
+        let blocks = block_means(&growth);
         let next = &model.signal[model.basis.span() + 1..];
         let squares = linear.values.iter().zip(next).map(|(v, x)| (v - x).powi(2));
         Self {
@@ -321,10 +317,6 @@ impl Growth {
             missed: squares.sum::<f64>() / next.len() as f64,
         }
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Sample variance.

@@ -3,6 +3,7 @@
 //! Everything is a pure function of the samples: the same signal gives the same numbers.
 
 pub mod autocorrelation;
+mod blocks;
 pub mod classical;
 pub mod correlation_dimension;
 mod cycles;

@@ -1,6 +1,7 @@
 //! Largest exponent after Wolf, Swift, Swinney and Vastano 1985: a neighbour is followed for a fixed
 //! time, then replaced by one that lies in nearly the same direction.
 
+use crate::blocks::{block_means, mean};
 use crate::error::{Error, checked};
 use crate::neighbours::{Delays, Neighbours};
 
@@ -10,8 +11,6 @@ const CHOICE: usize = 20;
 const LEFT_OUT: usize = 3;
 /// Fewest steps with a neighbour.
 const FEWEST: usize = 40;
-/// Blocks for the standard error.
-const TIME_BLOCKS: usize = 20;
 
 /// What following one neighbour after the other gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,9 +73,7 @@ pub fn wolf(delays: &Delays, theiler: usize, steps: usize) -> Result<Wolf, Error
         });
     }
     let growth: Vec<f64> = before.iter().zip(&after).map(|(b, a)| a - b).collect();
-    let blocks: Vec<f64> = (growth.chunks_exact(growth.len() / TIME_BLOCKS))
-        .map(mean)
-        .collect();
+    let blocks = block_means(&growth);
     let value = mean(&growth);
     let spread: f64 = blocks.iter().map(|b| (b - value).powi(2)).sum();
     let found = Wolf {
@@ -103,10 +100,6 @@ fn separation(delays: &Delays, a: usize, b: usize) -> Vec<f64> {
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 #[cfg(test)]

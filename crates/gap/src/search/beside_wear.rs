@@ -154,9 +154,8 @@ fn each(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{effort, problem_of};
+    use crate::fixture::{effort, fitter, problem_of};
     use serde_json::json;
-    use std::ops::ControlFlow;
 
     #[test]
     fn an_effect_that_shows_in_a_worn_joint_alone_is_found_with_the_wear() {
@@ -167,11 +166,7 @@ mod tests {
         ]));
         problem.runs.truncate(1);
         let effort = effort();
-        let fitter = Fitter {
-            effort: &effort,
-            watch: &|| ControlFlow::Continue(()),
-            say: &|_, _| (),
-        };
+        let fitter = fitter(&effort);
         let candidate = |label: &str| {
             let mut all = Candidate::all(&problem).into_iter();
             all.find(|candidate| candidate.label() == label).unwrap()

@@ -66,18 +66,13 @@ mod tests {
     use crate::candidate::Candidate;
     use crate::criteria::evidence;
     use crate::finding::Likeness;
-    use crate::fixture::{effort, problem};
-    use std::ops::ControlFlow;
+    use crate::fixture::{effort, fitter, problem};
 
     #[test]
     fn what_the_screening_passed_over_is_fitted_where_it_is_like_the_effect() {
         let problem = problem();
         let effort = effort();
-        let fitter = Fitter {
-            effort: &effort,
-            watch: &|| ControlFlow::Continue(()),
-            say: &|_, _| (),
-        };
+        let fitter = fitter(&effort);
         let candidate = |name: &str| Candidate::first(&problem, name);
         let before = Model::at(problem.clone(), &[0.0], &effort).unwrap();
         let force = candidate("misalignment");

@@ -12,7 +12,7 @@ pub(crate) mod recordings;
 mod write;
 
 pub use read::{ParquetFile, read_table, rows_of_footer};
-pub use write::{TableWriter, write_table};
+pub use write::{PENDING_ROWS, TableWriter, write_table};
 
 /// Rows of a group in a table of samples.
 pub const ROWS_PER_GROUP: usize = 65_536;

@@ -28,7 +28,7 @@ const ELEMENT: &str = "element";
 const PENDING_SAMPLES: usize = 1 << 18;
 
 /// Rows that are collected before they are encoded together.
-const PENDING_ROWS: usize = 1 << 12;
+pub const PENDING_ROWS: usize = 1 << 12;
 
 /// Bytes of a page before compression: a column collects as many, and so does what compresses them.
 const PAGE_BYTES: usize = 1 << 18;
