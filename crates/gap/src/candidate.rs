@@ -29,14 +29,6 @@ const MEASURE: &str = "measure";
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
-/// The suction valve's throttling is told by the effect that holds it already, where there is one.
-const HELD: &str = "suction_unloading";
-const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
-/// The law of no name.
-pub const FORCE: &str = "empirical_force";
-/// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
-/// clearance volume and exponents imitate it, so that it has to earn its place.
-pub(crate) const ZERO: &str = "crank_angle_offset";
 
 impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
@@ -45,13 +37,17 @@ impl Candidate {
         let known = shows_pressure(problem);
         let both_ends = has_crank_end(&problem.tree) && tells_ends_apart(problem);
         let mut all = Vec::new();
+        // The zero of the crank angle is fitted from the start, unless pressures are all that was recorded.
+        // Clearance volume and exponents imitate its effect on pressures, so that it has to earn its place.
         let zero = !problem
             .parameters
             .iter()
             .any(calibrate::Parameter::is_crank_angle_offset)
             && is_of_pressures(problem);
-        let looked_for =
-            |entry: &&Entry| entry.proposal != Proposal::Separately && (zero || entry.name != ZERO);
+        let looked_for = |entry: &&Entry| match entry.proposal {
+            Proposal::CrankAngleZero => zero,
+            proposal => !proposal.is_separate(),
+        };
         for entry in CATALOGUE.iter().filter(looked_for) {
             for place in places(entry, &throws, both_ends) {
                 if is_series(entry) && recorded(problem, &place) == Some(1) {
@@ -63,7 +59,7 @@ impl Candidate {
                 let ends = entry.places.iter().filter(|c| own && c.key == EITHER);
                 let ends = ends.map(|choice| choice.words).next().unwrap_or_default();
                 for mut fixed in orders(entry) {
-                    fixed.extend(throttled(entry, &place, problem));
+                    fixed.extend(included(entry, &place, problem));
                     let place = place.clone();
                     let candidate = Self {
                         entry,
@@ -112,7 +108,9 @@ impl Candidate {
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
         let measures = |(_, word): &(&str, String)| word == PRESSURE;
-        self.entry.kind == Kind::Gas || self.entry.name == ZERO || self.place.iter().any(measures)
+        self.entry.kind == Kind::Gas
+            || self.entry.proposal == Proposal::CrankAngleZero
+            || self.place.iter().any(measures)
     }
 
     /// Whether it acts on gas whose pressure was recorded, so that the pressures tell it by themselves.
@@ -242,7 +240,7 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if self.entry.name == FORCE
+        if self.entry.proposal == Proposal::ForceLaw
             && let Some(section) = item[self.entry.name].as_object_mut()
         {
             // Terms that are left out have no effect, and constants are as usual.
@@ -351,20 +349,25 @@ fn recorded(problem: &Problem, place: &[(&'static str, String)]) -> Option<usize
     (!all.is_empty()).then(|| all.iter().filter(|here| **here).count())
 }
 
-/// What an effect of the machine at the same place tells already, at the value where it vanishes.
-fn throttled(
+/// The parameter that an effect of the machine at the same place includes already, at the value where it vanishes.
+fn included(
     entry: &Entry,
     place: &[(&'static str, String)],
     problem: &Problem,
 ) -> Option<(usize, f64)> {
-    let [name, key] = THROTTLED;
+    let of_holder = |holder: &'static Entry| {
+        let mut included = holder.includes().iter();
+        let (_, key) = included.find(|(name, _)| *name == entry.name)?;
+        Some((holder.name, *key))
+    };
+    let (holder, key) = CATALOGUE.iter().find_map(of_holder)?;
     let index = entry.parameters.iter().position(|p| p.key == key)?;
     let absent = entry.parameters[index].absent?;
     let effects = problem.tree.get("effects").and_then(Value::as_array);
     let held = effects
         .into_iter()
         .flatten()
-        .filter_map(|item| item.get(HELD));
+        .filter_map(|item| item.get(holder));
     let mut ends: Vec<&str> = held
         .map(|section| section[EITHER].as_str().unwrap_or(""))
         .collect();
@@ -372,8 +375,7 @@ fn throttled(
     let asked = place.iter().find(|(key, _)| *key == EITHER);
     let asked = asked.map_or("", |(_, end)| end.as_str());
     let everywhere = ends.contains(&"") || ends == ["crank", "head"];
-    (entry.name == name && (everywhere || (!asked.is_empty() && ends.contains(&asked))))
-        .then_some((index, absent))
+    (everywhere || (!asked.is_empty() && ends.contains(&asked))).then_some((index, absent))
 }
 
 /// The places where an effect can act. Without a throw of its own an effect acts at all of them;

@@ -55,8 +55,7 @@ pub fn expression<'a>(terms: impl IntoIterator<Item = (&'a str, f64)>) -> String
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::FORCE;
-    use input::effects::entry;
+    use input::effects::{Proposal, proposed};
 
     #[test]
     fn a_law_is_told_in_words_of_the_model() {
@@ -78,7 +77,10 @@ mod tests {
 
     #[test]
     fn every_term_of_the_effect_has_a_symbol() {
-        let keys = entry(FORCE).unwrap().amplitudes().map(|p| p.key);
+        let keys = proposed(Proposal::ForceLaw)
+            .unwrap()
+            .amplitudes()
+            .map(|p| p.key);
         assert!(keys.eq(SYMBOLS.iter().map(|(key, _)| *key)));
     }
 }

@@ -15,7 +15,7 @@ use calibrate::{Settings, compare_models, pictures, task};
 use input::MachineFile;
 use input::bundle::Bundle;
 use input::calibration::Calibration;
-use input::effects::{Entry, Proposal};
+use input::effects::Entry;
 use recordings::WholeFile;
 use serde_json::Value;
 use std::path::Path;
@@ -78,9 +78,7 @@ pub fn into_folder(
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let baseline = before.problem.fitted(&before.x)?;
     // What was taken off the recordings is in no simulation that is compared with them.
-    let explained = machine(&explanation, |effect| {
-        effect.proposal != Proposal::Separately
-    })?;
+    let explained = machine(&explanation, |effect| !effect.proposal.is_separate())?;
     for (folder, tree, model) in [
         ("simulated", explained, after),
         ("baseline", baseline, before),

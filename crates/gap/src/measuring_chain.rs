@@ -1,12 +1,12 @@
 //! What is wrong with the measuring and not with the machine: told as effects like any other.
 
-use crate::candidate::{Candidate, ZERO};
+use crate::candidate::Candidate;
 use crate::criteria::{Evidence, evidence};
 use crate::finding::{Found, Tried};
 use crate::mains_hum::Hum;
 use crate::model::Model;
 use calibrate::fit::Estimate;
-use input::effects::{Entry, entry};
+use input::effects::{Entry, Proposal, proposed};
 
 /// An encoder is set to a dead centre within this, rad (a tenth of a degree): less is no finding.
 const SET: f64 = 1.7e-3;
@@ -22,7 +22,7 @@ pub(crate) fn crank_angle_offset(
     let mut offsets = estimates
         .iter()
         .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
-    let (Some(estimate), Some(entry)) = (offsets.next(), entry(ZERO)) else {
+    let (Some(estimate), Some(entry)) = (offsets.next(), proposed(Proposal::CrankAngleZero)) else {
         return Ok(None);
     };
     let clear = estimate
@@ -42,7 +42,7 @@ pub(crate) fn crank_angle_offset(
 
 /// A hum as an effect.
 pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
-    let entry = entry("mains_hum")?;
+    let entry = proposed(Proposal::Hum)?;
     let of = |key: &str, start: f64| match key {
         "amplitude" => hum.amplitude,
         "frequency" => hum.frequency,

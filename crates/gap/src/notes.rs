@@ -6,6 +6,7 @@ use crate::explain::Explanation;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
+use input::effects::Proposal;
 use std::f64::consts::PI;
 
 /// Correlation from which two estimates are one.
@@ -84,7 +85,8 @@ fn correlated(explanation: &Explanation) -> Vec<String> {
 /// At which crank angle a held suction valve closes, as a sentence, where `key` says how long it is
 /// held and one end of one cylinder is meant.
 pub(crate) fn closing(item: &Candidate, key: &str, held: f64) -> Option<String> {
-    if !(item.entry.name == "suction_unloading" && key == "held") {
+    let is_held = item.entry.parameter(key)?.on_the_stroke;
+    if item.entry.proposal != Proposal::PerEnd || !is_held {
         return None;
     }
     let after = held.to_degrees();

@@ -3,7 +3,7 @@
 //! Values are SI, misfits are in standard deviations of the noise: 1 is noise alone. The same inputs give
 //! the same bytes.
 
-use crate::candidate::{Candidate, FORCE};
+use crate::candidate::Candidate;
 use crate::criteria::{Evidence, Verdict};
 use crate::effort::Effort;
 use crate::error::Error;
@@ -20,6 +20,7 @@ use calibrate::fit;
 use calibrate::pressure_gap::PressureGap;
 use calibrate::recorded_sensor::RecordedSensor;
 use calibrate::results::{ByName, Estimate};
+use input::effects::Proposal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -345,6 +346,7 @@ fn of_items(
         let closes = parameters
             .iter()
             .filter_map(|(key, p)| closing(&item, key, p.value));
+        let is_law = item.entry.proposal == Proposal::ForceLaw;
         let terms = || parameters.iter().map(|(key, p)| (*key, p.value));
         let place = |place: Option<&str>| place.map(str::to_owned);
         let rivals = found.rivals.iter();
@@ -357,7 +359,7 @@ fn of_items(
             sentence: std::iter::once(item.entry.sentence.to_owned())
                 .chain(closes)
                 .collect(),
-            expression: (item.entry.name == FORCE).then(|| expression(terms())),
+            expression: is_law.then(|| expression(terms())),
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
             rivals: rivals.map(|tried| Other::of(tried, Some(found))).collect(),

@@ -8,7 +8,7 @@
 //! them, on resamples. The terms that are stable are fitted in full, and the library is regressed
 //! again at that fit, until the same terms come out.
 
-use crate::candidate::{Candidate, FORCE, throws};
+use crate::candidate::{Candidate, throws};
 use crate::criteria::NOISE;
 use crate::error::Error;
 use crate::finding::{Tried, effects};
@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::moves::linearised::{Linearised, groups};
 use crate::moves::missing_force::{MissingForce, missing_force};
 use calibrate::Problem;
-use input::effects::entry;
+use input::effects::{Proposal, proposed};
 
 /// Most evaluations of the fit with all terms.
 const DENSE: u64 = 400;
@@ -38,7 +38,7 @@ pub(crate) struct Force {
 
 /// The effect with all its terms free, at each throw that does not have it.
 fn libraries(problem: &Problem) -> Vec<Candidate> {
-    let Some(entry) = entry(FORCE) else {
+    let Some(entry) = proposed(Proposal::ForceLaw) else {
         return Vec::new();
     };
     let names = throws(&problem.tree).into_iter();

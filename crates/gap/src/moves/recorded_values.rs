@@ -3,7 +3,7 @@
 use crate::recorded::is_pressure;
 use calibrate::Problem;
 use calibrate::observation::{Observation, Observed};
-use input::effects::Entry;
+use input::effects::{Entry, Kind, Parameter, Proposal};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -12,17 +12,18 @@ const RIPPLE: usize = 12;
 
 /// What the recordings show of this effect, as values (SI) of its parameters; none where they show nothing.
 pub(crate) fn recorded_values(entry: &Entry, problem: &Problem) -> Option<Vec<f64>> {
-    match entry.name {
-        "speed_fluctuation" => fluctuation(problem),
-        "valve_flutter" => {
-            let usual = entry.parameters.iter().map(|p| match p.key {
-                "frequency" => ripple(problem).map(|f| f.clamp(p.bounds[0], p.bounds[1])),
-                _ => Some(p.start),
-            });
-            usual.collect()
-        }
-        _ => None,
+    if entry.proposal == Proposal::CrankSpeed {
+        return fluctuation(problem);
     }
+    let is_frequency = |p: &Parameter| p.unit == "Hz";
+    if entry.kind != Kind::Gas || !entry.parameters.iter().any(is_frequency) {
+        return None;
+    }
+    let values = entry.parameters.iter().map(|p| match is_frequency(p) {
+        true => ripple(problem).map(|f| f.clamp(p.bounds[0], p.bounds[1])),
+        false => Some(p.start),
+    });
+    values.collect()
 }
 
 /// The fluctuation of the speed that the encoders show, as values of the effect: amplitude and phase

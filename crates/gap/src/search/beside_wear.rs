@@ -14,10 +14,9 @@ use crate::model::Model;
 use crate::moves::screen::Screened;
 use crate::moves::signature::rivals;
 use crate::search::refit::Rough;
+use input::effects::Proposal;
 use rayon::prelude::*;
 
-/// The effect that wear is.
-const WEAR: &str = "extra_clearance";
 /// The play that is tried, over the effect's usual one. From each to the next is about as far as a descent goes.
 const TIMES: [f64; 5] = [1.2, 1.8, 2.7, 4.0, 6.0];
 /// In how many joints, the most promising first.
@@ -68,7 +67,7 @@ fn worn(
     rough: &[Rough],
     screened: &[Screened],
 ) -> Result<Option<([Start; 2], Model)>, Error> {
-    let is_wear = |candidate: &&Candidate| candidate.entry.name == WEAR;
+    let is_wear = |candidate: &&Candidate| candidate.entry.proposal == Proposal::Wear;
     let others = rough.iter().filter(|rough| !is_wear(&&rough.candidate));
     let others: Vec<&Rough> = others.take(BESIDE).collect();
     let joints = screened.iter().map(|s| &s.candidate).filter(is_wear);
