@@ -6,6 +6,7 @@
 //! taken for the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and for the speed
 //! when its name ends in `rpm`. Text, cells, structures, and complex and sparse arrays are left out.
 
+use super::recording_format::{RecordingFormat, Seen, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
     one_rate, seconds_per_unit, selected,
@@ -119,8 +120,24 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
     }
 }
 
+/// MAT as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "MAT",
+    endings: &["mat"],
+    signature_at: Some(126),
+    recognise: |head| {
+        if has(head, 0, b"MATLAB 7.3") || has(head, 512, b"\x89HDF\r\n\x1a\n") {
+            let words = "a MAT file of version 7.3 (HDF5); save it with `-v7`";
+            return Some(Seen::Unreadable(words));
+        }
+        let is_mat = has(head, 126, b"IM") || has(head, 126, b"MI");
+        is_mat.then_some(Seen::Readable("a MAT file"))
+    },
+    open,
+};
+
 /// Opens a file.
-pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
+fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let (big_endian, variables) = scan(path)?;
     let (scalars, arrays): (Vec<_>, Vec<_>) =
         variables.into_iter().partition(|v| v.rows * v.columns == 1);

@@ -12,7 +12,7 @@
 mod blanks;
 mod clock;
 pub(crate) mod expansion;
-mod kind;
+mod format;
 mod names;
 mod open;
 mod windows;

@@ -8,11 +8,22 @@
 //!
 //! Read are the files of this program, flat ROS 2 messages of other programs, and messages in JSON.
 
-pub(crate) mod read;
+mod read;
 mod ros2;
 mod write;
 
 pub use write::{Channel, Recording, write};
+
+use super::recording_format::{RecordingFormat, Seen, has};
+
+/// MCAP as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "MCAP",
+    endings: &["mcap"],
+    signature_at: Some(0),
+    recognise: |head| has(head, 0, b"\x89MCAP").then_some(Seen::Readable("an MCAP file")),
+    open: read::open,
+};
 
 /// The topic of the samples.
 pub const TOPIC: &str = "/crosshead";

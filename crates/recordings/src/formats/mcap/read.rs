@@ -4,6 +4,7 @@
 //! as this program writes them. Memory is that of the longest record, and at most that of a
 //! decompressed block.
 
+use super::super::guarded::guarded;
 use super::ros2::{Field, decode, fields};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
@@ -263,7 +264,7 @@ impl Stream {
     fn next(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
         let path = self.path.clone();
         let contradiction = || damaged(&path, "its chunks and records contradict each other");
-        super::super::guarded(|| self.advance(take), contradiction)
+        guarded(|| self.advance(take), contradiction)
     }
 
     fn advance(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {

@@ -283,7 +283,7 @@ fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Err
 /// The result of `read`: the Parquet library takes some damage to page headers (one flipped byte in 2000) for a mistake of
 /// its own.
 fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-    super::super::guarded(read, || damaged(path)("its pages contradict each other"))
+    super::super::guarded::guarded(read, || damaged(path)("its pages contradict each other"))
 }
 
 fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
