@@ -190,6 +190,9 @@ macro_rules! to_its_end {
 /// Levenberg and Marquardt's method within bounds (Levenberg 1944, Marquardt 1963; bounds after
 /// Branch, Coleman and Li 1999), from `start`. Ends where a step no longer changes the sum of
 /// squares by the share `change`.
+///
+/// # Errors
+/// An optimiser that cannot start or go on. A search that `watch` stops is no error: its best point is the result.
 pub fn levenberg_marquardt(
     problem: &impl LeastSquares,
     start: &[f64],
@@ -207,6 +210,9 @@ pub fn levenberg_marquardt(
 
 /// CMA-ES within bounds (Hansen 2016), from `start`, with an initial standard deviation of a
 /// quarter of the widths of the bounds.
+///
+/// # Errors
+/// As [`levenberg_marquardt`].
 pub fn cma_es(
     problem: &impl LeastSquares,
     start: &[f64],
@@ -251,6 +257,9 @@ impl Default for Genetic {
 }
 
 /// The genetic algorithm within bounds.
+///
+/// # Errors
+/// As [`levenberg_marquardt`].
 pub fn genetic(
     problem: &impl LeastSquares,
     settings: &Genetic,

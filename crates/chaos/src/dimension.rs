@@ -52,6 +52,10 @@ impl Unfolding {
 }
 
 /// What each further coordinate does to nearest neighbours, up to `largest` coordinates.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `largest` and `times`, or a `largest` outside 1 to
+/// [`LARGEST_DIMENSION`] − 1.
 pub fn unfolding(signal: &[f64], times: &Times, largest: usize) -> Result<Unfolding, Error> {
     let (_, deviation) = checked(signal)?;
     if !(1..LARGEST_DIMENSION).contains(&largest) {

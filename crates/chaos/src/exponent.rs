@@ -108,6 +108,10 @@ impl Exponent {
 }
 
 /// The largest exponent of a signal.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for a map, one to which no map can be fitted, or one whose
+/// dynamics noise hides.
 pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let (mean, deviation) = checked(signal)?;
     let samples = (times.delay / LONGEST_DELAY + 1).min(times.delay);

@@ -84,6 +84,10 @@ const POWER: f64 = 0.7;
 const POWERS: [f64; 2] = [0.5, 2.0];
 
 /// The scatter of a signal with `per_cycle` samples in each cycle of its drive.
+///
+/// # Errors
+/// A signal that [`checked`] refuses, fewer than 8 samples in a cycle, fewer than [`FEWEST_CYCLES`] cycles, or cycles that
+/// do not differ.
 pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
     let (_, deviation) = checked(signal)?;
     if per_cycle < FEWEST_SAMPLES {

@@ -102,6 +102,9 @@ const PREDICTOR: Model = Model {
 };
 
 /// The verdict on a signal.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for one of the tests that it comes to.
 pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     checked(signal)?;
     let similarity = similarity(signal);
@@ -238,6 +241,9 @@ fn parting(signal: &[f64], times: &Times) -> Result<Growth, Error> {
 /// The verdict on a signal with `per_cycle` samples in each cycle of a drive that repeats more than half
 /// of it; `None` where the drive repeats less: then [`verdict`] serves, and whether chance enters at
 /// some phase of the drive ([`chance_at_a_phase`]).
+///
+/// # Errors
+/// As [`scatter`].
 pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict>, Error> {
     let (regime, scatter) = of_scatter(signal, per_cycle)?;
     if scatter.share * scatter.share > HALF {
@@ -260,6 +266,9 @@ pub fn chance_at_a_phase(signal: &[f64], per_cycle: usize) -> bool {
 }
 
 /// Whether the signal is better predicted than its surrogates are (Theiler et al. 1992).
+///
+/// # Errors
+/// A signal that is too short for `times`.
 pub fn predictability(signal: &[f64], times: &Times) -> Result<Comparison, Error> {
     let needed = 10 * times.delay + 2 * times.theiler + 100;
     let too_short = Error::TooShort {

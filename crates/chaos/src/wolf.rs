@@ -29,6 +29,10 @@ pub struct Wolf {
 
 /// Follows neighbours through the whole signal, each for `steps` samples. There is no value where
 /// neighbours part to half of the distance of unrelated vectors: their growth has ended by then.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `delays`, `theiler` and `steps`; `steps` of 0; neighbours that
+/// all coincide or that part at once.
 pub fn wolf(delays: &Delays, theiler: usize, steps: usize) -> Result<Wolf, Error> {
     let (_, deviation) = checked(delays.signal)?;
     let needed = delays.span() + FEWEST * steps + 2 * theiler + CHOICE + LEFT_OUT + 1;
