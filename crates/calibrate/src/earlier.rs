@@ -14,7 +14,7 @@ const CHECKPOINT: &str = "checkpoint.bin";
 pub enum Existing {
     /// It is left alone, and that is an error.
     Refuse,
-    /// It is kept where it is complete and goes on where it is not; one of other recordings,
+    /// It is kept where it is complete, and continued where it is not. One of other recordings,
     /// another machine or other settings is an error.
     Resume,
     /// The same, but one that was made from something else is made anew.
@@ -83,7 +83,7 @@ pub(crate) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Erro
 ///
 /// # Errors
 /// One of other inputs that is to be resumed, or a file that cannot be read.
-pub(crate) fn look(
+pub(crate) fn read_existing(
     folder: &Path,
     existing: Existing,
     fingerprint: &str,

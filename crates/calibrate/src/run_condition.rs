@@ -15,8 +15,8 @@ const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 impl Parameter {
-    /// Opens the bounds of an offset of the crank angle that has none of its own, so that they hold what is seen
-    /// of it, rad; whether they had to be opened.
+    /// Opens the bounds of an offset of the crank angle that has no bounds of its own, so that they hold `seen`, rad.
+    /// Returns whether they had to be opened.
     pub fn open_for_offset(&mut self, seen: f64) -> bool {
         let [low, high] = self.bounds;
         if self.bounds != OFFSETS || !self.is_crank_angle_offset() || (low..=high).contains(&seen) {

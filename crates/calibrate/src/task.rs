@@ -26,8 +26,8 @@ use std::f64::consts::TAU;
 /// usual lines.
 const ALIGNED: f64 = 1e-5;
 
-/// Relative difference from which a measured speed takes the place of the stated one: an encoder
-/// tells it better than a recording's other errors.
+/// Relative difference from which a measured speed takes the place of the stated one. An encoder
+/// determines it better than a recording's other errors.
 const SPEED: f64 = 2e-5;
 
 /// What a calibration works on.
@@ -82,13 +82,13 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
     for (path, value) in &first.settings {
         paths::set(&mut tree, path, value.clone())?;
     }
-    let fit_settings = fit_settings::of(settings, &tree, &runs)?;
+    let fit_settings = fit_settings::with_defaults(settings, &tree, &runs)?;
     let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
     let source = machine.unwrap_or_else(|| bundles[0].bundle.folder.join(input::bundle::FILE));
     let resolved = MachineFile::from_tree(&tree).and_then(|file| file.resolve());
     let resolved =
         resolved.map_err(|error| Error::Refused(format!("{}: {error}", source.display())))?;
-    let mut parameters = parameters::of(settings, &tree, &runs)?;
+    let mut parameters = parameters::fitted(settings, &tree, &runs)?;
     for exponent in exponents {
         let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
         if !exponent.places.iter().any(free) {
@@ -126,7 +126,7 @@ impl Task {
         Ok(())
     }
 
-    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre; the bounds of
+    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre. The bounds of
     /// the offset are opened that far.
     fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Error> {
         let parameters = self.problem.parameters.iter();
@@ -149,8 +149,8 @@ impl Task {
         Ok(Some(start))
     }
 
-    /// Sets the zero of the crank angle of every run where it was not recorded to what the machine
-    /// with the parameters at `x` shows; whether that has moved one.
+    /// Aligns the crank angle of every run whose zero was not recorded with the prediction of the machine, with the
+    /// parameters at `x`. Returns whether that has moved one.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -204,5 +204,5 @@ fn turn(run: &mut Run, free: bool) -> Result<(), Error> {
 }
 
 fn observe(run: &Run, columns: &[String]) -> Result<Observation, Error> {
-    Observation::of(run, columns).map_err(|error| Error::unusable(&run.id, error))
+    Observation::from_run(run, columns).map_err(|error| Error::unusable(&run.id, error))
 }

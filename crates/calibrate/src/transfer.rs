@@ -1,12 +1,13 @@
 //! From one clearance to another: what a calibrated machine shows there under each relation, and
-//! which relation the recordings decide for.
+//! which relation the recordings favour.
 //!
-//! Recordings at one clearance say nothing about the relation: every one fits them equally well, and
-//! the predictions stand side by side. With recordings at two clearances or more the machine is
-//! fitted again under each, from what was found, and the relations are compared by Schwarz's
-//! criterion (1978): the sum of squared residuals plus ln N for every exponent that was fitted, N
-//! being their number. Where the fitted runs have one clearance and those held out others, the
-//! latter decide, by how well they are predicted.
+//! - Recordings at one clearance do not determine the relation: every one fits them equally well, and
+//!   the predictions stand side by side.
+//! - With recordings at two clearances or more the machine is fitted again under each relation, from the
+//!   calibrated values. The relations are compared by Schwarz's criterion (1978): the sum of squared residuals
+//!   plus ln N for every exponent that was fitted, N being the number of residuals.
+//! - Where the fitted runs have one clearance and those held out others, the held-out runs decide, by how
+//!   well they are predicted.
 
 pub(crate) mod case;
 pub(crate) mod refit;
@@ -50,7 +51,7 @@ pub struct Hypothesis {
     pub exponents: BTreeMap<String, Bounded>,
     /// Root mean square of the misfits of the fitted runs, in standard deviations of the noise.
     pub fitted: f64,
-    /// The same of the runs that were held out; none where there is none.
+    /// The same of the runs that were held out; `None` without such runs.
     pub held_out: Option<f64>,
     /// Each run's misfit.
     pub runs: BTreeMap<String, f64>,
@@ -61,8 +62,8 @@ pub struct Hypothesis {
 /// What the recordings say about the relation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
-    /// The relations that the recordings leave, the best first: one where they decide, several
-    /// where the criterion differs by less than 6, none where every run has the same clearances.
+    /// The relations that the recordings favour, the best first. One where they decide, several where the criterion
+    /// differs by less than 6, none where every run has the same clearances.
     pub relations: Vec<Relation>,
     /// What that rests on.
     pub runs: Basis,
@@ -80,13 +81,16 @@ pub enum Basis {
     None,
 }
 
-/// Compares the relations for a calibrated machine, and predicts what it shows where each clear
-/// bearing in turn has three times its normal clearance, at the conditions of each fitted run
-/// without wear, and in the runs held out that have other clearances than the fitted ones. `watch` is
-/// told of each step of the fits; none where it stops one.
+/// Compares the relations for a calibrated machine, and predicts what it shows at other clearances. These are:
+///
+/// 1. Each clear bearing in turn at three times its normal clearance, at the conditions of each fitted run
+///    without wear.
+/// 2. The runs held out that have other clearances than the fitted ones.
+///
+/// `watch` gets each step of the fits. None where it stops one.
 ///
 /// # Errors
-/// A machine that is none under some relation, or a run that cannot be simulated.
+/// A machine that is invalid under some relation, or a run that cannot be simulated.
 pub fn transfer(
     problem: &Problem,
     fit: &Fit,
@@ -99,7 +103,7 @@ pub fn transfer(
         answer
     };
     let settings = problem.runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::of(&problem.tree, settings)?;
+    let joints = ClearJoint::in_runs(&problem.tree, settings)?;
     let held_out = |run: &Observation| fit.runs.iter().any(|r| r.id == run.id && r.held_out);
     let in_run = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
     let states: Vec<_> = problem.runs.iter().map(in_run).collect::<Result<_, _>>()?;
@@ -117,7 +121,7 @@ pub fn transfer(
     };
     let mut machines = Vec::new();
     for relation in Relation::ALL {
-        // Exponents are told by several clearances only.
+        // Exponents are identifiable from several clearances only.
         if relation == Relation::Fitted && basis != Basis::Fitted {
             continue;
         }
@@ -138,7 +142,7 @@ pub fn transfer(
     let decision = decide(&mut compared, basis);
     let relations: Vec<Hypothesis> = compared.into_iter().map(|(h, _)| h).collect();
     let runs: Vec<(&Observation, &Vec<Option<f64>>)> = problem.runs.iter().zip(&states).collect();
-    // A clearance that was fitted stands in every run, whatever the run's own.
+    // A clearance that was fitted holds in every run.
     let places = || problem.parameters.iter().flat_map(|p| &p.places);
     let fixed = |joint: &ClearJoint| places().any(|place| *place == joint.clearance_path());
     let cases = cases(&runs, &joints, held_out, fixed, &of_fitted);

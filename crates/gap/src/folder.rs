@@ -91,7 +91,7 @@ pub fn into_folder(
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
     pictures::write(out, &compare_models(models, &task.runs)?)?;
     let gas = pressure_gaps_of(models, &task.runs)?;
-    let sensors = Sensors::of(&Fitted {
+    let sensors = Sensors::from_recordings(&Fitted {
         problem: &after.problem,
         x: &after.x,
         misfits: after.by_run.clone(),

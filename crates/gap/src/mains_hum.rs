@@ -188,7 +188,7 @@ fn clean(problem: &mut Problem, runs: &mut [Run], hum: &Hum) -> Result<(), Error
             let channels = run.channels.iter_mut().filter(|c| c.column == hum.channel);
             channels.for_each(|channel| subtract(channel, rate, hum.frequency, &tone));
             let columns: Vec<String> = observed.channels.iter().map(|c| c.column.clone()).collect();
-            *observed = Observation::of(run, &columns)?;
+            *observed = Observation::from_run(run, &columns)?;
         }
     }
     Ok(())

@@ -237,7 +237,7 @@ impl Results {
             steps: explanation.steps.clone(),
             notes: notes(explanation, effort, gas),
             parameters: estimates
-                .map(|e| (e.parameter.path.clone(), Estimate::of(e, true)))
+                .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, true)))
                 .collect(),
             places: places(&maps.before, PLACES),
             scaling: scaling(before, &maps.before)?,

@@ -20,7 +20,7 @@ pub struct Possible {
 }
 
 impl Possible {
-    /// Those of the machine file at this path; of a bundle's own machine where there is none.
+    /// Those of the machine file at this path, or of the bundle's own machine if there is no path.
     ///
     /// # Errors
     /// A calibration beside it that cannot be read.

@@ -18,7 +18,7 @@ pub(crate) struct Case {
 }
 
 /// The runs that are predicted: those held out whose clearances no fitted run has, and each fitted
-/// run without wear with each joint worn in turn.
+/// run without wear, with each joint worn in turn.
 pub(super) fn cases(
     runs: &[(&Observation, &Vec<Option<f64>>)],
     joints: &[ClearJoint],

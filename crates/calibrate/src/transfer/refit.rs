@@ -23,7 +23,7 @@ pub(crate) struct Fitted {
     pub problem: Problem,
     /// The coordinates of its parameters.
     pub x: Vec<f64>,
-    /// Their covariance; 0 for what the recordings do not tell.
+    /// Their covariance, a row and a column per parameter; 0 for one that is not identifiable.
     pub covariance: DMatrix<f64>,
 }
 
@@ -84,16 +84,16 @@ fn covariance(intervals: &[[f64; 2]], correlations: &DMatrix<f64>) -> DMatrix<f6
     })
 }
 
-/// The machine fitted again from where it stands; what the recordings did not tell stays.
+/// The machine fitted again from where it stands. A parameter that is not identifiable keeps its value.
 pub(super) fn refitted(
     start: Fitted,
     held_out: &impl Fn(&Observation) -> bool,
     watch: Watch,
 ) -> Result<Fitted, Error> {
-    let told =
+    let identifiable =
         |i: &usize| is_exponent(&start.problem.parameters[*i]) || start.covariance[(*i, *i)] > 0.0;
-    let free: Vec<usize> = (0..start.x.len()).filter(told).collect();
-    // What is not told keeps the value that the file has.
+    let free: Vec<usize> = (0..start.x.len()).filter(identifiable).collect();
+    // A parameter that is not identifiable keeps the value that the file has.
     let problem = start.problem.with_parameters(&free);
     let fitted = problem.with_runs(|run| !held_out(run));
     let likelihood = Likelihood::new(&fitted);
