@@ -23,8 +23,8 @@ pub struct Candidate {
     pub ends: &'static [&'static str],
 }
 
-/// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
-/// acceleration, which is meant where it is left out, and on that of the pressure.
+/// A place that is not tried one by one. An effect on a sensor is tried on that of the crosshead's
+/// acceleration, the default, and on that of the pressure.
 const MEASURE: &str = "measure";
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
@@ -35,7 +35,7 @@ impl Candidate {
     pub fn all(problem: &Problem) -> Vec<Self> {
         let throws = throws(&problem.tree);
         let known = shows_pressure(problem);
-        let both_ends = has_crank_end(&problem.tree) && tells_ends_apart(problem);
+        let both_ends = has_crank_end(&problem.tree) && distinguishes_ends(problem);
         let mut all = Vec::new();
         // The zero of the crank angle is fitted from the start, unless pressures are all that was recorded.
         // Clearance volume and exponents imitate its effect on pressures, so that it has to earn its place.
@@ -113,8 +113,8 @@ impl Candidate {
             || self.place.iter().any(measures)
     }
 
-    /// Whether it acts on gas whose pressure was recorded, so that the pressures tell it by themselves.
-    pub(crate) fn is_told_by_pressures(&self, problem: &Problem) -> bool {
+    /// Whether it acts on gas whose pressure was recorded, so that the pressures alone show it.
+    pub(crate) fn is_shown_by_pressures(&self, problem: &Problem) -> bool {
         self.is_of_gas() && recorded(problem, &self.place).is_some_and(|chambers| chambers > 0)
     }
 
@@ -131,8 +131,8 @@ impl Candidate {
             alone
         };
         let each = choice.words.iter().map(at);
-        let mut told = each.filter(|alone| alone.is_told_by_pressures(problem));
-        told.next().filter(|_| told.next().is_none())
+        let mut shown = each.filter(|alone| alone.is_shown_by_pressures(problem));
+        shown.next().filter(|_| shown.next().is_none())
     }
 
     /// Its joint, where it has one.
@@ -212,8 +212,8 @@ impl Candidate {
         })
     }
 
-    /// The problem with the effect in the machine and its parameters free, at `values` (SI, one per
-    /// parameter of the catalogue's entry) where their coordinates are 0.
+    /// The problem with the effect in the machine and its parameters free. Their coordinates are 0 at `values`: SI, one
+    /// per parameter of the catalogue's entry, in its order, those of one item after those of another.
     ///
     /// # Errors
     /// A machine that cannot have it.
@@ -313,9 +313,9 @@ fn has_crank_end(tree: &Value) -> bool {
     has(tree) || throws.into_iter().flatten().any(has)
 }
 
-/// Whether the recordings tell one end of a cylinder from the other: accelerations do, and pressures at the
-/// ends where they were recorded.
-fn tells_ends_apart(problem: &Problem) -> bool {
+/// Whether the recordings distinguish one end of a cylinder from the other. Accelerations do, and so do pressures at
+/// the ends where they were recorded.
+fn distinguishes_ends(problem: &Problem) -> bool {
     if !is_of_pressures(problem) {
         return true;
     }
@@ -327,8 +327,8 @@ fn tells_ends_apart(problem: &Problem) -> bool {
     pressures.any(|other| other.contains("crank_end") != first.contains("crank_end"))
 }
 
-/// Whether it is a term of a Fourier series of the gas: to one recording of one chamber that fits
-/// whatever there is while a valve is open, and says nothing.
+/// Whether it is a term of a Fourier series of the gas. In one recording of one chamber such a term fits
+/// anything while a valve is open, and says nothing.
 fn is_series(entry: &Entry) -> bool {
     entry.kind == Kind::Gas && entry.parameters.iter().any(|p| p.whole)
 }
@@ -433,26 +433,26 @@ mod tests {
             all.retain(|c| c.entry.name == "valve_loss");
             all
         };
-        let told = |problem: &Problem| -> Vec<bool> {
-            let of = |c: &Candidate| c.is_told_by_pressures(problem);
+        let shown = |problem: &Problem| -> Vec<bool> {
+            let of = |c: &Candidate| c.is_shown_by_pressures(problem);
             losses(problem).iter().map(of).collect()
         };
         // Everywhere, at the head end, at the crank end.
-        assert_eq!(told(&problem), [false; 3]);
+        assert_eq!(shown(&problem), [false; 3]);
         assert!(losses(&problem)[0].at_recorded_end(&problem).is_none());
         for run in &mut problem.runs {
             let mut pressure = run.channels[0].clone();
             pressure.column = "cylinder_pressure_pa".into();
             run.channels.push(pressure);
         }
-        assert_eq!(told(&problem), [true, true, false]);
+        assert_eq!(shown(&problem), [true, true, false]);
         let alone = losses(&problem)[0].at_recorded_end(&problem).unwrap();
         assert_eq!(alone.end(), Some("head"));
         assert!(alone.at_recorded_end(&problem).is_none());
-        // Pressures of one end by themselves do not tell it from the other.
+        // Pressures of one end alone do not distinguish it from the other.
         for run in &mut problem.runs {
             run.channels.remove(0);
         }
-        assert_eq!(told(&problem), [true]);
+        assert_eq!(shown(&problem), [true]);
     }
 }

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A fitter that nothing stops and that reports to nobody.
+/// A fitter that is never stopped and reports nothing.
 pub(crate) fn fitter(effort: &Effort) -> Fitter<'_> {
     Fitter {
         effort,

@@ -1,4 +1,4 @@
-//! What is wrong with the measuring and not with the machine: told as effects like any other.
+//! Errors of the measuring chain, not of the machine: reported as effects like any other.
 
 use crate::candidate::Candidate;
 use crate::criteria::{Evidence, evidence};
@@ -35,7 +35,7 @@ pub(crate) fn crank_angle_offset(
     let score = 1.0 - (after.fitted / before.fitted).powi(2);
     let evidence = evidence(&before, after, score);
     Ok(Some((
-        found(entry, Vec::new(), vec![estimate.value], evidence),
+        finding(entry, Vec::new(), vec![estimate.value], evidence),
         before,
     )))
 }
@@ -57,10 +57,10 @@ pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
         heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
         delta_bic: 0.0,
     };
-    Some(found(entry, place.collect(), values.collect(), evidence))
+    Some(finding(entry, place.collect(), values.collect(), evidence))
 }
 
-fn found(
+fn finding(
     entry: &'static Entry,
     place: Vec<(&'static str, String)>,
     values: Vec<f64>,

@@ -27,7 +27,7 @@ use std::path::Path;
 
 /// Name of the file of results.
 pub const RESULTS: &str = "gap.json";
-/// Most places in which the gap is told.
+/// Most places in which the gap is reported.
 const PLACES: usize = 40;
 
 /// What an explanation finds.
@@ -53,7 +53,7 @@ pub struct Results {
     pub scaling: Vec<Scaling>,
     /// The runs that were held out.
     pub heldout_runs: Vec<String>,
-    /// What to measure to tell effects from their rivals; none where nothing is asked for.
+    /// What to measure to distinguish effects from their rivals; `None` where nothing is needed.
     pub next_recording: Option<String>,
     /// The force that is missing where the catalogue explains too little; empty elsewhere.
     pub missing_force: Vec<MissingForce>,
@@ -196,7 +196,7 @@ impl Results {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn of(
+    pub fn from_explanation(
         explanation: &Explanation,
         effort: &Effort,
         gas: &[PressureGap],
@@ -216,7 +216,7 @@ impl Results {
                 held_out: effort.held_out.contains(&run.id),
                 before: before.by_run[i],
                 after: after.by_run[i],
-                pressure_rms_pa: PressureRms::of(gas.iter().filter(|gap| gap.run == run.id)),
+                pressure_rms_pa: PressureRms::from_gaps(gas.iter().filter(|gap| gap.run == run.id)),
             };
             (run.id.clone(), content)
         };
@@ -232,7 +232,7 @@ impl Results {
                 after: after.fitted,
                 heldout_before: before.held_out,
                 heldout_after: after.held_out,
-                pressure_rms_pa: PressureRms::of(gas.iter()),
+                pressure_rms_pa: PressureRms::from_gaps(gas.iter()),
             },
             steps: explanation.steps.clone(),
             notes: notes(explanation, effort, gas),
@@ -247,7 +247,7 @@ impl Results {
             refused: explanation
                 .refused
                 .iter()
-                .map(|tried| Other::of(tried, None))
+                .map(|tried| Other::from_tried(tried, None))
                 .collect(),
             noise,
             cost: effort.journal.spent(),
@@ -260,7 +260,7 @@ impl Results {
     /// Reads a file of results.
     ///
     /// # Errors
-    /// A file that cannot be read, or is none that an explanation writes.
+    /// A file that cannot be read, or that no explanation has written.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let wrong = |reason: String| Error::Input(calibrate::Error::file(path, reason));
         let text = files::read_text(path, files::LONGEST_TEXT)
@@ -270,7 +270,7 @@ impl Results {
 }
 
 impl PressureRms {
-    fn of<'a>(gaps: impl Iterator<Item = &'a PressureGap> + Clone) -> Self {
+    fn from_gaps<'a>(gaps: impl Iterator<Item = &'a PressureGap> + Clone) -> Self {
         let rms = |which: usize| {
             let squares = gaps.clone().map(|gap| gap.rms()[which].powi(2));
             let count = gaps.clone().count();
@@ -297,7 +297,7 @@ impl Bounded {
 
 impl Other {
     /// A candidate, a rival of the effect `found` where it is one.
-    fn of(tried: &Tried, found: Option<&Found>) -> Self {
+    fn from_tried(tried: &Tried, found: Option<&Found>) -> Self {
         let candidate = &tried.candidate;
         let place = |place: Option<&str>| place.map(str::to_owned);
         Self {
@@ -362,7 +362,9 @@ fn of_items(
             expression: is_law.then(|| expression(terms())),
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
-            rivals: rivals.map(|tried| Other::of(tried, Some(found))).collect(),
+            rivals: rivals
+                .map(|tried| Other::from_tried(tried, Some(found)))
+                .collect(),
             parameters: parameters
                 .iter()
                 .map(|(key, p)| ((*key).to_owned(), *p))

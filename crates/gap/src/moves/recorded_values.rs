@@ -26,7 +26,7 @@ pub(crate) fn recorded_values(entry: &Entry, problem: &Problem) -> Option<Vec<f6
     values.collect()
 }
 
-/// The fluctuation of the speed that the encoders show, as values of the effect: amplitude and phase
+/// The fluctuation of the speed that the encoders show, as values of the effect. They are amplitude and phase
 /// of the first and the second harmonic, as means over the runs.
 fn fluctuation(problem: &Problem) -> Option<Vec<f64>> {
     let harmonic = |k: usize| {
@@ -41,8 +41,8 @@ fn fluctuation(problem: &Problem) -> Option<Vec<f64>> {
     Some([harmonic(0)?, harmonic(1)?].concat())
 }
 
-/// Frequency of the strongest ripple of the cylinders' pressures, Hz: the line above the orders of the
-/// indicator diagram, whose kinks fall off by the square of the order, that stands out the most.
+/// Frequency of the strongest ripple of the cylinders' pressures, Hz. It is the line above the orders of the
+/// indicator diagram that stands out the most; the kinks of the diagram fall off by the square of the order.
 fn ripple(problem: &Problem) -> Option<f64> {
     let of_channel = |(run, channel): (&Observation, &Observed)| {
         let orders = channel.orders.iter().copied().filter(|k| *k >= RIPPLE);

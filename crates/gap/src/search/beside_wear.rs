@@ -1,8 +1,8 @@
 //! Another effect beside wear.
 //!
-//! Where a joint has more play than was believed, its blows fall elsewhere in the revolution. Without that no
-//! effect that changes the blows comes near to the recordings, and the play without the effect does not
-//! either: to add one after the other leads nowhere. Where no candidate by itself closes most of the gap,
+//! Where a joint has more play than was believed, its blows fall elsewhere in the revolution. Then neither an
+//! effect that changes the blows nor the play alone reduces the residual far, and adding one after the other
+//! leads nowhere. Where no candidate by itself closes most of the gap,
 //! the most promising ones are fitted again in machines with more play.
 
 use crate::candidate::Candidate;
@@ -30,7 +30,7 @@ const LEFT: f64 = 3.0;
 type Start = (Candidate, Vec<f64>);
 
 /// Wear and another effect that together close most of the gap of `model`, each of which earns its place
-/// beside the other; and the model with both. They are looked for where none of `rough`, which were
+/// beside the other; and the model with both. They are searched only where none of `rough`, which were
 /// fitted to the runs of `few`, does as much by itself.
 pub(crate) fn beside_wear(
     fitter: &Fitter,

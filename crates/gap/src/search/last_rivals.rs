@@ -116,7 +116,7 @@ mod tests {
         };
         assert_eq!(rival.candidate, rings);
         assert!(rival.leaves() < 0.3, "{}", rival.leaves());
-        // A rival that was found itself afterwards is none.
+        // A rival that was found itself afterwards does not count.
         let force = candidate("misalignment");
         let added = force.added(&model.problem, &[1.0, 0.0, 1.0, 0.0]).unwrap();
         let both = Model {

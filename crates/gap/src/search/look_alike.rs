@@ -16,8 +16,8 @@ const AT_THE_NOISE: f64 = 1.0;
 /// Most that are fitted.
 const MOST: usize = 2;
 
-/// The one that comes nearer to the recordings than the effect of `after`, with its model: of its
-/// `rivals`, if it is alike and not one of those that were `fitted`. `before` has all runs without
+/// The one of `rivals` that reduces the residual further than the effect of `after`, with its model. Only
+/// a rival that is alike and not one of those that were `fitted` is tried. `before` has all runs without
 /// the effect, `few` some of them.
 pub(crate) fn look_alike(
     fitter: &Fitter,
