@@ -17,7 +17,7 @@ const NEIGHBOURS: usize = 10;
 const PERIODS: f64 = 10.0;
 const SHARE: usize = 10;
 
-/// A divergence curve and its scaling region, or why there is none.
+/// A divergence curve and its scaling region, or why it has no such region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     /// Mean logarithm of the distance (nats) against samples.

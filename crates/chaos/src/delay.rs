@@ -54,9 +54,8 @@ pub fn times(signal: &[f64]) -> Result<Times, Error> {
 /// Distance below and above the mean that a cycle must reach, in standard deviations.
 const BAND: f64 = 0.2;
 
-/// Where each cycle begins, in samples: at the upward crossing of the mean (interpolated) before which
-/// the signal has gone below it by a fifth of its standard deviation and after which it goes above by
-/// as much.
+/// Where each cycle begins, in samples: at an upward crossing of the mean (interpolated). Before it the signal has
+/// gone below the mean by a fifth of its standard deviation, and after it it goes above by as much.
 ///
 /// # Errors
 /// A signal that [`checked`] refuses.

@@ -36,8 +36,8 @@ pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve
 }
 
 /// Mean over the vectors of the logarithm of the mean distance, in the last coordinate, to the
-/// successors of `neighbours` neighbours (Kantz 1994, with a fixed number in place of a fixed
-/// radius), for `steps` samples.
+/// successors of `neighbours` neighbours, for `steps` samples. After Kantz (1994), with a fixed number of neighbours
+/// in place of a fixed radius.
 ///
 /// # Errors
 /// As [`rosenstein`].

@@ -1,4 +1,4 @@
-//! The straight, rising part of a divergence curve, or the statement that there is none.
+//! The straight, rising part of a divergence curve, or the reason why it has none.
 
 use crate::error::Error;
 

@@ -111,7 +111,12 @@ mod tests {
     use super::*;
     use crate::test_systems::{Noise, Regular, System, with_noise};
 
-    fn found(signal: &[f64], dimension: usize, delay: usize, steps: usize) -> Result<Wolf, Error> {
+    fn followed(
+        signal: &[f64],
+        dimension: usize,
+        delay: usize,
+        steps: usize,
+    ) -> Result<Wolf, Error> {
         let delays = Delays {
             signal,
             dimension,
@@ -122,10 +127,10 @@ mod tests {
 
     #[test]
     fn exponents_of_chaotic_systems() {
-        let henon = found(&System::Henon.samples(5000, 1), 2, 1, 1).unwrap();
+        let henon = followed(&System::Henon.samples(5000, 1), 2, 1, 1).unwrap();
         assert!((henon.value / 0.4193 - 1.0).abs() < 0.1, "{henon:?}");
         // Wolf's method overestimates flows: it follows what grows fastest at the moment.
-        let lorenz = found(&System::Lorenz.samples(10_000, 1), 3, 4, 16).unwrap();
+        let lorenz = followed(&System::Lorenz.samples(10_000, 1), 3, 4, 16).unwrap();
         let truth = System::Lorenz.exponent() * System::Lorenz.sample_interval();
         assert!((lorenz.value / truth - 1.0).abs() < 0.4, "{lorenz:?}");
     }
@@ -133,9 +138,9 @@ mod tests {
     #[test]
     fn neighbours_on_a_cycle_stay_and_those_of_noise_are_refused() {
         let cycle = with_noise(&Regular::Periodic.samples(3000, 1), 0.001, 1);
-        let cycle = found(&cycle, 4, 3, 12).unwrap();
+        let cycle = followed(&cycle, 4, 3, 12).unwrap();
         assert!(cycle.value.abs() < 0.02, "{cycle:?}");
-        let noise = found(&Noise::White.samples(3000, 1), 4, 1, 3);
+        let noise = followed(&Noise::White.samples(3000, 1), 4, 1, 3);
         assert!(
             matches!(noise, Err(Error::NoScalingRegion { .. })),
             "{noise:?}"

@@ -1,10 +1,11 @@
 //! MAT files of version 5 to 7 (MathWorks, *MAT-File Format*, 2024): numeric variables, of either
 //! byte order, compressed or not.
 //!
-//! Every vector is a channel called as its variable; a matrix has one channel per column (or row,
-//! where those are the longer ones) called `name_1`, `name_2`, ... A variable that is one number is
-//! taken for the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and for the speed
-//! when its name ends in `rpm`. Text, cells, structures, and complex and sparse arrays are left out.
+//! - Every vector is a channel called as its variable. A matrix has one channel per column (or row,
+//!   where those are the longer ones) called `name_1`, `name_2`, ...
+//! - A variable that is one number is the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and the speed
+//!   when its name ends in `rpm`.
+//! - Text, cells, structures, and complex and sparse arrays are left out.
 
 use super::recording_format::{RecordingFormat, Seen, has};
 use crate::measured::{
@@ -56,7 +57,7 @@ enum Number {
 }
 
 impl Number {
-    fn of(code: u32) -> Option<Self> {
+    fn from_code(code: u32) -> Option<Self> {
         Some(match code {
             1 => Self::I8,
             2 => Self::U8,
@@ -419,7 +420,7 @@ fn variable(
         return Ok(None);
     };
     let (code, size, in_tag) = tag(bytes, big_endian)?;
-    let Some(number) = Number::of(code) else {
+    let Some(number) = Number::from_code(code) else {
         return Ok(None);
     };
     let count = rows.checked_mul(columns).filter(|count| *count > 0);

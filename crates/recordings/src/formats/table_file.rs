@@ -16,7 +16,7 @@ pub enum TableFormat {
 
 impl TableFormat {
     /// The format of a file with this name; none where its ending names none.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
             "parquet" => Some(Self::Parquet),

@@ -11,7 +11,7 @@ impl MeasuredFile {
     /// names the one that its first bytes show.
     ///
     /// # Errors
-    /// When the file is not there, is empty, damaged or of another format than its name says, when
+    /// When the file is missing, empty, damaged or of another format than its name says. When
     /// a column that was asked for is not there, or the rates contradict each other.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
         if let Some(rate) = options.sample_rate_hz

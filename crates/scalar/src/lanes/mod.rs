@@ -2,7 +2,7 @@
 //!
 //! There is one type for each instruction set, whose numbers fill one register, or two of AVX2. Which of them a
 //! processor has is known when the program runs: [`in_lanes`] chooses. No other way leads to the
-//! types, so that nobody can use them on a processor that lacks them.
+//! types, so that they cannot be used on a processor that lacks them.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -39,8 +39,8 @@ pub fn in_lanes<T: InLanes>(work: T) -> T::Output {
 }
 
 /// How many numbers the registers hold that [`in_lanes`] takes: 8 with AVX-512, 4 with AVX2, 2 elsewhere.
-/// `CROSSHEAD_LANES` in the environment holds them down, for those who want to measure what they are worth; it
-/// never asks for more than the processor has.
+/// `CROSSHEAD_LANES` in the environment lowers it, to measure the gain of lanes. It
+/// never raises it above what the processor has.
 pub fn width() -> usize {
     static WIDTH: OnceLock<usize> = OnceLock::new();
     *WIDTH.get_or_init(|| {

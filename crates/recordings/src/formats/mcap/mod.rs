@@ -1,12 +1,12 @@
 //! MCAP: one recording per file, for Foxglove, PlotJuggler and the tools of ROS 2.
 //!
-//! Every sample is one message of one topic, `/crosshead`: all channels are sampled together, and
+//! Every sample is one message of one topic, `/crosshead`. All channels are sampled together, and
 //! the plots of Foxglove draw a point per message (an array within a message is plotted against
-//! its index, not against time). The message is a flat ROS 2 message in CDR, and its definition
+//! its index, not against time). The message is a flat ROS 2 message in CDR. Its definition
 //! lies in the file with the units as comments: nothing has to be installed to read it. The labels
 //! are the metadata record `labels`, the sweep is the attachment `sweep.yaml`.
 //!
-//! Read are the files of this program, flat ROS 2 messages of other programs, and messages in JSON.
+//! The reader takes files of this program, flat ROS 2 messages of other programs, and messages in JSON.
 
 mod read;
 mod ros2;

@@ -18,10 +18,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A longer record is none of samples.
+/// A longer record does not hold samples.
 const LONGEST_RECORD: usize = 1 << 26;
 
-/// Bytes that are read at a time at most, whatever the file asks for.
+/// Most bytes that are read at a time, also where the file asks for more.
 const MOST_AT_ONCE: usize = 1 << 20;
 
 /// More fields than a message of channels has.

@@ -46,8 +46,8 @@ pub struct TableWriter<W: Write + Send> {
 }
 
 impl<W: Write + Send> TableWriter<W> {
-    /// Starts a table in groups of `rows_per_group` rows, which a reader loads at a time and the writer
-    /// keeps encoded until they are complete: a few MiB of samples per group suit most.
+    /// Starts a table in groups of `rows_per_group` rows. A reader loads one group at a time, and the writer
+    /// keeps a group encoded until it is complete. A few MiB of samples per group suit most.
     ///
     /// # Errors
     /// When `rows_per_group` is 0, or the writer fails.
