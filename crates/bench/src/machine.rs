@@ -89,7 +89,7 @@ impl Machine {
             paths::set(&mut tree, path, value.clone())?;
         }
         let of_runs = runs.iter().map(|run| &run.settings[..]);
-        let joints = ClearJoint::of(&tree, of_runs);
+        let joints = ClearJoint::in_runs(&tree, of_runs);
         let joints = joints.map_err(|error| input::Error::clash("machine", error))?;
         Ok(Self {
             name: entry.name.clone(),

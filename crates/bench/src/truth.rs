@@ -3,8 +3,7 @@
 use crate::error::Error;
 use crate::machine::Machine;
 use calibrate::{Parameter, Relation};
-use gap::candidate::FORCE;
-use input::effects::{self, Entry};
+use input::effects::{self, Entry, Proposal};
 use input::paths;
 use rand::RngExt;
 use rand::seq::IndexedRandom;
@@ -107,7 +106,7 @@ pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) 
         _ => value(parameter, size, random),
     };
     let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
-    if entry.name == FORCE {
+    if entry.proposal == Proposal::ForceLaw {
         as_law(entry, &mut values, random);
     }
     entry.item(&place, &values)
@@ -182,7 +181,7 @@ mod tests {
     #[test]
     fn a_force_of_no_name_has_a_law_of_a_few_terms() {
         let mut random = stream(1, 1, Purpose::Design);
-        let entry = effects::entry(FORCE).unwrap();
+        let entry = effects::proposed(Proposal::ForceLaw).unwrap();
         let mut values = vec![7.0; entry.parameters.len()];
         as_law(entry, &mut values, &mut random);
         let kept = entry.parameters.iter().zip(&values);

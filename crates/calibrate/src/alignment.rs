@@ -1,12 +1,12 @@
-//! The crank angle of a recording that has none: from the speed at which the recording repeats itself;
-//! and its zero from what the model shows.
+//! Speed and zero of the crank angle of a recording without one.
+//! The speed is that at which the recording repeats itself. The zero is that of the model's prediction.
 
 use crate::observation::{Observation, Run};
 use crate::prediction::Prediction;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Orders whose power tells the speed: roughly, and then closely.
+/// Orders whose power is maximised over the speed: roughly, and then closely.
 const FIRST_ORDERS: usize = 3;
 const ORDERS: usize = 20;
 /// The speed is searched this far from the stated one, as a share of it.
@@ -22,8 +22,8 @@ const NEWTON: usize = 8;
 
 /// The speed, rpm, at which the orders of a run's channels have most power, near the stated one.
 ///
-/// A recording of T seconds tells a frequency to much less than 1/T: a Hann window keeps the orders
-/// from leaking into each other, and the power is maximised over the speed itself.
+/// A recording of T seconds determines a frequency to much less than 1/T. A Hann window keeps the orders
+/// from leaking into each other. The power is maximised over the speed itself.
 pub fn speed(run: &Run) -> f64 {
     let longest = run.channels.iter().map(|c| c.samples.len()).max();
     let duration = longest.unwrap_or(0) as f64 / run.sample_rate;
@@ -31,7 +31,7 @@ pub fn speed(run: &Run) -> f64 {
     let spectra: Vec<Windowed> = run
         .channels
         .iter()
-        .map(|c| Windowed::of(&c.samples))
+        .map(|c| Windowed::new(&c.samples))
         .collect();
     let power = |hz: f64, orders: usize| -> f64 {
         let cycles = hz / run.sample_rate;
@@ -62,7 +62,7 @@ fn greatest(points: impl Iterator<Item = f64>, of: impl Fn(f64) -> f64) -> f64 {
 struct Windowed(Vec<f64>);
 
 impl Windowed {
-    fn of(samples: &[f64]) -> Self {
+    fn new(samples: &[f64]) -> Self {
         let count = samples.len().max(1) as f64;
         let mean = samples.iter().sum::<f64>() / count;
         let square = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
@@ -94,8 +94,8 @@ impl Windowed {
     }
 }
 
-/// By how much the crank angle of an observed run is to be raised so that it shows what the
-/// prediction does, rad in (−π, π]: least squares over all lines, weighted by the noise of both.
+/// By how much to raise the crank angle of an observed run so that it agrees with the prediction, rad in (−π, π].
+/// Least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
     common_phase(&[(observed, predicted)])
 }

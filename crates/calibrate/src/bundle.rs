@@ -31,7 +31,7 @@ pub fn machine(bundle: &Bundle, machine: Option<&Path>) -> Result<Value, Error> 
 /// model has for them, and are in SI units.
 ///
 /// # Errors
-/// A run that cannot be read, a name that no run has, or conditions that are none.
+/// A run that cannot be read, a name that no run has, or invalid conditions.
 pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Run>, Error> {
     let ids: Vec<&str> = bundle.runs.iter().map(|run| run.id.as_str()).collect();
     known_runs("--leave-out", left_out, &ids)?;
@@ -65,7 +65,7 @@ pub fn runs(bundle: &Bundle, tree: &Value, left_out: &[String]) -> Result<Vec<Ru
 /// Checks that each of `asked` is the id of a run.
 ///
 /// # Errors
-/// The first that is none, with the nearest that is.
+/// The first name that no run has, with the nearest name that a run has.
 pub fn known_runs(option: &str, asked: &[String], ids: &[&str]) -> Result<(), Error> {
     let Some(unknown) = asked.iter().find(|id| !ids.contains(&id.as_str())) else {
         return Ok(());

@@ -96,9 +96,12 @@ impl<'a> BundleReplay<'a> {
         let spreads: Vec<_> = runs.map(spread).collect::<Result<_, _>>()?;
         let runs = self.runs.iter().zip(replays).zip(spreads);
         let runs = runs.map(|((listed, replay), spread)| {
-            (listed.run.id.clone(), RunReplay::of(replay, spread))
+            (
+                listed.run.id.clone(),
+                RunReplay::from_replay(replay, spread),
+            )
         });
-        Ok(Results::of(runs.collect()))
+        Ok(Results::from_runs(runs.collect()))
     }
 }
 
@@ -149,8 +152,9 @@ fn problem(mut tree: Value, runs: &mut [Listed]) -> Result<Problem, Error> {
         paths::set(&mut tree, path, value.clone())?;
     }
     let columns = columns(&MachineFile::from_tree(&tree)?.resolve()?);
-    let observe =
-        |run: &Run| Observation::of(run, &columns).map_err(|error| Error::unusable(&run.id, error));
+    let observe = |run: &Run| {
+        Observation::from_run(run, &columns).map_err(|error| Error::unusable(&run.id, error))
+    };
     let mut problem = Problem {
         tree,
         parameters: Vec::new(),

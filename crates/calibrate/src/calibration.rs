@@ -2,37 +2,20 @@
 //! pictures are drawn from.
 
 use crate::comparison::compare;
-use crate::earlier::{self, Earlier};
+use crate::earlier::{self, Earlier, Existing};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::meter::Meter;
 use crate::pictures;
 use crate::pressure_gap::pressure_gaps;
 use crate::problem::Problem;
-use crate::results::{Found, RESULTS, Results};
+use crate::results::{Found, MACHINE, RESULTS, Results};
 use crate::sensors::{Fitted, Sensors};
 use crate::stages::{self, Searched, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
 use recordings::WholeFile;
 use std::path::{Path, PathBuf};
-
-/// Name of the calibrated machine.
-pub const MACHINE: &str = "machine.yaml";
-
-/// What becomes of a calibration that is there already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Existing {
-    /// It is left alone, and that is an error.
-    Refuse,
-    /// It is kept where it is complete and goes on where it is not; one of other recordings,
-    /// another machine or other settings is an error.
-    Resume,
-    /// The same, but one that was made from something else is made anew.
-    Renew,
-    /// It is made anew.
-    Overwrite,
-}
 
 /// A calibration that is on the disk.
 #[derive(Clone, Debug)]
@@ -65,7 +48,7 @@ pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Pr
     let task = task(settings)?;
     let fingerprint = task.fingerprint();
     Ok(Prepared {
-        earlier: earlier::look(out, existing, &fingerprint)?,
+        earlier: earlier::read_existing(out, existing, &fingerprint)?,
         task,
         fingerprint,
         existing,
@@ -79,9 +62,9 @@ impl Prepared {
         self.earlier.as_ref().is_some_and(Earlier::is_complete)
     }
 
-    /// Searches, unless it is done. Where `watcher` stops the search, what was best so far is written,
-    /// marked as incomplete. What is evaluated is on the disk at once, so that a calibration that was
-    /// stopped, or killed, goes on from there and ends with the same results.
+    /// Searches, unless it is done. Where `watcher` stops the search, the best result so far is written,
+    /// marked as incomplete. Each evaluation is written to the disk at once. A calibration that was
+    /// stopped or killed therefore continues from there, and ends with the same results.
     ///
     /// # Errors
     /// A machine that cannot be simulated, or files that cannot be written.
@@ -121,7 +104,7 @@ impl Prepared {
         };
         let x = fit.coordinates();
         pictures::write(&out, &compare(&task.problem, &task.runs, &x)?)?;
-        let sensors = Sensors::of(&Fitted {
+        let sensors = Sensors::from_recordings(&Fitted {
             problem: &task.problem,
             x: &x,
             misfits: fit.runs.iter().map(|run| run.calibrated).collect(),
@@ -130,7 +113,7 @@ impl Prepared {
         })?;
         let text = calibrated(&task.problem, &fit, &sensors)?;
         WholeFile::write(&machine, text.as_bytes())?;
-        // Where the gas was not fitted it tells nothing new.
+        // Where the gas was not fitted, its gaps are not reported.
         let mut fitted = fit.estimates.iter().map(|e| &e.parameter.path);
         let gas = match fitted.any(|path| path.contains("cylinder.")) {
             true => Some(pressure_gaps(&task.problem, &task.runs, &x)?),
@@ -149,7 +132,7 @@ impl Prepared {
             evaluations,
         };
         // What makes the folder whole comes last.
-        let results = Results::of(&task, found)?;
+        let results = Results::from_search(&task, found)?;
         let path = out.join(RESULTS);
         let text = serde_json::to_string_pretty(&results);
         let text = text.map_err(|error| Error::file(&path, error))?;

@@ -1,10 +1,11 @@
 //! What a calibration has evaluated, on the disk while the work goes on.
 //!
-//! The file begins with a line that says what it is of. Then each evaluation of the model follows when it is
-//! done: the digest of everything that it depends on, the number of its values, these, and a sum of all that. A
-//! calibration that was ended in whatever way begins anew with the same file: it takes the same steps, finds their
-//! evaluations there, and goes on with the first that is not; its results are bit-identical to those of one that
-//! was never ended. What is lost is the evaluation under way. The file is locked as long as it is open.
+//! The file begins with a line that is its title. Each evaluation of the model is appended when it is done:
+//! the digest of its input, the number of its values, the values, and a checksum.
+//!
+//! A calibration that was interrupted starts again with the same file. It takes the same steps and finds their
+//! evaluations there, until the first that is missing. Its results are bit-identical to those of an uninterrupted
+//! calibration. Only the evaluation under way is lost. The file is locked as long as it is open.
 
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
@@ -37,8 +38,8 @@ struct Kept {
 }
 
 impl Checkpoint {
-    /// The checkpoint in a file, which is made where there is none, or one of something else than `title` says, and
-    /// in any case where it is to be made `anew`. An evaluation that was cut off does not count.
+    /// The checkpoint in a file. The file is made new if it does not exist, has another title, or if `anew` is true.
+    /// An evaluation that was cut off does not count.
     ///
     /// # Errors
     /// A file that cannot be read or written; [`io::ErrorKind::ResourceBusy`] where another process holds it.

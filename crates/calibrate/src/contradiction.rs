@@ -8,16 +8,15 @@ use crate::problem::Problem;
 use rayon::prelude::*;
 use signal::order_lines::OrderLines;
 
-/// The first order of an acceleration is that of the crank's throw, whatever the contacts do: a
-/// factor beyond this tells another stroke, speed or unit.
+/// The first order of an acceleration is that of the crank's throw; the contacts hardly change it. A factor
+/// beyond this means another stroke, speed or unit.
 const FACTOR: f64 = 1.5;
-/// A phase beyond this tells another zero of the crank angle, or a sensor the wrong way round, deg.
+/// A phase beyond this means another zero of the crank angle, or a sensor the wrong way round, deg.
 const PHASE: f64 = 45.0;
 /// Share of a cylinder's pressures within which the greatest and least reach those that are stated.
 const PRESSURE: f64 = 0.25;
-/// Relative difference of two runs' pressures from which their order counts: valve losses, which go with the
-/// speed, raise the greatest pressure of a run by up to a fifth, and here two runs have to differ by as much in
-/// all.
+/// Relative difference of two runs' pressures from which their order counts. Valve losses, which grow with the
+/// speed, raise the greatest pressure of a run by up to a fifth. Two runs have to differ by as much in all.
 const ORDER: f64 = 0.1;
 /// Points over a revolution at which a mean is looked at.
 const POINTS: usize = 360;

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use signal::quantisation::quantisation_step;
 use std::f64::consts::TAU;
 
-/// Bits of a converter whose range is not known. Recordings are stored in single precision, which has so
-/// many: a lattice that is seen in them has no more, and one of so many is stored without loss.
+/// Bits of a converter whose range is not known. Recordings are stored in single precision, which has as many.
+/// A lattice that is seen in them has no more, and one of as many is stored without loss.
 pub const ASSUMED_BITS: u32 = f32::MANTISSA_DIGITS;
 /// Relative difference below which two steps are one.
 const SAME_STEP: f64 = 1e-3;

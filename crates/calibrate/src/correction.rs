@@ -1,20 +1,20 @@
 //! Which value of the data sheet is wrong, where a calibrated machine leaves more than noise of its recordings.
 //!
-//! 1. Rank the values in doubt by the misfit that each leaves to first order, with what was fitted adapting to
-//!    it: the residuals' derivative by the value, freed of what the fitted parameters can imitate. That is
-//!    done where the calibration has ended and at the nominal machine, for a wrong value leads a calibration
-//!    astray.
+//! 1. Rank the values in doubt by the misfit that each leaves to first order. What was fitted adapts to it: the
+//!    derivative of the residuals by the value is freed of what the fitted parameters can imitate. A wrong value
+//!    leads a calibration astray, so this is done at the nominal machine as well as where the calibration has ended.
 //! 2. Fit the best few, each together with everything else.
-//! 3. Compare those that explain the recordings by their evidence: exp(−χ²/2) times the density of the prior
-//!    at the value that was found times the width that the recordings leave it (Laplace's approximation,
-//!    MacKay 1992).
+//! 3. Compare those that explain the recordings by their evidence. It is exp(−χ²/2), times the density of the prior
+//!    at the fitted value, times the width that the recordings leave it (Laplace's approximation, MacKay 1992).
 //!
-//! This is done twice: by descents alone as soon as the first descent of a calibration has ended above the
-//! noise, for a search that a wrong value leads astray is long and in vain; and thoroughly where the search
-//! has ended above it too.
+//! This is done twice:
+//!
+//! 1. By descents alone, as soon as the first descent of a calibration has ended above the noise. A search that a
+//!    wrong value leads astray is long and in vain.
+//! 2. Thoroughly, where the search has ended above the noise too.
 //!
 //! A value is corrected where its probability is clear and its interval excludes the stated value. Several
-//! that explain the recordings alike are rivals, and none is corrected.
+//! values that explain the recordings equally well are rivals, and none is corrected.
 
 use crate::data_sheet::{Doubt, doubts};
 use crate::error::Error;
@@ -31,10 +31,11 @@ use std::ops::ControlFlow;
 
 /// Values that are fitted, of those that were ranked: the linear ranking may be wrong.
 const FITTED: usize = 5;
-/// Most evaluations of a descent for a value, and of the search that follows where no descent has reached the
-/// noise; of the latter the best few.
+/// Most evaluations of a descent for a value.
 const DESCENT: u64 = 60;
+/// Most evaluations of the search that follows where no descent has reached the noise.
 const TRIED: u64 = 300;
+/// The best values that are searched for so.
 const SEARCHED: usize = 2;
 /// Probability from which one value alone is corrected.
 const CLEAR: f64 = 0.95;
@@ -48,7 +49,7 @@ const FELT: f64 = 1.0;
 pub struct Correction {
     /// What was found of it.
     pub estimate: Estimate,
-    /// Whether the data sheet states it; a filter that nobody has stated has no nominal value.
+    /// Whether the data sheet states it. A filter that is not stated has no nominal value.
     pub stated: bool,
     /// Probability among the values in doubt.
     pub probability: f64,
@@ -171,7 +172,7 @@ impl Work<'_> {
 
     /// The values in doubt that are felt, those that promise to close most first, with their starts.
     fn ranked(&mut self, doubts: Vec<Doubt>, x: &[f64]) -> Vec<Ranked> {
-        // The zero of the crank angle is nothing that is calibrated: it is known whatever is wrong.
+        // The zero of the crank angle is not calibrated: it is known even where another value is wrong.
         let nominal = self.problem.parameters.iter().zip(x);
         let nominal = nominal.map(|(parameter, x)| match parameter.is_crank_angle_offset() {
             true => *x,
@@ -256,9 +257,9 @@ impl Work<'_> {
                 break;
             }
             let found = {
-                let told = &mut self.told(watch);
+                let report = &mut self.reporter(watch);
                 let change = search::CHANGE;
-                optimiser::levenberg_marquardt(&likelihood, start, change, most, told)?
+                optimiser::levenberg_marquardt(&likelihood, start, change, most, report)?
             };
             self.evaluations += found.evaluations;
             if best.as_ref().is_none_or(|best| found.cost < best.cost) {
@@ -289,8 +290,8 @@ impl Work<'_> {
         let added = trial.doubt.added(self.problem);
         let seed = self.settings.seed;
         let found = {
-            let told = &mut self.told(watch);
-            search::search(&added, &trial.x, seed, most, told)?
+            let report = &mut self.reporter(watch);
+            search::search(&added, &trial.x, seed, most, report)?
         };
         self.evaluations += found.evaluations;
         if found.misfit() < trial.misfit {
@@ -376,13 +377,13 @@ impl Work<'_> {
             start: Some(start),
             ..self.settings.clone()
         };
-        let fit = calibrate(problem, &settings, self.told(watch))?;
+        let fit = calibrate(problem, &settings, self.reporter(watch))?;
         self.evaluations += fit.evaluations;
         Ok(fit)
     }
 
     /// Tells where the work stands, with the evaluations of all of it.
-    fn told<'w>(
+    fn reporter<'w>(
         &'w mut self,
         watch: &'w mut impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> impl FnMut(&Progress) -> ControlFlow<()> + 'w {

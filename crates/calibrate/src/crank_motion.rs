@@ -31,7 +31,7 @@ pub(crate) fn recorded(angle: &CrankAngle, sample_rate: f64) -> GivenSpeed {
         let angles = angle.angles();
         let last = angles.len() - 1;
         for _ in 0..ROUNDS {
-            let even = Even::of(angles, step);
+            let even = Even::new(angles, step);
             fluctuation = (1..=HARMONICS).map(|k| even.harmonic(k)).collect();
             let turned = |i: usize| angles[i] - ahead(&fluctuation, even.angle(i));
             step = (turned(last) - turned(0)) / last as f64;
@@ -59,7 +59,7 @@ struct Even<'a> {
 }
 
 impl<'a> Even<'a> {
-    fn of(angles: &'a [f64], step: f64) -> Self {
+    fn new(angles: &'a [f64], step: f64) -> Self {
         let revolutions = (angles.len() as f64 * step / TAU).floor();
         let count = ((revolutions * TAU / step).round() as usize).min(angles.len());
         let angles = &angles[..count];

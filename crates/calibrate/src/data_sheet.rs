@@ -13,10 +13,10 @@ use input::{MachineFile, paths};
 use serde_json::{Value, json};
 use simulate::sensor::Quantity;
 
-/// Standard deviation of a stated mass: castings differ from their drawings by 3 to 5 %, and a crosshead is
-/// stated with its pin and piston rod, or without.
+/// Standard deviation of a stated mass. Castings differ from their drawings by 3 to 5 %. A crosshead is
+/// stated with or without its pin and piston rod.
 const MASS: f64 = 0.05;
-/// Of an inertia: nobody weighs one, it is estimated from a drawing.
+/// Of an inertia, which is not weighed but estimated from a drawing.
 const INERTIA: f64 = 0.1;
 /// Of a centre of mass: weighed at both ends, with the errors of two masses.
 const CENTRE_OF_MASS: f64 = 0.05;
@@ -28,10 +28,10 @@ const CLEARANCE: f64 = 0.2;
 const VOLUME: f64 = 0.1;
 /// Of the gain of a sensor: accelerometers for industry are sold to ±5 or ±10 %.
 const GAIN: f64 = 0.05;
-/// Of the delay between a channel and the crank angle, s: anti-alias filters of 1 to 5 kHz have a group delay
+/// Of the delay between a channel and the crank angle, s. Anti-alias filters of 1 to 5 kHz have a group delay
 /// of 0.1 to 0.5 ms.
 const DELAY: f64 = 5e-4;
-/// Median of a low-pass that nobody states, Hz, and the logarithm of the factor about it: cables, magnets and
+/// Median of a low-pass that is not stated, Hz, and the logarithm of the factor about it. Cables, magnets and
 /// mounts end between 1 and 10 kHz.
 const CUTOFF: f64 = 3e3;
 const CUTOFF_FACTOR: f64 = 0.7;
@@ -106,7 +106,7 @@ fn of_machine(problem: &Problem) -> Result<Vec<Doubt>, Error> {
     };
     let mut doubts = Vec::new();
     for (key, width) in VALUES {
-        // The crank is one, whatever throws it has.
+        // The crank is one, with any number of throws.
         let prefixes: &[String] = match key.starts_with("crank.") {
             true => &[String::new()],
             false => &names,
@@ -124,7 +124,7 @@ fn of_machine(problem: &Problem) -> Result<Vec<Doubt>, Error> {
 /// The clearances that all runs state alike: where they differ, a single value would be none of them.
 fn of_joints(problem: &Problem) -> Result<Vec<Doubt>, Error> {
     let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::of(&problem.tree, of_runs)?;
+    let joints = ClearJoint::in_runs(&problem.tree, of_runs)?;
     let state = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
     let states = problem
         .runs

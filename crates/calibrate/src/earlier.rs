@@ -1,14 +1,27 @@
 //! A calibration that is in the folder already.
 
-use crate::calibration::{Existing, MACHINE};
 use crate::checkpoint::Checkpoint;
 use crate::error::Error;
-use crate::results::{RESULTS, Results};
+use crate::results::{MACHINE, RESULTS, Results};
 use serde_json::Value;
 use std::path::Path;
 
 /// Name of the file of what was evaluated, which is there while a calibration is not complete.
 const CHECKPOINT: &str = "checkpoint.bin";
+
+/// What becomes of a calibration that is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Existing {
+    /// It is left alone, and that is an error.
+    Refuse,
+    /// It is kept where it is complete, and continued where it is not. One of other recordings,
+    /// another machine or other settings is an error.
+    Resume,
+    /// The same, but one that was made from something else is made anew.
+    Renew,
+    /// It is made anew.
+    Overwrite,
+}
 
 /// What an earlier calibration of the same inputs has left.
 pub(crate) struct Earlier {
@@ -70,7 +83,7 @@ pub(crate) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Erro
 ///
 /// # Errors
 /// One of other inputs that is to be resumed, or a file that cannot be read.
-pub(crate) fn look(
+pub(crate) fn read_existing(
     folder: &Path,
     existing: Existing,
     fingerprint: &str,

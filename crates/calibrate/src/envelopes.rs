@@ -1,9 +1,9 @@
-//! How far the envelopes of a prediction are from those of an observation, whatever their phases.
+//! How far the envelopes of a prediction are from those of an observation, at any phase.
 //!
-//! The lines of an octave of orders are an analytic signal a(θ) = Σ c_k e^(ikθ), whose magnitude is
-//! the envelope of the motion in this band (Gabor 1946). It tells when the machine rings, how loud,
-//! in which octave and how long, and does not turn with the phase of the ringing: where lines have
-//! many local minima, envelopes have few. Compared are their logarithms.
+//! The lines of an octave of orders are an analytic signal a(θ) = Σ c_k e^(ikθ). Its magnitude is
+//! the envelope of the motion in this band (Gabor 1946). It shows when the machine rings, how loud,
+//! in which octave and how long. It does not turn with the phase of the ringing: where lines have
+//! many local minima, envelopes have few. Their logarithms are compared.
 
 use crate::likelihood::FAILED;
 use crate::observation::{Observation, Observed};
@@ -104,7 +104,7 @@ struct Octave {
 }
 
 impl Octave {
-    /// As many angles as the envelope can tell apart, and twice that.
+    /// As many angles as the envelope can resolve, and twice that.
     fn angles(&self) -> impl Iterator<Item = f64> {
         let count = 2 * self.first;
         (0..count).map(move |j| TAU * j as f64 / count as f64)

@@ -21,10 +21,10 @@ pub(crate) fn is_short(angle: &CrankAngle) -> bool {
 /// a motion that goes on so. None where there is not one whole revolution.
 ///
 /// Amplitudes are Fourier integrals over the crank angle by the trapezoidal rule, which is exact for
-/// samples at equal angles. The noise is what stands at the highest third of the orders, where
-/// neither the motion nor the gas reaches (their median, as a tone may stand there too; powers of
-/// noise are distributed exponentially, whose median is ln 2 times the mean), but at least the
-/// rounding to the channel's own resolution, q²/12 per sample. It is taken as white.
+/// samples at equal angles. The noise is taken as white. It is read at the highest third of the orders, which
+/// neither the motion nor the gas reaches. Their median is used, as a tone may stand there too. Powers of
+/// noise are distributed exponentially, so that their median is ln 2 times the mean. The noise is at least the
+/// rounding to the channel's own resolution, q²/12 per sample.
 pub(crate) fn lines(angle: &CrankAngle, samples: &[f64]) -> Option<OrderLines> {
     let revolutions = (angle.revolutions() + 0.01).floor();
     let period = revolutions * TAU;
@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// White noise of variance s² leaves lines of variance 4 s²/N, whatever tone stands among them.
+    /// White noise of variance s² leaves lines of variance 4 s²/N, whether or not a tone stands among them.
     #[test]
     fn the_noise_is_that_of_the_highest_orders() {
         let mut state = 1_u64;

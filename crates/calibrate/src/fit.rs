@@ -24,7 +24,7 @@ pub struct FitSettings {
     pub evaluations: u64,
     /// Runs that are not fitted to, but predicted.
     pub held_out: Vec<String>,
-    /// Coordinates from which the search goes on, as [`Progress`] told them; without them it starts
+    /// Coordinates from which the search goes on, as [`Progress`] reported them. Without them it starts
     /// at the nominal values.
     pub start: Option<Vec<f64>>,
 }
@@ -32,7 +32,7 @@ pub struct FitSettings {
 /// How the best fit is searched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Optimiser {
-    /// Levenberg and Marquardt from the nominal values, with envelopes and low orders first; where that
+    /// Levenberg and Marquardt from the nominal values, with envelopes and low orders first. Where that
     /// leaves more than noise, from other values too, until the descents agree; then CMA-ES.
     #[default]
     Default,
@@ -60,8 +60,8 @@ impl Optimiser {
 }
 
 /// A misfit above which the model does not explain the recordings. Intervals follow from the noise, as if it
-/// were all that is left; at 1.5 more than half of the mean square is something else, and what that does to
-/// the parameters nobody knows.
+/// were all that is left. At 1.5 more than half of the mean square is something else, and its effect on the
+/// parameters is unknown.
 pub const ADEQUATE: f64 = 1.5;
 /// A value this near to a bound, as a share of the range, is at it.
 const AT_BOUND: f64 = 1e-3;
@@ -71,7 +71,8 @@ const AT_BOUND: f64 = 1e-3;
 pub struct Fit {
     /// Each parameter with what was found.
     pub estimates: Vec<Estimate>,
-    /// Correlation between each pair of estimates; 0 beside a parameter that is not told.
+    /// Correlation between each pair of estimates, a row and a column per parameter; 0 beside one that is not
+    /// identifiable.
     pub correlations: DMatrix<f64>,
     /// Each run's misfit.
     pub runs: Vec<RunFit>,
@@ -82,7 +83,7 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Root mean square over runs, those held out or the others; none where there is none.
+    /// Root mean square over runs, those held out or the others; `None` without such runs.
     pub fn misfit(&self, held_out: bool, of: impl Fn(&RunFit) -> f64) -> Option<f64> {
         let chosen: Vec<f64> = self
             .runs
@@ -100,15 +101,15 @@ impl Fit {
         self.estimates.iter().map(coordinate).collect()
     }
 
-    /// Whether no more than noise is left. A model may be adequate that leaves more; then a wrong value of the data
-    /// sheet may still have moved the parameters by more than their intervals.
+    /// Whether no more than noise is left. A model that leaves more may be adequate. A wrong value of the data
+    /// sheet may then still have moved the parameters by more than their intervals.
     pub fn is_at_noise(&self) -> bool {
         let fitted = self.misfit(false, |run| run.calibrated);
         self.model_is_adequate() && fitted.is_some_and(|fitted| fitted <= NOISE)
     }
 
-    /// Whether the model explains the recordings: no more than noise is left of the fitted runs, and of those
-    /// held out that have the clearances of a fitted one. Runs at other clearances judge the relation between
+    /// Whether the model explains the recordings: no more than noise is left of the fitted runs, nor of the
+    /// held-out runs that have the clearances of a fitted one. Runs at other clearances judge the relation between
     /// clearances, not the parameters.
     pub fn model_is_adequate(&self) -> bool {
         let alike = self.runs.iter().filter(|run| run.held_out && run.alike);
@@ -124,9 +125,9 @@ impl Fit {
 pub struct Estimate {
     /// The parameter.
     pub parameter: Parameter,
-    /// Its value, SI; the nominal one where the recordings do not tell it.
+    /// Its value, SI; the nominal one where it is not identifiable.
     pub value: f64,
-    /// Its 95 % interval, SI; none where the recordings do not tell it.
+    /// Its 95 % interval, SI; `None` where it is not identifiable.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -155,7 +156,7 @@ pub struct RunFit {
     pub calibrated: f64,
 }
 
-/// Fits the problem's parameters to its runs; `watch` is told the best so far, and may stop it.
+/// Fits the problem's parameters to its runs. `watch` gets the best result so far, and may stop the fit.
 ///
 /// # Errors
 /// Nothing to fit, or a machine that cannot be simulated with its nominal parameters.
@@ -180,7 +181,7 @@ pub fn calibrate(
     let mut start = start(problem, settings)?;
     let mut evaluations = 0;
     let mut complete = true;
-    let (x, told) = loop {
+    let (x, information) = loop {
         let part = fitted.with_parameters(&free);
         let likelihood = Likelihood::new(&part);
         let mut watch = |progress: &Progress| {
@@ -207,7 +208,7 @@ pub fn calibrate(
         let mut information = information(&likelihood, &found.x);
         evaluations += 1 + optimiser::derivatives(free.len()) + 2 * free.len() as u64;
         let simple = free.len() == nominal.len() && found.misfit() < NOISE;
-        if information.untold.is_none() && !simple {
+        if information.unidentifiable.is_none() && !simple {
             let whole = Likelihood::new(&fitted);
             let mut x = nominal.clone();
             for (i, value) in free.iter().zip(&found.x) {
@@ -217,12 +218,12 @@ pub fn calibrate(
             information = information.widened(&factors, &found.x);
             evaluations += 1 + optimiser::derivatives(nominal.len());
         }
-        match information.untold {
-            // What the recordings do not tell keeps its nominal value, and the rest is fitted again.
-            Some(untold) if complete => {
+        match information.unidentifiable {
+            // A parameter that is not identifiable keeps its nominal value, and the rest is fitted again.
+            Some(unidentifiable) if complete => {
                 start = found.x;
-                start.remove(untold);
-                free.remove(untold);
+                start.remove(unidentifiable);
+                free.remove(unidentifiable);
                 if free.is_empty() {
                     break (Vec::new(), None);
                 }
@@ -236,7 +237,7 @@ pub fn calibrate(
     }
     let after = Likelihood::new(problem).by_run(&all)?;
     let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::of(&problem.tree, of_runs)?;
+    let joints = ClearJoint::in_runs(&problem.tree, of_runs)?;
     let state = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
     let states = fitted
         .runs
@@ -260,8 +261,8 @@ pub fn calibrate(
                 calibrated: misfit(after),
             })
             .collect(),
-        estimates: estimates(problem, &free, &all, told.as_ref()),
-        correlations: correlations(nominal.len(), &free, told.as_ref()),
+        estimates: estimates(problem, &free, &all, information.as_ref()),
+        correlations: correlations(nominal.len(), &free, information.as_ref()),
         evaluations,
         complete,
     })
@@ -312,11 +313,13 @@ fn estimates(
     problem: &Problem,
     free: &[usize],
     x: &[f64],
-    told: Option<&Information>,
+    information: Option<&Information>,
 ) -> Vec<Estimate> {
     let of = |(i, parameter): (usize, &Parameter)| {
         let place = free.iter().position(|f| *f == i);
-        let interval = place.zip(told).map(|(place, told)| told.intervals[place]);
+        let interval = place
+            .zip(information)
+            .map(|(place, information)| information.intervals[place]);
         Estimate {
             value: parameter.value(x[i]),
             // Beyond its bounds a parameter cannot lie.
@@ -333,11 +336,13 @@ fn estimates(
     problem.parameters.iter().enumerate().map(of).collect()
 }
 
-fn correlations(count: usize, free: &[usize], told: Option<&Information>) -> DMatrix<f64> {
+fn correlations(count: usize, free: &[usize], information: Option<&Information>) -> DMatrix<f64> {
     let place = |i: usize| free.iter().position(|f| *f == i);
-    DMatrix::from_fn(count, count, |i, j| match (place(i), place(j), told) {
-        (Some(i), Some(j), Some(told)) => told.correlations[(i, j)],
-        _ if i == j => 1.0,
-        _ => 0.0,
+    DMatrix::from_fn(count, count, |i, j| {
+        match (place(i), place(j), information) {
+            (Some(i), Some(j), Some(information)) => information.correlations[(i, j)],
+            _ if i == j => 1.0,
+            _ => 0.0,
+        }
     })
 }

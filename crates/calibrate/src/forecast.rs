@@ -1,11 +1,13 @@
 //! What a fitted machine shows in a run, with the uncertainty that its parameters leave.
 
+use crate::bounded::Bounded;
 use crate::error::Error;
 use crate::normal::QUANTILE;
 use crate::observation::{Observed, POINTS};
 use crate::prediction::{Prediction, predict, predict_with_derivatives};
 use crate::relation::Relation;
-use crate::transfer::{Bounded, Case, Fitted};
+use crate::transfer::case::Case;
+use crate::transfer::refit::Fitted;
 use nalgebra::DVector;
 use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -69,7 +71,7 @@ fn channels(case: &Case, machine: &Fitted) -> Result<BTreeMap<String, ChannelFor
         let lines = counted(observed, &prediction.lines[i].amplitude);
         let measured = &observed.lines.amplitude;
         let measured = case.recorded.then(|| counted(observed, measured));
-        let shown = Shown::of(&lines);
+        let shown = Shown::new(&lines);
         let bounded = |value: f64, which: usize| {
             let gradient = DVector::from_iterator(
                 machine.x.len(),
@@ -89,7 +91,7 @@ fn channels(case: &Case, machine: &Fitted) -> Result<BTreeMap<String, ChannelFor
                 rms: bounded(shown.rms, 0),
                 peak: bounded(shown.peak.abs(), 1),
                 recorded: measured.as_ref().map(|measured| {
-                    let shown = Shown::of(measured);
+                    let shown = Shown::new(measured);
                     [shown.rms, shown.peak.abs()]
                 }),
                 difference: measured.as_ref().map(|measured| {
@@ -114,8 +116,8 @@ fn counted(observed: &Observed, amplitude: &[Complex64]) -> Vec<Complex64> {
     lines
 }
 
-/// For each parameter and channel the derivatives of RMS and peak by its coordinate: exact where the
-/// motion repeats itself, elsewhere differences over one standard deviation to either side.
+/// For each parameter and channel the derivatives of RMS and peak by its coordinate. They are exact where the
+/// motion repeats itself, and differences over one standard deviation to either side elsewhere.
 fn gradients(
     case: &Case,
     machine: &Fitted,
@@ -125,7 +127,7 @@ fn gradients(
     if prediction.derivatives.len() == machine.x.len() {
         let of_channel = |derivative: &[Complex64], i: usize| {
             let shown = counted(&channels[i], &prediction.lines[i].amplitude);
-            Shown::of(&shown).derivatives(&shown, &counted(&channels[i], derivative))
+            Shown::new(&shown).derivatives(&shown, &counted(&channels[i], derivative))
         };
         let by_parameter = prediction.derivatives.iter();
         return Ok(by_parameter
@@ -144,7 +146,7 @@ fn gradients(
                 let prediction = predict(&machine.problem, &case.run, &x)?;
                 let all = channels.iter().zip(&prediction.lines);
                 Ok(all
-                    .map(|(c, l)| Shown::of(&counted(c, &l.amplitude)))
+                    .map(|(c, l)| Shown::new(&counted(c, &l.amplitude)))
                     .collect())
             };
             let (below, above) = (shown(-1.0)?, shown(1.0)?);
@@ -167,7 +169,7 @@ struct Shown {
 }
 
 impl Shown {
-    fn of(lines: &[Complex64]) -> Self {
+    fn new(lines: &[Complex64]) -> Self {
         let angles = (0..POINTS).map(|i| i as f64 * TAU / POINTS as f64);
         let values = angles.map(|angle| (value(lines, angle), angle));
         let greatest = values.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));

@@ -1,9 +1,8 @@
 //! Some runs first: a way out of local minima.
 //!
-//! A run whose motion hardly bears a change (it is near a bifurcation, or hardly damped) fits in a narrow
-//! valley of the parameters and nowhere else. In a sum of squares over all runs it outweighs the others and
-//! keeps them from a valley of their own that is much wider, and in which the narrow one lies. And what is
-//! a local minimum of all runs seldom is one of half of them: it is the true one that all parts have in
+//! A run that is near a bifurcation or hardly damped fits in a narrow valley of the parameters only. In a sum of
+//! squares over all runs it outweighs the others. It keeps them from a much wider valley of their own, in which the
+//! narrow one lies. A local minimum of all runs is seldom one of half of them: all parts have only the true one in
 //! common.
 
 use crate::likelihood::{Likelihood, misfit};
@@ -13,9 +12,8 @@ use crate::problem::Problem;
 /// than that of the noise.
 const AS_NEAR: f64 = 1.5;
 
-/// The problem with parts of its runs alone, as they are at the coordinates `x`: the half that is nearer to the
-/// recordings, the other one, and every other run from the nearest on; none of a single run, nor where one
-/// cannot be simulated.
+/// The problem with parts of its runs alone, as they are at the coordinates `x`: the better-fitting half, the
+/// other half, and every other run from the best on. None for a single run, nor where a run cannot be simulated.
 pub(crate) fn halves(problem: &Problem, x: &[f64]) -> Vec<Problem> {
     let parts = misfits(problem, x).map(|misfits| parts(&misfits));
     let parts = parts.unwrap_or_default().into_iter();

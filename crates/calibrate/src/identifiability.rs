@@ -1,9 +1,9 @@
-//! What the recordings tell about each parameter, and what they do not.
+//! Which parameters are identifiable from the recordings, and how closely.
 //!
-//! Near the best fit the likelihood is that of a linear model: its covariance is (JᵀJ)⁻¹, J being
+//! Near the best fit the likelihood is that of a linear model. Its covariance is (JᵀJ)⁻¹, J being
 //! the derivatives of the residuals (Fisher's information). Two evaluations per parameter check
-//! that: along the direction in which the others follow it, the sum of squares must rise as the
-//! linear model says; where it rises less, the bound is moved out (a profile likelihood, with the
+//! that. Along the direction in which the others follow the parameter, the sum of squares must rise as the
+//! linear model says. Where it rises less, the bound is moved out (a profile likelihood, with the
 //! other parameters optimised to first order).
 
 use crate::likelihood::misfit;
@@ -11,20 +11,20 @@ use crate::normal::QUANTILE;
 use crate::optimiser::LeastSquares;
 use nalgebra::{DMatrix, DVector};
 
-/// A bound is moved out by at most this factor; a likelihood that is flatter tells nothing.
+/// A bound is moved out by at most this factor. With a flatter likelihood the parameter is not identifiable.
 const FLATTEST: f64 = 10.0;
-/// A parameter is told where its interval is shorter than this share of its search range.
+/// A parameter is identifiable where its interval is shorter than this share of its search range.
 const TOLD: f64 = 0.5;
 
-/// What a fit tells about its parameters, in their coordinates.
+/// How closely a fit determines its parameters, in their coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
     /// 95 % interval of each parameter.
     pub intervals: Vec<[f64; 2]>,
     /// Correlation between each pair.
     pub correlations: DMatrix<f64>,
-    /// The parameter that is told least, if its interval is no narrower than half of its range.
-    pub untold: Option<usize>,
+    /// The least identifiable parameter, if its interval is no narrower than half of its range.
+    pub unidentifiable: Option<usize>,
 }
 
 /// The information at the best fit `x`; two evaluations of the model per parameter.
@@ -62,7 +62,7 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
         })
         .collect();
     Information {
-        untold: untold(&intervals, &bounds),
+        unidentifiable: unidentifiable(&intervals, &bounds),
         correlations: DMatrix::from_fn(count, count, |i, j| {
             covariance[(i, j)] / (deviation(i) * deviation(j))
         }),
@@ -71,7 +71,7 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
 }
 
 /// The parameter whose interval is the greatest share of its range, where that is half or more.
-fn untold(intervals: &[[f64; 2]], bounds: &[[f64; 2]]) -> Option<usize> {
+fn unidentifiable(intervals: &[[f64; 2]], bounds: &[[f64; 2]]) -> Option<usize> {
     let share = |i: usize| {
         let [low, high] = intervals[i];
         let share = (high - low) / (bounds[i][1] - bounds[i][0]);
@@ -96,14 +96,13 @@ impl Information {
     }
 }
 
-/// By how much the intervals of the parameters `told` are wider than [`information`] says, which
+/// By how much the intervals of the parameters `known` are wider than [`information`] says, which
 /// takes the others for known and the model for right. `problem` has all parameters free.
 ///
-/// - What is not told may lie anywhere within its bounds, and whatever can imitate it moves along.
-/// - Where more than noise is left, it is left in some residuals and not in others, and counts most
-///   where it stands in those that a parameter follows: the sandwich H⁻¹ (Σ r² j jᵀ) H⁻¹ is the
-///   covariance of a fit whose model is wrong (Huber 1967, White 1982).
-pub fn widening(problem: &impl LeastSquares, x: &[f64], told: &[usize]) -> Vec<f64> {
+/// - A parameter that is not identifiable may lie anywhere within its bounds, and what can imitate it moves along.
+/// - Where more than noise is left, it counts most in the residuals that a parameter follows. The sandwich
+///   H⁻¹ (Σ r² j jᵀ) H⁻¹ is the covariance of a fit whose model is wrong (Huber 1967, White 1982).
+pub fn widening(problem: &impl LeastSquares, x: &[f64], known: &[usize]) -> Vec<f64> {
     let residuals = problem.residuals(x);
     let jacobian = problem.jacobian(x);
     let excess = misfit(&residuals).max(1.0).powi(2);
@@ -115,22 +114,23 @@ pub fn widening(problem: &impl LeastSquares, x: &[f64], told: &[usize]) -> Vec<f
     let spread = weighted.transpose() * &weighted;
     // Evenly spread over a width w, a value has the variance w²/12.
     let bounds = problem.bounds();
-    let prior = DVector::from_fn(x.len(), |i, _| match told.contains(&i) {
+    let prior = DVector::from_fn(x.len(), |i, _| match known.contains(&i) {
         true => 0.0,
         false => 12.0 / (bounds[i][1] - bounds[i][0]).powi(2),
     });
     let prior = DMatrix::from_diagonal(&prior);
     let of_all = inverse(&information + &prior);
     let sandwich = &of_all * (spread + prior) * &of_all;
-    let of_told = DMatrix::from_fn(told.len(), told.len(), |i, j| {
-        information[(told[i], told[j])]
+    let of_known = DMatrix::from_fn(known.len(), known.len(), |i, j| {
+        information[(known[i], known[j])]
     });
-    let of_told = inverse(of_told);
-    told.iter()
+    let of_known = inverse(of_known);
+    known
+        .iter()
         .enumerate()
         .map(|(place, i)| {
             let variance = of_all[(*i, *i)].max(sandwich[(*i, *i)]);
-            (variance / of_told[(place, place)]).sqrt().max(1.0)
+            (variance / of_known[(place, place)]).sqrt().max(1.0)
         })
         .collect()
 }
@@ -192,7 +192,7 @@ mod tests {
             (between + 0.3 / (0.7_f64 * 0.2).sqrt()).abs() < 1e-9,
             "{between}"
         );
-        assert_eq!(information.untold, Some(2));
+        assert_eq!(information.unidentifiable, Some(2));
     }
 
     /// A line whose slope is known to lie within 2 only.
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_told_widens_what_can_imitate_it() {
+    fn an_unidentifiable_parameter_widens_what_can_imitate_it() {
         // Of four points the intercept has the variance 1/4 with a known slope. One that is spread
         // evenly over a width of 2 has 1/3: the information is [[4, 6], [6, 14 + 3]].
         let factors = widening(&Slope, &[0.97, 0.02], &[0]);

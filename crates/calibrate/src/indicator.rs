@@ -1,8 +1,8 @@
-//! What a measured cylinder pressure tells by itself: the indicator diagram.
+//! The indicator diagram of a measured cylinder pressure.
 //!
 //! While both valves are closed, ln p falls in a straight line over ln V, whose slope is the
 //! polytropic exponent. Where these lines meet the pressures of the suction and the discharge line,
-//! the valves open and close in effect: a valve that took no time and no pressure there would enclose
+//! the valves open and close in effect. A valve that took no time and no pressure there would enclose
 //! the same gas. (The method is that of indicator cards, as old as the steam engine.)
 //!
 //! ```text
@@ -18,7 +18,7 @@ use simulate::{ChamberEnd, Measured};
 use std::f64::consts::{PI, TAU};
 
 /// Share of the way from suction to discharge, in ln p, that is left out at either end of a
-/// polytrope: there the valves do not open and close at once.
+/// polytrope. The valves do not open and close at once there.
 const MARGIN: f64 = 0.15;
 /// Fewest samples of a polytrope.
 const FEWEST: usize = 8;
@@ -91,8 +91,8 @@ pub struct Polytrope {
 
 /// The same curve read with another clearance.
 ///
-/// A wider clearance asks for greater exponents, and both polytropes stay nearly as straight: the
-/// curve tells the two together, and neither alone.
+/// A wider clearance asks for greater exponents, and both polytropes stay nearly as straight: clearance and
+/// exponents are strongly correlated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alternative {
     /// The clearance, m.
@@ -205,7 +205,7 @@ impl Indicator {
     /// The diagram of one revolution of pressure, Pa, in `chamber`: its samples follow each other
     /// at `angles`, rad. None where the pressure has no lines and polytropes: it is not that of a
     /// compressor at work.
-    pub fn of(chamber: Chamber, angles: &[f64], pressure: &[f64]) -> Option<Self> {
+    pub fn from_pressure(chamber: Chamber, angles: &[f64], pressure: &[f64]) -> Option<Self> {
         if pressure.iter().any(|p| *p <= 0.0) {
             return None;
         }
@@ -399,8 +399,8 @@ mod tests {
         }
     }
 
-    /// The pressure with exponents 1.3 and 1.1, and the angles after the dead centre at which the
-    /// suction valve opens, it closes, and the discharge valve opens.
+    /// The pressure with exponents 1.3 and 1.1, and three angles after the dead centre: the suction valve opens, it
+    /// closes, and the discharge valve opens.
     fn late_closing(chamber: &Chamber, angles: &[f64]) -> (Vec<f64>, [f64; 3]) {
         let start = chamber.dead_centre();
         let enclosed = chamber.distance(start + PI + LATE);
@@ -432,7 +432,7 @@ mod tests {
         for end in [ChamberEnd::Head, ChamberEnd::Crank] {
             let chamber = chamber(end);
             let (pressure, expected) = late_closing(&chamber, &angles);
-            let found = Indicator::of(chamber, &angles, &pressure).unwrap();
+            let found = Indicator::from_pressure(chamber, &angles, &pressure).unwrap();
             assert!((found.compression.exponent - 1.3).abs() < 1e-9);
             assert!((found.expansion.exponent - 1.1).abs() < 1e-9);
             assert!(found.compression.scatter < 1e-9);
@@ -462,12 +462,12 @@ mod tests {
         let angles: Vec<f64> = (0..720).map(|i| TAU * f64::from(i) / 720.0).collect();
         let chamber = chamber(ChamberEnd::Head);
         let (pressure, _) = late_closing(&chamber, &angles);
-        let found = Indicator::of(chamber, &angles, &pressure).unwrap();
+        let found = Indicator::from_pressure(chamber, &angles, &pressure).unwrap();
         let wider = Chamber {
             clearance: chamber.clearance + 1e-3,
             ..chamber
         };
-        let other = Indicator::of(wider, &angles, &pressure).unwrap();
+        let other = Indicator::from_pressure(wider, &angles, &pressure).unwrap();
         for (polytrope, other) in [
             (&found.compression, &other.compression),
             (&found.expansion, &other.expansion),
@@ -488,7 +488,7 @@ mod tests {
             |a: f64| 1e5 + a.cos().signum(),
         ] {
             let pressure: Vec<f64> = angles.iter().map(|a| wave(*a)).collect();
-            assert!(Indicator::of(chamber, &angles, &pressure).is_none());
+            assert!(Indicator::from_pressure(chamber, &angles, &pressure).is_none());
         }
     }
 }

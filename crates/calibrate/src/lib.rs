@@ -5,18 +5,23 @@
 //!                                                                    ├─likelihood─> residuals
 //! machine(θ) ──prediction───> the same lines, with derivatives ──────┘        │
 //!                                                                             v
-//!                                  optimiser ──> θ ──identifiability──> bounds, what is not told
+//!                                  optimiser ──> θ ──identifiability──> intervals
 //! ```
 //!
-//! From files to files: [`prepare`] reads settings and a [`bundle`] into a [`Task`] and refuses what cannot be
-//! used; [`Prepared::finish`] searches, and writes [`Results`] as `calibration.json` beside the calibrated
+//! From files to files: [`prepare`] reads settings and a [`bundle`] into a [`Task`] and refuses invalid
+//! input. [`Prepared::finish`] searches, and writes [`Results`] as `calibration.json` beside the calibrated
 //! `machine.yaml`. [`bundle_replay`] simulates a bundle in place of its recordings.
 //!
-//! What is compared are the complex amplitudes of the shaft's orders: the crank-angle synchronous
-//! mean. A chaotic motion has one too, and what scatters about it counts as noise on either side.
+//! The complex amplitudes of the shaft's orders are compared: the crank-angle synchronous
+//! mean. A chaotic motion has one too, and its scatter counts as noise on either side.
 //! Weights come from that noise alone.
+//!
+//! Coordinates `x` are one number per parameter of a [`Problem`], in its order; 0 is the nominal value.
+//! Residuals follow each other run by run and channel by channel, in standard deviations of the noise. A Jacobian
+//! has a row per residual and a column per parameter.
 
 pub mod alignment;
+mod bounded;
 pub mod bundle;
 pub mod bundle_replay;
 pub mod calibration;
@@ -62,10 +67,12 @@ pub mod throw_alone;
 pub mod transfer;
 pub mod zero;
 
-pub use calibration::{Calibrated, Existing, Prepared, prepare};
+pub use bounded::Bounded;
+pub use calibration::{Calibrated, Prepared, prepare};
 pub use comparison::{Comparison, compare, compare_models};
 pub use correction::{Corrected, Correction, Depth, correct};
 pub use crank_motion::CrankMotion;
+pub use earlier::Existing;
 pub use error::Error;
 pub use fit::{Fit, FitSettings, calibrate};
 pub use halves::nearer_half;

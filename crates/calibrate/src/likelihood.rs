@@ -40,8 +40,8 @@ impl<'a> Likelihood<'a> {
     }
 
     /// The same with features that may stand `timing` away from where they are seen (a standard
-    /// deviation, rad). An order k is then trusted only as far as it does not turn over this angle: a
-    /// smoother landscape, in which the slow features of a signal count most.
+    /// deviation, rad). An order k is then trusted only as far as it does not turn over this angle. The landscape
+    /// becomes smoother, and the slow features of a signal count most.
     pub fn coarse(problem: &'a Problem, timing: f64) -> Self {
         Self { problem, timing }
     }

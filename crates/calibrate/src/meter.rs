@@ -1,5 +1,5 @@
-//! What predictions cost, in steps of the integrator: a measure of time that is the same on every
-//! machine; and which of them are known from before.
+//! What predictions cost, in steps of the integrator, and which of them are known from before.
+//! Steps are a measure of time that is the same on every computer.
 
 use crate::checkpoint::Checkpoint;
 use std::fmt;
@@ -40,7 +40,7 @@ impl Meter {
     }
 }
 
-/// A problem is the same whatever was spent on it.
+/// Problems are compared without their cost.
 impl fmt::Debug for Meter {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("Meter")

@@ -21,7 +21,7 @@ pub(crate) const SPEED: f64 = 0.02;
 const LOW_ORDERS: usize = 20;
 /// Power over noise from which one order stands out: in noise alone one of fifty does.
 const STANDS_OUT: f64 = 4.0;
-/// Orders of a band, and mean power over noise from which a band stands out: noise alone has a mean
+/// Orders of a band, and mean power over noise from which a band stands out. Noise alone has a mean
 /// of 1 with a standard deviation of a third.
 const BAND: usize = 10;
 const BAND_STANDS_OUT: f64 = 2.5;
@@ -47,8 +47,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// The crank angles of the samples of the first whole revolution, or of all where there is none;
-    /// none where the angle is not known.
+    /// The crank angles of the samples of the first whole revolution, rad, or of all samples without one;
+    /// `None` where the angle is not known.
     pub fn first_revolution(&self) -> Option<&[f64]> {
         let angles = self.crank_angle.as_ref()?;
         let first = *angles.first()?;
@@ -63,7 +63,7 @@ impl Run {
 /// A measured channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// Name of its column, which tells what it is: `crosshead_acceleration_m_s2`.
+    /// Name of its column, which says what it is: `crosshead_acceleration_m_s2`.
     pub column: String,
     /// The samples, SI.
     pub samples: Vec<f64>,
@@ -154,7 +154,7 @@ impl Observation {
     /// # Errors
     /// No such channel, a channel that is clipped or noise alone, an angle that contradicts the
     /// speed.
-    pub fn of(run: &Run, columns: &[String]) -> Result<Self, Error> {
+    pub fn from_run(run: &Run, columns: &[String]) -> Result<Self, Error> {
         let chosen: Vec<&Channel> = run
             .channels
             .iter()
@@ -276,7 +276,7 @@ fn stands_out(lines: &OrderLines) -> bool {
         .any(|k| lines.amplitude[k].norm_sqr() > STANDS_OUT * lines.variance[k])
 }
 
-/// All orders up to the last [`BAND`] whose mean power stands out of the noise: choosing them one by
+/// All orders up to the last [`BAND`] whose mean power stands out of the noise. Choosing them one by
 /// one would choose those in which the noise happens to be great. The mean of an acceleration is its
 /// sensor's, not the machine's; pressures have an order 0.
 fn orders(lines: &OrderLines) -> Vec<usize> {

@@ -42,10 +42,10 @@ impl Progress {
     }
 }
 
-/// What an evaluation with the derivatives by so many parameters counts for, in plain ones. Tangents are
-/// carried through one revolution of a motion that has settled, and not through the transient: two
+/// How many plain evaluations one with the derivatives by so many parameters counts for. Tangents are
+/// carried through one revolution of a motion that has settled, and not through the transient. Two
 /// clear joints take 2.1, 2.3, 2.4 and 2.6 times the plain steps with 3, 6, 8 and 12 parameters
-/// (`tests/cost.rs`).
+/// (`tests/all/cost.rs`).
 pub fn derivatives(parameters: usize) -> u64 {
     2 + parameters as u64 / 12
 }
@@ -190,6 +190,9 @@ macro_rules! to_its_end {
 /// Levenberg and Marquardt's method within bounds (Levenberg 1944, Marquardt 1963; bounds after
 /// Branch, Coleman and Li 1999), from `start`. Ends where a step no longer changes the sum of
 /// squares by the share `change`.
+///
+/// # Errors
+/// An optimiser that cannot start or go on. A search that `watch` stops is no error: its best point is the result.
 pub fn levenberg_marquardt(
     problem: &impl LeastSquares,
     start: &[f64],
@@ -207,6 +210,9 @@ pub fn levenberg_marquardt(
 
 /// CMA-ES within bounds (Hansen 2016), from `start`, with an initial standard deviation of a
 /// quarter of the widths of the bounds.
+///
+/// # Errors
+/// As [`levenberg_marquardt`].
 pub fn cma_es(
     problem: &impl LeastSquares,
     start: &[f64],
@@ -228,7 +234,7 @@ pub fn cma_es(
     })
 }
 
-/// A genetic algorithm, the reference method (Paper 1): a steady-state one with real genes, blend
+/// A genetic algorithm, the reference method (Paper 1). It is a steady-state one with real genes, blend
 /// crossover and bounded mutation (Molina, Lozano, García-Martínez and Herrera 2010, section 4.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Genetic {
@@ -251,6 +257,9 @@ impl Default for Genetic {
 }
 
 /// The genetic algorithm within bounds.
+///
+/// # Errors
+/// As [`levenberg_marquardt`].
 pub fn genetic(
     problem: &impl LeastSquares,
     settings: &Genetic,
@@ -318,17 +327,17 @@ mod tests {
 
     #[test]
     fn a_watch_stops_and_a_seed_repeats() {
-        let mut told = 0;
+        let mut calls = 0;
         let found = cma_es(&Valley, &[0.0, 0.0], 7, 5000, &mut |_| {
-            told += 1;
-            if told < 5 {
+            calls += 1;
+            if calls < 5 {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
             }
         })
         .unwrap();
-        assert_eq!(told, 5);
+        assert_eq!(calls, 5);
         let run = |seed| cma_es(&Valley, &[0.0, 0.0], seed, 300, &mut go).unwrap();
         assert_eq!(run(3), run(3));
         assert_ne!(run(3), run(4));

@@ -1,7 +1,6 @@
 //! What is fitted: paths of the machine file, and the coordinates in which they are searched.
 
 use crate::error::Error;
-use crate::run_condition::CRANK_ANGLE_OFFSET;
 use input::paths;
 use input::unit::{self, Dimension, Measure};
 use serde_json::Value;
@@ -12,8 +11,7 @@ pub struct Parameter {
     /// Its path in the machine file. With `*` for a part, one value that several places share:
     /// `joints.*.friction.coefficient`.
     pub path: String,
-    /// The places that hold it.
-    /// There is none for the offset of the crank angle.
+    /// The places that hold it; the offset of the crank angle has no place.
     pub places: Vec<String>,
     /// The run that it is a condition of; none where it holds for the machine.
     pub run: Option<String>,
@@ -25,27 +23,6 @@ pub struct Parameter {
     pub scale: Scale,
     /// Least and greatest value, SI.
     pub bounds: [f64; 2],
-}
-
-/// The unit of the value at `path` of the machine file `tree`, as a run's condition or for the machine; empty
-/// for a pure number.
-pub fn unit(tree: &Value, path: &str) -> String {
-    let offset = format!(".{path}");
-    if offset.ends_with(&format!(".{CRANK_ANGLE_OFFSET}")) {
-        return "rad".to_owned();
-    }
-    // A value of one run alone stands behind the run's name.
-    let names = offset.match_indices('.').map(|(i, _)| &offset[i + 1..]);
-    let value = names
-        .filter_map(|name| paths::get(tree, name).ok().flatten())
-        .next();
-    let measure = value
-        .and_then(Value::as_str)
-        .and_then(|text| unit::parse(text).ok());
-    match measure {
-        Some(measure) if measure.dimension != Dimension::NONE => measure.dimension.to_string(),
-        _ => String::new(),
-    }
 }
 
 /// The scale on which a parameter is searched.
@@ -60,7 +37,7 @@ pub enum Scale {
 /// Without bounds of its own a value is searched from a tenth to ten times the nominal one.
 const FACTOR: f64 = 10.0;
 /// Lengths, masses and other values that are measured with a rule or a balance are searched from
-/// two thirds to one and a half times the nominal one.
+/// two thirds to 1.5 times the nominal one.
 const MEASURED_FACTOR: f64 = 1.5;
 /// Last keys of paths that are known to a factor only.
 const UNCERTAIN: [&str; 7] = [
@@ -124,7 +101,7 @@ impl Parameter {
     pub fn within(tree: &Value, path: &str, bounds: [f64; 2]) -> Result<Self, Error> {
         let found = Found::at(tree, path)?;
         let [mut low, high] = bounds;
-        // An effect without amplitude is none, and has no derivative.
+        // An effect without amplitude is absent, and has no derivative.
         if let Some(effect) = input::effects::at_path(path)
             && low == 0.0
             && effect.absent == Some(0.0)
@@ -171,8 +148,8 @@ impl Parameter {
         self.bounds.map(|bound| self.coordinate(bound))
     }
 
-    /// Writes a value into a machine file, at every place. A condition of a run is none of the
-    /// machine's, and is not written.
+    /// Writes a value into a machine file, at every place. A condition of a run does not belong to the
+    /// machine, and is not written.
     ///
     /// # Errors
     /// Where the file does not have a place.
@@ -199,8 +176,8 @@ impl Parameter {
         self.run.as_ref().is_none_or(|of| of == run)
     }
 
-    /// Whether it changes the motion in a run of this name: not where it is a condition of another run,
-    /// nor where all that it turns is the reading of the crank angle.
+    /// Whether it changes the motion in a run of this name. A condition of another run does not, nor does an offset
+    /// of the recorded crank angle.
     pub(crate) fn moves(&self, run: &str) -> bool {
         self.holds_in(run) && !self.is_crank_angle_offset()
     }

@@ -18,9 +18,9 @@ const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
 /// By how much both are greater in a coarse prediction.
 const LOOSER: f64 = 10.0;
-/// Revolutions that are predicted of a motion that does not repeat itself; and in place of a recording
-/// that does, where nobody asks how they scatter.
+/// Revolutions that are predicted of a motion that does not repeat itself.
 const CHAOTIC: u32 = 24;
+/// The same where the recorded motion repeats itself: their scatter is not compared then.
 const WRONG: u32 = 4;
 
 /// The lines of a run as the model has them.
@@ -37,7 +37,7 @@ pub struct Prediction {
 /// The lines of a run with the parameters at these coordinates.
 ///
 /// # Errors
-/// A machine that is none, or that cannot be integrated.
+/// An invalid machine, or one that cannot be integrated.
 pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
     prediction(problem, run, x, false, false)
 }
@@ -55,8 +55,8 @@ pub fn predict_with_derivatives(
     prediction(problem, run, x, true, false)
 }
 
-/// The prediction, with derivatives where they are `wanted`; a coarse one where a few thousandths are accurate
-/// enough, with throws that do not feel each other.
+/// The prediction, with derivatives where they are `wanted`. A coarse one serves where a few thousandths are
+/// accurate enough, with throws that do not feel each other.
 pub(crate) fn prediction(
     problem: &Problem,
     run: &Observation,
@@ -166,7 +166,7 @@ fn take_delays(sensors: &mut [Sensor]) -> Vec<f64> {
 }
 
 /// The rate at which the motion is sampled, Hz. Without filters between motion and recorder four
-/// samples to each that is recorded are enough: order 3700 is the first to fold down to those that are
+/// samples to each recorded one are enough: order 3700 is the first to fold down to those that are
 /// compared.
 fn inner_rate(machine: &Resolved) -> f64 {
     let chains = machine.sensors.iter().map(|sensor| &sensor.chain);
@@ -185,8 +185,8 @@ fn later(mut lines: OrderLines, offset: f64) -> OrderLines {
     lines
 }
 
-/// The derivatives of each parameter from those of groups: a channel that belongs to a throw feels
-/// the one of the group that belongs to this throw. What is in no group moves nothing.
+/// The derivatives of each parameter from those of groups. A channel of a throw feels the group's parameter of
+/// this throw. A parameter in no group moves nothing.
 fn apart(
     problem: &Problem,
     run: &Observation,
@@ -218,8 +218,8 @@ fn apart(
     all
 }
 
-/// The derivative of x at an unchanged crank angle from that at an unchanged time: where the angle
-/// itself moves (a free crank), x is seen elsewhere, dx/dp − (dx/dθ)(dθ/dp).
+/// The derivative of x at an unchanged crank angle from that at an unchanged time. Where the angle
+/// itself moves (a free crank), x is seen elsewhere: dx/dp − (dx/dθ)(dθ/dp).
 fn at_equal_angle(derivative: &[f64], x: &[f64], of_angle: &[f64], angle: &[f64]) -> Vec<f64> {
     (0..x.len())
         .map(|i| {
@@ -231,7 +231,7 @@ fn at_equal_angle(derivative: &[f64], x: &[f64], of_angle: &[f64], angle: &[f64]
         .collect()
 }
 
-/// Weights of a central difference of the eighth order (Fornberg 1988, table 1): good to 2 % at the
+/// Weights of a central difference of the eighth order (Fornberg 1988, table 1). They are good to 2 % at the
 /// highest orders that are compared, of which a sample is a quarter of a period.
 const CENTRAL: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 

@@ -1,8 +1,8 @@
 //! How far the fitted gas is from the measured pressures, and where in the cycle.
 //!
-//! The yardstick is the root mean square, over the samples of a run's first revolution, of simulated
-//! less measured pressure, in Pa. It asks for no estimate of the noise, and compares models whatever
-//! they were fitted by; what a model cannot follow stands far above the noise here.
+//! The measure is the root mean square, over the samples of a run's first revolution, of simulated
+//! less measured pressure, in Pa. It needs no estimate of the noise, and compares models that were fitted in
+//! different ways. What a model cannot follow stands far above the noise here.
 
 use crate::error::Error;
 use crate::indicator::{Chamber, Indicator};
@@ -29,7 +29,7 @@ pub struct PressureGap {
     pub nominal: Vec<f64>,
     /// The pressure simulated with the fitted parameters, Pa.
     pub fitted: Vec<f64>,
-    /// What the recording tells by itself, at the nominal clearance; none where it shows no cycle.
+    /// The indicator diagram of the recording, at the nominal clearance; `None` where it shows no cycle.
     pub indicator: Option<Indicator>,
     /// The same of the fitted pressure, at the fitted clearance.
     pub fitted_indicator: Option<Indicator>,
@@ -164,7 +164,7 @@ pub fn pressure_gaps_of(
             };
             let diagram = |machine: &Machine, pressure: &[f64]| {
                 let chamber = Chamber::of_column(machine, column)?;
-                Indicator::of(chamber, &gap.angles, pressure)
+                Indicator::from_pressure(chamber, &gap.angles, pressure)
             };
             gaps.push(PressureGap {
                 indicator: diagram(&nominal, &gap.measured),

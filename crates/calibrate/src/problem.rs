@@ -28,7 +28,7 @@ pub struct Problem {
     pub meter: Meter,
 }
 
-/// Step of a coordinate over which a machine's derivative is taken: what follows from a parameter
+/// Step of a coordinate over which a machine's derivative is taken. What follows from a parameter
 /// in the machine file is smooth, and rounding stays far below the fit's accuracy.
 const STEP: f64 = 1e-6;
 
@@ -91,7 +91,7 @@ impl Problem {
     }
 
     /// Parameters whose derivatives can be taken together, because throws hardly feel each other
-    /// through the crank: one of each throw in a group (Curtis, Powell and Reid 1974).
+    /// through the crank. A group has one parameter of each throw (Curtis, Powell and Reid 1974).
     pub(crate) fn independent(&self) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         for i in 0..self.parameters.len() {
@@ -144,8 +144,8 @@ impl Problem {
         }
     }
 
-    /// The numbers that `work` gives at the coordinates `x`, or gave before; `what` tells them from others of the
-    /// same problem.
+    /// The numbers that `work` gives at the coordinates `x`, or gave before. `what` distinguishes them from others of
+    /// the same problem.
     pub(crate) fn once(
         &self,
         what: &dyn fmt::Debug,
@@ -217,7 +217,7 @@ pub(crate) fn measurable(machine: &Resolved) -> Vec<Measured> {
     all
 }
 
-/// The sensors of a run's channels, in their order, and the crank angle last: those of the machine
+/// The sensors of a run's channels, in their order, and the crank angle last. They are those of the machine
 /// file where it has them, perfect ones elsewhere, with the effects on both.
 fn sensors(machine: &Resolved, run: &Observation) -> Vec<Sensor> {
     let names = names(machine);

@@ -14,7 +14,9 @@ pub(crate) fn split(jacobian: &DMatrix<f64>, known: usize) -> (DMatrix<f64>, DMa
 }
 
 /// What each value in doubt promises to first order, the known parameters adapting: the misfit that it leaves,
-/// and the length of its derivative that they cannot imitate; none for one that is not felt at all.
+/// and the length of the part of its derivative that they cannot imitate. None for a value without any effect.
+///
+/// A column of `known` and of `doubted` is the derivative of the residuals by one value.
 pub(crate) fn promises(
     residuals: &DVector<f64>,
     known: DMatrix<f64>,

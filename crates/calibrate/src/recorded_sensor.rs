@@ -21,11 +21,11 @@ pub const CRANK_ANGLE: &str = "crank_angle_rad";
 /// Share of the mean square that has to be the same at every crank angle for it to be noise. The RMS
 /// is then wrong by a tenth at most.
 const STEADY: f64 = 0.8;
-/// How many times the least mean square of the runs one may have, in the channel's unit and as a
-/// share of its signal, before it is the motion that scatters.
+/// How many times the least mean square of the runs a run may have, in the channel's unit and as a
+/// share of its signal. Beyond it the motion scatters.
 const ALIKE: f64 = 4.0;
-/// Below this share of the absolute noise's spread over the runs (standard deviations of logarithms)
-/// the relative one makes the noise a share of the signal.
+/// Spread of the relative noise over the runs, as a share of that of the absolute noise (standard deviations of
+/// logarithms). Below it the noise is a share of the signal.
 const FOLLOWS: f64 = 0.5;
 /// Relative difference below which two sample rates are one.
 const SAME_RATE: f64 = 1e-3;
@@ -80,7 +80,7 @@ pub struct RecordedNoise {
     pub of_signal: Option<f64>,
     /// Share of the noise's mean square that is 1/f.
     pub pink_share: Option<f64>,
-    /// Upper bound of the RMS where it is none, SI.
+    /// Upper bound of the RMS where there is no value, SI.
     pub at_most: Option<f64>,
     /// Why there is no RMS.
     pub noise_reason: Option<String>,
@@ -218,7 +218,7 @@ fn mark_unlike(seen: &mut [Seen]) {
 const SCATTERS: &str = "the motion itself differs from revolution to revolution";
 const BELOW: &str = "the noise is below what resampling over the crank angle leaves";
 
-/// The noise of a channel in a run, or why there is none; nothing where the run lacks the channel.
+/// The noise of a channel in a run, or why it has no value; `None` where the run lacks the channel.
 fn seen_in<'a>(look: &Look<'a>, column: &str) -> Option<Result<Seen<'a>, String>> {
     let run = look.run;
     let samples = &run.channels.iter().find(|c| c.column == column)?.samples;
@@ -248,15 +248,16 @@ fn seen_in<'a>(look: &Look<'a>, column: &str) -> Option<Result<Seen<'a>, String>
 
 /// The noise in samples over crank angles, and their mean square about the mean.
 fn in_samples(angles: &[f64], samples: &[f64]) -> Result<(Nonsynchronous, f64), String> {
-    let told = |error: signal::Error| format!("no noise can be told from the signal: {error}");
-    let angle = CrankAngle::from_encoder(angles).map_err(told)?;
+    let inseparable =
+        |error: signal::Error| format!("the noise cannot be separated from the signal: {error}");
+    let angle = CrankAngle::from_encoder(angles).map_err(inseparable)?;
     if few_revolutions::is_short(&angle) {
-        return Err("there are too few revolutions to tell noise from the signal".into());
+        return Err("there are too few revolutions to separate the noise from the signal".into());
     }
     let grid = AngleGrid::new(&angle, angle.samples_per_revolution().round() as usize);
-    let grid = grid.map_err(told)?;
-    let revolutions = grid.resample(samples).map_err(told)?;
-    let found = Nonsynchronous::of(&revolutions, grid.highest_order()).map_err(told)?;
+    let grid = grid.map_err(inseparable)?;
+    let revolutions = grid.resample(samples).map_err(inseparable)?;
+    let found = Nonsynchronous::of(&revolutions, grid.highest_order()).map_err(inseparable)?;
     let count = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / count;
     let squares = samples.iter().map(|x| (x - mean).powi(2));

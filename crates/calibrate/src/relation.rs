@@ -6,8 +6,8 @@ use input::{paths, unit};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// A relation between the contact parameters of a joint at different clearances; what each does is
-/// told in [`mechanism::joints::clearance_relation`].
+/// A relation between the contact parameters of a joint at different clearances. Each is described in
+/// [`mechanism::joints::clearance_relation`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relation {
@@ -18,13 +18,13 @@ pub enum Relation {
     Conformal,
     /// Nothing depends on the clearance.
     Constant,
-    /// Powers of the clearance that a fit finds: one for the stiffness and one for the damping of
+    /// Fitted powers of the clearance: one for the stiffness and one for the damping of
     /// all joints, so that two joints' recordings support each other. The depth stays.
     Fitted,
 }
 
-/// Exponents that a fit of the relation starts from, and keeps where the recordings do not tell
-/// them: those of Eq. (5), of stiffness and damping.
+/// Exponents that a fit of the relation starts from, and keeps where they are not identifiable: those of Eq. (5),
+/// of stiffness and damping.
 const NOMINAL: [f64; 2] = [0.0, -0.2];
 
 impl Relation {
@@ -84,11 +84,11 @@ pub struct ClearJoint {
 
 impl ClearJoint {
     /// The bearings of the machine file `tree` that are clear in one of the runs, whose settings
-    /// these are. A guide is none: its faces have no radius, and no formula speaks of it.
+    /// these are. A guide is not one of them: its faces have no radius, and no relation holds for it.
     ///
     /// # Errors
     /// A clearance that is no length.
-    pub fn of<'a>(
+    pub fn in_runs<'a>(
         tree: &Value,
         runs: impl Iterator<Item = &'a [(String, Value)]> + Clone,
     ) -> Result<Vec<Self>, Error> {

@@ -71,8 +71,8 @@ pub struct Spread {
     pub apart: f64,
 }
 
-/// Simulates `run` under each of `relations`; `own` is its replay as the machine file has it, and
-/// `known_at` the clearances for which contacts hold whose clearance the machine file does not state.
+/// Simulates `run` under each of `relations`. `own` is its replay as the machine file has it. `known_at` are the
+/// clearances for which contacts hold whose clearance the machine file does not state.
 /// None where every joint has the clearance that its contact is known at.
 ///
 /// # Errors
@@ -137,7 +137,7 @@ fn carried_over(
     known_at: &BTreeMap<String, f64>,
 ) -> Result<BTreeMap<String, CarriedOver>, Error> {
     let mut joints = BTreeMap::new();
-    for joint in ClearJoint::of(&problem.tree, std::iter::once(&run.settings[..]))? {
+    for joint in ClearJoint::in_runs(&problem.tree, std::iter::once(&run.settings[..]))? {
         let stated = joint.at_clearance(&problem.tree)?;
         let Some(stated) = stated.or_else(|| known_at.get(&joint.path).copied()) else {
             continue;

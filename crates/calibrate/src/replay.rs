@@ -12,7 +12,7 @@ use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::{CrankAngle, unwrap};
 use signal::order_lines::OrderLines;
 use signal::synchronous_average::SynchronousAverage;
-use simulate::{Settings, Transient, simulate, simulate_later};
+use simulate::{LONGEST_PERIOD, Settings, Transient, simulate, simulate_later};
 use std::f64::consts::TAU;
 
 /// Relative local error of the integration.
@@ -24,8 +24,6 @@ const AT_MOST: u32 = 100;
 /// Share of a signal's mean square up to which what does not repeat every revolution is passed over;
 /// resampling leaves 1e-8.
 const EVERY_REVOLUTION: f64 = 1e-6;
-/// Longest period of a settled motion, revolutions.
-const LONGEST_CYCLE: u32 = 4;
 
 /// What the model has in place of a recording.
 #[derive(Clone, Debug)]
@@ -72,7 +70,7 @@ pub struct Replayed {
 /// The transient is left out, and no noise is added.
 ///
 /// # Errors
-/// A machine that is none or cannot be integrated, or a recording without a crank angle to go by.
+/// An invalid machine or one that cannot be integrated, or a recording without a crank angle.
 pub fn replay(
     problem: &Problem,
     run: &Run,
@@ -92,12 +90,12 @@ pub fn replay(
     let first = first.ok_or(Error::Nothing("a run without channels cannot be replayed"))?;
     let recorded = observation::angle(run, first)?;
     let mut machine = problem.machine(observation, x)?;
-    let place = Place::of(&recorded, run.sample_rate);
+    let place = Place::new(&recorded, run.sample_rate);
     if let Drive::Given(given) = &mut machine.machine.drive {
         given.speed = place.speed;
         machine.speed = place.speed;
     }
-    let instants = Instants::of(&machine, run, recorded.angles().len());
+    let instants = Instants::new(&machine, run, recorded.angles().len());
     let offset = machine.sensors.last().map_or(0.0, |s| s.chain.angle_offset);
     let delay = match &machine.machine.drive {
         Drive::Given(given) if given.fluctuation.is_empty() => {
@@ -115,13 +113,13 @@ pub fn replay(
         .iter()
         .map(|c| wanted(&c.column))
         .collect();
-    let mut seen = Seen::of(&chosen).map_err(analysis)?;
+    let mut seen = Seen::new(&chosen).map_err(analysis)?;
     let mut same = seen.repeats(&chosen.series).map_err(analysis)?;
     if chosen.settled && !same {
         same = true;
         let revolution = TAU / speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
         let mut least = apart(&chosen.series, &recordings);
-        for shift in 1..LONGEST_CYCLE {
+        for shift in 1..LONGEST_PERIOD {
             let later = delay + f64::from(shift) * revolution;
             let other = instants.record(&machine, later).map_err(failed)?;
             let difference = apart(&other.series, &recordings);
@@ -129,7 +127,7 @@ pub fn replay(
                 (least, chosen) = (difference, other);
             }
         }
-        seen = Seen::of(&chosen).map_err(analysis)?;
+        seen = Seen::new(&chosen).map_err(analysis)?;
     }
     let channels = observation.channels.iter().zip(chosen.series);
     let channels: Vec<(Replayed, OrderLines)> = channels
@@ -186,7 +184,7 @@ struct Place {
 
 impl Place {
     /// The straight line that is nearest to the angles.
-    fn of(angle: &CrankAngle, sample_rate: f64) -> Self {
+    fn new(angle: &CrankAngle, sample_rate: f64) -> Self {
         let angles = angle.angles();
         let middle = (angles.len() - 1) as f64 / 2.0;
         let mean = angles.iter().sum::<f64>() / angles.len() as f64;
@@ -218,7 +216,7 @@ struct Shown {
 }
 
 impl Instants {
-    fn of(machine: &Resolved, run: &Run, count: usize) -> Self {
+    fn new(machine: &Resolved, run: &Run, count: usize) -> Self {
         let revolution = TAU / machine.speed.abs();
         let length = count as f64 / run.sample_rate;
         Self {
@@ -251,8 +249,8 @@ impl Instants {
         })
     }
 
-    /// After which time a free crank turns as the recorded one does from its first sample on: the
-    /// mean difference of the two angles over the recording's first revolution is 0.
+    /// After which time a free crank turns as the recorded one does from its first sample on. The
+    /// mean difference of the two angles over the recording's first revolution is then 0.
     fn delay(&self, machine: &Resolved, recorded: &CrankAngle) -> Result<f64, simulate::Error> {
         let settings = Settings {
             revolutions: 4,
@@ -291,7 +289,7 @@ const ITERATIONS: usize = 8;
 
 /// Mean speed of wrapped angles, rad/s.
 fn speed(wrapped: &[f64], sample_rate: f64) -> Result<f64, signal::Error> {
-    Ok(Place::of(&CrankAngle::from_encoder(wrapped)?, sample_rate).speed)
+    Ok(Place::new(&CrankAngle::from_encoder(wrapped)?, sample_rate).speed)
 }
 
 /// A simulated run over its crank angle.
@@ -303,7 +301,7 @@ enum Seen {
 }
 
 impl Seen {
-    fn of(shown: &Shown) -> Result<Self, signal::Error> {
+    fn new(shown: &Shown) -> Result<Self, signal::Error> {
         let angle = CrankAngle::from_encoder(&shown.crank_angle)?;
         if few_revolutions::is_short(&angle) {
             return Ok(Self::Few(angle));

@@ -30,6 +30,8 @@ pub use relations::{Relations, bounds_of_not_excluded, not_excluded};
 
 /// Name of the file of results.
 pub const RESULTS: &str = "calibration.json";
+/// Name of the calibrated machine.
+pub const MACHINE: &str = "machine.yaml";
 
 /// What a calibration finds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -44,7 +46,7 @@ pub struct Results {
     pub complete: bool,
     /// Whether the model explains the recordings; where it does not, no interval is known.
     pub model_is_adequate: bool,
-    /// What tells its inputs from others.
+    /// Digest of its inputs.
     pub fingerprint: String,
     /// What was fitted, by path.
     pub parameters: ByName<Estimate>,
@@ -194,7 +196,7 @@ pub struct Found<'a> {
     pub sensors: &'a Sensors,
     /// The recorded pressures beside the simulated ones, where the gas was fitted.
     pub gas: Option<&'a [PressureGap]>,
-    /// What tells its inputs from others.
+    /// Digest of its inputs.
     pub fingerprint: String,
     /// Evaluations of the model.
     pub evaluations: u64,
@@ -205,7 +207,7 @@ impl Results {
     ///
     /// # Errors
     /// A clearance that is no length.
-    pub fn of(task: &Task, found: Found) -> Result<Self, Error> {
+    pub fn from_search(task: &Task, found: Found) -> Result<Self, Error> {
         let fit = found.fit;
         let adequate = fit.model_is_adequate();
         let transfer = found.transfer.map(|transfer| {
@@ -238,7 +240,7 @@ impl Results {
             model_is_adequate: adequate,
             fingerprint: found.fingerprint,
             parameters: estimates
-                .map(|e| (e.parameter.path.clone(), Estimate::of(e, adequate)))
+                .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, adequate)))
                 .collect(),
             correlations: correlations(fit),
             corrections: corrected.map_or_else(Vec::new, corrections),
@@ -264,7 +266,7 @@ impl Results {
     /// Reads a file of results.
     ///
     /// # Errors
-    /// A file that cannot be read, or is none that a calibration writes.
+    /// A file that cannot be read, or that no calibration has written.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let wrong = |reason: String| Error::file(path, reason);
         let text = files::read_text(path, files::LONGEST_TEXT)
@@ -284,7 +286,7 @@ impl Results {
 
 impl Estimate {
     /// What is known of a parameter. Where the model is not `adequate`, it has no interval.
-    pub fn of(estimate: &fit::Estimate, adequate: bool) -> Self {
+    pub fn from_fit(estimate: &fit::Estimate, adequate: bool) -> Self {
         let interval = estimate.interval.filter(|_| adequate);
         Self {
             value: estimate.value,
@@ -363,6 +365,6 @@ fn joint_relations(problem: &Problem) -> Result<ByName<JointRelation>, Error> {
         };
         Ok((joint.path, relation))
     };
-    let joints = ClearJoint::of(&problem.tree, of_runs)?;
+    let joints = ClearJoint::in_runs(&problem.tree, of_runs)?;
     joints.into_iter().map(of).collect()
 }

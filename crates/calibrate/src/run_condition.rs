@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::observation::Run;
 use crate::parameter::{Parameter, Scale};
 use input::paths;
-use input::unit::Dimension;
+use input::unit::{self, Dimension};
 use serde_json::Value;
 
 /// By how much the recorded crank angle is ahead of the crank, rad: a dead centre that was set wrong
@@ -15,8 +15,8 @@ const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 impl Parameter {
-    /// Opens the bounds of an offset of the crank angle that has none of its own, so that they hold what is seen
-    /// of it, rad; whether they had to be opened.
+    /// Opens the bounds of an offset of the crank angle that has no bounds of its own, so that they hold `seen`, rad.
+    /// Returns whether they had to be opened.
     pub fn open_for_offset(&mut self, seen: f64) -> bool {
         let [low, high] = self.bounds;
         if self.bounds != OFFSETS || !self.is_crank_angle_offset() || (low..=high).contains(&seen) {
@@ -79,5 +79,26 @@ fn shared(tree: &Value, path: &str, bounds: Option<[f64; 2]>) -> Result<Paramete
     match bounds {
         Some(bounds) => Parameter::within(tree, path, bounds),
         None => Parameter::of(tree, path),
+    }
+}
+
+/// The unit of the value at `path` of the machine file `tree`, as a run's condition or for the machine; empty
+/// for a pure number.
+pub fn unit(tree: &Value, path: &str) -> String {
+    let offset = format!(".{path}");
+    if offset.ends_with(&format!(".{CRANK_ANGLE_OFFSET}")) {
+        return "rad".to_owned();
+    }
+    // A value of one run alone stands behind the run's name.
+    let names = offset.match_indices('.').map(|(i, _)| &offset[i + 1..]);
+    let value = names
+        .filter_map(|name| paths::get(tree, name).ok().flatten())
+        .next();
+    let measure = value
+        .and_then(Value::as_str)
+        .and_then(|text| unit::parse(text).ok());
+    match measure {
+        Some(measure) if measure.dimension != Dimension::NONE => measure.dimension.to_string(),
+        _ => String::new(),
     }
 }

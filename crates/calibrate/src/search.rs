@@ -3,8 +3,8 @@
 //! The high orders of an acceleration are the ringing of the contacts. Their phases turn several
 //! times within the bounds of a stiffness, so that the sum of squares has many local minima; the
 //! low orders have few. A descent therefore allows at first that features stand at other crank
-//! angles, which leaves the low orders only, and then less and less of that, each time from where the
-//! last ended: a continuation from low frequencies, as in the inversion of seismic waves (Bunks,
+//! angles, which leaves the low orders only. It then allows less and less of that, each time from where the
+//! last descent ended. This is a continuation from low frequencies, as in the inversion of seismic waves (Bunks,
 //! Saleck, Zaleski and Chavent 1995).
 
 use crate::envelopes::Envelopes;
@@ -36,7 +36,7 @@ const KICK: f64 = 0.3;
 const KICKS: usize = 4;
 /// By how much features may stand elsewhere in a rough descent, rad.
 pub const LOOSE: f64 = 0.01;
-/// Step of the logarithm of a clearance on the grid. The time in which a gap is crossed goes with its root: it
+/// Step of the logarithm of a clearance on the grid. The time in which a gap is crossed goes with its root. It
 /// changes by 7 %, some hundredths of a radian of the crank, less than [`TIMINGS`] allow at first.
 const CLEARANCE_STEP: f64 = 0.15;
 /// Descents that end at the same misfit, to this share, have found the least one.
@@ -63,10 +63,13 @@ struct Search<'a, 'w> {
     watch: Watch<'w>,
 }
 
-/// The best fit: by Levenberg and Marquardt's method from `start`, each of several throws by itself
-/// at first; where that leaves more than noise, by parts of the runs, with continuation, from
-/// kicks out of where that ends, and from the best of many other points, until the noise is reached or [`AGREE`] descents
-/// have ended at the same misfit; where they do not agree, by CMA-ES.
+/// The best fit, by Levenberg and Marquardt's method.
+///
+/// 1. From `start`, each of several throws by itself at first.
+/// 2. Where that leaves more than noise: by parts of the runs, with continuation, from kicks out of where that ends,
+///    and from the best of many other points. This ends when the noise is reached or [`AGREE`] descents have ended
+///    at the same misfit.
+/// 3. Where they do not agree: by CMA-ES.
 ///
 /// # Errors
 /// Where an optimiser cannot start.
@@ -84,7 +87,7 @@ pub(crate) fn search(
     if !search.ended() {
         search.globally(seed)?;
     }
-    Ok(search.found())
+    Ok(search.into_best())
 }
 
 /// What [`search`] begins with, up to the end of its first descent.
@@ -101,7 +104,7 @@ pub(crate) fn first_descent(
     let mut search = Search::new(problem, start, most, NOISE, watch);
     let start = search.begin(start, seed)?;
     search.descend(None, &start)?;
-    Ok(search.found())
+    Ok(search.into_best())
 }
 
 impl<'a, 'w> Search<'a, 'w> {
@@ -124,7 +127,7 @@ impl<'a, 'w> Search<'a, 'w> {
         }
     }
 
-    fn found(self) -> Progress {
+    fn into_best(self) -> Progress {
         Progress {
             evaluations: self.spent,
             ..self.best
@@ -153,9 +156,9 @@ impl<'a, 'w> Search<'a, 'w> {
         }
     }
 
-    /// From `start` each throw by itself, as far as that takes it, with an equal share of the
-    /// evaluations for each and for all together: one in which something is missing would take all.
-    /// Where it ends; a parameter that several throws share is then in the middle of what they ask for.
+    /// From `start` each throw by itself, as far as that takes it. Each has an equal share of the evaluations, and so
+    /// have all together: a throw in which something is missing would take all. Returns where it ends. A parameter that
+    /// several throws share is then in the middle of their values.
     fn throw_by_throw(
         &mut self,
         throws: &[ThrowAlone],
@@ -170,12 +173,12 @@ impl<'a, 'w> Search<'a, 'w> {
             let own: Vec<f64> = throw.parameters.iter().map(|i| start[*i]).collect();
             let left = self.left() / (throws.len() - i + 1) as u64;
             let alone = {
-                let told = &mut self.told(false);
-                let mut alone = Search::new(&throw.problem, &own, left, NEAR, told);
+                let report = &mut self.reporter(false);
+                let mut alone = Search::new(&throw.problem, &own, left, NEAR, report);
                 let own = alone.at_clearances(&own);
                 alone.locally(&own)?;
                 alone.elsewhere(&own, seed)?;
-                alone.found()
+                alone.into_best()
             };
             self.spent += alone.evaluations;
             for (i, x) in throw.parameters.iter().zip(alone.x) {
@@ -189,8 +192,8 @@ impl<'a, 'w> Search<'a, 'w> {
         Ok(found.iter().zip(start).map(middle).collect())
     }
 
-    /// From `start` with each clearance that is fitted moved to the best of a grid: when a clearance is crossed
-    /// decides at which crank angle everything rings, and a descent finds no way from one ringing to another.
+    /// From `start` with each clearance that is fitted moved to the best of a grid. The time at which a clearance is
+    /// crossed decides at which crank angle everything rings. A descent finds no way from one ringing to another.
     fn at_clearances(&mut self, start: &[f64]) -> Vec<f64> {
         let mut x = start.to_vec();
         let parameters = self.problem.parameters.iter().enumerate();
@@ -250,8 +253,8 @@ impl<'a, 'w> Search<'a, 'w> {
             }
             let left = self.left();
             let found = {
-                let told = &mut self.told(false);
-                optimiser::levenberg_marquardt(&Likelihood::new(&half), &x, CHANGE, left, told)?
+                let report = &mut self.reporter(false);
+                optimiser::levenberg_marquardt(&Likelihood::new(&half), &x, CHANGE, left, report)?
             };
             self.spent += found.evaluations;
             if !self.ended() {
@@ -304,8 +307,8 @@ impl<'a, 'w> Search<'a, 'w> {
         let envelopes = Envelopes::new(self.problem);
         let left = self.left();
         let found = {
-            let told = &mut self.told(false);
-            optimiser::levenberg_marquardt(&envelopes, start, COARSE_CHANGE, left, told)?
+            let report = &mut self.reporter(false);
+            optimiser::levenberg_marquardt(&envelopes, start, COARSE_CHANGE, left, report)?
         };
         self.spent += found.evaluations;
         Ok(found.x)
@@ -319,9 +322,9 @@ impl<'a, 'w> Search<'a, 'w> {
         };
         let left = self.left();
         let found = {
-            let mut told = self.told(timing.is_none());
+            let mut report = self.reporter(timing.is_none());
             // What is left is then noise and timing, and less of that may be allowed.
-            let mut watch = |progress: &Progress| match told(progress) {
+            let mut watch = |progress: &Progress| match report(progress) {
                 ControlFlow::Continue(()) if timing.is_some() && progress.misfit() < NOISE => {
                     ControlFlow::Break(())
                 }
@@ -344,8 +347,8 @@ impl<'a, 'w> Search<'a, 'w> {
         let x = self.best.x.clone();
         let most = self.left().min(GLOBAL * x.len() as u64);
         let found = {
-            let told = &mut self.told(true);
-            optimiser::cma_es(&likelihood, &x, seed, most, told)?
+            let report = &mut self.reporter(true);
+            optimiser::cma_es(&likelihood, &x, seed, most, report)?
         };
         self.spent += found.evaluations;
         let end = found.x.clone();
@@ -364,15 +367,15 @@ impl<'a, 'w> Search<'a, 'w> {
 
     /// Tells the best so far with every step of an optimiser; with `same` its cost is the search's
     /// own and may be the best.
-    fn told(&mut self, same: bool) -> impl FnMut(&Progress) -> ControlFlow<()> {
+    fn reporter(&mut self, same: bool) -> impl FnMut(&Progress) -> ControlFlow<()> {
         move |progress| {
             let Self { best, spent, .. } = &*self;
             let better = same && progress.cost < best.cost;
-            let told = Progress {
+            let report = Progress {
                 evaluations: *spent + progress.evaluations,
                 ..if better { progress } else { best }.clone()
             };
-            let answer = (self.watch)(&told);
+            let answer = (self.watch)(&report);
             self.stopped |= answer.is_break();
             answer
         }
@@ -390,11 +393,11 @@ impl<'a, 'w> Search<'a, 'w> {
             return Vec::new();
         }
         for point in points {
-            let told = Progress {
+            let report = Progress {
                 evaluations: self.spent,
                 ..self.best.clone()
             };
-            self.stopped |= (self.watch)(&told).is_break();
+            self.stopped |= (self.watch)(&report).is_break();
             if self.stopped || self.left() == 0 {
                 break;
             }

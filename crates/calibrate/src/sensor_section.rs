@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 const DIGITS: i32 = 4;
 
 /// Gives the machine file `tree` the sensors that were `found`, by column, and their sample rate.
-/// What they do not tell stays as the file has it; a channel without a sensor gets one.
+/// What was not found stays as the file has it. A channel without a sensor gets one.
 ///
 /// # Errors
 /// An invalid machine file.

@@ -36,7 +36,7 @@ impl Sensors {
     ///
     /// # Errors
     /// A run that cannot be simulated.
-    pub fn of(model: &Fitted) -> Result<Self, Error> {
+    pub fn from_recordings(model: &Fitted) -> Result<Self, Error> {
         let predictions = Likelihood::new(model.problem).predictions(model.x)?;
         let looks: Vec<Look> = model
             .runs

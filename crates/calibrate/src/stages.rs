@@ -8,8 +8,8 @@ use crate::task::Task;
 use crate::transfer::{Transfer, transfer};
 use std::ops::ControlFlow;
 
-/// Local fits after each of which runs without a zero of their crank angle are aligned anew, before
-/// the search proper, which a wrong zero would send far away.
+/// Local fits before the search proper, which a wrong zero of the crank angle would send far away. After each of
+/// them, runs without a recorded zero are aligned anew.
 const ALIGNMENTS: usize = 3;
 
 /// A stage of a calibration.
@@ -23,7 +23,7 @@ pub enum Stage {
     Relations,
 }
 
-/// Who is told how a calibration goes on, and may stop it.
+/// Follows a calibration, and may stop it.
 pub trait Watcher {
     /// A stage begins, which takes at most so many evaluations of the model.
     fn begins(&mut self, stage: Stage, evaluations: u64);
@@ -43,9 +43,9 @@ pub(crate) struct Searched {
     pub evaluations: u64,
 }
 
-/// Searches the best fit until `watcher` stops it, and where that leaves more than noise the value of the
-/// data sheet that is wrong. By default that is looked for as soon as the first descent has ended, before the
-/// search goes on: what both evaluate is in the checkpoint.
+/// Searches the best fit until `watcher` stops it. Where that leaves more than noise, searches the value of the
+/// data sheet that is wrong. By default this begins as soon as the first descent has ended, before the
+/// search goes on: the evaluations of both are in the checkpoint.
 ///
 /// # Errors
 /// Where the machine cannot be simulated.

@@ -5,6 +5,9 @@ mod fingerprint;
 mod fit_settings;
 mod parameters;
 mod relation;
+mod settings;
+
+pub use settings::Settings;
 
 use crate::crank_motion::CrankMotion;
 use crate::error::Error;
@@ -15,41 +18,17 @@ use crate::prediction::predict;
 use crate::problem::{Problem, columns};
 use crate::{alignment, bundle, contradiction, zero};
 use input::bundle_channel::Meaning;
-use input::calibration::Calibration;
 use input::{MachineFile, paths};
-use serde_json::Value;
 use signal::crank_angle::CrankAngle;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Change of a run's zero of the crank angle that is worth another fit, rad: a tenth of the noise of
 /// usual lines.
 const ALIGNED: f64 = 1e-5;
 
-/// Relative difference from which a measured speed takes the place of the stated one: an encoder
-/// tells it better than a recording's other errors.
+/// Relative difference from which a measured speed takes the place of the stated one. An encoder
+/// determines it better than a recording's other errors.
 const SPEED: f64 = 2e-5;
-
-/// What is calibrated, and how.
-pub struct Settings<'a> {
-    /// The settings as a file has them.
-    pub calibration: &'a Calibration,
-    /// The folder from which their paths start.
-    pub base: &'a Path,
-    /// The tree of the machine file, in the place of the file that the settings name.
-    pub machine: Option<&'a Value>,
-    /// Whether its bundles may name recordings outside of their folders.
-    pub allow_outside: bool,
-    /// Gives a mistake in the settings the place where they stand.
-    pub locate: &'a dyn Fn(input::Error) -> input::Error,
-}
-
-impl Settings<'_> {
-    /// Whether there is a machine file beside the bundle's machine section.
-    fn has_machine_file(&self) -> bool {
-        self.machine.is_some() || self.calibration.machine.is_some()
-    }
-}
 
 /// What a calibration works on.
 pub struct Task {
@@ -103,13 +82,13 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
     for (path, value) in &first.settings {
         paths::set(&mut tree, path, value.clone())?;
     }
-    let fit_settings = fit_settings::of(settings, &tree, &runs)?;
+    let fit_settings = fit_settings::with_defaults(settings, &tree, &runs)?;
     let exponents = relation::set(settings, &mut tree, &runs, &fit_settings.held_out)?;
     let source = machine.unwrap_or_else(|| bundles[0].bundle.folder.join(input::bundle::FILE));
     let resolved = MachineFile::from_tree(&tree).and_then(|file| file.resolve());
     let resolved =
         resolved.map_err(|error| Error::Refused(format!("{}: {error}", source.display())))?;
-    let mut parameters = parameters::of(settings, &tree, &runs)?;
+    let mut parameters = parameters::fitted(settings, &tree, &runs)?;
     for exponent in exponents {
         let free = |place: &String| parameters.iter().any(|p| p.places.contains(place));
         if !exponent.places.iter().any(free) {
@@ -147,7 +126,7 @@ impl Task {
         Ok(())
     }
 
-    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre; the bounds of
+    /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre. The bounds of
     /// the offset are opened that far.
     fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Error> {
         let parameters = self.problem.parameters.iter();
@@ -170,8 +149,8 @@ impl Task {
         Ok(Some(start))
     }
 
-    /// Sets the zero of the crank angle of every run where it was not recorded to what the machine
-    /// with the parameters at `x` shows; whether that has moved one.
+    /// Aligns the crank angle of every run whose zero was not recorded with the prediction of the machine, with the
+    /// parameters at `x`. Returns whether that has moved one.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
@@ -225,5 +204,5 @@ fn turn(run: &mut Run, free: bool) -> Result<(), Error> {
 }
 
 fn observe(run: &Run, columns: &[String]) -> Result<Observation, Error> {
-    Observation::of(run, columns).map_err(|error| Error::unusable(&run.id, error))
+    Observation::from_run(run, columns).map_err(|error| Error::unusable(&run.id, error))
 }

@@ -20,11 +20,11 @@ pub struct ThrowAlone {
     pub parameters: Vec<usize>,
 }
 
-/// Each throw of a problem by itself; none where there is only one, or where they cannot be taken
+/// Each throw of a problem by itself. None where there is only one, or where they cannot be taken
 /// apart.
 ///
 /// # Errors
-/// A machine that is none.
+/// An invalid machine.
 pub fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
     let machine = MachineFile::from_tree(&problem.tree)?.resolve()?;
     let names: Vec<&str> = machine
@@ -42,7 +42,7 @@ pub fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
 
 fn alone(problem: &Problem, name: &str) -> ThrowAlone {
     let mut tree = problem.tree.clone();
-    let effects = Effects::of(&tree, name);
+    let effects = Effects::new(&tree, name);
     let belongs =
         |path: &str| throw(path).is_none_or(|of| of == name) && effects.renamed(path).is_some();
     keep(&mut tree, "throws", |item| word(item, "name") == Some(name));
@@ -93,7 +93,7 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
 struct Effects(Vec<usize>);
 
 impl Effects {
-    fn of(tree: &Value, name: &str) -> Self {
+    fn new(tree: &Value, name: &str) -> Self {
         let effects = tree.get("effects").and_then(Value::as_array);
         let all = effects.into_iter().flatten().enumerate();
         let felt = all.filter(|(_, item)| acts_on(item, name));
@@ -140,7 +140,7 @@ mod tests {
     fn effects_of_other_throws_are_left_out_and_the_others_counted_anew() {
         let at = |throw: &str| json!({"valve_loss": {"throw": throw}});
         let tree = json!({"effects": [at("one"), {"mains_hum": {}}, at("two")]});
-        let effects = Effects::of(&tree, "two");
+        let effects = Effects::new(&tree, "two");
         let renamed = |path| effects.renamed(path);
         assert_eq!(renamed("effects.0.valve_loss.suction"), None);
         assert_eq!(renamed("effects.1.a.b").as_deref(), Some("effects.0.a.b"));

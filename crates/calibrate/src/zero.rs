@@ -1,7 +1,7 @@
 //! The zero of a recorded crank angle that is nowhere near top dead centre: a keyphasor sits anywhere.
 //!
-//! The low orders of every channel tell it, for they hardly hang on what is calibrated: the angle is looked for
-//! over the whole turn at which all runs together agree best with the machine.
+//! The low orders of every channel show it, for they hardly depend on the calibrated parameters. The angle at which
+//! all runs together agree best with the machine is searched over the whole turn.
 
 use crate::alignment::common_phase;
 use crate::error::Error;
@@ -10,15 +10,15 @@ use crate::problem::Problem;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Orders that must agree at the zero that was found: an acceleration with the wrong sign looks like one that is
-/// half a turn away in its first order, and in the second not.
+/// Orders that must agree at the zero that was found. An acceleration with the wrong sign looks in its first order
+/// like one that is half a turn away, and in the second not.
 const ORDERS: [usize; 2] = [1, 2];
 /// Share of a channel's greatest order from which the phase of an order counts.
 const COUNTS: f64 = 0.1;
 /// Phases further apart than this do not agree, rad: contacts and losses of valves turn low orders by much less.
 const APART: f64 = PI / 4.0;
 
-/// By how much the recorded crank angles are ahead of the crank, rad, where all channels agree about it; none
+/// By how much the recorded crank angles are ahead of the crank, rad, where all channels agree about it. None
 /// where no offset brings them together.
 ///
 /// # Errors

@@ -17,7 +17,7 @@ const NEIGHBOURS: usize = 10;
 const PERIODS: f64 = 10.0;
 const SHARE: usize = 10;
 
-/// A divergence curve and its scaling region, or why there is none.
+/// A divergence curve and its scaling region, or why it has no such region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Divergence {
     /// Mean logarithm of the distance (nats) against samples.
@@ -41,6 +41,10 @@ pub struct Classical {
 }
 
 /// All three, embedded with the delay of `times` in the dimension of [`unfolding`].
+///
+/// # Errors
+/// A signal that [`unfolding`] refuses, or that is too short for the divergence curves. A curve without a
+/// scaling region is no error: it is part of the result.
 pub fn classical(signal: &[f64], times: &Times) -> Result<Classical, Error> {
     let dimension = unfolding(signal, times, LARGEST)?.dimension();
     let delays = Delays {

@@ -20,6 +20,10 @@ const HIGH: f64 = 2e-2;
 const POINTS: usize = 9;
 
 /// The correlation dimension of the delay vectors, from pairs more than `theiler` samples apart.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `delays` and `theiler`, or vectors of which too many
+/// coincide for a slope.
 pub fn correlation_dimension(
     delays: &Delays,
     theiler: usize,

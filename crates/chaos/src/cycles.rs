@@ -77,7 +77,7 @@ fn kept_period(similarity: &[f64], mut period: f64) -> Option<f64> {
 }
 
 /// Whether the signal comes back closer, by half of the mean square difference, after a time that is no
-/// multiple of `period`: then this is no period but a near return of a quasi-periodic motion.
+/// multiple of `period`. Then this is no period but a near return of a quasi-periodic motion.
 pub(crate) fn returns_at_other_times(similarity: &[f64], period: f64) -> bool {
     let last = similarity.len() - 2;
     let multiples = 1..=(last as f64 / period) as usize;
@@ -177,7 +177,7 @@ fn at(signal: &[f64], place: f64) -> f64 {
     b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a)))
 }
 
-/// Part of the signal that tells the length of a cycle at its start.
+/// Part of the signal from which the length of a cycle at its start is taken.
 const PART: usize = 4;
 /// Most by which a cycle is longer or shorter than the last, as a share of it.
 const CHANGE: f64 = 0.05;
@@ -187,7 +187,7 @@ const UNEVEN: f64 = 1.5;
 
 /// The signal in its own cycles, whose length changes slowly: each begins where the samples that follow
 /// are most like the mean of the cycles before. `None` where no cycle comes back at the start, where
-/// they become too uneven, or where there are fewer than can be judged.
+/// they become too uneven, or where there are too few.
 pub(crate) fn of_changing_length(signal: &[f64]) -> Option<Cycles> {
     let part = similarity(&signal[..signal.len() / PART]);
     let found: Vec<(f64, f64)> = peaks(&part, part.len() - 1).collect();

@@ -22,6 +22,9 @@ pub struct Times {
 }
 
 /// The times of a signal.
+///
+/// # Errors
+/// A signal that [`checked`] refuses.
 pub fn times(signal: &[f64]) -> Result<Times, Error> {
     let (mean, deviation) = checked(signal)?;
     let longest = signal.len() / 10;
@@ -51,9 +54,11 @@ pub fn times(signal: &[f64]) -> Result<Times, Error> {
 /// Distance below and above the mean that a cycle must reach, in standard deviations.
 const BAND: f64 = 0.2;
 
-/// Where each cycle begins, in samples: at the upward crossing of the mean (interpolated) before which
-/// the signal has gone below it by a fifth of its standard deviation and after which it goes above by
-/// as much.
+/// Where each cycle begins, in samples: at an upward crossing of the mean (interpolated). Before it the signal has
+/// gone below the mean by a fifth of its standard deviation, and after it it goes above by as much.
+///
+/// # Errors
+/// A signal that [`checked`] refuses.
 pub fn cycle_starts(signal: &[f64]) -> Result<Vec<f64>, Error> {
     let (mean, deviation) = checked(signal)?;
     Ok(crossings(signal, mean, BAND * deviation))

@@ -52,6 +52,10 @@ impl Unfolding {
 }
 
 /// What each further coordinate does to nearest neighbours, up to `largest` coordinates.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `largest` and `times`, or a `largest` outside 1 to
+/// [`LARGEST_DIMENSION`] − 1.
 pub fn unfolding(signal: &[f64], times: &Times, largest: usize) -> Result<Unfolding, Error> {
     let (_, deviation) = checked(signal)?;
     if !(1..LARGEST_DIMENSION).contains(&largest) {
@@ -145,7 +149,7 @@ mod tests {
     use crate::delay::times;
     use crate::test_systems::{Noise, System};
 
-    fn found(signal: &[f64]) -> Unfolding {
+    fn unfolding_of(signal: &[f64]) -> Unfolding {
         unfolding(signal, &times(signal).unwrap(), 8).unwrap()
     }
 
@@ -153,15 +157,15 @@ mod tests {
     fn dimensions_of_known_systems() {
         // The logistic map needs 1 coordinate, Hénon 2, Lorenz and Rössler 3.
         assert_eq!(
-            found(&System::Logistic.samples(4000, 1)).by_false_neighbours(),
+            unfolding_of(&System::Logistic.samples(4000, 1)).by_false_neighbours(),
             Some(1)
         );
         assert_eq!(
-            found(&System::Henon.samples(4000, 1)).by_false_neighbours(),
+            unfolding_of(&System::Henon.samples(4000, 1)).by_false_neighbours(),
             Some(2)
         );
         for system in [System::Lorenz, System::Roessler] {
-            let unfolding = found(&system.samples(8000, 1));
+            let unfolding = unfolding_of(&system.samples(8000, 1));
             let dimension = unfolding.by_false_neighbours();
             assert!(
                 matches!(dimension, Some(3 | 4)),
@@ -173,12 +177,12 @@ mod tests {
 
     #[test]
     fn white_noise_does_not_unfold() {
-        let unfolding = found(&Noise::White.samples(4000, 1));
+        let unfolding = unfolding_of(&Noise::White.samples(4000, 1));
         assert!(
             unfolding.e2.iter().all(|e| (e - 1.0).abs() < 0.1),
             "{unfolding:?}"
         );
-        let henon = found(&System::Henon.samples(4000, 1));
+        let henon = unfolding_of(&System::Henon.samples(4000, 1));
         assert!(henon.e2.iter().any(|e| (e - 1.0).abs() > 0.2), "{henon:?}");
     }
 

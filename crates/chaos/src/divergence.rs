@@ -9,6 +9,10 @@ pub type Curve = Vec<f64>;
 
 /// Mean logarithm of the distance of each vector to the successors of its nearest neighbour
 /// (Rosenstein, Collins and De Luca 1993), for `steps` samples.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `delays`, `theiler` and `steps`, or one whose neighbours
+/// all coincide.
 pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve, Error> {
     let (search, _) = search(delays, theiler, steps)?;
     let mut logarithms = MeanLogarithms::new(steps + 1);
@@ -32,8 +36,11 @@ pub fn rosenstein(delays: &Delays, theiler: usize, steps: usize) -> Result<Curve
 }
 
 /// Mean over the vectors of the logarithm of the mean distance, in the last coordinate, to the
-/// successors of `neighbours` neighbours (Kantz 1994, with a fixed number in place of a fixed
-/// radius), for `steps` samples.
+/// successors of `neighbours` neighbours, for `steps` samples. After Kantz (1994), with a fixed number of neighbours
+/// in place of a fixed radius.
+///
+/// # Errors
+/// As [`rosenstein`].
 pub fn kantz(
     delays: &Delays,
     theiler: usize,

@@ -5,6 +5,9 @@ use crate::error::{Error, checked};
 /// Sample entropy (Richman and Moorman 2000) in nats: minus the logarithm of the probability that
 /// `length` samples that agree within `tolerance` also agree in the next one. `None` where no
 /// stretch agrees in the next one. `length` must be at least 1 and less than the samples.
+///
+/// # Errors
+/// A signal that [`checked`] refuses, or a `length` outside its range.
 pub fn sample_entropy(signal: &[f64], length: usize, tolerance: f64) -> Result<Option<f64>, Error> {
     checked(signal)?;
     if !(1..signal.len()).contains(&length) {
@@ -21,6 +24,9 @@ pub fn sample_entropy(signal: &[f64], length: usize, tolerance: f64) -> Result<O
 /// Sample entropy of the signal averaged in blocks of 1, 2, ..., `scales` samples, with the
 /// tolerance 0.15 standard deviations of the signal itself and stretches of 2 (Costa, Goldberger and
 /// Peng 2002).
+///
+/// # Errors
+/// A signal that [`checked`] refuses.
 pub fn multiscale_entropy(signal: &[f64], scales: usize) -> Result<Vec<Option<f64>>, Error> {
     let (_, deviation) = checked(signal)?;
     Ok((1..=scales)
@@ -37,6 +43,9 @@ pub fn multiscale_entropy(signal: &[f64], scales: usize) -> Result<Vec<Option<f6
 /// Permutation entropy (Bandt and Pompe 2002) of `order` samples `delay` apart, 0 to 1: the entropy
 /// of the orders in which they stand, over the logarithm of the number of orders. Equal samples stand
 /// in order of time. `order` must be 2 to 8.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is shorter than a window, or an `order` outside its range.
 pub fn permutation_entropy(signal: &[f64], order: usize, delay: usize) -> Result<f64, Error> {
     checked(signal)?;
     if !(2..=8).contains(&order) {

@@ -51,6 +51,9 @@ pub enum Error {
 pub const FEWEST_SAMPLES: usize = 100;
 
 /// The signal's mean and standard deviation, or why nothing can be said about it.
+///
+/// # Errors
+/// Fewer than [`FEWEST_SAMPLES`] samples, a sample that is not finite, or samples that are all equal.
 pub fn checked(signal: &[f64]) -> Result<(f64, f64), Error> {
     if signal.len() < FEWEST_SAMPLES {
         return Err(Error::TooShort {

@@ -1,13 +1,14 @@
 //! Largest Lyapunov exponent of a sampled signal, with a 95 % interval.
 //!
 //! A smooth map from delay vectors to the next sample is fitted to the whole signal, with noise in
-//! every sample allowed for; the growth of a tangent along the most likely signal is the exponent
+//! every sample allowed for. The growth of a tangent along the most likely signal is the exponent
 //! (Eckmann and Ruelle 1985). Dimension and delay are those of the greatest likelihood. The
 //! interval comes from differences: between stretches of the signal, between maps fitted without parts
 //! of it or to its halves, between embeddings, and to the divergence of neighbours. Where local maps
-//! predict better than the smooth one (a law with corners or jumps), their tangents tell the exponent. It
+//! predict better than the smooth one (a law with corners or jumps), the exponent is that of their tangents. It
 //! knows nothing of states that the delay vectors do not hold.
 
+use crate::blocks::{block_means, mean};
 use crate::delay::Times;
 use crate::dimension::unfolding;
 use crate::divergence::rosenstein;
@@ -22,15 +23,15 @@ use rand_distr::StandardNormal;
 use scalar::random::Stream;
 
 /// Noise added to every signal, as a share of its standard deviation. A signal without noise lies
-/// on a thin attractor and leaves the slopes across it open, and with them exponents that the
-/// system does not have; noise settles them near 0 (Bishop 1995: noise on inputs acts as a
+/// on a thin attractor. It leaves the slopes across it open, and with them exponents that the
+/// system does not have. Noise settles them near 0 (Bishop 1995: noise on inputs acts as a
 /// penalty on slopes). So small a noise costs less accuracy than the length of the signal.
 const ADDED: f64 = 0.003;
 /// Largest dimension.
 const LARGEST: usize = 6;
 /// Longest delay in samples; of slower signals, means of successive samples are taken.
 const LONGEST_DELAY: usize = 7;
-/// Centres of the map of a signal of at most so many samples; of longer ones, more as the square
+/// Centres of the map of a signal of at most so many samples. Longer signals have more, as the square
 /// root of the length, up to a largest number: more samples determine more weights.
 const CENTRES: usize = 150;
 const FOR_SAMPLES: usize = 10_000;
@@ -48,9 +49,7 @@ const TRIAL: usize = 4000;
 const TRIAL_PASSES: usize = 1;
 const PASSES: usize = 3;
 const SECOND_PASSES: usize = 2;
-/// Blocks for the standard error over time.
-const BLOCKS: usize = 20;
-/// Two-sided 95 % quantile of Student's t for as many blocks.
+/// Two-sided 95 % quantile of Student's t for [`BLOCKS`](crate::blocks::BLOCKS) blocks.
 const QUANTILE: f64 = 2.093;
 /// Fewest samples of a signal (after taking means).
 const FEWEST: usize = 300;
@@ -85,7 +84,7 @@ pub struct Exponent {
     pub second: f64,
     /// Standard error by the differences within the map: over time, between parts and embeddings.
     pub within: f64,
-    /// Largest difference to what else tells the exponent: maps of the halves of the signal, a coarser
+    /// Largest difference to the other estimates of the exponent: maps of the halves of the signal, a coarser
     /// map, the divergence of neighbours.
     pub between: f64,
 }
@@ -109,6 +108,10 @@ impl Exponent {
 }
 
 /// The largest exponent of a signal.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for a map. A signal to which no map can be fitted, or whose
+/// dynamics noise hides.
 pub fn exponent(signal: &[f64], times: &Times) -> Result<Exponent, Error> {
     let (mean, deviation) = checked(signal)?;
     let samples = (times.delay / LONGEST_DELAY + 1).min(times.delay);
@@ -308,10 +311,7 @@ impl Growth {
 
     fn along(model: &Model, linear: &Linear, of_map: f64) -> Self {
         let growth = linear.growth();
-        let blocks: Vec<f64> = growth
-            .chunks_exact((growth.len() / BLOCKS).max(1))
-            .map(mean)
-            .collect();
+        let blocks = block_means(&growth);
         let next = &model.signal[model.basis.span() + 1..];
         let squares = linear.values.iter().zip(next).map(|(v, x)| (v - x).powi(2));
         Self {
@@ -321,10 +321,6 @@ impl Growth {
             missed: squares.sum::<f64>() / next.len() as f64,
         }
     }
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Sample variance.
@@ -339,7 +335,7 @@ mod tests {
     use crate::delay::times;
     use crate::test_systems::{Noise, Regular, System, with_noise};
 
-    fn found(signal: &[f64]) -> Exponent {
+    fn estimated(signal: &[f64]) -> Exponent {
         exponent(signal, &times(signal).unwrap()).unwrap()
     }
 
@@ -350,7 +346,7 @@ mod tests {
             (System::Logistic, 0.05, 0.12),
             (System::Henon, 0.01, 0.04),
         ] {
-            let exponent = found(&with_noise(&system.samples(2000, 1), share, 1));
+            let exponent = estimated(&with_noise(&system.samples(2000, 1), share, 1));
             let error = exponent.value / system.exponent() - 1.0;
             assert!(error.abs() < tolerance, "{} {exponent:?}", system.name());
             assert!(
@@ -372,7 +368,7 @@ mod tests {
             .collect();
         let truth = 1.9_f64.ln();
         for share in [0.0, 0.01] {
-            let exponent = found(&with_noise(&tent, share, 1));
+            let exponent = estimated(&with_noise(&tent, share, 1));
             assert!(
                 exponent.low < truth && truth < exponent.high,
                 "{exponent:?}"
@@ -384,7 +380,7 @@ mod tests {
     fn the_interval_of_a_periodic_signal_reaches_zero() {
         for share in [0.0, 0.05] {
             let signal = with_noise(&Regular::Periodic.samples(2000, 1), share, 1);
-            let exponent = found(&signal);
+            let exponent = estimated(&signal);
             assert!(exponent.low <= 0.0, "{exponent:?}");
         }
     }

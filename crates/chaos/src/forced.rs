@@ -1,11 +1,11 @@
 //! Motion that a drive repeats: is what differs from cycle to cycle noise, or does it grow?
 //!
-//! A driven machine's acceleration is mostly the same in every revolution, chaotic or not. What tells
-//! is the scatter about the mean cycle. Two cycles that were alike for a while, at the same phase of
-//! the drive, part at once if the scatter is noise; they stay alike, and part at the rate of the
+//! A driven machine's acceleration is mostly the same in every revolution, chaotic or not. The scatter about the
+//! mean cycle decides. Two cycles that were alike for a while, at the same phase of
+//! the drive, part at once if the scatter is noise. They stay alike, and part at the rate of the
 //! exponent, if it is deterministic. The phase is a coordinate of the state of a driven system (Stark
-//! 1999), so only cycles at the same phase are compared; and a mean over all phases is a mean over the
-//! cycle. A hundred cycles are rarely much alike, and fast growth fades soon: the rate at the start is
+//! 1999), so only cycles at the same phase are compared. A mean over all phases is a mean over the
+//! cycle. A hundred cycles are rarely much alike, and fast growth fades soon. The rate at the start is therefore
 //! extrapolated, and its interval says how far laws of fading differ. Noise as large as the distances
 //! of cycles that are alike hides part of their growth: then the rate is too low.
 
@@ -76,14 +76,18 @@ const LAGS: usize = 16;
 const BLOCKS: usize = 8;
 const QUANTILE: f64 = 2.365;
 /// How growth fades as distances approach saturation ([`rate`]): 1 after Lorenz (1982), 2 after Dalcher
-/// and Kalnay (1987), whose law is for squared distances; below 1 where small distances grow fastest
+/// and Kalnay (1987), whose law is for squared distances. It is below 1 where small distances grow fastest
 /// (Aurell et al. 1997), as between parts that touch now and then. Distances that start near saturation
-/// do not tell which, so the interval spans 1/2 to 2. The best estimate's power is one at which it is
+/// do not determine it, so the interval spans 1/2 to 2. The best estimate's power is one at which it is
 /// neither low nor high on average on 23 chaotic compressors; on them the interval was chosen, too.
 const POWER: f64 = 0.7;
 const POWERS: [f64; 2] = [0.5, 2.0];
 
 /// The scatter of a signal with `per_cycle` samples in each cycle of its drive.
+///
+/// # Errors
+/// A signal that [`checked`] refuses, fewer than 8 samples in a cycle, fewer than [`FEWEST_CYCLES`] cycles, or cycles that
+/// do not differ.
 pub fn scatter(signal: &[f64], per_cycle: usize) -> Result<Scatter, Error> {
     let (_, deviation) = checked(signal)?;
     if per_cycle < FEWEST_SAMPLES {

@@ -1,16 +1,17 @@
 //! Does what differs from cycle to cycle follow from what was, or does chance enter at some phase?
 //!
 //! The state of a deterministic system at any phase of its drive decides what follows (Stark 1999). So
-//! cycles that are alike before a phase stay alike after it, whatever the phase. A load, a timing or an
+//! cycles that are alike before a phase stay alike after it, at every phase. A load, a timing or an
 //! amplitude that chance gives to each cycle makes cycles alike too, but only from the phase on at which
-//! it is given: there, the past says of the future no more than a linear process would. One such phase
+//! it is given. There, the past says of the future no more than a linear process would. One such phase
 //! is enough for chance to be at work; so the signal must differ from its surrogates at every phase.
 //!
-//! There are two kinds of surrogates. Futures exchanged between cycles keep all that holds within a
-//! cycle's part. Cycles whose Fourier components (over cycles) have new phases, the same at every
-//! phase of the drive (Prichard and Theiler 1994), keep all covariances within and between cycles: a
-//! cyclostationary linear Gaussian process, which is what slowly changing loads and ringing resonances
-//! are.
+//! There are two kinds of surrogates:
+//!
+//! - Futures exchanged between cycles keep all that holds within a cycle's part.
+//! - Cycles whose Fourier components (over cycles) have new phases, the same at every
+//!   phase of the drive (Prichard and Theiler 1994), keep all covariances within and between cycles. They are a
+//!   cyclostationary linear Gaussian process, as slowly changing loads and ringing resonances are.
 
 use crate::delay::Times;
 use crate::neighbours::Delays;

@@ -1,8 +1,10 @@
 //! Chaos from a sampled signal, as anyone with a sensor must find it.
 //!
-//! Everything is a pure function of the samples: the same signal gives the same numbers.
+//! Everything is a pure function of the samples: the same signal gives the same numbers. A signal is a slice of
+//! evenly spaced samples in order of time, in any unit. Times, lags and steps are in samples.
 
 pub mod autocorrelation;
+mod blocks;
 pub mod classical;
 pub mod correlation_dimension;
 mod cycles;

@@ -102,7 +102,7 @@ impl Neighbours {
         }
     }
 
-    /// The nearest vector of each vector in order, `None` where the window leaves nobody.
+    /// The nearest vector of each vector in order, `None` where the window leaves no vector.
     ///
     /// The successor of a vector's neighbour is mostly near the vector's successor. Its distance
     /// bounds the search, which then costs a third of one without a bound.

@@ -29,6 +29,9 @@ pub const MOST_VECTORS: usize = 4000;
 
 /// Measures of the plot of the first [`MOST_VECTORS`] delay vectors. Pairs closer than `radius` count;
 /// those within `theiler` samples of each other do not.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `delays` and `theiler`.
 pub fn recurrence(delays: &Delays, theiler: usize, radius: f64) -> Result<Recurrence, Error> {
     checked(delays.signal)?;
     let needed = delays.span() + theiler + 100;

@@ -1,14 +1,17 @@
 //! What kind of motion a signal shows.
 //!
-//! Does more than half of the signal repeat itself after one period? Then what is left is judged, as
-//! [`forced`](crate::forced) does: it comes back after other times (then the motion is quasi-periodic), or
-//! chance enters at some phase (then it is periodic), or it is deterministic and grows (then it is
-//! chaotic). Does the signal repeat itself nearly after other times? Then it is quasi-periodic. Does it
-//! repeat itself in its own cycles, whose length differs? Then it is periodic. Else: is it better
-//! predicted than linear noise with its spectrum and values (if not, it is stochastic)? Are there states
-//! from which chance goes on (then it is undecided)? Does the exponent's own error leave it above 0 (then
-//! it is chaotic), or, where it holds 0, that of the rate at which neighbours part? What is left is
-//! undecided.
+//! The questions come in this order:
+//!
+//! 1. Does more than half of the signal repeat itself after one period? Then the rest is judged, as
+//!    [`forced`](crate::forced) does. If it comes back after other times, the motion is quasi-periodic. If
+//!    chance enters at some phase, it is periodic. If it is deterministic and grows, it is chaotic.
+//! 2. Does the signal repeat itself nearly after other times? Then it is quasi-periodic.
+//! 3. Does it repeat itself in its own cycles, whose length differs? Then it is periodic.
+//! 4. Is it better predicted than linear noise with its spectrum and values? If not, it is stochastic.
+//! 5. Are there states from which chance goes on? Then it is undecided.
+//! 6. Does the exponent's own error leave it above 0? Then it is chaotic. Where that error includes 0, the rate at
+//!    which neighbours part decides.
+//! 7. All others are undecided.
 
 use crate::cycles::{self, HALF, period, returns_at_other_times, similarity};
 use crate::delay::Times;
@@ -34,7 +37,7 @@ pub enum Regime {
     QuasiPeriodic,
     /// Deterministic with a positive exponent.
     Chaotic,
-    /// Not to be told from linear noise.
+    /// Not distinguishable from linear noise.
     Stochastic,
     /// None of these can be said.
     Undecided,
@@ -102,6 +105,9 @@ const PREDICTOR: Model = Model {
 };
 
 /// The verdict on a signal.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for one of the tests that it comes to.
 pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     checked(signal)?;
     let similarity = similarity(signal);
@@ -170,13 +176,13 @@ pub fn verdict(signal: &[f64], times: &Times) -> Result<Verdict, Error> {
     verdict.exponent = growth;
     if grows {
         verdict.regime = Regime::Chaotic;
-        // Estimates that differ by as much as their value tell that it is positive, not how large.
+        // Estimates that differ by as much as their value show that it is positive, not how large.
         verdict.exponent = growth.filter(|growth| growth.low > 0.0);
     }
     Ok(verdict)
 }
 
-/// What the signal is in its own cycles, whose length changes as where a speed drifts or fluctuates: where they leave
+/// What the signal is in its own cycles, whose length changes where a speed drifts or fluctuates. None unless they leave
 /// little to differ from cycle to cycle, and less than half of what cycles of one length leave, `fixed`.
 fn in_cycles_of_changing_length(
     signal: &[f64],
@@ -238,6 +244,9 @@ fn parting(signal: &[f64], times: &Times) -> Result<Growth, Error> {
 /// The verdict on a signal with `per_cycle` samples in each cycle of a drive that repeats more than half
 /// of it; `None` where the drive repeats less: then [`verdict`] serves, and whether chance enters at
 /// some phase of the drive ([`chance_at_a_phase`]).
+///
+/// # Errors
+/// As [`scatter`].
 pub fn driven_verdict(signal: &[f64], per_cycle: usize) -> Result<Option<Verdict>, Error> {
     let (regime, scatter) = of_scatter(signal, per_cycle)?;
     if scatter.share * scatter.share > HALF {
@@ -260,6 +269,9 @@ pub fn chance_at_a_phase(signal: &[f64], per_cycle: usize) -> bool {
 }
 
 /// Whether the signal is better predicted than its surrogates are (Theiler et al. 1992).
+///
+/// # Errors
+/// A signal that is too short for `times`.
 pub fn predictability(signal: &[f64], times: &Times) -> Result<Comparison, Error> {
     let needed = 10 * times.delay + 2 * times.theiler + 100;
     let too_short = Error::TooShort {
@@ -336,7 +348,7 @@ mod tests {
     use crate::test_systems::{Machine, Memory, Noise, Regular, System, with_noise};
     use std::f64::consts::TAU;
 
-    fn found(signal: &[f64]) -> Verdict {
+    fn judged(signal: &[f64]) -> Verdict {
         verdict(signal, &times(signal).unwrap()).unwrap()
     }
 
@@ -348,7 +360,7 @@ mod tests {
                 (Regular::TwoTone, Regime::QuasiPeriodic),
                 (Regular::KnockTrain, Regime::Periodic),
             ] {
-                let verdict = found(&with_noise(&signal.samples(4000, 1), share, 1));
+                let verdict = judged(&with_noise(&signal.samples(4000, 1), share, 1));
                 assert_eq!(verdict.regime, expected, "{signal:?} {share} {verdict:?}");
             }
         }
@@ -357,11 +369,11 @@ mod tests {
     #[test]
     fn noises_are_stochastic_and_chaos_is_chaotic() {
         for noise in Noise::ALL {
-            let verdict = found(&noise.samples(3000, 1));
+            let verdict = judged(&noise.samples(3000, 1));
             assert_eq!(verdict.regime, Regime::Stochastic, "{noise:?} {verdict:?}");
         }
         for system in [System::Logistic, System::Henon, System::Lorenz] {
-            let verdict = found(&with_noise(&system.samples(3000, 1), 0.01, 1));
+            let verdict = judged(&with_noise(&system.samples(3000, 1), 0.01, 1));
             assert_eq!(
                 verdict.regime,
                 Regime::Chaotic,
@@ -384,7 +396,7 @@ mod tests {
         });
         let four: Vec<f64> = (0..4000).map(|_| logistic()).collect();
         for (signal, share) in [(&alternating, 0.05), (&four, 0.01), (&four, 0.05)] {
-            let verdict = found(&with_noise(signal, share, 1));
+            let verdict = judged(&with_noise(signal, share, 1));
             assert_eq!(verdict.regime, Regime::Periodic, "{share} {verdict:?}");
         }
     }
@@ -400,7 +412,7 @@ mod tests {
                 })
                 .collect();
             for share in [0.0, 0.01] {
-                let verdict = found(&with_noise(&signal, share, 1));
+                let verdict = judged(&with_noise(&signal, share, 1));
                 assert_eq!(verdict.regime, Regime::QuasiPeriodic, "{verdict:?}");
                 assert_eq!(verdict.exponent, None);
             }
@@ -424,7 +436,7 @@ mod tests {
                 struck.filter(|since| *since >= 0.0).map(ring).sum()
             })
             .collect();
-        let verdict = found(&signal);
+        let verdict = judged(&signal);
         assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
         assert_eq!(verdict.exponent, None);
     }
@@ -437,7 +449,7 @@ mod tests {
             (Machine::MissingKnock, Memory::Ninety, 1),
             (Machine::TwoLoads, Memory::Ninety, 3),
         ] {
-            let verdict = found(&machine.samples(80, 100, 0.1, memory, seed));
+            let verdict = judged(&machine.samples(80, 100, 0.1, memory, seed));
             assert_ne!(verdict.regime, Regime::Chaotic, "{machine:?} {verdict:?}");
         }
     }
@@ -453,7 +465,7 @@ mod tests {
             })
             .collect();
         for share in [0.01, 0.05] {
-            let verdict = found(&with_noise(&signal, share, 1));
+            let verdict = judged(&with_noise(&signal, share, 1));
             assert_eq!(verdict.regime, Regime::Periodic, "{verdict:?}");
             assert_eq!(verdict.exponent, None);
         }

@@ -1,4 +1,4 @@
-//! The straight, rising part of a divergence curve, or the statement that there is none.
+//! The straight, rising part of a divergence curve, or the reason why it has none.
 
 use crate::error::Error;
 
@@ -26,6 +26,9 @@ const FEWEST_POINTS: usize = 4;
 
 /// The region with the greatest rise among those that are straight to 3 % of their rise and begin
 /// after the first `skip` samples.
+///
+/// # Errors
+/// A curve with a value that is not finite, one that does not rise enough after `skip`, or one without a straight part.
 pub fn scaling_region(curve: &[f64], skip: usize) -> Result<Fit, Error> {
     if curve.iter().any(|y| !y.is_finite()) {
         return Err(Error::NoScalingRegion {

@@ -23,9 +23,9 @@ pub fn phase_randomised(signal: &[f64], generator: &mut Stream) -> Vec<f64> {
     fourier.backward(spectrum)
 }
 
-/// The signal of a drive with `per_cycle` samples in each cycle, of which the Fourier components over
-/// cycles have their phases drawn anew, by the same angle at every phase of the drive (Prichard and
-/// Theiler 1994): a cyclostationary linear Gaussian signal with the same covariances within and between
+/// The signal of a drive with `per_cycle` samples in each cycle. The phases of its Fourier components over
+/// cycles are drawn anew, by the same angle at every phase of the drive (Prichard and
+/// Theiler 1994). It is a cyclostationary linear Gaussian signal with the same covariances within and between
 /// cycles. Samples after the last whole cycle are left out.
 pub(crate) fn phases_randomised_alike(
     signal: &[f64],
@@ -158,7 +158,7 @@ pub struct Comparison {
     pub significant: bool,
 }
 
-/// Numbers of surrogates after which is looked whether the signal differs clearly, and the one-sided
+/// Numbers of surrogates after which the test may end, and the one-sided
 /// 0.1 % quantiles of Student's t, for the prediction of one more value from that many. Three looks
 /// call at most three signals in a thousand different that are not.
 const LOOKS: [(usize, f64); 3] = [(5, 7.173), (10, 4.297), (20, 3.579)];

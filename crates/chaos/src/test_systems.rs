@@ -104,7 +104,7 @@ impl System {
         self.tangent_exponents(length, 1)[0]
     }
 
-    /// The same for so many successive stretches of `length` samples, whose scatter tells the error.
+    /// The same for so many successive stretches of `length` samples, whose scatter is the error.
     pub fn tangent_exponents(self, length: usize, stretches: usize) -> Vec<f64> {
         let lengths = (length, stretches);
         let mut growths = match self {

@@ -1,6 +1,7 @@
 //! Largest exponent after Wolf, Swift, Swinney and Vastano 1985: a neighbour is followed for a fixed
 //! time, then replaced by one that lies in nearly the same direction.
 
+use crate::blocks::{block_means, mean};
 use crate::error::{Error, checked};
 use crate::neighbours::{Delays, Neighbours};
 
@@ -10,8 +11,6 @@ const CHOICE: usize = 20;
 const LEFT_OUT: usize = 3;
 /// Fewest steps with a neighbour.
 const FEWEST: usize = 40;
-/// Blocks for the standard error.
-const TIME_BLOCKS: usize = 20;
 
 /// What following one neighbour after the other gave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +29,10 @@ pub struct Wolf {
 
 /// Follows neighbours through the whole signal, each for `steps` samples. There is no value where
 /// neighbours part to half of the distance of unrelated vectors: their growth has ended by then.
+///
+/// # Errors
+/// A signal that [`checked`] refuses or that is too short for `delays`, `theiler` and `steps`; `steps` of 0; neighbours that
+/// all coincide or that part at once.
 pub fn wolf(delays: &Delays, theiler: usize, steps: usize) -> Result<Wolf, Error> {
     let (_, deviation) = checked(delays.signal)?;
     let needed = delays.span() + FEWEST * steps + 2 * theiler + CHOICE + LEFT_OUT + 1;
@@ -74,9 +77,7 @@ pub fn wolf(delays: &Delays, theiler: usize, steps: usize) -> Result<Wolf, Error
         });
     }
     let growth: Vec<f64> = before.iter().zip(&after).map(|(b, a)| a - b).collect();
-    let blocks: Vec<f64> = (growth.chunks_exact(growth.len() / TIME_BLOCKS))
-        .map(mean)
-        .collect();
+    let blocks = block_means(&growth);
     let value = mean(&growth);
     let spread: f64 = blocks.iter().map(|b| (b - value).powi(2)).sum();
     let found = Wolf {
@@ -105,16 +106,17 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::test_systems::{Noise, Regular, System, with_noise};
 
-    fn found(signal: &[f64], dimension: usize, delay: usize, steps: usize) -> Result<Wolf, Error> {
+    fn followed(
+        signal: &[f64],
+        dimension: usize,
+        delay: usize,
+        steps: usize,
+    ) -> Result<Wolf, Error> {
         let delays = Delays {
             signal,
             dimension,
@@ -125,10 +127,10 @@ mod tests {
 
     #[test]
     fn exponents_of_chaotic_systems() {
-        let henon = found(&System::Henon.samples(5000, 1), 2, 1, 1).unwrap();
+        let henon = followed(&System::Henon.samples(5000, 1), 2, 1, 1).unwrap();
         assert!((henon.value / 0.4193 - 1.0).abs() < 0.1, "{henon:?}");
         // Wolf's method overestimates flows: it follows what grows fastest at the moment.
-        let lorenz = found(&System::Lorenz.samples(10_000, 1), 3, 4, 16).unwrap();
+        let lorenz = followed(&System::Lorenz.samples(10_000, 1), 3, 4, 16).unwrap();
         let truth = System::Lorenz.exponent() * System::Lorenz.sample_interval();
         assert!((lorenz.value / truth - 1.0).abs() < 0.4, "{lorenz:?}");
     }
@@ -136,9 +138,9 @@ mod tests {
     #[test]
     fn neighbours_on_a_cycle_stay_and_those_of_noise_are_refused() {
         let cycle = with_noise(&Regular::Periodic.samples(3000, 1), 0.001, 1);
-        let cycle = found(&cycle, 4, 3, 12).unwrap();
+        let cycle = followed(&cycle, 4, 3, 12).unwrap();
         assert!(cycle.value.abs() < 0.02, "{cycle:?}");
-        let noise = found(&Noise::White.samples(3000, 1), 4, 1, 3);
+        let noise = followed(&Noise::White.samples(3000, 1), 4, 1, 3);
         assert!(
             matches!(noise, Err(Error::NoScalingRegion { .. })),
             "{noise:?}"

@@ -16,6 +16,9 @@ const SAMPLES: usize = 5000;
 /// embedding. Where a drive is known, `step` must divide its period. Otherwise the overtones of a
 /// wave with impacts fold back to frequencies all over the band, which few samples cannot
 /// resolve, and the wave looks like noise.
+///
+/// # Errors
+/// A signal that [`checked`] refuses, or one of fewer than 100 samples after thinning.
 pub fn zero_one(signal: &[f64], step: usize) -> Result<f64, Error> {
     let (mean, deviation) = checked(signal)?;
     let thinned: Vec<f64> = signal

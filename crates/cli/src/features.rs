@@ -193,7 +193,7 @@ fn format(out: &Path) -> Result<TableFormat, Failure> {
             "--out: {shown} is a folder, expected a file, e.g. features.parquet"
         )));
     }
-    TableFormat::of(out).ok_or_else(|| {
+    TableFormat::from_path(out).ok_or_else(|| {
         Failure::input(format!(
             "--out: found {shown}, expected a name that ends in .parquet or .csv"
         ))

@@ -23,35 +23,31 @@ pub struct Candidate {
     pub ends: &'static [&'static str],
 }
 
-/// A place that is not tried one by one: an effect on a sensor is tried on that of the crosshead's
-/// acceleration, which is meant where it is left out, and on that of the pressure.
+/// A place that is not tried one by one. An effect on a sensor is tried on that of the crosshead's
+/// acceleration, the default, and on that of the pressure.
 const MEASURE: &str = "measure";
 const PRESSURE: &str = "cylinder_pressure";
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
-/// The suction valve's throttling is told by the effect that holds it already, where there is one.
-const HELD: &str = "suction_unloading";
-const THROTTLED: [&str; 2] = ["valve_loss", "suction"];
-/// The law of no name.
-pub const FORCE: &str = "empirical_force";
-/// The zero of the crank angle: fitted to begin with, unless pressures are all that there is. Of them
-/// clearance volume and exponents imitate it, so that it has to earn its place.
-pub(crate) const ZERO: &str = "crank_angle_offset";
 
 impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
     pub fn all(problem: &Problem) -> Vec<Self> {
         let throws = throws(&problem.tree);
         let known = shows_pressure(problem);
-        let both_ends = has_crank_end(&problem.tree) && tells_ends_apart(problem);
+        let both_ends = has_crank_end(&problem.tree) && distinguishes_ends(problem);
         let mut all = Vec::new();
+        // The zero of the crank angle is fitted from the start, unless pressures are all that was recorded.
+        // Clearance volume and exponents imitate its effect on pressures, so that it has to earn its place.
         let zero = !problem
             .parameters
             .iter()
             .any(calibrate::Parameter::is_crank_angle_offset)
             && is_of_pressures(problem);
-        let looked_for =
-            |entry: &&Entry| entry.proposal != Proposal::Separately && (zero || entry.name != ZERO);
+        let looked_for = |entry: &&Entry| match entry.proposal {
+            Proposal::CrankAngleZero => zero,
+            proposal => !proposal.is_separate(),
+        };
         for entry in CATALOGUE.iter().filter(looked_for) {
             for place in places(entry, &throws, both_ends) {
                 if is_series(entry) && recorded(problem, &place) == Some(1) {
@@ -63,7 +59,7 @@ impl Candidate {
                 let ends = entry.places.iter().filter(|c| own && c.key == EITHER);
                 let ends = ends.map(|choice| choice.words).next().unwrap_or_default();
                 for mut fixed in orders(entry) {
-                    fixed.extend(throttled(entry, &place, problem));
+                    fixed.extend(included(entry, &place, problem));
                     let place = place.clone();
                     let candidate = Self {
                         entry,
@@ -112,11 +108,13 @@ impl Candidate {
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
     pub fn is_of_gas(&self) -> bool {
         let measures = |(_, word): &(&str, String)| word == PRESSURE;
-        self.entry.kind == Kind::Gas || self.entry.name == ZERO || self.place.iter().any(measures)
+        self.entry.kind == Kind::Gas
+            || self.entry.proposal == Proposal::CrankAngleZero
+            || self.place.iter().any(measures)
     }
 
-    /// Whether it acts on gas whose pressure was recorded, so that the pressures tell it by themselves.
-    pub(crate) fn is_told_by_pressures(&self, problem: &Problem) -> bool {
+    /// Whether it acts on gas whose pressure was recorded, so that the pressures alone show it.
+    pub(crate) fn is_shown_by_pressures(&self, problem: &Problem) -> bool {
         self.is_of_gas() && recorded(problem, &self.place).is_some_and(|chambers| chambers > 0)
     }
 
@@ -133,8 +131,8 @@ impl Candidate {
             alone
         };
         let each = choice.words.iter().map(at);
-        let mut told = each.filter(|alone| alone.is_told_by_pressures(problem));
-        told.next().filter(|_| told.next().is_none())
+        let mut shown = each.filter(|alone| alone.is_shown_by_pressures(problem));
+        shown.next().filter(|_| shown.next().is_none())
     }
 
     /// Its joint, where it has one.
@@ -214,8 +212,8 @@ impl Candidate {
         })
     }
 
-    /// The problem with the effect in the machine and its parameters free, at `values` (SI, one per
-    /// parameter of the catalogue's entry) where their coordinates are 0.
+    /// The problem with the effect in the machine and its parameters free. Their coordinates are 0 at `values`: SI, one
+    /// per parameter of the catalogue's entry, in its order, those of one item after those of another.
     ///
     /// # Errors
     /// A machine that cannot have it.
@@ -242,7 +240,7 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if self.entry.name == FORCE
+        if self.entry.proposal == Proposal::ForceLaw
             && let Some(section) = item[self.entry.name].as_object_mut()
         {
             // Terms that are left out have no effect, and constants are as usual.
@@ -315,9 +313,9 @@ fn has_crank_end(tree: &Value) -> bool {
     has(tree) || throws.into_iter().flatten().any(has)
 }
 
-/// Whether the recordings tell one end of a cylinder from the other: accelerations do, and pressures at the
-/// ends where they were recorded.
-fn tells_ends_apart(problem: &Problem) -> bool {
+/// Whether the recordings distinguish one end of a cylinder from the other. Accelerations do, and so do pressures at
+/// the ends where they were recorded.
+fn distinguishes_ends(problem: &Problem) -> bool {
     if !is_of_pressures(problem) {
         return true;
     }
@@ -329,8 +327,8 @@ fn tells_ends_apart(problem: &Problem) -> bool {
     pressures.any(|other| other.contains("crank_end") != first.contains("crank_end"))
 }
 
-/// Whether it is a term of a Fourier series of the gas: to one recording of one chamber that fits
-/// whatever there is while a valve is open, and says nothing.
+/// Whether it is a term of a Fourier series of the gas. In one recording of one chamber such a term fits
+/// anything while a valve is open, and says nothing.
 fn is_series(entry: &Entry) -> bool {
     entry.kind == Kind::Gas && entry.parameters.iter().any(|p| p.whole)
 }
@@ -351,20 +349,25 @@ fn recorded(problem: &Problem, place: &[(&'static str, String)]) -> Option<usize
     (!all.is_empty()).then(|| all.iter().filter(|here| **here).count())
 }
 
-/// What an effect of the machine at the same place tells already, at the value where it vanishes.
-fn throttled(
+/// The parameter that an effect of the machine at the same place includes already, at the value where it vanishes.
+fn included(
     entry: &Entry,
     place: &[(&'static str, String)],
     problem: &Problem,
 ) -> Option<(usize, f64)> {
-    let [name, key] = THROTTLED;
+    let of_holder = |holder: &'static Entry| {
+        let mut included = holder.includes().iter();
+        let (_, key) = included.find(|(name, _)| *name == entry.name)?;
+        Some((holder.name, *key))
+    };
+    let (holder, key) = CATALOGUE.iter().find_map(of_holder)?;
     let index = entry.parameters.iter().position(|p| p.key == key)?;
     let absent = entry.parameters[index].absent?;
     let effects = problem.tree.get("effects").and_then(Value::as_array);
     let held = effects
         .into_iter()
         .flatten()
-        .filter_map(|item| item.get(HELD));
+        .filter_map(|item| item.get(holder));
     let mut ends: Vec<&str> = held
         .map(|section| section[EITHER].as_str().unwrap_or(""))
         .collect();
@@ -372,8 +375,7 @@ fn throttled(
     let asked = place.iter().find(|(key, _)| *key == EITHER);
     let asked = asked.map_or("", |(_, end)| end.as_str());
     let everywhere = ends.contains(&"") || ends == ["crank", "head"];
-    (entry.name == name && (everywhere || (!asked.is_empty() && ends.contains(&asked))))
-        .then_some((index, absent))
+    (everywhere || (!asked.is_empty() && ends.contains(&asked))).then_some((index, absent))
 }
 
 /// The places where an effect can act. Without a throw of its own an effect acts at all of them;
@@ -431,26 +433,26 @@ mod tests {
             all.retain(|c| c.entry.name == "valve_loss");
             all
         };
-        let told = |problem: &Problem| -> Vec<bool> {
-            let of = |c: &Candidate| c.is_told_by_pressures(problem);
+        let shown = |problem: &Problem| -> Vec<bool> {
+            let of = |c: &Candidate| c.is_shown_by_pressures(problem);
             losses(problem).iter().map(of).collect()
         };
         // Everywhere, at the head end, at the crank end.
-        assert_eq!(told(&problem), [false; 3]);
+        assert_eq!(shown(&problem), [false; 3]);
         assert!(losses(&problem)[0].at_recorded_end(&problem).is_none());
         for run in &mut problem.runs {
             let mut pressure = run.channels[0].clone();
             pressure.column = "cylinder_pressure_pa".into();
             run.channels.push(pressure);
         }
-        assert_eq!(told(&problem), [true, true, false]);
+        assert_eq!(shown(&problem), [true, true, false]);
         let alone = losses(&problem)[0].at_recorded_end(&problem).unwrap();
         assert_eq!(alone.end(), Some("head"));
         assert!(alone.at_recorded_end(&problem).is_none());
-        // Pressures of one end by themselves do not tell it from the other.
+        // Pressures of one end alone do not distinguish it from the other.
         for run in &mut problem.runs {
             run.channels.remove(0);
         }
-        assert_eq!(told(&problem), [true]);
+        assert_eq!(shown(&problem), [true]);
     }
 }

@@ -18,11 +18,11 @@ const RIVAL_ABOVE_NOISE: f64 = 1.5;
 /// An effect earns its place where it takes this share of the misfit, squared above the noise, of
 /// fitted and of held-out runs.
 pub(crate) const EARNED: f64 = 0.3;
-/// The same where pressures are all that was recorded: the gas alone can explain them, and after one
-/// effect what others do is still in the way of the next.
+/// The same where only pressures were recorded. The gas alone can explain them. After one
+/// effect the contribution of others is still in the way of the next.
 pub(crate) const EARNED_OF_GAS: f64 = 0.2;
-/// Share of the distance to the noise that must be gone, of fitted and of held-out runs, for effects
-/// to explain a part; and for a single one to be sure by itself.
+/// Share of the distance to the noise that must be gone, of fitted and of held-out runs: for effects
+/// to explain a part, and for a single one to be sure by itself.
 pub(crate) const PARTLY: f64 = 0.5;
 const SURE: f64 = 0.8;
 
@@ -30,7 +30,7 @@ const SURE: f64 = 0.8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The calibrated model is at the noise.
+    /// The calibrated model fits within the noise.
     NoGap,
     /// With the effects it is.
     Explained,
@@ -102,8 +102,8 @@ pub(crate) fn rival(least: f64) -> f64 {
     }
 }
 
-/// Whether the effect that `after` has and `before` has not earns its place: not where without it noise is all
-/// that fitted runs are left with and held-out ones are explained.
+/// Whether the effect that `after` has and `before` has not earns its place. It does not where, without it, the
+/// fitted runs fit within the noise and the held-out ones are explained.
 pub(crate) fn earns(before: &Model, after: &Model) -> bool {
     let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
     let share = match is_of_pressures(&after.problem) {

@@ -6,8 +6,7 @@ use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
-/// throw: a step of two joints takes some 7 µs. Then what a search from the nominal machine may cost,
-/// and one that goes on from another.
+/// throw; a step of two joints takes some 7 µs.
 const BUDGET: u64 = 24_000_000;
 /// By how much more it may cost for each effect that was found, so that what is left has its chance too.
 const FOR_ANOTHER: u64 = BUDGET * 3 / 4;
@@ -15,7 +14,9 @@ const FOR_ANOTHER: u64 = BUDGET * 3 / 4;
 const BESIDE_WEAR: u64 = BUDGET / 2;
 /// And by how much more before the search of a force of no name goes into its second and third attempts.
 const FOR_FORCE: u64 = BUDGET / 2;
+/// The most for a search from the nominal machine.
 pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
+/// The most for a search that continues from another.
 pub(crate) const SEARCH: u64 = BUDGET / 4;
 
 /// Which runs a model is fitted to, and how long it may take.

@@ -3,7 +3,7 @@
 /// Why a gap cannot be explained.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A machine file that is none.
+    /// An invalid machine file.
     #[error(transparent)]
     Machine(#[from] input::Error),
     /// A model that cannot be fitted.
@@ -18,7 +18,7 @@ pub enum Error {
     /// Results that are no JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
-    /// A list of effects that is none.
+    /// `effects` is not a list.
     #[error("effects: found something else than a list of effects")]
     Effects,
     /// A file of finished work that cannot be read or written.

@@ -44,7 +44,7 @@ pub struct Explanation {
     pub nominal: Model,
     /// The gap as it shrank, the machine as it was given first.
     pub steps: Vec<Step>,
-    /// What to measure to tell effects from their rivals, in a sentence.
+    /// What to measure to distinguish effects from their rivals, in a sentence.
     pub next_recording: Option<String>,
     /// What the parameters of the explained model are known to.
     pub estimates: Vec<Estimate>,
@@ -71,11 +71,11 @@ pub fn explain(
     problem: &Problem,
     hum: &[Hum],
     effort: &Effort,
-    tell: &(dyn Fn(&Stage) + Sync),
+    report: &(dyn Fn(&Stage) + Sync),
     watch: Watch,
 ) -> Result<Explanation, Error> {
     let say = |words: &str, misfit: f64| {
-        tell(&Stage {
+        report(&Stage {
             words: words.to_owned(),
             misfit,
         });
@@ -110,7 +110,7 @@ pub fn explain(
         correlations,
         ..
     } = fitter.bounds(&model)?;
-    // What is not told has the value with which the model was found.
+    // A parameter that is not identifiable has the value with which the model was found.
     for (estimate, x) in estimates.iter_mut().zip(&model.x) {
         if estimate.interval.is_none() {
             estimate.value = estimate.parameter.value(*x);
@@ -158,7 +158,7 @@ fn of_all(
     problem: &Problem,
     gas: Option<OfGas>,
 ) -> Result<(Model, Explained), Error> {
-    let known = gas.as_ref().is_some_and(OfGas::is_told);
+    let known = gas.as_ref().is_some_and(OfGas::is_decided);
     let found = gas.map_or_else(Vec::new, |gas| gas.explained.found);
     let mut found = at_their_ends(fitter, problem, found)?;
     let with_gas = added(problem, found.iter().map(|found| &found.effect))?;
@@ -174,7 +174,7 @@ fn of_all(
     };
     let candidates = |problem: &Problem| {
         let mut all = Candidate::all(problem);
-        all.retain(|candidate| !known || !candidate.is_told_by_pressures(problem));
+        all.retain(|candidate| !known || !candidate.is_shown_by_pressures(problem));
         all
     };
     let (model, of_throws) = throw_by_throw(fitter, model, &candidates)?;

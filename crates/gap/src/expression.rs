@@ -25,10 +25,12 @@ const SYMBOLS: [(&str, &str); 21] = [
     ("small_end_offset", "e_s/c_s"),
 ];
 
-/// A law in words of the model: its terms by their keys, with their coefficients in N. α is the crank
-/// angle since top dead centre; x, v and a are displacement from mid-stroke, velocity and acceleration
-/// of the crosshead toward the head; p is the head-end pressure, G the gas force over that of 1 bar on
-/// the piston, φ the rod's angle; e/c are the offsets of big and small end over their clearances.
+/// A law in words of the model: its terms by their keys, with their coefficients in N.
+///
+/// - α is the crank angle since top dead centre.
+/// - x, v and a are displacement from mid-stroke, velocity and acceleration of the crosshead toward the head.
+/// - p is the head-end pressure, G the gas force over that of 1 bar on the piston, φ the rod's angle.
+/// - e/c are the offsets of big and small end over their clearances.
 pub fn expression<'a>(terms: impl IntoIterator<Item = (&'a str, f64)>) -> String {
     let mut text = String::new();
     for (key, coefficient) in terms {
@@ -55,11 +57,10 @@ pub fn expression<'a>(terms: impl IntoIterator<Item = (&'a str, f64)>) -> String
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::candidate::FORCE;
-    use input::effects::entry;
+    use input::effects::{Proposal, proposed};
 
     #[test]
-    fn a_law_is_told_in_words_of_the_model() {
+    fn a_law_is_written_in_words_of_the_model() {
         let terms = [
             ("constant", 12.5),
             ("velocity_sign", -120.04),
@@ -78,7 +79,10 @@ mod tests {
 
     #[test]
     fn every_term_of_the_effect_has_a_symbol() {
-        let keys = entry(FORCE).unwrap().amplitudes().map(|p| p.key);
+        let keys = proposed(Proposal::ForceLaw)
+            .unwrap()
+            .amplitudes()
+            .map(|p| p.key);
         assert!(keys.eq(SYMBOLS.iter().map(|(key, _)| *key)));
     }
 }

@@ -7,7 +7,7 @@ use crate::fitter::Fitter;
 use crate::model::{Gap, Model};
 use calibrate::Problem;
 
-/// Signatures as near as this are one where more is missing than the effect: what is left over hides
+/// Signatures as near as this are one where more is missing than the effect. What is left over then hides
 /// the difference (the same limit as for groups of sensitivities in model updating).
 const ALIKE: f64 = 0.9;
 /// Share of what the effect explains that a rival explains at least.
@@ -79,7 +79,7 @@ impl Tried {
         self.likeness.is_some_and(|l| l.correlation > ALIKE)
     }
 
-    /// Misfit that it leaves, by its fit or as far as signatures tell, whichever is less: a fit may have
+    /// Misfit that it leaves, by its fit or by the signatures, whichever is less: a fit may have
     /// ended in a local minimum.
     pub fn leaves(&self) -> f64 {
         let fitted = self.evidence.misfit[1];
@@ -111,9 +111,9 @@ impl Found {
     }
 }
 
-/// Whether the recordings do not tell a candidate from the effect for which `effect` speaks and whose
-/// model leaves `least`: hardly more is left with it, of which it explains most; or, where more than noise
-/// is left anyway, it does the same and leaves not much more.
+/// Whether the recordings do not distinguish a candidate from an effect. `effect` is the evidence for the effect,
+/// and `least` the misfit that its model leaves. Either hardly more is left with the candidate, and it explains most
+/// of the effect's share; or more than noise is left anyway, and it does the same and leaves not much more.
 pub(crate) fn is_rival(tried: &Tried, effect: &Evidence, least: f64) -> bool {
     let near = tried.leaves() < rival(least) && tried.explains(effect) > AS_MUCH;
     near || (tried.is_alike() && least > NOISE && tried.leaves() < RIVAL * least)
@@ -156,7 +156,7 @@ pub(crate) fn with_only(
 }
 
 /// The machine of `problem` with the effects of `model` but `found[which]`, and the coordinates there of
-/// what `problem` leaves free: the others stand at what they were found to be, which is their coordinates' 0.
+/// the free parameters of `problem`. The other effects stand at their fitted values, where their coordinates are 0.
 pub(crate) fn without(
     problem: &Problem,
     model: &Model,
@@ -215,9 +215,9 @@ mod tests {
             };
             is_rival(&tried, &effect, least)
         };
-        // Nearly the same signature, and yet told apart: the effect is far above the noise.
+        // Nearly the same signature, but distinguished: the effect is far above the noise.
         assert!(!is_rival(tried(8.0, 0.95, 9.0), 1.0));
-        // Hardly the same, and not told apart: it is small.
+        // Hardly the same, but not distinguished: the effect is small.
         assert!(is_rival(tried(f64::INFINITY, 0.3, 1.9), 1.0));
         // What is left over hides the difference.
         assert!(is_rival(tried(9.5, 0.95, 9.8), 7.0));

@@ -55,9 +55,9 @@ impl<'a> Fitter<'a> {
         Self { effort, ..*self }
     }
 
-    /// The best fit that descents from `start` lead to: rough first, then full; where that leaves more than
-    /// noise, the nearer runs by themselves, and from there all. Pressures alone need the full one only.
-    /// Coordinates that `start` does not have start at 0.
+    /// The best fit that descents from `start` lead to: rough first, then full. A fit that leaves more than noise
+    /// restarts from the better-fitting runs alone, then continues with all. Pressures alone need the full one only.
+    /// `start` has a coordinate per parameter; those that it does not have start at 0.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
@@ -196,7 +196,7 @@ impl<'a> Fitter<'a> {
     }
 }
 
-/// A descent; `watch` tells whether to go on, and whether there are steps left for that.
+/// A descent. `watch` decides whether to go on, and whether there are steps left for that.
 fn descend(
     likelihood: &Likelihood,
     start: &[f64],

@@ -1,6 +1,7 @@
 //! A problem whose recordings are simulated here, for tests.
 
 use crate::effort::Effort;
+use crate::fitter::Fitter;
 use crate::journal::Journal;
 use calibrate::observation::Observed;
 use calibrate::prediction::predict;
@@ -8,7 +9,17 @@ use calibrate::{CrankMotion, Observation, Parameter, Problem};
 use serde_json::{Value, json};
 use signal::order_lines::OrderLines;
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use std::path::Path;
+
+/// A fitter that is never stopped and reports nothing.
+pub(crate) fn fitter(effort: &Effort) -> Fitter<'_> {
+    Fitter {
+        effort,
+        watch: &|| ControlFlow::Continue(()),
+        say: &|_, _| (),
+    }
+}
 
 /// All runs of a problem fitted to, with few evaluations.
 pub(crate) fn effort() -> Effort {

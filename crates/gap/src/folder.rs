@@ -15,7 +15,7 @@ use calibrate::{Settings, compare_models, pictures, task};
 use input::MachineFile;
 use input::bundle::Bundle;
 use input::calibration::Calibration;
-use input::effects::{Entry, Proposal};
+use input::effects::Entry;
 use recordings::WholeFile;
 use serde_json::Value;
 use std::path::Path;
@@ -49,7 +49,7 @@ pub struct Asked<'a> {
 pub fn into_folder(
     asked: &Asked,
     out: &Path,
-    tell: &(dyn Fn(&Stage) + Sync),
+    report: &(dyn Fn(&Stage) + Sync),
     watch: Watch,
 ) -> Result<Results, Error> {
     let calibration = asked.calibration;
@@ -74,13 +74,11 @@ pub fn into_folder(
     let journal = Journal::open(&finished)?;
     let effort = Effort::new(&task.problem, held_out, EVALUATIONS, journal)?;
     let hum = remove_hum(&mut task.problem, &mut task.runs)?;
-    let explanation = explain(&task.problem, &hum, &effort, tell, watch)?;
+    let explanation = explain(&task.problem, &hum, &effort, report, watch)?;
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let baseline = before.problem.fitted(&before.x)?;
     // What was taken off the recordings is in no simulation that is compared with them.
-    let explained = machine(&explanation, |effect| {
-        effect.proposal != Proposal::Separately
-    })?;
+    let explained = machine(&explanation, |effect| !effect.proposal.is_separate())?;
     for (folder, tree, model) in [
         ("simulated", explained, after),
         ("baseline", baseline, before),
@@ -93,7 +91,7 @@ pub fn into_folder(
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
     pictures::write(out, &compare_models(models, &task.runs)?)?;
     let gas = pressure_gaps_of(models, &task.runs)?;
-    let sensors = Sensors::of(&Fitted {
+    let sensors = Sensors::from_recordings(&Fitted {
         problem: &after.problem,
         x: &after.x,
         misfits: after.by_run.clone(),
@@ -106,7 +104,7 @@ pub fn into_folder(
         &out.join(MACHINE),
         MachineFile::from_tree(&tree)?.to_yaml()?.as_bytes(),
     )?;
-    let results = Results::of(&explanation, &effort, &gas, sensors.by_column)?;
+    let results = Results::from_explanation(&explanation, &effort, &gas, sensors.by_column)?;
     // Last, as what makes the folder whole.
     let text = serde_json::to_string_pretty(&results)?;
     WholeFile::write(&out.join(RESULTS), text.as_bytes())?;

@@ -1,10 +1,10 @@
-//! What was found already, and what it cost: an explanation that was stopped goes on from there.
+//! Results that were found already, and their cost: an explanation that was stopped continues from there.
 //!
-//! Each line of the file holds the key of a piece of work, its result and its cost, and after a space the
-//! sum of all that: a line that was altered or cut off does not count. The key is a digest of everything
-//! that the result depends on, recordings and version included, so that a line is never taken for
-//! another. The file is locked as long as it is open. The cost counts again when a result is found there, so that what is left of a
-//! budget does not depend on whether the work was interrupted.
+//! Each line of the file holds the key of a piece of work, its result and its cost, and a checksum. A line that
+//! was altered or cut off does not count. The key is a digest of everything that the result depends on,
+//! recordings and version included, so that a line is never taken for another. The file is locked as long as it
+//! is open. The cost counts again when a result is found there. What is left of a budget therefore does not
+//! depend on whether the work was interrupted.
 
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,7 @@ impl Line {
 }
 
 impl Journal {
-    /// The journal in a file, which is made where there is none.
+    /// The journal in a file, which is made if it does not exist.
     ///
     /// # Errors
     /// A file that cannot be read or written, or that another process is at work with.
@@ -147,7 +147,7 @@ fn digest(bytes: &[u8]) -> String {
 mod tests {
     use super::*;
 
-    fn found(number: f64) -> Result<Finished, Error> {
+    fn finished(number: f64) -> Result<Finished, Error> {
         let numbers = vec![number];
         Ok(Finished { numbers, cost: 7 })
     }
@@ -157,7 +157,7 @@ mod tests {
         let path = std::env::temp_dir().join(format!("journal-{}", std::process::id()));
         let third = 1.0 / 3.0;
         let first = Journal::open(&path).unwrap();
-        let numbers = first.once(&("a", third), || found(third)).unwrap();
+        let numbers = first.once(&("a", third), || finished(third)).unwrap();
         assert_eq!((numbers, first.spent()), (vec![third], 7));
         assert!(Journal::open(&path).is_err(), "it is locked");
         drop(first);
@@ -166,13 +166,13 @@ mod tests {
         text.push_str("{\"key\": \"0");
         std::fs::write(&path, text).unwrap();
         let again = Journal::open(&path).unwrap();
-        let numbers = again.once(&("a", third), || found(0.0)).unwrap();
+        let numbers = again.once(&("a", third), || finished(0.0)).unwrap();
         assert_eq!((numbers, again.spent()), (vec![third], 7));
-        let other = again.once(&("a", 0.333), || found(2.0)).unwrap();
+        let other = again.once(&("a", 0.333), || finished(2.0)).unwrap();
         assert_eq!(other, [2.0]);
         drop(again);
         let last = Journal::open(&path).unwrap();
-        assert_eq!(last.once(&("a", 0.333), || found(0.0)).unwrap(), [2.0]);
+        assert_eq!(last.once(&("a", 0.333), || finished(0.0)).unwrap(), [2.0]);
         std::fs::remove_file(path).unwrap();
     }
 
@@ -203,13 +203,13 @@ mod tests {
     fn a_number_that_was_altered_is_not_believed() {
         let path = std::env::temp_dir().join(format!("journal-sum-{}", std::process::id()));
         let first = Journal::open(&path).unwrap();
-        first.once(&"a", || found(1.5)).unwrap();
+        first.once(&"a", || finished(1.5)).unwrap();
         drop(first);
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(text.contains("1.5"), "{text}");
         std::fs::write(&path, text.replace("1.5", "2.5")).unwrap();
         let again = Journal::open(&path).unwrap();
-        assert_eq!(again.once(&"a", || found(1.5)).unwrap(), [1.5]);
+        assert_eq!(again.once(&"a", || finished(1.5)).unwrap(), [1.5]);
         std::fs::remove_file(path).unwrap();
     }
 }

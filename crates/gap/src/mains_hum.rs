@@ -1,7 +1,7 @@
-//! Mains hum: a tone whose frequency is the same in every run, whatever the speed.
+//! Mains hum: a tone whose frequency is the same in every run, at any speed.
 //!
-//! What repeats with the crank is taken off each recording first. In what is left a tone stands out of
-//! the frequencies around it in all runs at once; a run in which it meets an order hides it, and
+//! What repeats with the crank is subtracted from each recording first. In the rest a tone stands out of
+//! the frequencies around it in all runs at once. A run in which it meets an order hides it, and
 //! cannot be cleaned: that order of it is not compared.
 
 use crate::error::Error;
@@ -17,7 +17,7 @@ const MAINS: [f64; 2] = [50.0, 60.0];
 const OFF: f64 = 0.5;
 /// Steps of the frequency per width of a spectral line.
 const STEPS_PER_LINE: f64 = 4.0;
-/// Frequencies on either side that tell the noise, in widths of a spectral line.
+/// Frequencies on either side from which the noise is estimated, in widths of a spectral line.
 const AROUND: std::ops::RangeInclusive<i32> = 3..=14;
 /// A tone in noise has a mean power over noise of 1 in every run; in so many times that it is there.
 /// With one run of noise alone it is exceeded in one of e^20 tests.
@@ -188,7 +188,7 @@ fn clean(problem: &mut Problem, runs: &mut [Run], hum: &Hum) -> Result<(), Error
             let channels = run.channels.iter_mut().filter(|c| c.column == hum.channel);
             channels.for_each(|channel| subtract(channel, rate, hum.frequency, &tone));
             let columns: Vec<String> = observed.channels.iter().map(|c| c.column.clone()).collect();
-            *observed = Observation::of(run, &columns)?;
+            *observed = Observation::from_run(run, &columns)?;
         }
     }
     Ok(())

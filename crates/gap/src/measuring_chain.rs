@@ -1,12 +1,12 @@
-//! What is wrong with the measuring and not with the machine: told as effects like any other.
+//! Errors of the measuring chain, not of the machine: reported as effects like any other.
 
-use crate::candidate::{Candidate, ZERO};
+use crate::candidate::Candidate;
 use crate::criteria::{Evidence, evidence};
 use crate::finding::{Found, Tried};
 use crate::mains_hum::Hum;
 use crate::model::Model;
 use calibrate::fit::Estimate;
-use input::effects::{Entry, entry};
+use input::effects::{Entry, Proposal, proposed};
 
 /// An encoder is set to a dead centre within this, rad (a tenth of a degree): less is no finding.
 const SET: f64 = 1.7e-3;
@@ -22,7 +22,7 @@ pub(crate) fn crank_angle_offset(
     let mut offsets = estimates
         .iter()
         .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
-    let (Some(estimate), Some(entry)) = (offsets.next(), entry(ZERO)) else {
+    let (Some(estimate), Some(entry)) = (offsets.next(), proposed(Proposal::CrankAngleZero)) else {
         return Ok(None);
     };
     let clear = estimate
@@ -35,14 +35,14 @@ pub(crate) fn crank_angle_offset(
     let score = 1.0 - (after.fitted / before.fitted).powi(2);
     let evidence = evidence(&before, after, score);
     Ok(Some((
-        found(entry, Vec::new(), vec![estimate.value], evidence),
+        finding(entry, Vec::new(), vec![estimate.value], evidence),
         before,
     )))
 }
 
 /// A hum as an effect.
 pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
-    let entry = entry("mains_hum")?;
+    let entry = proposed(Proposal::Hum)?;
     let of = |key: &str, start: f64| match key {
         "amplitude" => hum.amplitude,
         "frequency" => hum.frequency,
@@ -57,10 +57,10 @@ pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
         heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
         delta_bic: 0.0,
     };
-    Some(found(entry, place.collect(), values.collect(), evidence))
+    Some(finding(entry, place.collect(), values.collect(), evidence))
 }
 
-fn found(
+fn finding(
     entry: &'static Entry,
     place: Vec<(&'static str, String)>,
     values: Vec<f64>,

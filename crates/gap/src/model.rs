@@ -110,9 +110,9 @@ impl Model {
         count * (fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
     }
 
-    /// Schwarz's criterion with the variance of what is left taken from the residuals themselves,
-    /// n ln σ² + k ln n, per observation: of models that leave more than noise the one with less of
-    /// it is better, unless its misfit is smaller by its number of parameters alone. A line counts once
+    /// Schwarz's criterion with the variance estimated from the residuals themselves,
+    /// n ln σ² + k ln n, per observation. Of models that leave more than noise the one that leaves less
+    /// is better, unless its misfit is smaller only because it has more parameters. A line counts once
     /// here: what a wrong model leaves is no independent noise.
     pub(crate) fn criterion(&self) -> f64 {
         let count = 0.5 * self.observations();

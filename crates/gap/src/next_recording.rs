@@ -1,8 +1,8 @@
 //! What to measure next: the recording in which an effect and its nearest rival differ most.
 //!
-//! Recordings that might be made are simulated with both models, each as it was fitted: the runs that
-//! there are, and runs that differ from one of them in speed, load or a clearance, in the channels that
-//! were recorded and in those that were not. How far the two are apart is told as the misfit that the
+//! Recordings that might be made are simulated with both models, each as it was fitted. They are the existing
+//! runs, and runs that differ from one of them in speed, load or a clearance, in channels that were
+//! recorded or not. The distance of the two is the misfit that the
 //! rival would leave of what the effect shows (a discrimination experiment, Hunter and Reiner 1965).
 
 use crate::error::Error;
@@ -52,8 +52,8 @@ struct Separation {
     recorded: bool,
 }
 
-/// The recording that would tell the effect and the rival apart that are nearest to each other, in
-/// a sentence; none where no effect has a rival that was fitted.
+/// The recording that would best distinguish the effect and the rival that are nearest to each other, in
+/// a sentence. None where no effect has a rival that was fitted.
 ///
 /// # Errors
 /// A machine that cannot be simulated as it was recorded.
@@ -105,7 +105,7 @@ fn sentence([name, other]: &[String; 2], best: &Separation, there: Option<&Separ
         false => format!("a sensor of the {sensor} (not recorded so far)"),
     };
     format!(
-        "{condition}, {sensor} would tell {name} and {other} apart best: they would be {:.1} times the noise from \
+        "{condition}, {sensor} would best distinguish {name} from {other}: they would be {:.1} times the noise from \
          each other, against {so_far:.1} in the best of the runs that there are.",
         best.apart
     )

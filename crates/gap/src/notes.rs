@@ -6,6 +6,7 @@ use crate::explain::Explanation;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
+use input::effects::Proposal;
 use std::f64::consts::PI;
 
 /// Correlation from which two estimates are one.
@@ -33,11 +34,14 @@ pub(crate) fn notes(
         notes.extend(gas.iter().filter_map(together));
     }
     notes.extend(correlated(explanation));
-    let untold = explanation.estimates.iter();
-    let untold = untold.filter(|e| e.interval.is_none());
-    let untold: Vec<&str> = untold.map(|e| e.parameter.path.as_str()).collect();
-    if !untold.is_empty() {
-        notes.push(format!("The recordings do not tell {}.", untold.join(", ")));
+    let unidentifiable = explanation.estimates.iter();
+    let unidentifiable = unidentifiable.filter(|e| e.interval.is_none());
+    let unidentifiable: Vec<&str> = unidentifiable.map(|e| e.parameter.path.as_str()).collect();
+    if !unidentifiable.is_empty() {
+        notes.push(format!(
+            "Not identifiable from the recordings: {}.",
+            unidentifiable.join(", ")
+        ));
     }
     notes
 }
@@ -65,14 +69,14 @@ fn together(gap: &PressureGap) -> Option<String> {
     })
 }
 
-/// Pairs of parameters that the recordings tell together only.
+/// Pairs of parameters that are strongly correlated.
 fn correlated(explanation: &Explanation) -> Vec<String> {
     let estimates = &explanation.estimates;
     let pairs = (0..estimates.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
     let close = pairs.filter(|at| explanation.correlations[*at].abs() > TOGETHER);
     let words = close.map(|at| {
         format!(
-            "{} and {} are told together only (correlation {:.2}).",
+            "{} and {} are strongly correlated (correlation {:.2}).",
             estimates[at.0].parameter.path,
             estimates[at.1].parameter.path,
             explanation.correlations[at]
@@ -81,10 +85,11 @@ fn correlated(explanation: &Explanation) -> Vec<String> {
     words.collect()
 }
 
-/// At which crank angle a held suction valve closes, as a sentence, where `key` says how long it is
-/// held and one end of one cylinder is meant.
+/// At which crank angle a held suction valve closes, as a sentence. None unless `key` is the angle for which it
+/// is held.
 pub(crate) fn closing(item: &Candidate, key: &str, held: f64) -> Option<String> {
-    if !(item.entry.name == "suction_unloading" && key == "held") {
+    let is_held = item.entry.parameter(key)?.on_the_stroke;
+    if item.entry.proposal != Proposal::PerEnd || !is_held {
         return None;
     }
     let after = held.to_degrees();

@@ -1,8 +1,8 @@
 //! Where model and recording disagree: the residual over crank angle and orders.
 //!
-//! The orders of a channel are taken in bands; the residual's part in a band is a waveform over the
-//! crank angle, whose mean square in a sector is held against that of the noise. Under noise alone
-//! their ratio is distributed as χ²/ν, with ν the independent values of the sector; which cells count
+//! The orders of a channel are taken in bands. The residual's part in a band is a waveform over the
+//! crank angle, whose mean square in a sector is compared with that of the noise. Under noise alone
+//! their ratio is distributed as χ²/ν, with ν the independent values of the sector. Which cells count
 //! is decided with the false discovery rate controlled (Benjamini and Hochberg 1995).
 
 use crate::model::Model;

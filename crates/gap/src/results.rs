@@ -3,7 +3,7 @@
 //! Values are SI, misfits are in standard deviations of the noise: 1 is noise alone. The same inputs give
 //! the same bytes.
 
-use crate::candidate::{Candidate, FORCE};
+use crate::candidate::Candidate;
 use crate::criteria::{Evidence, Verdict};
 use crate::effort::Effort;
 use crate::error::Error;
@@ -20,13 +20,14 @@ use calibrate::fit;
 use calibrate::pressure_gap::PressureGap;
 use calibrate::recorded_sensor::RecordedSensor;
 use calibrate::results::{ByName, Estimate};
+use input::effects::Proposal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Name of the file of results.
 pub const RESULTS: &str = "gap.json";
-/// Most places in which the gap is told.
+/// Most places in which the gap is reported.
 const PLACES: usize = 40;
 
 /// What an explanation finds.
@@ -52,7 +53,7 @@ pub struct Results {
     pub scaling: Vec<Scaling>,
     /// The runs that were held out.
     pub heldout_runs: Vec<String>,
-    /// What to measure to tell effects from their rivals; none where nothing is asked for.
+    /// What to measure to distinguish effects from their rivals; `None` where nothing is needed.
     pub next_recording: Option<String>,
     /// The force that is missing where the catalogue explains too little; empty elsewhere.
     pub missing_force: Vec<MissingForce>,
@@ -195,7 +196,7 @@ impl Results {
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn of(
+    pub fn from_explanation(
         explanation: &Explanation,
         effort: &Effort,
         gas: &[PressureGap],
@@ -215,7 +216,7 @@ impl Results {
                 held_out: effort.held_out.contains(&run.id),
                 before: before.by_run[i],
                 after: after.by_run[i],
-                pressure_rms_pa: PressureRms::of(gas.iter().filter(|gap| gap.run == run.id)),
+                pressure_rms_pa: PressureRms::from_gaps(gas.iter().filter(|gap| gap.run == run.id)),
             };
             (run.id.clone(), content)
         };
@@ -231,12 +232,12 @@ impl Results {
                 after: after.fitted,
                 heldout_before: before.held_out,
                 heldout_after: after.held_out,
-                pressure_rms_pa: PressureRms::of(gas.iter()),
+                pressure_rms_pa: PressureRms::from_gaps(gas.iter()),
             },
             steps: explanation.steps.clone(),
             notes: notes(explanation, effort, gas),
             parameters: estimates
-                .map(|e| (e.parameter.path.clone(), Estimate::of(e, true)))
+                .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, true)))
                 .collect(),
             places: places(&maps.before, PLACES),
             scaling: scaling(before, &maps.before)?,
@@ -246,7 +247,7 @@ impl Results {
             refused: explanation
                 .refused
                 .iter()
-                .map(|tried| Other::of(tried, None))
+                .map(|tried| Other::from_tried(tried, None))
                 .collect(),
             noise,
             cost: effort.journal.spent(),
@@ -259,7 +260,7 @@ impl Results {
     /// Reads a file of results.
     ///
     /// # Errors
-    /// A file that cannot be read, or is none that an explanation writes.
+    /// A file that cannot be read, or that no explanation has written.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let wrong = |reason: String| Error::Input(calibrate::Error::file(path, reason));
         let text = files::read_text(path, files::LONGEST_TEXT)
@@ -269,7 +270,7 @@ impl Results {
 }
 
 impl PressureRms {
-    fn of<'a>(gaps: impl Iterator<Item = &'a PressureGap> + Clone) -> Self {
+    fn from_gaps<'a>(gaps: impl Iterator<Item = &'a PressureGap> + Clone) -> Self {
         let rms = |which: usize| {
             let squares = gaps.clone().map(|gap| gap.rms()[which].powi(2));
             let count = gaps.clone().count();
@@ -296,7 +297,7 @@ impl Bounded {
 
 impl Other {
     /// A candidate, a rival of the effect `found` where it is one.
-    fn of(tried: &Tried, found: Option<&Found>) -> Self {
+    fn from_tried(tried: &Tried, found: Option<&Found>) -> Self {
         let candidate = &tried.candidate;
         let place = |place: Option<&str>| place.map(str::to_owned);
         Self {
@@ -345,6 +346,7 @@ fn of_items(
         let closes = parameters
             .iter()
             .filter_map(|(key, p)| closing(&item, key, p.value));
+        let is_law = item.entry.proposal == Proposal::ForceLaw;
         let terms = || parameters.iter().map(|(key, p)| (*key, p.value));
         let place = |place: Option<&str>| place.map(str::to_owned);
         let rivals = found.rivals.iter();
@@ -357,10 +359,12 @@ fn of_items(
             sentence: std::iter::once(item.entry.sentence.to_owned())
                 .chain(closes)
                 .collect(),
-            expression: (item.entry.name == FORCE).then(|| expression(terms())),
+            expression: is_law.then(|| expression(terms())),
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
-            rivals: rivals.map(|tried| Other::of(tried, Some(found))).collect(),
+            rivals: rivals
+                .map(|tried| Other::from_tried(tried, Some(found)))
+                .collect(),
             parameters: parameters
                 .iter()
                 .map(|(key, p)| ((*key).to_owned(), *p))

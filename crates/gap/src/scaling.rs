@@ -1,6 +1,6 @@
-//! How the residual grows with speed, load and clearance: a power law over the runs, whose exponents
-//! are the fingerprint of what is missing (inertia grows with the square of the speed, gas with the
-//! load, impacts with the clearance).
+//! How the residual grows with speed, load and clearance: a power law over the runs. Its exponents
+//! are the fingerprint of what is missing: inertia grows with the square of the speed, gas with the
+//! load, impacts with the clearance.
 //!
 //! ```text
 //! ln residual = constant + a ln speed + b ln load + c ln clearance
@@ -13,7 +13,7 @@ use mechanism::Machine;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Conditions that differ by less than this factor between the runs tell no exponent.
+/// Conditions that differ by less than this factor between the runs determine no exponent.
 const VARIED: f64 = 1.1;
 /// A residual counts where its mean square is this many times that of the noise.
 const ABOVE: f64 = 2.0;
@@ -45,12 +45,15 @@ type Conditions = [(&'static str, f64); 3];
 /// those of `model`.
 ///
 /// # Errors
-/// A machine that is none.
+/// An invalid machine.
 pub fn scaling(model: &Model, maps: &[ResidualMap]) -> Result<Vec<Scaling>, Error> {
     let mut conditions = Vec::new();
     for run in &model.problem.runs {
         let machine = model.problem.machine(run, &model.x)?;
-        conditions.push((run.id.as_str(), of(&machine.machine, machine.speed)));
+        conditions.push((
+            run.id.as_str(),
+            conditions_of(&machine.machine, machine.speed),
+        ));
     }
     let mut channels: Vec<&str> = maps.iter().map(|map| map.channel.as_str()).collect();
     channels.sort_unstable();
@@ -73,7 +76,7 @@ pub fn scaling(model: &Model, maps: &[ResidualMap]) -> Result<Vec<Scaling>, Erro
     Ok(channels.into_iter().filter_map(of_channel).collect())
 }
 
-fn of(machine: &Machine, speed: f64) -> Conditions {
+fn conditions_of(machine: &Machine, speed: f64) -> Conditions {
     let load = |throw: &mechanism::Throw| throw.cylinder.discharge - throw.cylinder.suction;
     let clearance = |throw: &mechanism::Throw| {
         let joints = [&throw.big_end, &throw.small_end];

@@ -18,9 +18,9 @@ pub struct Step {
     pub gap: Gap,
 }
 
-/// The steps to `explained`: the nominal machine, the calibrated one, what was wrong with the measuring
-/// (with which the machine leaves `set_right`), and one for each effect. Effects after which nobody
-/// looked at the whole share a step with the next.
+/// The steps to `explained`: the nominal machine, the calibrated one, the corrected measuring chain
+/// (with which the machine leaves `set_right`), and one for each effect. Effects after which the full model was not
+/// fitted share a step with the next.
 pub(crate) fn steps(
     nominal: &Model,
     baseline: &Model,

@@ -119,7 +119,7 @@ fn a_valve_loss_is_named_with_its_coefficients() {
 }
 
 #[test]
-fn an_encoder_that_is_set_wrong_is_told_as_such() {
+fn an_encoder_that_is_set_wrong_is_reported_as_such() {
     let entry = entry("crank_angle_offset").unwrap();
     let found = explained(&json!([entry.item(&[], &[0.03])]));
     assert_eq!(found.verdict, Verdict::Explained);

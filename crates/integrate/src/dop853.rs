@@ -285,8 +285,8 @@ fn continued<S: Scalar>(from: S, share: S, rest: S, piece: impl Fn(usize) -> S) 
     sum.mul_add(share, from)
 }
 
-/// Hands the sums of weight × derivative over the stages to `take`, some components at a time: the number of the
-/// first, and their sums by each row after the other.
+/// Hands the sums of weight × derivative over the stages to `take`, some components at a time. `take` gets the number
+/// of the first component, and the sums by each row after the other.
 ///
 /// Small numbers are summed several components at a time: each weight is fetched once for all of them.
 #[inline(always)]

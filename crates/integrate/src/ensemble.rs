@@ -1,7 +1,7 @@
 //! Several integrations side by side: each in a lane, with its own time, step, mode and end.
 //!
-//! What all of them do at every step is done for all at once: the stages, the error, the look at the
-//! guards, the continuous extension, the look at a step that stands. Step control, the search for switches and
+//! What all of them do at every step is done for all at once: the stages, the error, the evaluation of the
+//! guards, and the continuous extension. Step control, the search for switches and
 //! the switches themselves are those of each lane's own [`Integrator`]. So every lane makes the very steps
 //! that it would make alone, with the same bits.
 

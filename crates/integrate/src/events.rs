@@ -94,7 +94,7 @@ impl<S: Real> Finder<S> {
                 self.looks[i].copy_from_slice(known);
                 continue;
             }
-            self.look(system, step, share);
+            self.guards_at(system, step, share);
             for (seen, guard) in self.looks[i].iter_mut().zip(&self.guards) {
                 *seen = guard.value();
             }
@@ -134,11 +134,11 @@ impl<S: Real> Finder<S> {
             if a <= 0.0 || i == 0 {
                 continue;
             }
-            // A dip between looks: the parabola through three of them tells whether to look there.
+            // A dip between looks: the parabola through three of them decides whether to look there.
             if let Some((share, depth)) = dip(i, seen[i - 1], a, b)
                 && depth < 0.1 * a
             {
-                let value = self.look(system, step, share)[guard].value();
+                let value = self.guards_at(system, step, share)[guard].value();
                 if value <= 0.0 {
                     let (low, high) = if share < LOOKS[i] {
                         (LOOKS[i - 1], seen[i - 1])
@@ -166,7 +166,7 @@ impl<S: Real> Finder<S> {
         let (mut later, mut beyond) = (LOOKS[1], seen);
         for _ in 0..EARLY_LOOKS {
             let share = later / 4.0;
-            let value = self.look(system, step, share)[guard].value();
+            let value = self.guards_at(system, step, share)[guard].value();
             if value > 0.0 {
                 let bracket = Bracket::new([share, later], [value, beyond]);
                 return self.root(system, step, guard, bracket);
@@ -182,12 +182,12 @@ impl<S: Real> Finder<S> {
         if !S::DERIVATIVES {
             return S::zero();
         }
-        let at = self.look(system, step, 1.0)[guard];
+        let at = self.guards_at(system, step, 1.0)[guard];
         if !at.varies() {
             return S::zero();
         }
-        let [before, after] =
-            [1.0 - NEARBY, 1.0 + NEARBY].map(|share| self.look(system, step, share)[guard].value());
+        let [before, after] = [1.0 - NEARBY, 1.0 + NEARBY]
+            .map(|share| self.guards_at(system, step, share)[guard].value());
         let slope = (after - before) / (2.0 * NEARBY * step.length.value());
         // A guard that only grazes zero has no such derivative.
         if slope == 0.0 {
@@ -197,7 +197,7 @@ impl<S: Real> Finder<S> {
     }
 
     /// The guards at `share` of the step.
-    fn look(&mut self, system: &mut impl System<S>, step: &Step<S>, share: f64) -> &[S] {
+    fn guards_at(&mut self, system: &mut impl System<S>, step: &Step<S>, share: f64) -> &[S] {
         step.interpolate(S::constant(share), &mut self.state);
         let t = step.start + step.length * share;
         system.guards(t, &self.state, &mut self.guards);
@@ -228,7 +228,7 @@ impl<S: Real> Finder<S> {
             }
             let least = (0.5 * self.resolution / width).min(0.5);
             let x = x1 + way.clamp(least, 1.0 - least) * (x2 - x1);
-            let f = self.look(system, step, x)[guard].value();
+            let f = self.guards_at(system, step, x)[guard].value();
             let (x3, f3);
             if (f > 0.0) == (f1 > 0.0) {
                 (x3, f3) = (x1, f1);

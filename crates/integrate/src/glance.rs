@@ -1,4 +1,4 @@
-//! The guards as the stages of a step show them: where none comes near to zero there, there is no
+//! The guards at the stages of a step. Where none approaches zero there, there is no
 //! need to look into the step.
 //!
 //! A stage is evaluated at a state near to the solution at its node, and the last two at the
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_guard_that_comes_near_zero_is_told() {
+    fn a_guard_that_approaches_zero_is_seen() {
         let clear = |guard: &dyn Fn(f64) -> f64| clear_of_zero(&SHARES.map(guard));
         assert!(clear(&|_| 1.0));
         assert!(clear(&|x| 2.0 - x));

@@ -287,7 +287,7 @@ impl<S: Real> Integrator<S> {
         }
         let remaining = end - time;
         let mut length = self.length.min(self.longest);
-        // Never leave a last step too short to be told from none.
+        // Never leave a last step that is too short to change the time.
         if remaining <= length * (1.0 + 1e-9) {
             length = remaining;
         } else if remaining < 2.0 * length {
@@ -297,7 +297,7 @@ impl<S: Real> Integrator<S> {
         self.possible(Trial { length, limited }).map(Some)
     }
 
-    /// The trial, unless it is too short to be told from none.
+    /// The trial, unless it is too short to change the time.
     fn possible(&self, trial: Trial) -> Result<Trial, Error> {
         let (time, step) = (self.time(), trial.length);
         if step <= 16.0 * f64::EPSILON * time.abs().max(1e-3) && !trial.limited {
@@ -412,7 +412,7 @@ impl<S: Real> Integrator<S> {
             let factor = SAFETY * self.steadiness / (sixteenth * thirty_second);
             let next = length * factor.clamp(1.0 / 3.0, 6.0);
             if limited {
-                // A step that was cut short tells little about how long the next may be.
+                // A step that was cut short says little about how long the next may be.
                 self.length = next.max(self.length);
             } else {
                 self.length = next;

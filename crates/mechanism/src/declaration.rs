@@ -20,6 +20,8 @@ pub struct Declaration {
     pub kind: Kind,
     /// How a program that looks for a missing effect proposes it.
     pub proposal: Proposal,
+    /// Parameters of other effects that this one has as well: the effect's name and the key.
+    pub includes: &'static [(&'static str, &'static str)],
     /// Its parameters, in the order of its section.
     pub parameters: &'static [Parameter],
     /// Keys that say where it acts.
@@ -49,8 +51,27 @@ pub enum Proposal {
     /// The same, but where both ends of a cylinder have it, each end has values of its own: it is a
     /// fault of one valve.
     PerEnd,
-    /// By a search of its own: for a frequency that is no order, or for a law without a name.
+    /// As `PerPlace`, and together with other effects: with more play the blows fall elsewhere in the
+    /// revolution, which hides what else is missing.
+    Wear,
+    /// As `PerPlace`, from the fluctuation that an encoder shows, too.
+    CrankSpeed,
+    /// It is the zero of the crank angle: fitted from the start, and proposed where pressures are all that was
+    /// recorded.
+    CrankAngleZero,
+    /// By a search for a frequency that is no order of the crank.
+    Hum,
+    /// By a sparse regression on its terms: a force law without a name.
+    ForceLaw,
+    /// Not by a search.
     Separately,
+}
+
+impl Proposal {
+    /// Whether it is not tried at each place as others are.
+    pub fn is_separate(self) -> bool {
+        matches!(self, Self::Hum | Self::ForceLaw | Self::Separately)
+    }
 }
 
 /// A parameter of a law.
@@ -185,7 +206,7 @@ pub struct Alternatives {
 /// ```text
 /// declaration! {
 ///     /// What it is.
-///     Name at [keys of its place], Kind, Proposal: "What shows it."
+///     Name at [keys of its place], Kind, Proposal includes effect.key: "What shows it."
 ///     law "its equation" after "its source" {
 ///         /// What the parameter means.
 ///         key: Quantity(Range), low to high, start value, absent value;      // an amplitude
@@ -196,12 +217,13 @@ pub struct Alternatives {
 /// ```
 ///
 /// A key that is left out has the value of `absent`, else of `start`; a proposal that is left out is
-/// [`Proposal::PerPlace`].
+/// [`Proposal::PerPlace`]. `includes` is for an effect that has a parameter of another one as well.
 #[macro_export]
 macro_rules! declaration {
     (
         $(#[doc = $about:literal])+
-        $name:ident at [$($place:ident),*], $kind:ident $(, $proposal:ident)?: $sentence:literal
+        $name:ident at [$($place:ident),*], $kind:ident
+            $(, $proposal:ident $(includes $effect:ident.$included:ident)?)?: $sentence:literal
         law $law:literal after $source:literal {
             $(
                 $(#[doc = $words:literal])+
@@ -222,6 +244,7 @@ macro_rules! declaration {
                 source: $source,
                 kind: Kind::$kind,
                 proposal: $crate::declaration!(@proposal $($proposal)?),
+                includes: &[$($( (stringify!($effect), stringify!($included)) )?)?],
                 parameters: &[$( Parameter {
                     key: stringify!($key),
                     words: concat!($($words),+).trim_ascii(),

@@ -250,7 +250,7 @@ fn in_order<'a>(splits: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     splits
 }
 
-/// Text that Markdown shows as it is, on one line and in any cell: what begins markup has a backslash before it
+/// Text that Markdown shows as it is, on one line and in any cell. What begins markup has a backslash before it
 /// (CommonMark 0.31, 2.4), so that names from elsewhere bring neither links nor HTML.
 fn plain(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());

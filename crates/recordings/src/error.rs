@@ -39,7 +39,7 @@ pub enum Error {
         /// What the decoder found.
         reason: String,
     },
-    /// A column of time that tells no rate, or contradicts it.
+    /// A column of time that determines no rate, or contradicts the stated one.
     #[error("`{}`, column `{column}`: {reason}", path.display())]
     Time {
         /// The file.

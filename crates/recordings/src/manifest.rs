@@ -81,9 +81,9 @@ impl FailedCase {
         format!("crosshead simulate {sweep} --case {case}")
     }
 
-    /// The command that runs this case alone, from anywhere, of the dataset in `folder`; of one in
-    /// object storage, from where its `sweep.yaml` has been copied to. It is made anew: the record of a dataset that
-    /// others hand out may hold any other command.
+    /// The command that runs this case alone, from anywhere, of the dataset in `folder`. For a dataset in
+    /// object storage it runs from where its `sweep.yaml` has been copied to. It is made anew, because the record of a
+    /// dataset from elsewhere may hold any other command.
     pub fn command_in(&self, folder: &Path) -> String {
         let sweep = match folder.starts_with("s3:") {
             true => "sweep.yaml".into(),

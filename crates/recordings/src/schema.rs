@@ -39,7 +39,7 @@ impl Role {
     }
 
     /// The role of that name.
-    pub fn of(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.name() == name)
     }
 }
@@ -146,7 +146,7 @@ impl Schema {
     /// Where the column of that name stands.
     ///
     /// # Errors
-    /// When there is none; the message lists those that there are.
+    /// When there is no such column; the message lists the columns.
     pub fn position(&self, name: &str) -> Result<usize, Error> {
         let found = self.columns.iter().position(|column| column.name == name);
         found.ok_or_else(|| Error::NoColumn {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// A file under way: written under a temporary name, and given its own by [`WholeFile::commit`].
 ///
 /// The temporary name ends in `.part` and lies outside the folders of data, on the same file
-/// system: readers that take every file of a folder (polars and DuckDB read hidden ones too) must
+/// system. Readers that take every file of a folder (polars and DuckDB read hidden ones too) must
 /// not meet a half-written one. The checksum is taken on the way, so that nothing is read twice.
 /// Dropped before the commit, the temporary file is removed.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ impl WholeFile {
     /// Hands everything to the disk and gives the file its name, in place of any file of that name.
     ///
     /// # Errors
-    /// When the disk is full or the file cannot be renamed; there is then no file of that name, or
+    /// When the disk is full or the file cannot be renamed. There is then no file of that name, or
     /// still the one from before. When the folder cannot be synced the file is there, but a power
     /// failure could take it away.
     pub fn commit(mut self) -> Result<FileRecord, Error> {
@@ -118,7 +118,7 @@ impl Write for WholeFile {
 impl Drop for WholeFile {
     fn drop(&mut self) {
         if !self.committed {
-            // Nobody is left to tell when this fails; the name alone says that it is no data.
+            // A failure here cannot be reported; the name shows that it is no data.
             let _ = fs::remove_file(&self.temporary);
         }
     }

@@ -1,5 +1,5 @@
-//! Fused multiply-adds for plain numbers: one instruction where the processor has it, and a call of the C library,
-//! which takes long and rounds the same, where it has not.
+//! Fused multiply-adds for plain numbers: one instruction where the processor has it. Elsewhere it is a call of the C
+//! library, which takes long and rounds the same.
 #![cfg_attr(
     target_arch = "x86_64",
     expect(unsafe_code, reason = "instructions that not every processor has")

@@ -52,7 +52,7 @@ pub fn amplitude_spectrum(
 ///
 /// Band `b` is `edges[b] <= f < edges[b + 1]`, in Hz; the last also has its upper edge. Bands
 /// from 0 to the Nyquist frequency (or beyond) add up to the mean square about the mean, exactly
-/// (Parseval): the windowed spectrum tells each band's share, the samples the whole.
+/// (Parseval). The windowed spectrum determines each band's share, the samples the sum.
 ///
 /// # Errors
 /// As [`amplitude_spectrum`], or edges that do not increase.

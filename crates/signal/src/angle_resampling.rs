@@ -9,7 +9,7 @@ use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// Where, between the samples, the crank passes equally spaced angles: `points_per_revolution`
+/// Where, between the samples, the crank passes equally spaced angles. There are `points_per_revolution`
 /// of them, at multiples of 2π/points, over as many whole revolutions as the recording holds.
 ///
 /// The revolutions are taken from the middle of the recording. They may overhang its ends by up

@@ -18,11 +18,11 @@ pub struct CrankAngle {
 }
 
 impl CrankAngle {
-    /// From encoder readings in [0, 2π), rad.
+    /// From encoder readings in [0, 2π), rad, one per sample.
     ///
     /// The readings are unwrapped ([`unwrap`]) and smoothed by a quadratic fitted to 2° on either
     /// side of each sample (Savitzky and Golay 1964). At speeds where several samples share one
-    /// reading this also tells them apart.
+    /// reading this also separates them.
     ///
     /// # Errors
     /// Those of [`unwrap`], fewer than four samples, or a shaft that stands still.
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reversed_encoder_is_told_from_one_that_slips() {
+    fn a_reversed_encoder_is_distinguished_from_one_that_slips() {
         let forward: Vec<f64> = (0..1000).map(|i| shaft(i, 90.0).rem_euclid(TAU)).collect();
         let backward: Vec<f64> = forward.iter().map(|a| (TAU - a).rem_euclid(TAU)).collect();
         let mut slips = forward.clone();

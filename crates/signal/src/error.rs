@@ -37,7 +37,7 @@ pub enum Error {
         /// The range in words.
         allowed: &'static str,
     },
-    /// There is no fluctuation whose shape could be told.
+    /// There is no fluctuation whose shape could be determined.
     #[error("the signal does not fluctuate")]
     NoFluctuation,
     /// The crank angle runs backwards or stands still.
@@ -49,7 +49,7 @@ pub enum Error {
         step_rad: f64,
     },
     /// A tacho without two pulses.
-    #[error("a tacho tells an angle from two pulses on, and has {got}")]
+    #[error("an angle needs two pulses of a tacho, and there are {got}")]
     TooFewPulses {
         /// Pulses found.
         got: usize,

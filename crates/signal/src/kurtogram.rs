@@ -17,7 +17,7 @@ pub struct Cell {
     /// The band.
     pub band: Band,
     /// ⟨|c|⁴⟩/⟨|c|²⟩² − 2 of the complex envelope c: 0 for stationary Gaussian noise, −1 for a
-    /// steady tone. None where the band holds too little to tell.
+    /// steady tone. `None` where the band holds too little.
     pub kurtosis: Option<f64>,
 }
 

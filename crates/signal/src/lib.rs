@@ -1,7 +1,8 @@
 //! Windows, spectra, order tracking, filters and resampling of sampled signals.
 //!
 //! Everything works on slices of `f64` in the caller's unit and says what is wrong with an
-//! [`Error`]. Results do not depend on the thread, nor on what was computed before.
+//! [`Error`]. A slice of samples is in order of time, evenly spaced, or in order of the crank angle where the
+//! documentation says so. Results do not depend on the thread, nor on what was computed before.
 //!
 //! | question | module |
 //! |---|---|

@@ -13,7 +13,7 @@ const SECTORS: usize = 16;
 /// Expectation of the least of sixteen standard normal numbers (Harter 1961).
 const LEAST_OF_SECTORS: f64 = -1.766;
 /// A bin with more than this many times the fitted power is a line, as of mains hum or of a motion
-/// that repeats itself after two revolutions: noise has one in e^12, 160,000.
+/// that repeats itself after two revolutions. Of noise, one bin in e^12, 160,000, has as much.
 const LINE: f64 = 12.0;
 /// Steps of the fit, and those before lines are left out.
 const STEPS: usize = 60;
@@ -26,8 +26,8 @@ pub struct Nonsynchronous {
     pub white: f64,
     /// Mean square of the 1/f part, from 1/T (the record's length) to there.
     pub pink: f64,
-    /// What the quietest sixteenth of the revolution scatters by, as a share of the mean over all:
-    /// 1 for noise that does not know where the crank stands, as a sensor's; less where the motion
+    /// Scatter of the quietest sixteenth of the revolution, as a share of the mean over all. It is
+    /// 1 for noise that does not depend on the crank angle, as a sensor's; less where the motion
     /// itself scatters. Mean squares of the whitened residual, freed of the bias of taking the least.
     pub steady_share: f64,
 }
@@ -171,7 +171,7 @@ mod tests {
         move || (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos()
     }
 
-    fn found(noise: impl Fn(usize, f64) -> f64) -> Nonsynchronous {
+    fn measured(noise: impl Fn(usize, f64) -> f64) -> Nonsynchronous {
         let n = POINTS * COUNT;
         let angle: Vec<f64> = (0..n)
             .map(|i| (TAU * i as f64 / POINTS as f64).rem_euclid(TAU))
@@ -193,7 +193,7 @@ mod tests {
                     .iter()
                     .map(|_| rms * (1.0 - share).sqrt() * normal())
                     .collect();
-                let found = found(|i, _| pink[i] + white[i]);
+                let found = measured(|i, _| pink[i] + white[i]);
                 // The 1/f part's own mean square hangs on its lowest few bins.
                 let expected = (pink.iter().map(|x| x * x).sum::<f64>() / pink.len() as f64
                     + rms * rms * (1.0 - share))
@@ -208,14 +208,14 @@ mod tests {
     }
 
     #[test]
-    fn scatter_of_the_motion_is_told_from_noise() {
+    fn scatter_of_the_motion_is_separated_from_noise() {
         let mut normal = normals(5);
         let noise: Vec<f64> = (0..POINTS * COUNT).map(|_| normal()).collect();
         // A blow once a revolution of random strength, and noise everywhere.
-        let rattle = found(|i, angle| noise[i] + 4.0 * noise[i] * f64::from(angle < 0.4));
+        let rattle = measured(|i, angle| noise[i] + 4.0 * noise[i] * f64::from(angle < 0.4));
         assert!(rattle.steady_share < 0.5, "{}", rattle.steady_share);
         // Every second revolution differs: lines at half orders are no noise.
-        let half = found(|i, angle| {
+        let half = measured(|i, angle| {
             let odd = if (i / POINTS).is_multiple_of(2) {
                 1.0
             } else {

@@ -68,8 +68,7 @@ mod tests {
         order_spectrum(&grid.resample(&x).unwrap(), 20).unwrap()
     }
 
-    /// Amplitudes and phases of a sum of orders come back whatever the speed does and wherever
-    /// the recording starts.
+    /// Amplitudes and phases of a sum of orders come back for any speed and any start of the recording.
     #[test]
     fn sum_of_orders_comes_back() {
         let wave = |a: f64| {

@@ -67,9 +67,9 @@ impl PhasePortrait {
     }
 
     /// Area that a revolution encloses, m²/s³, averaged over the revolutions and positive the way
-    /// the motion goes: ½ ∮ (a dv − v da) = ∮ a dv = ∫ a² dt. The last is what is computed: exact
+    /// the motion goes: ½ ∮ (a dv − v da) = ∮ a dv = ∫ a² dt. The last is what is computed. It is exact
     /// where a polygon through the points falls short by its chords, 5e-4 where an impact is
-    /// sampled coarsely. The area thus tells the time of a revolution times the mean square of
+    /// sampled coarsely. The area is thus the time of a revolution times the mean square of
     /// the acceleration.
     pub fn area(&self) -> f64 {
         self.area

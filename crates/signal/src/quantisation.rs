@@ -9,8 +9,8 @@ const SINGLE: f64 = 1.0 / (1 << 23) as f64;
 const VISIBLE: f64 = 8.0;
 
 /// The step of the lattice on which all values of `x` lie, up to the rounding of single precision:
-/// the greatest common divisor of their differences. None where they lie on no lattice that single
-/// precision lets one see, or where fewer than 32 of them differ.
+/// the greatest common divisor of their differences. None where single precision shows no lattice,
+/// or where fewer than 32 of the values differ.
 ///
 /// The divisor is found by Euclid's algorithm with a tolerance, and refined as the sum of all
 /// differences over the number of steps in them.

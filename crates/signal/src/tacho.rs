@@ -1,10 +1,10 @@
-//! The crank angle that the pulses of a tacho tell.
+//! The crank angle from the pulses of a tacho.
 
 use crate::error::Error;
 use std::f64::consts::TAU;
 
 /// A pulse begins where the signal rises through the middle of its range, having been in the lowest
-/// quarter since the pulse before: noise of a quarter of the range makes no pulse.
+/// quarter since the pulse before. Noise of a quarter of the range makes no pulse.
 const ARMED: f64 = 0.25;
 const RISEN: f64 = 0.5;
 

@@ -19,7 +19,7 @@ pub struct PowerSpectralDensity {
 
 impl PowerSpectralDensity {
     /// The bins at frequencies up to `highest`, Hz, and no others. Two recordings of one motion agree
-    /// up to a frequency that both resolve, whatever their sample rates.
+    /// up to a frequency that both resolve, also at different sample rates.
     pub fn up_to(mut self, highest: f64) -> Self {
         // A cast saturates: 0 Hz is left of a negative frequency, all of an infinite one.
         let bins = ((highest / self.resolution) as usize).saturating_add(1);

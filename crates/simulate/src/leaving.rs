@@ -8,8 +8,9 @@ use integrate::Real;
 const PATIENCE: usize = 4;
 const NEARER: f64 = 0.5;
 /// Periods, in revolutions, that count as settled.
-const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD as u32];
-const LONGEST_PERIOD: usize = 4;
+const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD];
+/// Longest period of a settled motion, revolutions.
+pub const LONGEST_PERIOD: u32 = 4;
 
 /// A start that is being left.
 pub(crate) struct Leaving {
@@ -85,7 +86,7 @@ impl Leaving {
             return left(None);
         }
         self.strobes.push(now);
-        let keep = self.strobes.len().saturating_sub(LONGEST_PERIOD);
+        let keep = self.strobes.len().saturating_sub(LONGEST_PERIOD as usize);
         self.strobes.drain(..keep);
         None
     }

@@ -36,6 +36,7 @@ pub mod trace;
 
 pub use ensemble::simulate_together;
 pub use flow::{Cycle, Flow};
+pub use leaving::LONGEST_PERIOD;
 pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
 pub use penetration::Penetration;

@@ -115,7 +115,7 @@ impl Bench {
     ) -> Result<Problem, Box<dyn Error>> {
         let runs = clean.iter().enumerate().map(|(i, clean)| {
             let run = noisy(clean, seed, copy * 1000 + i as u64)?;
-            Ok(Observation::of(&run, &clean.columns)?)
+            Ok(Observation::from_run(&run, &clean.columns)?)
         });
         Ok(Problem {
             tree: self.tree.clone(),

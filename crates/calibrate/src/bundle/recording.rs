@@ -42,7 +42,7 @@ pub(super) fn read(
     let mut pulses = None;
     let mut channels = Vec::new();
     for (channel, meaning) in listed() {
-        let samples = || series.of(&channel.column).iter().map(|x| f64::from(*x));
+        let samples = || series.column(&channel.column).iter().map(|x| f64::from(*x));
         match meaning {
             Meaning::CrankAngle(to_si) => {
                 let wrapped = samples().map(|x| to_si.of(x).rem_euclid(TAU));
@@ -90,7 +90,7 @@ pub(super) fn read(
             );
         }
         (None, Some(_), None) => {
-            return Err("speed_rpm is missing, and there is no crank angle that tells it".into());
+            return Err("speed_rpm is missing, and there is no crank angle to take it from".into());
         }
     };
     Ok(Recording {
@@ -170,7 +170,7 @@ impl Series {
             ));
         }
         for column in columns {
-            if let Some(i) = self.of(column).iter().position(|x| !x.is_finite()) {
+            if let Some(i) = self.column(column).iter().position(|x| !x.is_finite()) {
                 return Err(format!(
                     "channel {column} of {file} has no number at sample {i}"
                 ));
@@ -179,7 +179,7 @@ impl Series {
         Ok(())
     }
 
-    fn of(&self, column: &str) -> &[f32] {
+    fn column(&self, column: &str) -> &[f32] {
         let place = self.columns.iter().position(|c| c == column);
         place.map_or(&[], |place| &self.samples[place])
     }

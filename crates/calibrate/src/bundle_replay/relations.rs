@@ -1,11 +1,11 @@
 //! The relations to the clearance that the recordings do not exclude.
 
-use crate::calibration::MACHINE;
 use crate::error::Error;
 use crate::observation::{Observation, Run};
 use crate::problem::Problem;
 use crate::relation_spread::{RelationSpread, relation_spread};
 use crate::replay::Replay;
+use crate::results::MACHINE;
 use crate::results::{RESULTS, Results, bounds_of_not_excluded};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ pub struct Possible {
 }
 
 impl Possible {
-    /// Those of the machine file at this path; of a bundle's own machine where there is none.
+    /// Those of the machine file at this path, or of the bundle's own machine if there is no path.
     ///
     /// # Errors
     /// A calibration beside it that cannot be read.

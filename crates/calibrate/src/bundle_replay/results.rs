@@ -73,7 +73,7 @@ pub struct ChannelReplay {
 }
 
 impl Results {
-    pub(super) fn of(runs: ByName<RunReplay>) -> Self {
+    pub(super) fn from_runs(runs: ByName<RunReplay>) -> Self {
         let meaning = MEANING.map(|(key, meaning)| (key.to_owned(), meaning));
         Self {
             meaning: meaning.into_iter().collect(),
@@ -83,7 +83,7 @@ impl Results {
 }
 
 impl RunReplay {
-    pub(super) fn of(replay: &Replay, relation_spread: Option<RelationSpread>) -> Self {
+    pub(super) fn from_replay(replay: &Replay, relation_spread: Option<RelationSpread>) -> Self {
         let channel = |channel: &Replayed| {
             let share = |value: f64| value / channel.recording_rms;
             let replay = ChannelReplay {

@@ -1,4 +1,4 @@
-//! What a calibration tells about the gas of a chamber whose pressure was recorded.
+//! Results for the gas of a chamber whose pressure was recorded.
 
 use super::ByName;
 use crate::indicator::{self, Indicator};
@@ -13,7 +13,7 @@ pub struct Gas {
     /// The parts of the cycle; none where the recording shows no cycle.
     #[serde(rename = "where")]
     pub phases: Vec<Phase>,
-    /// What the recorded pressure tells by itself; none where it shows no cycle.
+    /// The indicator diagram of the recorded pressure; `None` where it shows no cycle.
     pub measured: Option<Diagram>,
     /// The same of the calibrated pressure, at the calibrated clearance.
     pub calibrated: Option<Diagram>,
@@ -113,13 +113,13 @@ pub struct Event {
 /// Each gap by run and by column.
 pub(super) fn by_run(gaps: &[PressureGap]) -> ByName<ByName<Gas>> {
     let runs = gaps.chunk_by(|a, b| a.run == b.run);
-    let of = |gap: &PressureGap| (gap.column.clone(), Gas::of(gap));
+    let of = |gap: &PressureGap| (gap.column.clone(), Gas::from_gap(gap));
     runs.map(|run| (run[0].run.clone(), run.iter().map(of).collect()))
         .collect()
 }
 
 impl Gas {
-    fn of(gap: &PressureGap) -> Self {
+    fn from_gap(gap: &PressureGap) -> Self {
         let [nominal, calibrated] = gap.rms();
         let phase = |phase: pressure_gap::Phase| Phase {
             phase: phase.name.to_owned(),
@@ -133,14 +133,14 @@ impl Gas {
                 calibrated,
             },
             phases: gap.phases().into_iter().map(phase).collect(),
-            measured: gap.indicator.as_ref().map(Diagram::of),
-            calibrated: gap.fitted_indicator.as_ref().map(Diagram::of),
+            measured: gap.indicator.as_ref().map(Diagram::from_indicator),
+            calibrated: gap.fitted_indicator.as_ref().map(Diagram::from_indicator),
         }
     }
 }
 
 impl Diagram {
-    fn of(indicator: &Indicator) -> Self {
+    fn from_indicator(indicator: &Indicator) -> Self {
         let stroke = indicator.chamber.stroke();
         let polytrope = |p: &indicator::Polytrope| Polytrope {
             crank_angle_deg: p.angles.map(f64::to_degrees),
@@ -160,7 +160,7 @@ impl Diagram {
                 expansion_exponent: other.exponents[1],
                 scatter: other.scatter,
             }),
-            valve_events: ValveEvents::of(&indicator.events),
+            valve_events: ValveEvents::from_events(&indicator.events),
         }
     }
 }
@@ -176,7 +176,7 @@ impl ValveEvents {
         ]
     }
 
-    fn of(events: &indicator::ValveEvents) -> Self {
+    fn from_events(events: &indicator::ValveEvents) -> Self {
         let of = |event: &indicator::Event| {
             let [low, high] = event.quartiles.map(f64::to_degrees);
             Event {

@@ -1,7 +1,8 @@
 //! How the relations between clearances compare, and which of them the recordings leave.
 
+use crate::bounded::Bounded;
 use crate::relation::Relation;
-use crate::transfer::{Bounded, Decision, Hypothesis};
+use crate::transfer::{Decision, Hypothesis};
 use scalar::elementary::exp;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -24,9 +25,9 @@ impl Relations {
     }
 }
 
-/// The relations that a comparison does not exclude, as a machine file has them, each with its weight by
-/// Schwarz's criterion, up to a common factor. Where the recordings have no say, all that have a name, each
-/// as likely.
+/// The relations that a comparison does not exclude, as a machine file has them. Each has its weight by
+/// Schwarz's criterion, up to a common factor. Where the recordings do not decide, these are all named relations
+/// with equal weights.
 pub fn not_excluded(relations: Option<&Relations>) -> Vec<(Value, f64)> {
     let Some(left) = relations.and_then(Relations::left) else {
         return named().map(|relation| (relation, 1.0)).collect();

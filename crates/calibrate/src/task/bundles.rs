@@ -1,6 +1,6 @@
 //! The bundles that settings name, and their runs.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::bundle;
 use crate::error::Error;
 use crate::observation::Run;
@@ -17,7 +17,7 @@ pub(super) struct Listed {
 /// The bundles in the order of the settings.
 ///
 /// # Errors
-/// A bundle that cannot be read, or several that are not told apart or are of different machines.
+/// A bundle that cannot be read, or several with the same name or of different machines.
 pub(super) fn read(settings: &Settings) -> Result<Vec<Listed>, Error> {
     let paths = settings.calibration.bundles();
     let mut listed: Vec<Listed> = Vec::new();

@@ -1,4 +1,4 @@
-//! What tells one calibration from another.
+//! The digest of a calibration's inputs.
 
 use super::Task;
 use sha2::{Digest, Sha256};
@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 const CONTENT: &str = "converters";
 
 impl Task {
-    /// What tells this calibration from others: the recordings, the machine, what is fitted and how,
+    /// The digest of the calibration's inputs: the recordings, the machine, what is fitted and how,
     /// and the version of this program. SHA-256 in hexadecimal.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();

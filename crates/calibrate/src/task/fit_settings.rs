@@ -1,6 +1,6 @@
 //! How it is fitted, and which runs are held out.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::fit::{FitSettings, Optimiser};
 use crate::observation::Run;
@@ -18,7 +18,11 @@ const EVALUATIONS: u32 = 5000;
 ///
 /// # Errors
 /// Runs to hold out that are not there, or all of them.
-pub(super) fn of(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<FitSettings, Error> {
+pub(super) fn with_defaults(
+    settings: &Settings,
+    tree: &Value,
+    runs: &[Run],
+) -> Result<FitSettings, Error> {
     let asked = settings.calibration;
     let ids: Vec<&str> = runs.iter().map(|run| run.id.as_str()).collect();
     let held_out = match &asked.hold_out {
@@ -48,7 +52,7 @@ pub(super) fn of(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<FitS
 /// Of every four runs the last whose clearances a run has that is fitted: what the parameters are at
 /// other clearances is another question.
 fn held_out(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Error> {
-    let joints = ClearJoint::of(tree, runs.iter().map(|run| &run.settings[..]));
+    let joints = ClearJoint::in_runs(tree, runs.iter().map(|run| &run.settings[..]));
     let joints = joints?;
     let states = runs.iter().map(|r| clearances(tree, &joints, &r.settings));
     let states: Vec<_> = states.collect::<Result<_, _>>()?;

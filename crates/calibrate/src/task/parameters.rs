@@ -1,6 +1,6 @@
 //! Which parameters are fitted.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::observation::Run;
 use crate::parameter::Parameter;
@@ -14,7 +14,11 @@ use std::collections::BTreeSet;
 ///
 /// # Errors
 /// A path that cannot be fitted, or bounds that are not of its unit.
-pub(super) fn of(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<Parameter>, Error> {
+pub(super) fn fitted(
+    settings: &Settings,
+    tree: &Value,
+    runs: &[Run],
+) -> Result<Vec<Parameter>, Error> {
     let asked = &settings.calibration.parameters.0;
     let refuse = |path: &str, reason: String| {
         let key = format!("parameters.{path}");
@@ -48,8 +52,8 @@ pub(super) fn of(settings: &Settings, tree: &Value, runs: &[Run]) -> Result<Vec<
         }
         parameters.push(parameter);
     }
-    // The zero of the encoder is the recordings' and not the machine's: whatever is asked of the machine, an
-    // encoder's last digit matters. A bound of its own holds it where it is known.
+    // The zero of the encoder belongs to the recordings, not to the machine. An encoder's last digit matters for all
+    // parameters. A bound of its own holds it where it is known.
     let has_offset = parameters.iter().any(Parameter::is_crank_angle_offset);
     if !has_offset && !are_pressures_alone(runs) {
         parameters.push(of(CRANK_ANGLE_OFFSET, None)?);
@@ -62,10 +66,9 @@ fn are_pressures_alone(runs: &[Run]) -> bool {
     columns.all(|column| column.contains("cylinder_pressure"))
 }
 
-/// What is fitted where nothing is asked for: the contact of the joints that are clear, and the zero
-/// of the crank angle, of which an encoder's last digit already matters; the gas where pressures are
-/// all that was recorded.
-/// A joint of which no run speaks has the clearance that the machine file states.
+/// What is fitted by default: the contact of the joints that are clear, and the zero of the crank angle, of which
+/// an encoder's last digit already matters. If only pressures were recorded, it is the gas.
+/// A joint that no run mentions has the clearance that the machine file states.
 fn defaults(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Error> {
     if are_pressures_alone(runs) {
         return Ok(gas_defaults(runs));
@@ -76,7 +79,7 @@ fn defaults(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Error> {
         .map(|(path, _)| path.trim_end_matches(".clearance").to_owned())
         .collect();
     let of_runs = runs.iter().map(|run| &run.settings[..]);
-    let of_machine = ClearJoint::of(tree, of_runs)?;
+    let of_machine = ClearJoint::in_runs(tree, of_runs)?;
     joints.extend(of_machine.into_iter().map(|joint| joint.path));
     joints.sort_unstable();
     joints.dedup();

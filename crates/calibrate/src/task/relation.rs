@@ -1,6 +1,6 @@
 //! How contact parameters follow the clearance: `--relation`, or what stands in for it.
 
-use super::Settings;
+use super::settings::Settings;
 use crate::error::Error;
 use crate::observation::Run;
 use crate::parameter::Parameter;
@@ -10,9 +10,10 @@ use serde_json::Value;
 
 /// Gives every clear joint of the machine its relation, and returns the exponents to be fitted.
 ///
-/// It is that of the settings. Without one the machine file says. Where the bundle's own machine
-/// section says nothing, it is Eq. (5), unless the fitted runs have several clearances and so can
-/// tell: then its exponents are fitted.
+/// 1. The relation of the settings.
+/// 2. Without one, that of the machine file.
+/// 3. Where the bundle's own machine section has no relation: fitted exponents if the fitted runs have several
+///    clearances, else Eq. (5).
 ///
 /// # Errors
 /// A clearance that is no length.
@@ -23,7 +24,7 @@ pub(super) fn set(
     held_out: &[String],
 ) -> Result<Vec<Parameter>, Error> {
     let of_runs = runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::of(tree, of_runs)?;
+    let joints = ClearJoint::in_runs(tree, of_runs)?;
     let mut silent = Vec::new();
     for joint in &joints {
         if joint.relation(tree)?.is_none() {

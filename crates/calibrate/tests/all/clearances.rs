@@ -93,7 +93,7 @@ fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observatio
 fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit, Transfer) {
     let mut tree = nominal();
     let settings = runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::of(&tree, settings).unwrap();
+    let joints = ClearJoint::in_runs(&tree, settings).unwrap();
     assert_eq!(joints.len(), 1);
     assert_eq!(joints[0].clearance, 1e-4);
     relation.set(&mut tree, &joints).unwrap();

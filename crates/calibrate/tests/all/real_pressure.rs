@@ -62,7 +62,7 @@ fn problem(fitted: &[(&str, Option<[f64; 2]>)]) -> (Problem, Vec<Run>) {
         .iter()
         .map(|(path, bounds)| Parameter::named(&tree, &runs, path, *bounds).unwrap())
         .collect();
-    let observed = runs.iter().map(|run| Observation::of(run, &columns));
+    let observed = runs.iter().map(|run| Observation::from_run(run, &columns));
     let problem = Problem {
         runs: observed.collect::<Result<_, _>>().unwrap(),
         tree,

@@ -75,7 +75,7 @@ fn recorded(machine: &str, changes: &[(&str, &str)], delay: f64) -> (Problem, Ru
         crank_angle: Some(angle),
         channels: channels.collect(),
     };
-    let observation = Observation::of(&run, &columns(&resolved)).unwrap();
+    let observation = Observation::from_run(&run, &columns(&resolved)).unwrap();
     let problem = Problem {
         tree,
         parameters: Vec::new(),

@@ -25,7 +25,7 @@ fn data(path: &str) -> PathBuf {
 fn sensors(runs: &[Run], columns: &[String]) -> (BTreeMap<String, RecordedSensor>, Option<f64>) {
     let observed: Vec<Observation> = runs
         .iter()
-        .map(|run| Observation::of(run, columns).unwrap())
+        .map(|run| Observation::from_run(run, columns).unwrap())
         .collect();
     let looks: Vec<Look> = runs
         .iter()

@@ -1,14 +1,16 @@
 //! A force law found in the recordings, where no effect of the catalogue explains them.
 //!
 //! The terms of the effect `empirical_force` are a library, as in sparse regression of dynamics
-//! (Brunton, Proctor and Kutz 2016; Kaheman and others 2019, for the mismatch of a model). The
-//! response is far from linear in a force as large as one that is missing. The force is therefore
-//! estimated first, by a fit with all terms; there, what the terms do to the predicted lines is their
-//! exact derivative by the coefficient, contacts included, and the force is regressed sparsely on
-//! them, on resamples. The terms that are stable are fitted in full, and the library is regressed
-//! again at that fit, until the same terms come out.
+//! (Brunton, Proctor and Kutz 2016; Kaheman and others 2019, for the mismatch of a model).
+//!
+//! 1. The response is far from linear in a force as large as one that is missing. The force is therefore
+//!    estimated first, by a fit with all terms.
+//! 2. There, the effect of each term on the predicted lines is its exact derivative by the coefficient, contacts
+//!    included. The force is regressed sparsely on the terms, on resamples.
+//! 3. The terms that are stable are fitted in full, and the library is regressed again at that fit, until the
+//!    same terms come out.
 
-use crate::candidate::{Candidate, FORCE, throws};
+use crate::candidate::{Candidate, throws};
 use crate::criteria::NOISE;
 use crate::error::Error;
 use crate::finding::{Tried, effects};
@@ -17,7 +19,7 @@ use crate::model::Model;
 use crate::moves::linearised::{Linearised, groups};
 use crate::moves::missing_force::{MissingForce, missing_force};
 use calibrate::Problem;
-use input::effects::entry;
+use input::effects::{Proposal, proposed};
 
 /// Most evaluations of the fit with all terms.
 const DENSE: u64 = 400;
@@ -38,7 +40,7 @@ pub(crate) struct Force {
 
 /// The effect with all its terms free, at each throw that does not have it.
 fn libraries(problem: &Problem) -> Vec<Candidate> {
-    let Some(entry) = entry(FORCE) else {
+    let Some(entry) = proposed(Proposal::ForceLaw) else {
         return Vec::new();
     };
     let names = throws(&problem.tree).into_iter();
@@ -63,8 +65,8 @@ fn libraries(problem: &Problem) -> Vec<Candidate> {
 }
 
 /// The force that `model` lacks at the throw where it explains most, with a law of no more than a few
-/// terms where the recordings show one that is stable; none where no throw can have one. Whether the
-/// law explains enough is another question.
+/// terms where the recordings show one that is stable. None where no throw can have one. Whether the
+/// law explains enough is decided elsewhere.
 ///
 /// # Errors
 /// [`Error::Stopped`]; a machine that cannot be simulated.

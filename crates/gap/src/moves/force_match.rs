@@ -1,10 +1,9 @@
 //! An effect of the catalogue in the place of a force of no name.
 //!
-//! From a machine that is not what it should be, neither the score of the true effect nor a descent with
-//! it need lead anywhere: what a recording shows of a force is what the contacts make of it. A force of
-//! no name that comes near the recordings leaves the joints near to what they are. There, an effect that
-//! acts on the crosshead can be held against the force itself, to which its parameters are fitted without
-//! any minimum on the way.
+//! In a wrong machine neither the score of the true effect nor a descent with it need lead anywhere: the
+//! contacts change what a recording shows of a force. A force of no name that reduces the residual far leaves
+//! the joints near their true motion. There, an effect that acts on the crosshead can be compared with the
+//! force itself. Its parameters are fitted to the force, without any local minimum on the way.
 
 use crate::candidate::Candidate;
 use crate::error::Error;
@@ -85,7 +84,7 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// A candidate, with the values with which it makes as much of the force as it can; none where it is
+    /// A candidate, with the values with which it makes as much of the force as it can. None where it is
     /// no force on a crosshead.
     fn matched(&self, start: &Model, candidate: &Candidate) -> Result<Option<Matched>, Error> {
         let mut nearest: Option<(f64, Problem)> = None;

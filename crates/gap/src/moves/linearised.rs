@@ -165,7 +165,7 @@ mod tests {
         let law = library.restricted(&[term]);
         let found = linear.fitted(&law)[term];
         assert!((found + 150.0).abs() < 5.0, "{found}");
-        // With ideal joints at the big end its offset is none.
+        // With ideal joints the big end has no offset.
         let seen: Vec<&str> = linear.seen().into_iter().map(key).collect();
         assert!(seen.contains(&"cos_1") && !seen.contains(&"big_end_offset"));
     }

@@ -1,8 +1,8 @@
-//! The force that is missing over a revolution, as far as the recordings tell it.
+//! The force that is missing over a revolution, as far as it is identifiable from the recordings.
 //!
-//! With clearance in the joints a force on the crosshead is not seen as mass × acceleration but in
-//! what the contacts make of it. A machine that was fitted with all terms of the effect
-//! `empirical_force` tells the force with which it comes nearest to the recordings.
+//! With clearance in the joints a force on the crosshead is not seen as mass × acceleration: the contacts
+//! change it. The force is taken from a machine that was fitted with all terms of the effect
+//! `empirical_force`.
 
 use crate::error::Error;
 use calibrate::Problem;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use simulate::{Settings, ThrowTrace, Transient, simulate};
 use std::f64::consts::TAU;
 
-/// Crank angles at which the force is told, equally spaced from top dead centre of the shaft's first
+/// Crank angles at which the force is given, equally spaced from top dead centre of the shaft's first
 /// throw on.
 pub const ANGLES: usize = 72;
 
@@ -82,14 +82,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_force_is_told_where_it_acts() {
+    fn a_force_is_found_where_it_acts() {
         let angles: Vec<f64> = (0..720).map(|i| f64::from(i) * TAU / 720.0).collect();
         let force: Vec<f64> = angles.iter().map(|a| 100.0 * a.sin()).collect();
-        let told = by_angle(&angles, &force);
-        assert_eq!(told.len(), ANGLES);
-        for (i, told) in told.iter().enumerate() {
+        let found = by_angle(&angles, &force);
+        assert_eq!(found.len(), ANGLES);
+        for (i, force) in found.iter().enumerate() {
             let expected = 100.0 * (i as f64 * TAU / 72.0).sin();
-            assert!((told - expected).abs() < 0.6, "{i}: {told} {expected}");
+            assert!((force - expected).abs() < 0.6, "{i}: {force} {expected}");
         }
     }
 }

@@ -6,8 +6,8 @@ use calibrate::Problem;
 
 /// Amplitudes at which an effect is tried, over its usual one.
 const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
-/// Steps from the first to the last of them for a clearance: one that is a quarter off leaves more than
-/// one that is not there.
+/// Steps from the first to the last of them for a clearance. A clearance that is a quarter off leaves more than
+/// one that is absent.
 const STEPS: usize = 12;
 /// Values at which a parameter is tried that is no amplitude and may lie anywhere in wide bounds.
 const VALUES: usize = 5;

@@ -3,7 +3,7 @@
 use crate::recorded::is_pressure;
 use calibrate::Problem;
 use calibrate::observation::{Observation, Observed};
-use input::effects::Entry;
+use input::effects::{Entry, Kind, Parameter, Proposal};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -12,20 +12,21 @@ const RIPPLE: usize = 12;
 
 /// What the recordings show of this effect, as values (SI) of its parameters; none where they show nothing.
 pub(crate) fn recorded_values(entry: &Entry, problem: &Problem) -> Option<Vec<f64>> {
-    match entry.name {
-        "speed_fluctuation" => fluctuation(problem),
-        "valve_flutter" => {
-            let usual = entry.parameters.iter().map(|p| match p.key {
-                "frequency" => ripple(problem).map(|f| f.clamp(p.bounds[0], p.bounds[1])),
-                _ => Some(p.start),
-            });
-            usual.collect()
-        }
-        _ => None,
+    if entry.proposal == Proposal::CrankSpeed {
+        return fluctuation(problem);
     }
+    let is_frequency = |p: &Parameter| p.unit == "Hz";
+    if entry.kind != Kind::Gas || !entry.parameters.iter().any(is_frequency) {
+        return None;
+    }
+    let values = entry.parameters.iter().map(|p| match is_frequency(p) {
+        true => ripple(problem).map(|f| f.clamp(p.bounds[0], p.bounds[1])),
+        false => Some(p.start),
+    });
+    values.collect()
 }
 
-/// The fluctuation of the speed that the encoders show, as values of the effect: amplitude and phase
+/// The fluctuation of the speed that the encoders show, as values of the effect. They are amplitude and phase
 /// of the first and the second harmonic, as means over the runs.
 fn fluctuation(problem: &Problem) -> Option<Vec<f64>> {
     let harmonic = |k: usize| {
@@ -40,8 +41,8 @@ fn fluctuation(problem: &Problem) -> Option<Vec<f64>> {
     Some([harmonic(0)?, harmonic(1)?].concat())
 }
 
-/// Frequency of the strongest ripple of the cylinders' pressures, Hz: the line above the orders of the
-/// indicator diagram, whose kinks fall off by the square of the order, that stands out the most.
+/// Frequency of the strongest ripple of the cylinders' pressures, Hz. It is the line above the orders of the
+/// indicator diagram that stands out the most; the kinks of the diagram fall off by the square of the order.
 fn ripple(problem: &Problem) -> Option<f64> {
     let of_channel = |(run, channel): (&Observation, &Observed)| {
         let orders = channel.orders.iter().copied().filter(|k| *k >= RIPPLE);

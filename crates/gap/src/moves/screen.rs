@@ -1,8 +1,8 @@
 //! Which candidates are worth a fit: a score test at finite amplitudes.
 //!
 //! A candidate changes the predicted features by Δ. What the calibrated parameters could imitate of
-//! it, and of the residual r, is projected out (P, with a prior of one unit of their coordinates);
-//! the score is the share of the residual that the rest explains at its best amplitude:
+//! it, and of the residual r, is projected out (P, with a prior of one unit of their coordinates).
+//! The score is the share of the residual that the rest explains at its best amplitude:
 //!
 //! ```text
 //! 1 − min_a |P (r + a Δ)|² / |P r|²
@@ -25,11 +25,11 @@ use rayon::prelude::*;
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
 /// A calibrated coordinate further than this from the nominal one may have gone astray, where this misfit
-/// is left: with less, only what is small can be missing.
+/// is left. With less left, only small effects can be missing.
 const ASTRAY: f64 = 0.1;
 const MUCH_LEFT: f64 = 3.0;
-/// The best of each point at which candidates are looked at come before all others: what they explain at
-/// one is not to be compared with what they do at another.
+/// The best of each point at which candidates are screened come before all others. Their shares at
+/// different points cannot be compared.
 const LEADING: usize = 2;
 
 /// A candidate and how much of the residual it may explain.

@@ -1,4 +1,4 @@
-//! Which candidates the recordings hardly tell from an effect: the confusability of their signatures.
+//! Which candidates the recordings hardly distinguish from an effect: the confusability of their signatures.
 //!
 //! A signature is the change Δ that an effect makes in the predicted features, over their noise. What
 //! the calibrated parameters can imitate of it is projected out (P, as in the [score
@@ -17,7 +17,7 @@
 //! m'² = m² + (1 − ρ²) |P Δe|² / n
 //! ```
 //!
-//! as long as the changes are small; where they are not, a fit of the candidate tells what it leaves.
+//! as long as the changes are small. Where they are not, a fit of the candidate shows what it leaves.
 
 use crate::candidate::Candidate;
 use crate::criteria::Evidence;
@@ -38,7 +38,7 @@ use rayon::prelude::*;
 const NEAREST: usize = 8;
 /// Change of a coordinate by which a candidate's parameter is looked at.
 const STEP: f64 = 0.02;
-/// A direction this near to those before it is none, as a share of its length.
+/// A direction this near to those before it is left out, as a share of its length.
 const DEPENDENT: f64 = 1e-6;
 
 /// A candidate, with values (SI) at which it changes something.
@@ -58,7 +58,7 @@ struct Point<'a> {
     signature: DVector<f64>,
 }
 
-/// Of the candidates that were looked at in a few runs, those that cannot be told from the effect
+/// Of the candidates that were screened in a few runs, those that cannot be distinguished from the effect
 /// `best`, the nearest first. `before` has these runs without it, `after`
 /// all runs with it; `tried` were fitted.
 pub(crate) fn rivals(
@@ -70,7 +70,7 @@ pub(crate) fn rivals(
     tried: &[Tried],
 ) -> Result<Vec<Tried>, Error> {
     let metered = before.problem.metered();
-    let point = Point::of(&metered, after)?;
+    let point = Point::new(&metered, after)?;
     let of_fit = |candidate: &Candidate| tried.iter().find(|t| t.candidate == *candidate);
     let others = screened.iter().filter(|s| s.candidate != best.candidate);
     let others: Vec<Other> = others
@@ -182,7 +182,7 @@ pub(crate) fn fit_rival(
 
 impl<'a> Point<'a> {
     /// The point without the effect of `after`, in the runs of `problem`, which does not have it.
-    fn of(problem: &'a Problem, after: &Model) -> Result<Self, Error> {
+    fn new(problem: &'a Problem, after: &Model) -> Result<Self, Error> {
         let x = after.x[..problem.parameters.len()].to_vec();
         let likelihood = Likelihood::new(problem);
         let residual = DVector::from_vec(likelihood.residuals(&x));

@@ -1,9 +1,9 @@
-//! Which terms of a library explain a residual: greedy forward selection, believed only where it is
+//! Which terms of a library explain a residual: greedy forward selection. It is accepted only where it is
 //! stable under resampling (Meinshausen and Bühlmann 2010, in the complementary pairs of Shah and
 //! Samworth 2013).
 //!
-//! Minimised is |t + N δ + D c|² + |δ|² + |c|², with the nuisance N of what is calibrated and the
-//! terms D, both over priors of 1, so that neither goes further than it may. All selections work on
+//! |t + N δ + D c|² + |δ|² + |c|² is minimised, with the nuisance N of what is calibrated and the
+//! terms D. Both have priors of 1, so that neither goes further than it may. All selections work on
 //! the normal matrix of the lines that are drawn.
 
 use crate::criteria::{EARNED, NOISE};
@@ -118,7 +118,7 @@ impl Eliminated {
         }
     }
 
-    /// Groups one after another, each the one that explains most beside those before, as long as it
+    /// Groups one after another. Each explains most beside those before, as long as it
     /// takes its share of what is left of `count` residuals.
     fn chosen(&self, groups: &[Vec<usize>], count: usize) -> Vec<usize> {
         let mut chosen: Vec<usize> = Vec::new();

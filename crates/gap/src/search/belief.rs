@@ -8,10 +8,12 @@ use crate::model::Model;
 use calibrate::Problem;
 use calibrate::fit::Estimate;
 
-/// The model with those effects alone that are believed; the others are refused. Effects that explain the
-/// whole are. One that closes most of the gap that it was added for is, by itself. Any other is where the
-/// effects explain a part to which no force without a name comes nearer, if the recordings tell how large it
-/// is: what does as well at any size stands for something else.
+/// The model with the accepted effects alone; the others are refused. An effect is accepted in three cases:
+///
+/// 1. All effects together explain the recordings fully.
+/// 2. The effect closes most of the gap that it was added for.
+/// 3. The effects explain a part that no force without a name reduces further, and the size of this effect is
+///    identifiable. An effect that does as well at any size stands for something else.
 pub(crate) fn believed(
     fitter: &Fitter,
     problem: &Problem,
@@ -25,10 +27,13 @@ pub(crate) fn believed(
     let believed = match verdict(baseline, model, found.len()) {
         Verdict::NoGap | Verdict::Explained => vec![true; found.len()],
         Verdict::PartlyExplained if !force_is_nearer && by_itself.contains(&false) => {
-            (fitter.say)("finding which sizes are told", model.fitted);
+            (fitter.say)("finding which sizes are identifiable", model.fitted);
             let estimates = fitter.bounds(model)?.estimates;
-            let told = |i| is_told(&estimates, &found[i], first_item(problem, found, i));
-            (0..found.len()).map(|i| by_itself[i] || told(i)).collect()
+            let identifiable =
+                |i| is_identifiable(&estimates, &found[i], first_item(problem, found, i));
+            (0..found.len())
+                .map(|i| by_itself[i] || identifiable(i))
+                .collect()
         }
         Verdict::PartlyExplained | Verdict::Unexplained => by_itself,
     };
@@ -51,9 +56,9 @@ pub(crate) fn believed(
     })
 }
 
-/// Whether the recordings tell how large an effect is whose first item has this index: one of its amplitudes,
-/// or of its parameters where it has none.
-fn is_told(estimates: &[Estimate], found: &Found, first: usize) -> bool {
+/// Whether the size of an effect whose first item has this index is identifiable: one of its amplitudes,
+/// or of its parameters if it has no amplitudes.
+fn is_identifiable(estimates: &[Estimate], found: &Found, first: usize) -> bool {
     let candidate = found.candidate();
     let entry = candidate.entry;
     let amplitudes = entry.amplitudes().next().is_some();
@@ -79,8 +84,8 @@ mod tests {
     use crate::criteria::evidence;
     use crate::fixture::{effort, problem};
 
-    /// Whether an effect is told of which the parameter of this key alone is.
-    fn is_told_by(effect: &str, key: &str) -> bool {
+    /// Whether an effect counts as identifiable of which only the parameter of this key is.
+    fn is_identifiable_by(effect: &str, key: &str) -> bool {
         let problem = problem();
         let candidate = Candidate::first(&problem, effect);
         let values = candidate.usual();
@@ -103,15 +108,15 @@ mod tests {
             interval: parameter.path.ends_with(key).then_some([0.0, 2.0]),
         };
         let estimates: Vec<Estimate> = added.parameters.iter().map(estimate).collect();
-        is_told(&estimates, &found, first_item(&problem, &[], 0))
+        is_identifiable(&estimates, &found, first_item(&problem, &[], 0))
     }
 
     #[test]
-    fn an_effect_is_told_by_its_size() {
-        assert!(is_told_by("guide_clearance", ".clearance"));
-        assert!(!is_told_by("guide_clearance", ".damping"));
-        assert!(!is_told_by("guide_clearance", "contact.stiffness"));
-        // One without a size by whatever it has.
-        assert!(is_told_by("sensor_resonance", ".frequency"));
+    fn an_effect_is_identifiable_by_its_size() {
+        assert!(is_identifiable_by("guide_clearance", ".clearance"));
+        assert!(!is_identifiable_by("guide_clearance", ".damping"));
+        assert!(!is_identifiable_by("guide_clearance", "contact.stiffness"));
+        // One without amplitudes by any of its parameters.
+        assert!(is_identifiable_by("sensor_resonance", ".frequency"));
     }
 }

@@ -1,8 +1,8 @@
 //! Another effect beside wear.
 //!
-//! Where a joint has more play than was believed, its blows fall elsewhere in the revolution. Without that no
-//! effect that changes the blows comes near to the recordings, and the play without the effect does not
-//! either: to add one after the other leads nowhere. Where no candidate by itself closes most of the gap,
+//! Where a joint has more play than was believed, its blows fall elsewhere in the revolution. Then neither an
+//! effect that changes the blows nor the play alone reduces the residual far, and adding one after the other
+//! leads nowhere. Where no candidate by itself closes most of the gap,
 //! the most promising ones are fitted again in machines with more play.
 
 use crate::candidate::Candidate;
@@ -14,10 +14,9 @@ use crate::model::Model;
 use crate::moves::screen::Screened;
 use crate::moves::signature::rivals;
 use crate::search::refit::Rough;
+use input::effects::Proposal;
 use rayon::prelude::*;
 
-/// The effect that wear is.
-const WEAR: &str = "extra_clearance";
 /// The play that is tried, over the effect's usual one. From each to the next is about as far as a descent goes.
 const TIMES: [f64; 5] = [1.2, 1.8, 2.7, 4.0, 6.0];
 /// In how many joints, the most promising first.
@@ -31,7 +30,7 @@ const LEFT: f64 = 3.0;
 type Start = (Candidate, Vec<f64>);
 
 /// Wear and another effect that together close most of the gap of `model`, each of which earns its place
-/// beside the other; and the model with both. They are looked for where none of `rough`, which were
+/// beside the other; and the model with both. They are searched only where none of `rough`, which were
 /// fitted to the runs of `few`, does as much by itself.
 pub(crate) fn beside_wear(
     fitter: &Fitter,
@@ -68,7 +67,7 @@ fn worn(
     rough: &[Rough],
     screened: &[Screened],
 ) -> Result<Option<([Start; 2], Model)>, Error> {
-    let is_wear = |candidate: &&Candidate| candidate.entry.name == WEAR;
+    let is_wear = |candidate: &&Candidate| candidate.entry.proposal == Proposal::Wear;
     let others = rough.iter().filter(|rough| !is_wear(&&rough.candidate));
     let others: Vec<&Rough> = others.take(BESIDE).collect();
     let joints = screened.iter().map(|s| &s.candidate).filter(is_wear);
@@ -154,9 +153,8 @@ fn each(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{effort, problem_of};
+    use crate::fixture::{effort, fitter, problem_of};
     use serde_json::json;
-    use std::ops::ControlFlow;
 
     #[test]
     fn an_effect_that_shows_in_a_worn_joint_alone_is_found_with_the_wear() {
@@ -167,11 +165,7 @@ mod tests {
         ]));
         problem.runs.truncate(1);
         let effort = effort();
-        let fitter = Fitter {
-            effort: &effort,
-            watch: &|| ControlFlow::Continue(()),
-            say: &|_, _| (),
-        };
+        let fitter = fitter(&effort);
         let candidate = |label: &str| {
             let mut all = Candidate::all(&problem).into_iter();
             all.find(|candidate| candidate.label() == label).unwrap()

@@ -14,8 +14,8 @@ use calibrate::likelihood::Likelihood;
 use serde_json::Value;
 
 /// The same problem with the pressures alone, in a machine of ideal joints, which is simulated much
-/// faster; none where there are none. What clear joints do to the pressures is taken off the recorded
-/// ones, as the nominal machine has it.
+/// faster. None without recorded pressures. The effect of clear joints on the pressures is subtracted from the
+/// recorded ones, as the nominal machine has it.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
@@ -51,7 +51,7 @@ fn pressures(problem: &Problem) -> Result<Option<Problem>, Error> {
     Ok(Some(ideal))
 }
 
-/// What the pressures by themselves tell.
+/// What the pressures alone show.
 pub(crate) struct OfGas {
     /// The gas without an effect.
     pub before: Model,
@@ -60,15 +60,14 @@ pub(crate) struct OfGas {
 }
 
 impl OfGas {
-    /// The two models with the machine of `problem`, whose joints may be clear, where pressures are
-    /// all that was recorded of it and the gas all that is fitted: nothing else is to be found.
+    /// Whether only pressures of `problem` were recorded and only the gas is fitted: nothing else is to be found then.
     pub(crate) fn is_all(&self, problem: &Problem) -> bool {
         is_of_pressures(problem) && self.before.problem.parameters == problem.parameters
     }
 
-    /// Whether the pressures have told what they can. What they leave between the noise and what shows an
-    /// effect by itself may be the joints or a small effect: the whole has to tell.
-    pub(crate) fn is_told(&self) -> bool {
+    /// Whether the pressures have shown what they can. What they leave between the noise and what shows an
+    /// effect by itself may be the joints or a small effect: the full model has to decide.
+    pub(crate) fn is_decided(&self) -> bool {
         !(NOISE..GAS_NOISE).contains(&self.explained.model.fitted)
     }
 
@@ -117,8 +116,8 @@ pub(crate) fn of_gas(fitter: &Fitter, problem: &Problem) -> Result<Option<OfGas>
     Ok(Some(OfGas { before, explained }))
 }
 
-/// The effects of the gas, each at the one end of its cylinder alone whose pressure was recorded where
-/// the whole is nearer to the recordings with that.
+/// The effects of the gas. Each acts at the one end of its cylinder whose pressure was recorded, where
+/// the full model has a smaller residual with that.
 pub(crate) fn at_their_ends(
     fitter: &Fitter,
     problem: &Problem,

@@ -63,18 +63,13 @@ fn in_place(
 mod tests {
     use super::*;
     use crate::candidate::Candidate;
-    use crate::fixture::{effort, problem};
-    use std::ops::ControlFlow;
+    use crate::fixture::{effort, fitter, problem};
 
     #[test]
     fn what_is_left_with_a_rival_counts_beside_all_that_was_found() {
         let problem = problem();
         let effort = effort();
-        let fitter = Fitter {
-            effort: &effort,
-            watch: &|| ControlFlow::Continue(()),
-            say: &|_, _| (),
-        };
+        let fitter = fitter(&effort);
         let candidate = |name: &str| Candidate::first(&problem, name);
         let rings = candidate("ring_friction");
         let values = [150.0, 1e-9, 0.01];
@@ -121,7 +116,7 @@ mod tests {
         };
         assert_eq!(rival.candidate, rings);
         assert!(rival.leaves() < 0.3, "{}", rival.leaves());
-        // A rival that was found itself afterwards is none.
+        // A rival that was found itself afterwards does not count.
         let force = candidate("misalignment");
         let added = force.added(&model.problem, &[1.0, 0.0, 1.0, 0.0]).unwrap();
         let both = Model {

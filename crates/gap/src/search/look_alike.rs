@@ -16,8 +16,8 @@ const AT_THE_NOISE: f64 = 1.0;
 /// Most that are fitted.
 const MOST: usize = 2;
 
-/// The one that comes nearer to the recordings than the effect of `after`, with its model: of its
-/// `rivals`, if it is alike and not one of those that were `fitted`. `before` has all runs without
+/// The one of `rivals` that reduces the residual further than the effect of `after`, with its model. Only
+/// a rival that is alike and not one of those that were `fitted` is tried. `before` has all runs without
 /// the effect, `few` some of them.
 pub(crate) fn look_alike(
     fitter: &Fitter,
@@ -66,18 +66,13 @@ mod tests {
     use crate::candidate::Candidate;
     use crate::criteria::evidence;
     use crate::finding::Likeness;
-    use crate::fixture::{effort, problem};
-    use std::ops::ControlFlow;
+    use crate::fixture::{effort, fitter, problem};
 
     #[test]
     fn what_the_screening_passed_over_is_fitted_where_it_is_like_the_effect() {
         let problem = problem();
         let effort = effort();
-        let fitter = Fitter {
-            effort: &effort,
-            watch: &|| ControlFlow::Continue(()),
-            say: &|_, _| (),
-        };
+        let fitter = fitter(&effort);
         let candidate = |name: &str| Candidate::first(&problem, name);
         let before = Model::at(problem.clone(), &[0.0], &effort).unwrap();
         let force = candidate("misalignment");

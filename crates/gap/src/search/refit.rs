@@ -50,8 +50,8 @@ pub(crate) fn roughly(
     Ok(rough)
 }
 
-/// The same, the best few searched further where none has reached the noise: the best alone where it closes
-/// most of the gap, for what is left then is likely another effect's.
+/// The same, with the best few searched further where none has reached the noise. Only the best is where it closes
+/// most of the gap, for the rest is then likely another effect's.
 pub(crate) fn further(
     fitter: &Fitter,
     few: &Model,

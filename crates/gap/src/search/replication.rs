@@ -13,8 +13,8 @@ use calibrate::Observation;
 /// Share of a run's squared misfit that an effect has to take, of what it has to take of all.
 const IN_EACH: f64 = 0.5;
 
-/// Whether `candidate`, which `after` has and `before` has not, makes every run better that it acts on,
-/// or runs are held out that tell.
+/// Whether `candidate`, which `after` has and `before` has not, makes every run better that it acts on.
+/// Always true where runs are held out, and where not only pressures were recorded.
 pub(crate) fn shows_in_each(candidate: &Candidate, before: &Model, after: &Model) -> bool {
     if after.held_out.is_some() || !is_of_pressures(&after.problem) {
         return true;

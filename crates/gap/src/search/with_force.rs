@@ -23,7 +23,7 @@ pub(crate) struct WithForce {
     pub explained: Explained,
     /// The force that is missing; empty where none was looked for.
     pub missing: Vec<MissingForce>,
-    /// Whether a force of no name in the place of the effects comes nearer to most recordings.
+    /// Whether a force of no name in the place of the effects reduces the residual of most recordings further.
     pub nearer: bool,
 }
 
@@ -36,8 +36,8 @@ pub(crate) fn with_force(
     explained: Explained,
 ) -> Result<WithForce, Error> {
     let comes_to = verdict(baseline, &explained.model, explained.found.len());
-    // Where a part is left the force must have its chance whatever was spent before, or whatever of
-    // the catalogue comes nearest stands for it.
+    // Where a part is left the force must have its chance even if the budget is spent. Otherwise the best
+    // effect of the catalogue stands for it.
     let settled = matches!(comes_to, Verdict::NoGap | Verdict::Explained);
     // Pressures do not feel it, and without derivatives there is no regression.
     if settled || is_of_pressures(problem) || fitter.effort.chaotic {
@@ -102,7 +102,7 @@ pub(crate) fn with_force(
     })
 }
 
-/// The model with those of its effects alone that the pressures show whatever acts on the
+/// The model with only those of its effects that the pressures show independently of what acts on the
 /// crosshead.
 fn gas_alone(
     fitter: &Fitter,
@@ -119,7 +119,7 @@ fn gas_alone(
     }
 }
 
-/// The effect of the catalogue that comes nearest to the recordings of those that make the force of
+/// The effect of the catalogue with the smallest residual of those that make the force of
 /// `with_force`, which has one effect more than `start`; and the model with it in its place. None
 /// where that is not `enough`.
 fn named_instead(

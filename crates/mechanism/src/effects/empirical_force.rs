@@ -57,7 +57,7 @@ parameters! {
 declaration! {
     /// A force on the crosshead along the cylinder, positive toward the head: a sum of the terms
     /// that are stated, each with its coefficient. Other terms there are none.
-    EmpiricalForce at [Throw], RunningGear, Separately:
+    EmpiricalForce at [Throw], RunningGear, ForceLaw:
     "A force acts on the crosshead that nothing in the catalogue gives: its law was found in the recordings."
     law "force on the crosshead, a sum of terms out of a library: harmonics, springs, dampers, friction, load, journal offsets" after "Brunton, Proctor and Kutz 2016" {
         /// Coefficient of 1.

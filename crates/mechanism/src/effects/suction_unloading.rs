@@ -33,7 +33,7 @@ parameters! {
 
 declaration! {
     /// Suction valve held open into the compression stroke: gas flows back into the suction line.
-    SuctionUnloading at [Throw, End], Gas, PerEnd:
+    SuctionUnloading at [Throw, End], Gas, PerEnd includes valve_loss.suction:
     "The suction valve closes late, or is held open: part of the gas is pushed back before the compression starts."
     law "suction valve open until an angle after the dead centre, throttling by ζ u²; the rest is compressed" after "Bloch and Hoefner 1996" {
         /// Crank angle after the dead centre at which the valve closes.

@@ -1,11 +1,13 @@
 //! MAT files of version 5 to 7 (MathWorks, *MAT-File Format*, 2024): numeric variables, of either
 //! byte order, compressed or not.
 //!
-//! Every vector is a channel called as its variable; a matrix has one channel per column (or row,
-//! where those are the longer ones) called `name_1`, `name_2`, ... A variable that is one number is
-//! taken for the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and for the speed
-//! when its name ends in `rpm`. Text, cells, structures, and complex and sparse arrays are left out.
+//! - Every vector is a channel called as its variable. A matrix has one channel per column (or row,
+//!   where those are the longer ones) called `name_1`, `name_2`, ...
+//! - A variable that is one number is the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and the speed
+//!   when its name ends in `rpm`.
+//! - Text, cells, structures, and complex and sparse arrays are left out.
 
+use super::recording_format::{RecordingFormat, Seen, has};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
     one_rate, seconds_per_unit, selected,
@@ -55,7 +57,7 @@ enum Number {
 }
 
 impl Number {
-    fn of(code: u32) -> Option<Self> {
+    fn from_code(code: u32) -> Option<Self> {
         Some(match code {
             1 => Self::I8,
             2 => Self::U8,
@@ -119,8 +121,24 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
     }
 }
 
+/// MAT as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "MAT",
+    endings: &["mat"],
+    signature_at: Some(126),
+    recognise: |head| {
+        if has(head, 0, b"MATLAB 7.3") || has(head, 512, b"\x89HDF\r\n\x1a\n") {
+            let words = "a MAT file of version 7.3 (HDF5); save it with `-v7`";
+            return Some(Seen::Unreadable(words));
+        }
+        let is_mat = has(head, 126, b"IM") || has(head, 126, b"MI");
+        is_mat.then_some(Seen::Readable("a MAT file"))
+    },
+    open,
+};
+
 /// Opens a file.
-pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
+fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let (big_endian, variables) = scan(path)?;
     let (scalars, arrays): (Vec<_>, Vec<_>) =
         variables.into_iter().partition(|v| v.rows * v.columns == 1);
@@ -402,7 +420,7 @@ fn variable(
         return Ok(None);
     };
     let (code, size, in_tag) = tag(bytes, big_endian)?;
-    let Some(number) = Number::of(code) else {
+    let Some(number) = Number::from_code(code) else {
         return Ok(None);
     };
     let count = rows.checked_mul(columns).filter(|count| *count > 0);

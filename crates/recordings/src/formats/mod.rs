@@ -1,19 +1,28 @@
-//! One file per format.
+//! One file or folder per format.
+//!
+//! A format of recordings takes a module with a `FORMAT` (its name, the endings of its files, how its first bytes
+//! are recognised, and its reader) and a line in the list below.
 
-pub mod csv;
-pub(crate) mod mat;
-pub mod mcap;
-pub mod parquet;
+mod guarded;
+pub(crate) mod recording_format;
 pub mod table_file;
-pub(crate) mod wav;
 
-use crate::Error;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use recording_format::RecordingFormat;
 
-/// The result of `read`, with an error in place of a panic of the library that decodes.
-fn guarded<T>(
-    read: impl FnOnce() -> Result<T, Error>,
-    contradiction: impl FnOnce() -> Error,
-) -> Result<T, Error> {
-    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| Err(contradiction()))
+/// The one list of the formats of recordings.
+macro_rules! formats {
+    ($( $vis:vis $module:ident, )*) => {
+        $( $vis mod $module; )*
+
+        /// The formats of recordings.
+        pub(crate) const FORMATS: &[RecordingFormat] = &[$( $module::FORMAT ),*];
+    };
+}
+
+formats! {
+    pub csv,
+    pub(crate) wav,
+    pub(crate) mat,
+    pub parquet,
+    pub mcap,
 }

@@ -1,12 +1,9 @@
 //! A table that is written row by row, in the format that the ending of its name says.
 
 use super::csv::write_table;
-use super::parquet::TableWriter;
+use super::parquet::{PENDING_ROWS, TableWriter};
 use crate::{Error, Schema, Table, Value, WholeFile};
 use std::path::Path;
-
-/// Rows per group of a Parquet file.
-const ROWS_PER_GROUP: usize = 4096;
 
 /// The format of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +16,7 @@ pub enum TableFormat {
 
 impl TableFormat {
     /// The format of a file with this name; none where its ending names none.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         match ending.to_ascii_lowercase().as_str() {
             "parquet" => Some(Self::Parquet),
@@ -45,7 +42,7 @@ impl TableFile {
     pub fn new(file: WholeFile, format: TableFormat, schema: &Schema) -> Result<Self, Error> {
         Ok(match format {
             TableFormat::Parquet => {
-                Self::Parquet(Box::new(TableWriter::new(file, schema, ROWS_PER_GROUP)?))
+                Self::Parquet(Box::new(TableWriter::new(file, schema, PENDING_ROWS)?))
             }
             TableFormat::Csv => Self::Csv(Box::new((file, Table::new(schema.clone())))),
         })

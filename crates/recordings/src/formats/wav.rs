@@ -4,6 +4,7 @@
 //! Whole numbers are scaled so that full scale is 1, as players do; channels are called
 //! `channel_1`, `channel_2`, ... and have no unit.
 
+use super::recording_format::{RecordingFormat, Seen, has};
 use crate::Error;
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, one_rate, selected,
@@ -46,8 +47,21 @@ struct WavSamples {
     bytes: Vec<u8>,
 }
 
+/// WAV as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "WAV",
+    endings: &["wav"],
+    signature_at: Some(0),
+    recognise: |head| {
+        let mut containers = [b"RIFF", b"RF64", b"BW64"].into_iter();
+        let is_wav = containers.any(|name| has(head, 0, name)) && has(head, 8, b"WAVE");
+        is_wav.then_some(Seen::Readable("a WAV file"))
+    },
+    open,
+};
+
 /// Opens a file.
-pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
+fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let file = files::open(path).map_err(Error::io("open", path))?;
     let length = file.metadata().map_err(Error::io("read", path))?.len();
     let mut file = BufReader::new(file);

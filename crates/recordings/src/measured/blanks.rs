@@ -1,12 +1,12 @@
 //! Samples that are missing in a channel: cells without a number, which read as NaN.
 //!
-//! A gap of at most [`LONGEST_BRIDGED`] samples is bridged by a straight line between its neighbours; at
-//! an end of the window the one neighbour stands for it. A longer one ends the stretch of the recording.
+//! A gap of at most [`LONGEST_BRIDGED`] samples is bridged by a straight line between its neighbours. At
+//! an end of the window the one neighbour is repeated. A longer gap ends the stretch of the recording.
 
 use std::ops::Range;
 
 /// Longest gap that is bridged, samples. A line over five steps spans half a period of a tenth of the
-/// sample rate; of longer gaps it would tell nothing that faster motion does.
+/// sample rate. A longer line would hide faster motion.
 pub const LONGEST_BRIDGED: usize = 4;
 
 /// What a line between two samples of a channel is.
@@ -32,7 +32,7 @@ fn gaps(samples: &[f32]) -> impl Iterator<Item = Range<usize>> {
 
 /// The first gap of any channel that no line bridges.
 ///
-/// A channel without a stretch of `shortest` samples between such gaps is passed over: it is not
+/// A channel without a stretch of `shortest` samples between such gaps is passed over. It is not
 /// recorded here, or more slowly than the others, and must not cut them to pieces.
 pub(super) fn first_long_gap(channels: &[&[f32]], shortest: usize) -> Option<Range<usize>> {
     let long = |samples: &&[f32]| -> Vec<Range<usize>> {

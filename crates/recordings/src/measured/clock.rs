@@ -1,4 +1,4 @@
-//! A column of time: the sample rate that it tells, and where samples are missing.
+//! A column of time: the sample rate that follows from it, and where samples are missing.
 
 use crate::Error;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 /// A rate and a time column, or two rates, contradict each other when they differ by more.
 const RATE_TOLERANCE: f64 = 0.01;
 
-/// Share of the first steps that must be alike for a rate to be told.
+/// Share of the first steps that must be alike to determine a rate.
 const REGULAR: f64 = 0.9;
 
 /// A column of time in a file.
@@ -44,7 +44,7 @@ impl Clock {
         let steps: Vec<f64> = times.windows(2).map(|t| (t[1] - t[0]) * scale).collect();
         let found = match (median(&steps), stated_hz) {
             (None, Some(stated)) => 1.0 / stated,
-            (None, None) => return refuse("one sample tells no rate".into()),
+            (None, None) => return refuse("one sample determines no rate".into()),
             (Some(median), _) => {
                 let slack = resolution(&column, times[times.len() - 1]);
                 let alike = |step: &&f64| (*step - median).abs() <= 0.5 * median + slack;
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_is_told_by_times_rounded_to_six_digits() {
+    fn the_rate_follows_from_times_rounded_to_six_digits() {
         let rounded: Vec<f64> = times(44_100.0, 4096)
             .iter()
             .map(|t| (t * 1e6).round() / 1e6)

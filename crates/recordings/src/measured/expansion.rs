@@ -1,8 +1,8 @@
 //! How much a file may become when it is decoded.
 //!
 //! A file of a few hundred bytes can say that it holds a number a thousand million times: run lengths, dictionaries and
-//! compression know no limit. Recordings do: their noise does not compress. What a file decodes to is therefore held
-//! against its length, before memory is taken where the file says how much it holds, and on the way where it does not.
+//! compression know no limit. Recordings do: their noise does not compress. What a file decodes to is therefore compared
+//! with its length. This happens before memory is taken where the file says how much it holds, and on the way elsewhere.
 
 use std::fs;
 use std::path::Path;
@@ -10,8 +10,8 @@ use std::path::Path;
 /// Bytes that any file may decode to: 512 MiB, which is 67 million numbers of eight bytes.
 pub(crate) const ALWAYS: u64 = 1 << 29;
 
-/// Bytes that a byte of a longer file may decode to. Readers hold eight bytes for each number, so that this is four numbers
-/// in a byte; text of one digit and a separator has half a number in one, a bit per sample would be eight.
+/// Bytes that a byte of a longer file may decode to. Readers hold eight bytes for each number, so that this is four
+/// numbers in a byte. Text of one digit and a separator has half a number in one, a bit per sample would be eight.
 const PER_BYTE: u64 = 32;
 
 /// The most bytes that a file of `length` bytes may decode to.
@@ -27,8 +27,8 @@ pub(crate) struct Expansion {
 
 impl Expansion {
     /// Nothing yet of the file at `path`.
-    pub(crate) fn of(path: &Path) -> Self {
-        // One that cannot be looked at is told by its reader.
+    pub(crate) fn new(path: &Path) -> Self {
+        // The reader of the format reports a file that cannot be looked at.
         let most = most_of(fs::metadata(path).map_or(0, |found| found.len()));
         Self { most, left: most }
     }

@@ -1,18 +1,18 @@
-//! Recordings of any origin, read a stretch at a time: CSV, WAV, MAT (version 5), Parquet, MCAP.
+//! Recordings of any origin, read a stretch at a time: CSV, WAV, MAT (version 5 to 7), Parquet, MCAP.
 //!
 //! [`MeasuredFile::open`] reads the heading of a file: its channels with their units, and the
-//! columns of what else it says about its recordings. The recordings follow one after the other;
-//! most files have one, a table with lists of samples has one per row. A [`Recording`] hands out
+//! columns of its labels. The recordings follow one after the other. Most files have one; a table with lists of
+//! samples has one per row. A [`Recording`] hands out
 //! its samples in blocks, and [`Windows`] cuts these into windows. Memory is that of a block and of
-//! a window, whatever the length of the file.
+//! a window, for a file of any length.
 //!
-//! Samples become float32. A cell without a number becomes NaN: what is made of it is for those
-//! to say who use it; [`Windows::bridging`] bridges short gaps and splits at long ones.
+//! Samples become float32. A cell without a number becomes NaN, which the caller has to handle:
+//! [`Windows::bridging`] bridges short gaps and splits at long ones.
 
 mod blanks;
 mod clock;
 pub(crate) mod expansion;
-mod kind;
+mod format;
 mod names;
 mod open;
 mod windows;
@@ -29,7 +29,7 @@ use clock::Clock;
 use expansion::Expansion;
 use std::path::{Path, PathBuf};
 
-/// Samples from which the rate is told where there is a column of time.
+/// Samples from which the rate is determined where there is a column of time.
 const FIRST_SAMPLES: usize = 1 << 12;
 
 /// Samples of each channel that are decoded at a time.
@@ -156,7 +156,7 @@ impl Iterator for MeasuredFile {
 }
 
 impl Recording {
-    /// Where there is a column of time, the first samples are read to tell the rate.
+    /// Where there is a column of time, the first samples are read to determine the rate.
     pub(crate) fn new(
         path: &Path,
         labels: Vec<Value>,
@@ -176,7 +176,7 @@ impl Recording {
             sample_rate_hz: stated_hz,
             clock: None,
             samples: Box::new(samples),
-            expansion: Expansion::of(path),
+            expansion: Expansion::new(path),
             times: Vec::new(),
             block: vec![Vec::new(); channels],
             next: 0,
@@ -266,7 +266,7 @@ impl Recording {
         Ok(read)
     }
 
-    /// From the next sample to `end` or the first gap before it: where it stops, the gap before
+    /// From the next sample to `end` or the first gap before it. Returns where it stops, the gap before
     /// it, and the gap at its end, which the clock has then passed.
     fn stretch(&mut self, end: usize) -> Result<(usize, Option<f64>, Option<f64>), Error> {
         let passed = self.gap_s.take();
@@ -288,8 +288,8 @@ impl Recording {
     }
 }
 
-/// The channels that are to be read, of all that a file has: those asked for, by their column or
-/// their name, with the crank angle; all where none is asked for.
+/// The channels to read, of all that a file has: those asked for, by their column or
+/// their name, with the crank angle; all channels by default.
 pub(crate) fn selected(all: &[MeasuredChannel], options: &Options) -> Result<Vec<usize>, Error> {
     let is = |channel: &MeasuredChannel, name: &str| channel.column == name || channel.name == name;
     if let Some(name) = options

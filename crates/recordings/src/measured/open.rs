@@ -1,9 +1,8 @@
 //! A file is opened by the reader of its format.
 
-use super::kind::{self, Kind};
+use super::format::format_of_file;
 use super::{MeasuredFile, Options};
 use crate::Error;
-use crate::formats::{csv, mat, mcap, parquet, wav};
 use std::fs;
 use std::path::Path;
 
@@ -12,7 +11,7 @@ impl MeasuredFile {
     /// names the one that its first bytes show.
     ///
     /// # Errors
-    /// When the file is not there, is empty, damaged or of another format than its name says, when
+    /// When the file is missing, empty, damaged or of another format than its name says. When
     /// a column that was asked for is not there, or the rates contradict each other.
     pub fn open(path: &Path, options: &Options) -> Result<Self, Error> {
         if let Some(rate) = options.sample_rate_hz
@@ -27,12 +26,6 @@ impl MeasuredFile {
         if metadata.is_file() && metadata.len() == 0 {
             return Err(Error::damaged("a recording", path, "it is empty"));
         }
-        match kind::of(path)? {
-            Kind::Csv => csv::read::open(path, options),
-            Kind::Wav => wav::open(path, options),
-            Kind::Mat => mat::open(path, options),
-            Kind::Parquet => parquet::recordings::open(path, options),
-            Kind::Mcap => mcap::read::open(path, options),
-        }
+        (format_of_file(path)?.open)(path, options)
     }
 }

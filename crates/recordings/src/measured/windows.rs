@@ -76,7 +76,7 @@ impl Windows {
     }
 
     /// Bridges gaps of up to [`LONGEST_BRIDGED`](super::LONGEST_BRIDGED) samples without a number by
-    /// lines, for each channel by its own kind, and ends a stretch at longer ones, as at a gap in time.
+    /// lines, for each channel by its own kind. Longer ones end a stretch, as a gap in time does.
     /// Pieces of fewer than `shortest` samples beside such a gap are left out.
     pub fn bridging(mut self, bridges: Vec<Bridge>, shortest: usize) -> Self {
         self.blanks = Some(Blanks {
@@ -161,7 +161,7 @@ impl Windows {
     }
 
     /// Ends the stretch at the first gap of the next `samples` that is too long to be bridged, if there
-    /// is one: what follows it belongs to the next stretch.
+    /// is one. What follows it belongs to the next stretch.
     fn split(&mut self, samples: usize) -> bool {
         let Some(blanks) = &mut self.blanks else {
             return false;

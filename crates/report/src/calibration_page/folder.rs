@@ -2,10 +2,9 @@
 
 use super::{CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run};
 use crate::Error;
-use calibrate::calibration::MACHINE;
-use calibrate::parameter::unit;
 use calibrate::pictures::{INDICATOR, ORDERS, WAVEFORMS};
-use calibrate::results::{RESULTS, Results};
+use calibrate::results::{MACHINE, RESULTS, Results};
+use calibrate::run_condition::unit;
 use recordings::Table;
 use recordings::formats::parquet::read_table;
 use serde_json::Value;

@@ -38,8 +38,8 @@ pub fn in_lanes<T: InLanes>(work: T) -> T::Output {
 }
 
 /// How many numbers the registers hold that [`in_lanes`] takes: 8 with AVX-512, 4 with AVX2, 1 elsewhere.
-/// `CROSSHEAD_LANES` in the environment holds them down, for those who want to measure what they are worth; it
-/// never asks for more than the processor has.
+/// `CROSSHEAD_LANES` in the environment lowers it, to measure the gain of lanes. It never raises it above what the
+/// processor has.
 pub fn width() -> usize {
     static WIDTH: OnceLock<usize> = OnceLock::new();
     *WIDTH.get_or_init(|| {

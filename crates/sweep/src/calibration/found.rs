@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use calibrate::Results;
-use calibrate::calibration::MACHINE;
 use calibrate::normal::QUANTILE;
-use calibrate::results::{self, Known, RESULTS, not_excluded};
+use calibrate::results::{self, Known, MACHINE, RESULTS, not_excluded};
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use input::bundle::Bundle;
 use input::paths;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use recordings::formats::parquet::TableWriter;
+use recordings::formats::parquet::{PENDING_ROWS, TableWriter};
 use recordings::{CaseWarning, Column, FailedCase, FileEntry, Kind, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
@@ -19,9 +19,6 @@ use crate::{Error, Plan};
 /// and a group of a table of some hundred numbers then has some hundred rows, so that what is said
 /// of each column and group (some 150 bytes) weighs little.
 const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
-
-/// Most rows of a group: as many as the writer collects anyway.
-const MOST_ROWS_PER_GROUP: f64 = 4096.0;
 
 /// The name of the file of a table with the rows of a split and a shard.
 fn table_name(folder: &str, split: Split, shard: u64, shards: u64) -> String {
@@ -259,7 +256,7 @@ fn write_rows(
 }
 
 /// Rows of one row group of a table with these columns: as many as fit its size, where a recording
-/// has so many samples.
+/// has so many samples, and at most as many as the writer collects.
 fn rows_per_group(schema: &Schema, samples: f64) -> usize {
     let bytes = |column: &Column| match column.kind {
         Kind::Samples => 4.0 * samples,
@@ -267,7 +264,7 @@ fn rows_per_group(schema: &Schema, samples: f64) -> usize {
         Kind::Flag => 1.0,
     };
     let row: f64 = schema.columns().iter().map(bytes).sum();
-    (BYTES_PER_GROUP / row.max(1.0)).clamp(1.0, MOST_ROWS_PER_GROUP) as usize
+    (BYTES_PER_GROUP / row.max(1.0)).clamp(1.0, PENDING_ROWS as f64) as usize
 }
 
 #[cfg(test)]

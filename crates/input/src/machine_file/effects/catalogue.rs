@@ -80,6 +80,8 @@ pub struct Parameter {
     pub absent: Option<f64>,
     /// True where it takes whole numbers only.
     pub whole: bool,
+    /// True for a crank angle after the dead centre of a chamber.
+    pub on_the_stroke: bool,
     /// True for an angle whose bounds are a whole turn, or half a one, apart: it has no ends.
     pub cyclic: bool,
 }
@@ -108,6 +110,7 @@ impl Parameter {
             start: declared.start,
             absent: declared.absent,
             whole: matches!(declared.range, Range::Whole(..)),
+            on_the_stroke: declared.range == Range::OnTheStroke,
             cyclic: declared.cyclic,
         }
     }
@@ -158,6 +161,11 @@ impl Entry {
     /// Its source; empty for none.
     pub fn source(&self) -> &'static str {
         self.declaration.source
+    }
+
+    /// Parameters of other effects that this one has as well: the effect's name and the key.
+    pub fn includes(&self) -> &'static [(&'static str, &'static str)] {
+        self.declaration.includes
     }
 
     /// Name of its section in a schema.
@@ -240,6 +248,11 @@ pub(super) fn choice(key: PlaceKey) -> Choice {
 /// The entry called `name`.
 pub fn entry(name: &str) -> Option<&'static Entry> {
     CATALOGUE.iter().find(|entry| entry.name == name)
+}
+
+/// The first entry that is proposed in this way.
+pub fn proposed(by: Proposal) -> Option<&'static Entry> {
+    CATALOGUE.iter().find(|entry| entry.proposal == by)
 }
 
 /// The parameter that a path of the machine file leads to: `effects.valve_loss.discharge`,

@@ -9,7 +9,7 @@ use mechanism::declaration;
 
 declaration! {
     /// A constant added to the recorded crank angle.
-    CrankAngleOffset at [], Sensor:
+    CrankAngleOffset at [], Sensor, CrankAngleZero:
     "The zero of the crank angle is not at top dead centre."
     law "recorded angle + constant" after "" {
         /// By how much the recorded angle is ahead of the crank.

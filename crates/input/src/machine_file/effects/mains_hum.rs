@@ -10,7 +10,7 @@ use mechanism::declaration;
 
 declaration! {
     /// A sine of constant frequency on accelerometers.
-    MainsHum at [Throw, Measure], Sensor, Separately:
+    MainsHum at [Throw, Measure], Sensor, Hum:
     "The cable picks up the mains: a hum of 50 or 60 Hz whatever the speed."
     law "+ a cos(2π f t + φ)" after "" {
         /// Amplitude, in the unit of the sensor.

@@ -9,7 +9,7 @@ mod act;
 mod catalogue;
 mod section;
 
-pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry};
+pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry, proposed};
 pub use mechanism::declaration::{Kind, Proposal};
 
 use super::Sections;

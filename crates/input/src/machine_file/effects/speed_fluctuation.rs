@@ -17,7 +17,7 @@ use mechanism::declaration;
 
 declaration! {
     /// A given speed that fluctuates with one and two cycles a revolution.
-    SpeedFluctuation at [], RunningGear:
+    SpeedFluctuation at [], RunningGear, CrankSpeed:
     "The crank does not turn evenly: within each revolution it runs faster and slower."
     law "θ̇ = ω (1 + Σ d_k cos(k ω t + ψ_k)), k = 1, 2; given speed only" after "Den Hartog 1956" {
         /// Amplitude of the fluctuation once a revolution, of the mean speed.

@@ -1,6 +1,23 @@
 //! CSV of plain columns, for spreadsheets and for a look with the naked eye (RFC 4180).
 
-pub(crate) mod read;
+mod read;
 mod write;
 
 pub use write::write_table;
+
+use super::recording_format::{RecordingFormat, Seen};
+
+/// CSV as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "CSV",
+    endings: &["csv", "tsv", "txt"],
+    signature_at: None,
+    recognise: |head| is_text(head).then_some(Seen::Readable("text")),
+    open: read::open,
+};
+
+/// Text in UTF-8 or Latin-1: no control characters but those of lines and columns.
+fn is_text(head: &[u8]) -> bool {
+    let control = |b: &u8| *b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r');
+    !head.iter().any(control)
+}

@@ -1,10 +1,12 @@
 //! Columns of numbers from CSV, a line at a time.
 //!
-//! The columns are separated by commas, semicolons or tabs; the first line has their names, with
-//! the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`). A file without names has the
-//! columns `column_1`, `column_2`, ... Lines before it that are empty or begin with `#` are passed
-//! over. Where commas do not separate, they may be the decimal sign. An empty cell is a missing
-//! sample, and so is an empty line within a single column; a column that does not begin with a number is left out.
+//! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, they may be the decimal
+//!   sign.
+//! - The first line has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`). A file
+//!   without names has the columns `column_1`, `column_2`, ... Lines before it that are empty or begin with `#` are
+//!   skipped.
+//! - An empty cell is a missing sample, and so is an empty line within a single column.
+//! - A column that does not begin with a number is left out.
 
 use crate::Error;
 use crate::measured::{
@@ -15,7 +17,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-/// A longer line is none of a table.
+/// A longer line does not belong to a table.
 const LONGEST_LINE: u64 = 1 << 20;
 
 /// More columns than a table of channels has.
@@ -158,7 +160,7 @@ impl Lines {
         Ok(lines)
     }
 
-    /// Reads the next line, without its end; false when there is none.
+    /// Reads the next line, without its end; false at the end of the file.
     fn advance(&mut self) -> Result<bool, Error> {
         self.line.clear();
         let read = (&mut self.file)

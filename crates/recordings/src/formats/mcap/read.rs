@@ -4,6 +4,7 @@
 //! as this program writes them. Memory is that of the longest record, and at most that of a
 //! decompressed block.
 
+use super::super::guarded::guarded;
 use super::ros2::{Field, decode, fields};
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
@@ -17,10 +18,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// A longer record is none of samples.
+/// A longer record does not hold samples.
 const LONGEST_RECORD: usize = 1 << 26;
 
-/// Bytes that are read at a time at most, whatever the file asks for.
+/// Most bytes that are read at a time, also where the file asks for more.
 const MOST_AT_ONCE: usize = 1 << 20;
 
 /// More fields than a message of channels has.
@@ -263,7 +264,7 @@ impl Stream {
     fn next(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {
         let path = self.path.clone();
         let contradiction = || damaged(&path, "its chunks and records contradict each other");
-        super::super::guarded(|| self.advance(take), contradiction)
+        guarded(|| self.advance(take), contradiction)
     }
 
     fn advance(&mut self, take: impl FnOnce(Record)) -> Result<bool, Error> {

@@ -29,7 +29,7 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(name: &str) -> Option<Self> {
+    fn from_name(name: &str) -> Option<Self> {
         Some(match name {
             "int8" => Self::I8,
             "uint8" | "byte" | "char" | "bool" => Self::U8,
@@ -47,7 +47,7 @@ impl Kind {
         })
     }
 
-    /// Bytes of a number; 0 for what is none.
+    /// Bytes of a number; 0 for other types.
     fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -88,7 +88,7 @@ pub(super) fn fields(definition: &str) -> Option<Vec<Field>> {
         fields.push(Field {
             name: name.to_owned(),
             comment: comment.filter(|c| !c.is_empty()).map(str::to_owned),
-            kind: Kind::of(kind)?,
+            kind: Kind::from_name(kind)?,
         });
     }
     Some(fields)

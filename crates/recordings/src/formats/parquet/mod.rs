@@ -8,11 +8,22 @@
 
 mod pages;
 mod read;
-pub(crate) mod recordings;
+mod recordings;
 mod write;
 
 pub use read::{ParquetFile, read_table, rows_of_footer};
-pub use write::{TableWriter, write_table};
+pub use write::{PENDING_ROWS, TableWriter, write_table};
+
+use super::recording_format::{RecordingFormat, Seen, has};
+
+/// Parquet as a format of recordings.
+pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
+    name: "Parquet",
+    endings: &["parquet"],
+    signature_at: Some(0),
+    recognise: |head| has(head, 0, b"PAR1").then_some(Seen::Readable("a Parquet file")),
+    open: recordings::open,
+};
 
 /// Rows of a group in a table of samples.
 pub const ROWS_PER_GROUP: usize = 65_536;

@@ -1,8 +1,8 @@
 //! What the pages of a file announce, from their headers, before any is decoded.
 //!
-//! The footer says how long the pages of a column are together, but not how much each becomes; the decoder takes memory for
-//! what a header says. The headers are structs in Thrift's compact protocol (Apache Parquet, *parquet.thrift*, `PageHeader`;
-//! Apache Thrift, *Thrift Compact protocol encoding*).
+//! The footer says how long the pages of a column are together, but not how much each becomes. The decoder takes memory
+//! for what a header says. The headers are structs in Thrift's compact protocol (Apache Parquet, *parquet.thrift*,
+//! `PageHeader`; Apache Thrift, *Thrift Compact protocol encoding*).
 
 use parquet::basic::Type;
 use parquet::file::metadata::ParquetMetaData;
@@ -17,8 +17,8 @@ const DEEPEST: u32 = 8;
 pub(super) struct Announced {
     /// Bytes that all pages decode to, eight for each value at least.
     pub(super) bytes: u64,
-    /// Bytes of the longest page of texts. A text of a dictionary, or one that begins as the one before, may come in
-    /// every row, and each is as long as this at most.
+    /// Bytes of the longest page of texts. A text of a dictionary may come in every row, and so may one that begins as the
+    /// one before. Each is as long as this at most.
     pub(super) longest_text: u64,
 }
 

@@ -100,7 +100,7 @@ impl ParquetFile {
         })
     }
 
-    /// The columns whose type tables have; columns of other types (dates, lists of lists, ...)
+    /// The columns of a type that tables have. Columns of other types (dates, lists of lists, ...)
     /// stand beside them in the file and are left alone. A column of float32 is one of real
     /// numbers, narrower whole numbers are whole numbers, and lists of float64 are rounded to
     /// float32.
@@ -116,7 +116,7 @@ impl ParquetFile {
     /// Some columns of some rows, the columns in the order asked for.
     ///
     /// # Errors
-    /// When a column or a row is not there, the column's type is none that tables have, or the
+    /// When a column or a row is not there, tables do not have the column's type, or the
     /// file is damaged.
     pub fn read(&self, columns: &[&str], rows: Range<usize>) -> Result<Table, Error> {
         if rows.start > rows.end || rows.end > self.rows {
@@ -151,7 +151,7 @@ impl ParquetFile {
     /// for.
     ///
     /// # Errors
-    /// When a column is not there, or its type is none that tables have. Damage is found on the way.
+    /// When a column is not there, or tables do not have its type. Damage is found on the way.
     pub(crate) fn batches_of(
         &self,
         columns: &[&str],
@@ -283,7 +283,7 @@ fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Err
 /// The result of `read`: the Parquet library takes some damage to page headers (one flipped byte in 2000) for a mistake of
 /// its own.
 fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
-    super::super::guarded(read, || damaged(path)("its pages contradict each other"))
+    super::super::guarded::guarded(read, || damaged(path)("its pages contradict each other"))
 }
 
 fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
@@ -322,7 +322,7 @@ fn column(field: &Field) -> Option<Column> {
             .get("description")
             .cloned()
             .unwrap_or_default(),
-        role: field.metadata().get("role").and_then(|name| Role::of(name)),
+        role: field.metadata().get("role").and_then(|name| Role::from_name(name)),
         optional: field.is_nullable(),
     })
 }

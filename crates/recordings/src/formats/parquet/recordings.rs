@@ -11,11 +11,11 @@ use std::path::Path;
 /// Rows of plain columns that are decoded at a time.
 const BATCH_ROWS: usize = 1 << 13;
 
-/// The column that tells the sample rate of a row's lists.
+/// The column with the sample rate of a row's lists.
 const RATE: &str = "sample_rate_hz";
 
 /// Opens a file. Where a column holds lists of samples, every row is a recording, and the other
-/// columns are its labels; otherwise the columns of numbers are the channels of one recording.
+/// columns are its labels. Otherwise the columns of numbers are the channels of one recording.
 pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let file = ParquetFile::open(path)?;
     let lists = file

@@ -28,7 +28,7 @@ const ELEMENT: &str = "element";
 const PENDING_SAMPLES: usize = 1 << 18;
 
 /// Rows that are collected before they are encoded together.
-const PENDING_ROWS: usize = 1 << 12;
+pub const PENDING_ROWS: usize = 1 << 12;
 
 /// Bytes of a page before compression: a column collects as many, and so does what compresses them.
 const PAGE_BYTES: usize = 1 << 18;
@@ -46,8 +46,8 @@ pub struct TableWriter<W: Write + Send> {
 }
 
 impl<W: Write + Send> TableWriter<W> {
-    /// Starts a table in groups of `rows_per_group` rows, which a reader loads at a time and the writer
-    /// keeps encoded until they are complete: a few MiB of samples per group suit most.
+    /// Starts a table in groups of `rows_per_group` rows. A reader loads one group at a time, and the writer
+    /// keeps a group encoded until it is complete. A few MiB of samples per group suit most.
     ///
     /// # Errors
     /// When `rows_per_group` is 0, or the writer fails.

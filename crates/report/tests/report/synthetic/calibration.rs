@@ -1,6 +1,7 @@
 //! A made-up calibration: two joints, five runs, one of them held out.
 
 use super::Uniform;
+use calibrate::Bounded;
 use calibrate::Relation;
 use calibrate::converter::Converter;
 use calibrate::forecast::{ChannelForecast, Forecast};
@@ -9,7 +10,7 @@ use calibrate::results::{
     self, Alternative, ByName, Diagram, Estimate, Event, Gas, Misfits, Phase, Polytrope, Relations,
     Results, Rms, ValveEvents,
 };
-use calibrate::transfer::{Basis, Bounded, Decision, Hypothesis};
+use calibrate::transfer::{Basis, Decision, Hypothesis};
 use report::calibration_page::{
     CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run,
 };
