@@ -2,8 +2,7 @@
 
 use crate::error::Error;
 use crate::machine_file::Sections;
-use mechanism::declaration::Alternatives;
-use mechanism::effects::{self, Effect, Law, Oval, Shaken};
+use mechanism::effects::{self, Alternatives, Effect, Law, Oval, Shaken};
 use mechanism::{Machine, Throw};
 use schemars::JsonSchema;
 use serde::Deserialize;
