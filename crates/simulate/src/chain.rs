@@ -1,7 +1,8 @@
 //! The measuring chain up to the recorder: filters at the inner rate, then decimation.
 
 use crate::delay::Delay;
-use crate::record::Error;
+use crate::error::Error;
+use crate::instants::Instants;
 use crate::sensor::{Axis, Chain, ChamberEnd, Measured, Sensor};
 use crate::settings::Settings;
 use integrate::Real;
@@ -10,8 +11,6 @@ use scalar::Scalar;
 use signal::biquad::Filter;
 use signal::decimate::Decimator;
 use std::f64::consts::TAU;
-
-use crate::run::Instants;
 
 /// Fewest inner samples per recorded one.
 const LEAST_FACTOR: f64 = 4.0;
