@@ -4,11 +4,30 @@
 //! (`throw1.crosshead_acceleration_m_s2`), else the channel's name in words: `throw1 crosshead
 //! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
 
-use crate::bundle::Channel;
 use crate::error::{Error, Problem};
+use crate::quantity::Number;
 use crate::unit::{self, Dimension, GRAVITY, UnitError};
+use serde::Deserialize;
 use simulate::{Axis, ChamberEnd, Measured};
 use std::f64::consts::TAU;
+
+/// A channel of a run.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Channel {
+    /// What it is, in words.
+    #[serde(default)]
+    pub name: String,
+    /// Its column in the file.
+    pub column: String,
+    /// Its unit, e.g. `m/s2`.
+    pub unit: String,
+    /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
+    #[serde(default)]
+    pub offset: Option<Number>,
+    /// The crank angle at which the pulse of a tacho comes, rad.
+    #[serde(default)]
+    pub crank_angle_rad: Option<Number>,
+}
 
 /// What a channel of a recording is.
 #[derive(Clone, Debug, PartialEq)]
@@ -389,7 +408,7 @@ mod tests {
             message.contains("unit: psig counts from the ambient pressure"),
             "{message}"
         );
-        gauge.offset = crate::quantity::Number::new(14.6);
+        gauge.offset = Number::new(14.6);
         let Ok(Meaning::Measured { to_si, .. }) = meaning(&gauge, &[""]) else {
             panic!("no pressure");
         };
