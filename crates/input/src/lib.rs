@@ -36,5 +36,7 @@ pub mod effects {
 
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
-pub use machine_file::{MachineFile, NormalClearance, Resolved, ThrowNormalClearance};
+pub use machine_file::{
+    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section,
+};
 pub use run_settings::run_settings;

@@ -33,6 +33,7 @@ mod sampler;
 mod section;
 pub mod sensitivity;
 pub mod sensor;
+pub mod sensors;
 pub mod settings;
 mod simulate;
 mod strobes;

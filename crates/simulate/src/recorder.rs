@@ -3,7 +3,7 @@
 use crate::chain::Sampling;
 use crate::error::Error;
 use crate::moved::Moved;
-use crate::sensor::{Measured, Sensor};
+use crate::sensor::Sensor;
 use mechanism::Machine;
 use scalar::Dual;
 use std::f64::consts::TAU;
@@ -61,9 +61,9 @@ impl Recorder {
                 let other = self.record(machine, &moved.sensors, values)?;
                 let parts = derivative.iter_mut().zip(&other).zip(&series);
                 for (((d, other), series), sensor) in parts.zip(sensors) {
-                    let turn = match sensor.measured {
-                        Measured::CrankAngle => TAU,
-                        _ => f64::INFINITY,
+                    let turn = match sensor.measured.is_angle() {
+                        true => TAU,
+                        false => f64::INFINITY,
                     };
                     // An angle that passes a whole turn jumps back.
                     let change = |a: f64, b: f64| a - b - ((a - b) / turn).round() * TAU;

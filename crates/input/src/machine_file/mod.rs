@@ -20,7 +20,9 @@ mod value;
 pub use normal_clearance::{NormalClearance, ThrowNormalClearance};
 pub(crate) use relation::RelationSection;
 pub use resolved::Resolved;
+pub use sensors::sensor_section;
 pub(crate) use top_sections::Sections;
+pub(crate) use value::unit_of_quantity;
 
 use crate::error::Error;
 use crate::yaml::{self, Document};
