@@ -6,9 +6,9 @@ use crate::problem::{measurable, names};
 use crate::recorded_sensor::RecordedSensor;
 use input::amount::Amount;
 use input::unit;
-use input::{MachineFile, Resolved};
-use serde_json::{Map, Value, json};
-use simulate::{ChamberEnd, Measured, Range};
+use input::{MachineFile, sensor_section};
+use serde_json::{Map, Value};
+use simulate::{Measured, Range};
 use std::collections::BTreeMap;
 
 /// Digits of a written noise: its own accuracy has fewer.
@@ -37,7 +37,7 @@ pub fn write(
         };
         let place = machine.sensors.iter().position(|s| s.measured == *measured);
         let place = place.unwrap_or_else(|| {
-            sections.push(Value::Object(section(&machine, *measured)));
+            sections.push(Value::Object(sensor_section(*measured, &throws)));
             sections.len() - 1
         });
         let chain = machine.sensors.get(place).map(|sensor| &sensor.chain);
@@ -54,30 +54,6 @@ pub fn write(
         tree["sample_rate"] = format!("{} Hz", rounded(rate, 9)).into();
     }
     Ok(())
-}
-
-/// A perfect sensor's section.
-fn section(machine: &Resolved, measured: Measured) -> Map<String, Value> {
-    let measure = match measured {
-        Measured::CrossheadAcceleration { .. } => "crosshead_acceleration",
-        Measured::CrossheadLateralAcceleration { .. } => "crosshead_lateral_acceleration",
-        Measured::FrameAcceleration { .. } => "frame_acceleration",
-        Measured::CylinderPressure { .. } => "cylinder_pressure",
-        Measured::CrankAngle => "crank_angle",
-    };
-    let mut section = Map::from_iter([("measure".to_owned(), json!(measure))]);
-    let throw = measured.throw().map(|i| &machine.machine.throws[i].name);
-    if let Some(throw) = throw.filter(|name| !name.is_empty()) {
-        section.insert("throw".into(), json!(throw));
-    }
-    if let Measured::CylinderPressure {
-        end: ChamberEnd::Crank,
-        ..
-    } = measured
-    {
-        section.insert("end".into(), json!("crank"));
-    }
-    section
 }
 
 /// Fills a section; `stated` is the range that it has, SI.

@@ -8,9 +8,10 @@
 //! [`PER_REVOLUTION`] samples a revolution, whose scatter from revolution to revolution is judged
 //! (crate chaos, module forced).
 
+use crate::definition::{Definition, Group};
 use crate::reason::Reason;
 use crate::spectral::crank_angle;
-use crate::{Definition, Group, Window, has_features};
+use crate::window::{Window, has_features};
 use chaos::correlation_dimension::correlation_dimension;
 use chaos::delay::{Times, times};
 use chaos::dimension::unfolding;

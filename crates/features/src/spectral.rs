@@ -1,7 +1,7 @@
 //! What the signals hold at frequencies, at orders of the shaft and in its revolutions.
 
-use crate::Window;
 use crate::reason::Reason;
+use crate::window::Window;
 use signal::amplitude_spectrum::band_mean_squares;
 use signal::angle_resampling::{AngleGrid, Revolutions};
 use signal::cepstrum::real_cepstrum;

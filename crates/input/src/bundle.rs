@@ -4,6 +4,8 @@
 //! is handed on as it stands: what is read from it depends on what it is wanted for. A bundle of a
 //! machine with one throw is one with the throw ``, so that load and joints have one shape.
 
+pub use crate::bundle_channel::Channel;
+
 use crate::bundle_channel::{Meaning, meaning};
 use crate::choice::{Ideal, Or};
 use crate::error::{Error, nearest};
@@ -81,24 +83,6 @@ pub type Joint = Or<Ideal, Clear>;
 pub struct Clear {
     /// Radial clearance, m.
     pub clearance_m: Number<FromZero>,
-}
-
-/// A channel of a run.
-#[derive(Clone, Debug, Deserialize)]
-pub struct Channel {
-    /// What it is, in words.
-    #[serde(default)]
-    pub name: String,
-    /// Its column in the file.
-    pub column: String,
-    /// Its unit, e.g. `m/s2`.
-    pub unit: String,
-    /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
-    #[serde(default)]
-    pub offset: Option<Number>,
-    /// The crank angle at which the pulse of a tacho comes, rad.
-    #[serde(default)]
-    pub crank_angle_rad: Option<Number>,
 }
 
 /// The keys of a run, to find slips of the keyboard among those that are unknown.

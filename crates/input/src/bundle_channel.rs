@@ -4,11 +4,33 @@
 //! (`throw1.crosshead_acceleration_m_s2`), else the channel's name in words: `throw1 crosshead
 //! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
 
-use crate::bundle::Channel;
 use crate::error::{Error, Problem};
+use crate::kind::KINDS;
+use crate::machine_file::unit_of_quantity;
+use crate::quantity::Number;
 use crate::unit::{self, Dimension, GRAVITY, UnitError};
-use simulate::{Axis, ChamberEnd, Measured};
+use mechanism::declaration::Quantity;
+use serde::Deserialize;
+use simulate::sensors::{Entry, SENSORS};
 use std::f64::consts::TAU;
+
+/// A channel of a run.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Channel {
+    /// What it is, in words.
+    #[serde(default)]
+    pub name: String,
+    /// Its column in the file.
+    pub column: String,
+    /// Its unit, e.g. `m/s2`.
+    pub unit: String,
+    /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
+    #[serde(default)]
+    pub offset: Option<Number>,
+    /// The crank angle at which the pulse of a tacho comes, rad.
+    #[serde(default)]
+    pub crank_angle_rad: Option<Number>,
+}
 
 /// What a channel of a recording is.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +46,7 @@ pub enum Meaning {
     },
     /// Something that the model predicts, under the name of its column there.
     Measured {
-        /// The column, as [`Measured::column`] names it.
+        /// The column, as [`Measured::column`](simulate::Measured::column) names it.
         column: String,
         /// How it becomes SI.
         to_si: ToSi,
@@ -59,7 +81,6 @@ impl ToSi {
 const SLIPS: usize = 2;
 
 const ACCELERATION: Dimension = Dimension::of(1.0, 0.0, -2.0, 0.0);
-const PRESSURE: Dimension = Dimension::of(-1.0, 1.0, -2.0, 0.0);
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 /// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
@@ -102,16 +123,10 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
         Kind::Tacho => Meaning::Tacho {
             at: channel.crank_angle_rad.map(|at| at.get()),
         },
-        Kind::CrankAngle => {
-            Meaning::CrankAngle(to_si(channel, ANGLE, "an angle, e.g. rad or deg")?)
-        }
-        Kind::Acceleration => Meaning::Measured {
+        Kind::CrankAngle => Meaning::CrankAngle(to_si(channel, Quantity::Angle)?),
+        Kind::Measured(quantity) => Meaning::Measured {
             column: column.clone(),
-            to_si: to_si(channel, ACCELERATION, "an acceleration, e.g. m/s2 or g")?,
-        },
-        Kind::Pressure => Meaning::Measured {
-            column: column.clone(),
-            to_si: to_si(channel, PRESSURE, "a pressure, e.g. Pa, bar or psi")?,
+            to_si: to_si(channel, *quantity)?,
         },
     })
 }
@@ -121,86 +136,70 @@ enum Kind {
     Time,
     CrankAngle,
     Tacho,
-    Acceleration,
-    Pressure,
+    Measured(Quantity),
 }
 
-/// The columns that have a meaning, with the words for each.
-fn known(throws: &[&str]) -> Vec<(String, Vec<String>, Kind)> {
-    let one = |column: &str, names: &[&str], kind| {
-        let names = names.iter().map(|name| (*name).to_owned());
-        (column.to_owned(), names.collect(), kind)
-    };
-    let mut all = vec![
-        one("t_s", &["time", "t"], Kind::Time),
-        one(
-            "crank_angle_rad",
-            &["crank angle", "angle", "encoder", "crankshaft angle"],
-            Kind::CrankAngle,
-        ),
-        one(
-            "tacho",
-            &["tacho", "tachometer", "keyphasor", "once per revolution"],
-            Kind::Tacho,
-        ),
-    ];
-    for (axis, name) in [(Axis::X, "x"), (Axis::Y, "y")] {
-        let column = Measured::FrameAcceleration { axis }.column(throws);
-        let names = [
-            format!("frame acceleration {name}"),
-            format!("{name} frame acceleration"),
-        ];
-        all.push((column, names.to_vec(), Kind::Acceleration));
-    }
-    for (throw, of) in throws.iter().enumerate() {
-        let of = words(of);
-        let mut add = |measured: Measured, names: &[&str], kind| {
-            let names = names.iter().map(|name| match of.is_empty() {
-                true => (*name).to_owned(),
-                false => format!("{of} {name}"),
-            });
-            all.push((measured.column(throws), names.collect(), kind));
-        };
-        add(
-            Measured::CrossheadAcceleration { throw },
-            &[
-                "crosshead acceleration",
-                "acceleration",
-                "acc",
-                "accelerometer",
-                "crosshead vibration",
-            ],
-            Kind::Acceleration,
-        );
-        add(
-            Measured::CrossheadLateralAcceleration { throw },
-            &["crosshead lateral acceleration", "lateral acceleration"],
-            Kind::Acceleration,
-        );
-        let end = ChamberEnd::Head;
-        add(
-            Measured::CylinderPressure { throw, end },
-            &[
-                "cylinder pressure",
-                "pressure",
-                "head end pressure",
-                "head end cylinder pressure",
-                "cylinder pressure head end",
-            ],
-            Kind::Pressure,
-        );
-        let end = ChamberEnd::Crank;
-        add(
-            Measured::CylinderPressure { throw, end },
-            &[
-                "crank end pressure",
-                "crank end cylinder pressure",
-                "cylinder pressure crank end",
-            ],
-            Kind::Pressure,
-        );
+/// A column that has a meaning, with the words for it.
+type Known = (String, Vec<String>, Kind);
+
+/// The columns that have a meaning: those of the shaft, of the machine, and of each throw.
+fn known(throws: &[&str]) -> Vec<Known> {
+    let angles = SENSORS.iter().filter(|sensor| is_angle(sensor));
+    let others = SENSORS.iter().filter(|sensor| !is_angle(sensor));
+    let of_machine = others.clone().filter(|sensor| !sensor.is_of_throw());
+    let mut all = vec![known_as("t_s", &["time", "t"], Kind::Time)];
+    all.extend(angles.flat_map(|sensor| known_sensor(sensor, "")));
+    all.push(known_as(
+        "tacho",
+        &["tacho", "tachometer", "keyphasor", "once per revolution"],
+        Kind::Tacho,
+    ));
+    all.extend(of_machine.flat_map(|sensor| known_sensor(sensor, "")));
+    for throw in throws {
+        let of_throw = others.clone().filter(|sensor| sensor.is_of_throw());
+        all.extend(of_throw.flat_map(|sensor| known_sensor(sensor, throw)));
     }
     all
+}
+
+fn is_angle(sensor: &Entry) -> bool {
+    sensor.declaration.quantity == Quantity::Angle
+}
+
+fn known_as(column: &str, names: &[&str], kind: Kind) -> Known {
+    let names = names.iter().map(|name| (*name).to_owned());
+    (column.to_owned(), names.collect(), kind)
+}
+
+/// The channels of a sensor on the throw of this name; the name is empty in a machine of one.
+fn known_sensor(sensor: &'static Entry, throw: &str) -> impl Iterator<Item = Known> + use<> {
+    let (column_of, of) = (throw.to_owned(), words(throw));
+    let declared = &sensor.declaration;
+    let kind = match is_angle(sensor) {
+        true => Kind::CrankAngle,
+        false => Kind::Measured(declared.quantity),
+    };
+    declared.channels.iter().map(move |channel| {
+        let names = channel.words.iter().map(|name| match of.is_empty() {
+            true => (*name).to_owned(),
+            false => format!("{of} {name}"),
+        });
+        (channel.column(&column_of), names.collect(), kind)
+    })
+}
+
+/// The dimension of a quantity, and what belongs in the place of a wrong unit.
+fn unit_of(quantity: Quantity) -> (Dimension, String) {
+    let (dimension, unit) = unit_of_quantity(quantity);
+    let examples = match quantity {
+        Quantity::Acceleration => "m/s2 or g",
+        Quantity::Pressure => "Pa, bar or psi",
+        Quantity::Angle => "rad or deg",
+        _ => unit,
+    };
+    let kind = KINDS.iter().find(|kind| kind.dimension == dimension);
+    let words = kind.map_or("a number", |kind| kind.words);
+    (dimension, format!("{words}, e.g. {examples}"))
 }
 
 /// Lower case, words apart, without a unit in brackets or at the end of a column's name.
@@ -220,7 +219,8 @@ fn words(text: &str) -> String {
     ending.map_or(joined.clone(), str::to_owned)
 }
 
-fn to_si(channel: &Channel, dimension: Dimension, expected: &str) -> Result<ToSi, Error> {
+fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
+    let (dimension, expected) = unit_of(quantity);
     let text = channel.unit.trim();
     let refuse = |reason: String| Error::new("unit", Problem::Other(reason));
     let gauge = unit::gauge(text);
@@ -389,7 +389,7 @@ mod tests {
             message.contains("unit: psig counts from the ambient pressure"),
             "{message}"
         );
-        gauge.offset = crate::quantity::Number::new(14.6);
+        gauge.offset = Number::new(14.6);
         let Ok(Meaning::Measured { to_si, .. }) = meaning(&gauge, &[""]) else {
             panic!("no pressure");
         };

@@ -15,7 +15,9 @@ pub mod bundle_channel;
 pub mod bundle_machine;
 pub mod calibration;
 pub mod choice;
+mod dimension;
 pub mod error;
+mod kind;
 pub mod machine_file;
 pub mod paths;
 pub mod quantity;
@@ -34,5 +36,7 @@ pub mod effects {
 
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
-pub use machine_file::{MachineFile, NormalClearance, Resolved, ThrowNormalClearance};
+pub use machine_file::{
+    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section,
+};
 pub use run_settings::run_settings;

@@ -1,7 +1,15 @@
 //! Quantities as files have them: a text with a unit whose dimension and range the type fixes.
 
+pub use crate::kind::{
+    Acceleration, Angle, Area, Compliance, Damping, Duration, Force, ForcePerPressure, Frequency,
+    Inertia, Kind, Length, Mass, Pressure, Ratio, Speed, StiffnessPerRoot, Torque, TorqueSlope,
+    Velocity, Viscosity,
+};
+
+use crate::dimension::Measure;
 use crate::error::quoted;
-use crate::unit::{self, Dimension, Measure, UnitError};
+use crate::kind::KINDS;
+use crate::unit::{self, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
 use serde::{Serialize, Serializer};
@@ -9,72 +17,6 @@ use serde_json::Value;
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
-
-/// A kind of quantity: what a length, a mass, ... is called and measured in.
-pub trait Kind {
-    /// Its name.
-    const NAME: &'static str;
-    /// Its name with an article: `a length`.
-    const WORDS: &'static str;
-    /// Its SI unit.
-    const UNIT: &'static str;
-    /// Something that people write: `0.1 mm`.
-    const EXAMPLE: &'static str;
-    /// Its dimension.
-    const DIMENSION: Dimension;
-}
-
-/// A row of the table of kinds.
-pub(crate) struct KindRow {
-    words: &'static str,
-    pub(crate) unit: &'static str,
-    pub(crate) dimension: Dimension,
-}
-
-macro_rules! kinds {
-    ($( $name:ident, $words:literal, $unit:literal, $example:literal, $dimension:expr; )*) => {
-        $(
-            #[doc = concat!("Marks ", $words, ", in SI units ", $unit, ".")]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct $name;
-
-            impl Kind for $name {
-                const NAME: &'static str = stringify!($name);
-                const WORDS: &'static str = $words;
-                const UNIT: &'static str = $unit;
-                const EXAMPLE: &'static str = $example;
-                const DIMENSION: Dimension = $dimension;
-            }
-        )*
-
-        pub(crate) const KINDS: &[KindRow] = &[
-            $( KindRow { words: $words, unit: $unit, dimension: $dimension } ),*
-        ];
-    };
-}
-
-kinds! {
-    Length, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0);
-    Mass, "a mass", "kg", "12 kg", Dimension::of(0.0, 1.0, 0.0, 0.0);
-    Duration, "a duration", "s", "0.5 s", Dimension::of(0.0, 0.0, 1.0, 0.0);
-    Angle, "an angle", "rad", "30 deg", Dimension::of(0.0, 0.0, 0.0, 1.0);
-    Speed, "a rotational speed", "rad/s", "500 rpm", Dimension::of(0.0, 0.0, -1.0, 1.0);
-    Frequency, "a frequency", "Hz", "10 kHz", Dimension::of(0.0, 0.0, -1.0, 0.0);
-    Velocity, "a velocity", "m/s", "0.01 m/s", Dimension::of(1.0, 0.0, -1.0, 0.0);
-    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::of(1.0, 0.0, -2.0, 0.0);
-    Force, "a force", "N", "200 N", Dimension::of(1.0, 1.0, -2.0, 0.0);
-    Torque, "a torque", "N m", "60 N m", Dimension::of(2.0, 1.0, -2.0, 0.0);
-    TorqueSlope, "a torque per speed", "N m s", "40 N m s", Dimension::of(2.0, 1.0, -1.0, 0.0);
-    Pressure, "a pressure", "Pa", "0.393 MPa", Dimension::of(-1.0, 1.0, -2.0, 0.0);
-    Inertia, "a moment of inertia", "kg m^2", "0.6 kg m^2", Dimension::of(2.0, 1.0, 0.0, 0.0);
-    Damping, "a damping", "N s/m", "2e4 N s/m", Dimension::of(0.0, 1.0, -1.0, 0.0);
-    Area, "an area", "m^2", "2 mm^2", Dimension::of(2.0, 0.0, 0.0, 0.0);
-    Compliance, "a length per force", "m/N", "5 nm/N", Dimension::of(0.0, -1.0, 2.0, 0.0);
-    Viscosity, "a viscosity", "Pa s", "0.05 Pa s", Dimension::of(-1.0, 1.0, -1.0, 0.0);
-    StiffnessPerRoot, "a stiffness in N/m^1.5", "N/m^1.5", "20 GN/m^1.5", Dimension::stiffness(1.5);
-    ForcePerPressure, "a force per pressure", "N/Pa", "1e-4 N/Pa", Dimension::of(2.0, 0.0, 0.0, 0.0);
-    Ratio, "a percentage", "%", "5 %", Dimension::NONE;
-}
 
 /// The values that a quantity or a number may have.
 pub trait Bound {

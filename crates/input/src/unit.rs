@@ -9,35 +9,15 @@
 //! Everything after the one `/` is in the denominator. Powers of ten are moved into the decimal
 //! number before it is rounded, so that `0.3 mm` is exactly the number that `0.0003` is.
 
+pub use crate::dimension::{Dimension, Measure};
+
 use crate::error::nearest;
+use crate::kind::KINDS;
 use scalar::Scalar;
 use std::f64::consts::PI;
 use std::fmt;
 
 pub use mechanism::GRAVITY;
-
-/// Exponents of the base units. The angle counts as one, so that a speed in rpm cannot pass for a
-/// frequency in Hz.
-#[derive(Clone, Copy, Debug)]
-pub struct Dimension {
-    /// Exponent of the metre.
-    pub length: f64,
-    /// Exponent of the kilogram.
-    pub mass: f64,
-    /// Exponent of the second.
-    pub time: f64,
-    /// Exponent of the radian.
-    pub angle: f64,
-}
-
-/// A value with its dimension.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measure {
-    /// The value in SI units.
-    pub si: f64,
-    /// What it is a value of.
-    pub dimension: Dimension,
-}
 
 /// Why a text is no quantity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -74,57 +54,10 @@ pub enum UnitError {
     Form,
 }
 
-impl Dimension {
-    /// A pure number.
-    pub const NONE: Self = Self::of(0.0, 0.0, 0.0, 0.0);
-
-    /// m^length kg^mass s^time rad^angle.
-    pub const fn of(length: f64, mass: f64, time: f64, angle: f64) -> Self {
-        Self {
-            length,
-            mass,
-            time,
-            angle,
-        }
-    }
-
-    /// N/m^n: the stiffness of a contact law with exponent n.
-    pub const fn stiffness(exponent: f64) -> Self {
-        Self::of(1.0 - exponent, 1.0, -2.0, 0.0)
-    }
-
-    /// The exponent n, if this is N/m^n.
-    pub fn stiffness_exponent(&self) -> Option<f64> {
-        let exponent = (1e9 * (1.0 - self.length)).round() / 1e9;
-        (*self == Self::stiffness(exponent)).then_some(exponent)
-    }
-
-    fn exponents(&self) -> [f64; 4] {
-        [self.length, self.mass, self.time, self.angle]
-    }
-
-    fn times(&self, unit: &Self, power: f64) -> Self {
-        Self {
-            length: self.length + power * unit.length,
-            mass: self.mass + power * unit.mass,
-            time: self.time + power * unit.time,
-            angle: self.angle + power * unit.angle,
-        }
-    }
-}
-
-/// Equal up to the rounding of fractional exponents.
-impl PartialEq for Dimension {
-    fn eq(&self, other: &Self) -> bool {
-        let pairs = self.exponents().into_iter().zip(other.exponents());
-        pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9)
-    }
-}
-
 /// The dimension in SI units: `N/m^1.5`, `kg m^2`; `%` for a pure number.
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        if let Some(kind) = crate::quantity::KINDS.iter().find(|k| k.dimension == *self) {
+        if let Some(kind) = KINDS.iter().find(|k| k.dimension == *self) {
             return f.write_str(kind.unit);
         }
         if let Some(exponent) = self.stiffness_exponent() {

@@ -1,8 +1,6 @@
 //! What a law says of itself: the words, units and ranges from which files, schemas, tables and
 //! searches are made.
 
-use crate::effects::{Oval, Shaken};
-
 /// The declaration of a law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Declaration {
@@ -191,15 +189,6 @@ pub enum PlaceKey {
     Part,
 }
 
-/// What a file says of a place beyond where it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Alternatives {
-    /// What an unbalance shakes.
-    pub body: Option<Shaken>,
-    /// What of a joint is oval.
-    pub part: Option<Oval>,
-}
-
 /// Declares an effect. The module gets `DECLARATION` and a struct `Values` of plain numbers, SI; with
 /// `as Law` also `of`, which makes the law from them where the names of its fields are the keys.
 ///
@@ -279,7 +268,7 @@ macro_rules! declaration {
     (@of [$($key:ident)+]) => {};
     (@of [$($key:ident)+] $type:ident) => {
         /// The law with these values.
-        pub fn of(values: &[f64], _: $crate::declaration::Alternatives) -> $type {
+        pub fn of(values: &[f64], _: $crate::effects::Alternatives) -> $type {
             let Values { $($key),+ } = Values::of(values);
             $type { $($key),+ }
         }

@@ -1,9 +1,10 @@
 //! Impact without rebound, for joints of the two-mode model.
 
 use crate::drive::Drive;
-use crate::dynamics::{Dynamics, Place};
+use crate::dynamics::Dynamics;
 use crate::plane::{Vec2, origin};
 use crate::shaft::{Shaft, Turning};
+use crate::watch::Place;
 use scalar::Scalar;
 
 impl<S: Scalar> Dynamics<S> {

@@ -24,11 +24,13 @@ pub mod lift;
 pub mod machine;
 pub mod mode;
 pub mod plane;
+mod scales;
 pub mod shaft;
 mod side_by_side;
 pub mod state;
 mod system;
 pub mod throw;
+mod watch;
 
 pub use dynamics::Dynamics;
 pub use evaluation::{Evaluation, ThrowEvaluation};

@@ -1,119 +1,17 @@
 //! The machine as a system to integrate: derivatives, guards, switches.
 
-use crate::drive::Drive;
-use crate::dynamics::{Dynamics, Place};
+use crate::dynamics::Dynamics;
 use crate::effects::{Acting, Acts, End};
 use crate::energy;
 use crate::gas::GasState;
+use crate::joints::contact_guards::switch_contact;
 use crate::joints::guide::Guide;
-use crate::joints::revolute::{CONTACT_GUARDS, JointModel, Revolute, switch_contact};
-use crate::machine::Machine;
+use crate::joints::revolute::{JointModel, Revolute};
 use crate::mode::{ContactMode, flagged};
 use crate::plane::Vec2;
-use crate::state::Layout;
+use crate::watch::{Place, Watch, Watched};
 use integrate::{Real, System};
 use scalar::{Scalar, inlined};
-
-/// Rate scale over offset scale, 1/s: contact rings at some hundred Hz.
-const RATE: f64 = 1e3;
-/// Scale of a frame's displacement, m.
-const FRAME: f64 = 1e-5;
-/// Scale of a rod's stretch.
-const STRETCH: f64 = 1e-5;
-/// Scale of the gas's drift off its polytrope.
-const DRIFT: f64 = 1e-3;
-/// Scale of the crank angle's deviation, rad.
-const ANGLE: f64 = 1e-3;
-
-/// What a guard watches, and which of that place's guards it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Watch {
-    place: Watched,
-    part: usize,
-}
-
-/// Where a guard watches.
-#[derive(Clone, Copy, Debug)]
-enum Watched {
-    /// A revolute joint with clearance.
-    Joint(Place),
-    /// A corner of the crosshead of a throw.
-    Corner(usize, usize),
-    /// The gas of a throw: dead centres, and two valves a chamber.
-    Gas(usize),
-    /// The crank's speed, where it is not constant: the crank turns back.
-    Crank,
-}
-
-/// The guards that a machine of this build has, in the order in which they are written.
-pub(crate) fn watches<S: Scalar>(machine: &Machine<S>) -> Vec<Watch> {
-    let mut watches = Vec::new();
-    let mut add = |place, parts| {
-        watches.extend((0..parts).map(|part| Watch { place, part }));
-    };
-    let mut joint = |joint: &Revolute<S>, place| {
-        if joint.clear().is_some() {
-            add(Watched::Joint(place), CONTACT_GUARDS);
-        }
-    };
-    joint(&machine.main, Place::Main);
-    for (i, throw) in machine.throws.iter().enumerate() {
-        joint(&throw.big_end, Place::BigEnd(i));
-        joint(&throw.small_end, Place::SmallEnd(i));
-    }
-    for (i, throw) in machine.throws.iter().enumerate() {
-        if throw.guide.clear().is_some() {
-            for corner in 0..4 {
-                add(Watched::Corner(i, corner), CONTACT_GUARDS);
-            }
-        }
-        let chambers = 1 + usize::from(throw.cylinder.crank_end.is_some());
-        add(Watched::Gas(i), 1 + 2 * chambers);
-    }
-    if !machine.drive.is_constant() {
-        add(Watched::Crank, 1);
-    }
-    watches
-}
-
-/// The size of each component of the state that counts as 1 for the tolerance: clearances for
-/// offsets. The ledger does not steer the step.
-pub(crate) fn scales<S: Scalar>(machine: &Machine<S>, layout: &Layout) -> Vec<S> {
-    let mut scales = vec![S::constant(f64::INFINITY); layout.dimension];
-    let mut set = |at: Option<usize>, [first, second]: [S; 2]| {
-        if let Some(i) = at {
-            let sizes = [first, second, first * RATE, second * RATE];
-            scales[i..i + 4].copy_from_slice(&sizes);
-        }
-    };
-    let size = |joint: &Revolute<S>| joint.clear().map_or(S::zero(), |c| c.clearance);
-    set(layout.main, [size(&machine.main); 2]);
-    for (throw, at) in machine.throws.iter().zip(&layout.throws) {
-        set(at.big_end, [size(&throw.big_end); 2]);
-        set(at.small_end, [size(&throw.small_end); 2]);
-        if let Guide::Clear(guide) = &throw.guide {
-            set(
-                at.guide,
-                [guide.clearance, guide.clearance / guide.half_length],
-            );
-        }
-    }
-    set(layout.frame, [S::constant(FRAME); 2]);
-    for at in &layout.throws {
-        if let Some(i) = at.rod {
-            scales[i] = S::constant(STRETCH);
-            scales[i + 1] = S::constant(STRETCH * RATE);
-        }
-        if let Some(i) = at.gas {
-            scales[i..i + 2].fill(S::constant(DRIFT));
-        }
-    }
-    if let (Some(i), Drive::Free(motor)) = (layout.crank, &machine.drive) {
-        scales[i] = S::constant(ANGLE);
-        scales[i + 1] = motor.reference_speed.abs() * ANGLE;
-    }
-    scales
-}
 
 /// Writes the derivative of the two coordinates at `index` and of their rates.
 #[inline(always)]
@@ -184,7 +82,7 @@ impl<S: Scalar> Dynamics<S> {
                 .any(|t| two_mode(&t.big_end) || two_mode(&t.small_end))
     }
 
-    /// Writes the guards in the order of [`watches`].
+    /// Writes the guards in the order of [`watches`](crate::watch::watches).
     #[inline(never)]
     pub(crate) fn write_guards(&self, guards: &mut [S]) {
         S::vectorised(

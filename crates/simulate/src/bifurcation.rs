@@ -20,9 +20,9 @@
 //!
 //! A value at which the system fails is reported as such; the next one starts afresh.
 
-use crate::poincare::Revolution;
-use crate::record::Error;
+use crate::error::Error;
 use crate::return_map::ReturnMap;
+use crate::section::Revolution;
 use mechanism::Machine;
 use std::ops::Range;
 

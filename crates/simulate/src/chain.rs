@@ -1,17 +1,15 @@
 //! The measuring chain up to the recorder: filters at the inner rate, then decimation.
 
 use crate::delay::Delay;
-use crate::record::Error;
-use crate::sensor::{Axis, Chain, ChamberEnd, Measured, Sensor};
+use crate::error::Error;
+use crate::instants::Instants;
+use crate::sensor::{Chain, Sensor};
 use crate::settings::Settings;
-use integrate::Real;
-use mechanism::{Evaluation, Machine};
+use mechanism::Machine;
 use scalar::Scalar;
 use signal::biquad::Filter;
 use signal::decimate::Decimator;
 use std::f64::consts::TAU;
-
-use crate::run::Instants;
 
 /// Fewest inner samples per recorded one.
 const LEAST_FACTOR: f64 = 4.0;
@@ -45,7 +43,7 @@ impl Sampling {
         settings: &Settings,
         length: f64,
     ) -> Result<Self, Error> {
-        match sensors.iter().all(Sensor::is_of_gas) {
+        match sensors.iter().all(Sensor::is_smooth) {
             true => Self::by(1.0, settings.sample_rate, length),
             false => Self::new(settings, length),
         }
@@ -154,9 +152,9 @@ impl UnderWay {
     pub(crate) fn extend(&mut self, inner: impl IntoIterator<Item = f64>) {
         for x in inner {
             // An angle has a jump a revolution, which no filter must touch.
-            match self.sensor.measured {
-                Measured::CrankAngle => self.pick(x),
-                _ => self.filter(x),
+            match self.sensor.measured.is_angle() {
+                true => self.pick(x),
+                false => self.filter(x),
             }
             self.seen += 1;
         }
@@ -194,7 +192,7 @@ impl UnderWay {
         self.decimate();
         let rate = self.sampling.inner_rate / self.sampling.factor as f64;
         let Chain { hum, offset, .. } = self.sensor.chain;
-        if self.sensor.measured == Measured::CrankAngle {
+        if self.sensor.measured.is_angle() {
             return self.recorded;
         }
         if let Some(hum) = hum {
@@ -238,44 +236,4 @@ fn filters(sensor: &Sensor, rate: f64) -> Result<Vec<Filter>, signal::Error> {
         )?);
     }
     Ok(filters)
-}
-
-impl Measured {
-    /// The quantity at an instant, SI.
-    pub fn value<S: Real>(&self, at: &Evaluation<S>) -> S {
-        self.wrapped(self.unwrapped(at))
-    }
-
-    /// What is shown of an angle that grows without end: where it stands in its turn.
-    pub(crate) fn wrapped<S: Real>(&self, x: S) -> S {
-        match *self {
-            Measured::CrankAngle => x - TAU * (x.value() / TAU).floor(),
-            _ => x,
-        }
-    }
-
-    /// The quantity, an angle since the start.
-    #[inline(always)]
-    pub(crate) fn unwrapped<S: Scalar>(&self, at: &Evaluation<S>) -> S {
-        match *self {
-            Measured::CrossheadAcceleration { throw } => {
-                let throw = &at.throws[throw];
-                throw.accelerations.crosshead + throw.carried.x
-            }
-            Measured::CrossheadLateralAcceleration { throw } => {
-                let throw = &at.throws[throw];
-                throw.accelerations.guide.x + throw.carried.y
-            }
-            Measured::FrameAcceleration { axis: Axis::X } => at.frame_acceleration().x,
-            Measured::FrameAcceleration { axis: Axis::Y } => at.frame_acceleration().y,
-            Measured::CylinderPressure { throw, end } => {
-                let gas = &at.throws[throw].gas;
-                match end {
-                    ChamberEnd::Head => gas.head_end.pressure,
-                    ChamberEnd::Crank => gas.crank_end.pressure,
-                }
-            }
-            Measured::CrankAngle => at.angle,
-        }
-    }
 }

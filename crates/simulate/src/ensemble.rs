@@ -1,7 +1,8 @@
 //! Many records at once: machines of one build run in lanes, and whoever is done makes room for the
 //! next.
 
-use crate::record::{Error, Record};
+use crate::error::Error;
+use crate::record::Record;
 use crate::sampler::observe_lanes;
 use crate::task::{Asked, Kept, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};

@@ -1,5 +1,6 @@
 //! How a run leaves its start behind: revolution after revolution, until it repeats itself.
 
+use crate::error::Error;
 use crate::run::Run;
 use crate::settings::Transient;
 use integrate::Real;
@@ -89,6 +90,30 @@ impl Leaving {
         let keep = self.strobes.len().saturating_sub(LONGEST_PERIOD as usize);
         self.strobes.drain(..keep);
         None
+    }
+}
+
+impl<S: Real> Run<S> {
+    /// Leaves the start behind, but for the last revolution, which leads into the record. Tells how
+    /// many revolutions the transient takes, and after how many the motion repeats itself, if it had
+    /// settled.
+    pub(crate) fn leave_transient(
+        &mut self,
+        transient: Transient,
+    ) -> Result<(u32, Option<u32>), Error> {
+        let mut leaving = Leaving::new(self, transient);
+        loop {
+            let left = match leaving.next(self) {
+                Err(left) => Some(left),
+                Ok(end) => {
+                    self.advance(end)?;
+                    leaving.arrive(self)
+                }
+            };
+            if let Some(Left { transient, period }) = left {
+                return Ok((transient, period));
+            }
+        }
     }
 }
 

@@ -14,8 +14,8 @@
 //! joint is drawn back onto its surface (Baumgarte 1972). So do the two directions that lead off a
 //! massless link: those exponents are not the machine's.
 
+use crate::error::Error;
 use crate::flow::Flow;
-use crate::record::Error;
 use crate::strobes::Strobes;
 use crate::tangents::Tangents;
 

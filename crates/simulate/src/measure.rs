@@ -1,7 +1,7 @@
 //! The recorder's end of the measuring chain: noise, range, resolution.
 
 use crate::record::Record;
-use crate::sensor::{Chain, Measured, Noise, NoiseLevel, Range, Sensor};
+use crate::sensor::{Chain, Noise, NoiseLevel, Range, Sensor};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
 use signal::channel::Channel;
@@ -77,7 +77,7 @@ impl Digitiser {
             Range::Fixed(range) => range,
             Range::Auto => largest(),
         });
-        let angle = sensor.measured == Measured::CrankAngle;
+        let angle = sensor.measured.is_angle();
         let codes = bits.map(|bits| f64::from(bits).exp2());
         // An encoder divides the revolution, a converter the span of ± its range.
         let span = if angle {
@@ -117,6 +117,7 @@ impl Digitiser {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::Measured;
 
     fn sensor(measured: Measured, range: Option<Range>, bits: Option<u32>) -> Sensor {
         Sensor {

@@ -10,10 +10,12 @@
 //! tangents at the end are taken at the same angle a whole number of turns later.
 
 use crate::chain::Sampling;
+use crate::error::Error;
+use crate::instants::Instants;
+use crate::moved::Moved;
 use crate::periodic_orbit::keeps;
-use crate::record::Error;
-use crate::run::{Instants, Run, Standing};
-use crate::sensitivity::{Moved, Recorder, apart};
+use crate::recorder::{Recorder, apart};
+use crate::run::{Run, Standing};
 use crate::sensor::Sensor;
 use crate::settings::Settings;
 use mechanism::{Machine, lift};

@@ -7,8 +7,8 @@
 //! and must have grown by whole turns at the end. A shift along the orbit then neither grows nor
 //! fades: the multiplier 1 that belongs to it is left out.
 
+use crate::error::Error;
 use crate::flow::Flow;
-use crate::record::Error;
 use crate::tangents::Tangents;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 use std::f64::consts::TAU;

@@ -1,9 +1,9 @@
 //! What kind of motion a flow settles to, judged from the equations.
 
+use crate::error::Error;
 use crate::flow::Flow;
 use crate::lyapunov::{Exponent, ExponentSettings, Followed, exponents};
 use crate::periodic_orbit::{PeriodicOrbit, shoot};
-use crate::record::Error;
 use integrate::System;
 use mechanism::Machine;
 

@@ -1,8 +1,8 @@
 //! The machine under way from one passage of its section to the next.
 
-use crate::poincare::{Impact, Joint, JointPoint, Revolution, ThrowPoint, clear_joints};
-use crate::record::Error;
+use crate::error::Error;
 use crate::run::LONGEST_STEP;
+use crate::section::{Impact, Joint, JointPoint, Revolution, ThrowPoint, clear_joints};
 use integrate::{Integrator, Step, System};
 use mechanism::joints::guide::Guide;
 use mechanism::joints::revolute::Revolute;

@@ -4,9 +4,10 @@
 //! evaluated side by side; or those within the steps of several runs, where these are in lanes.
 
 use crate::chain::UnderWay;
+use crate::instants::Instants;
 use crate::lookout::{self, Lookout};
 use crate::penetration::{Penetration, Watch};
-use crate::run::{Instants, Run};
+use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::trace::Trace;
 use integrate::Step;

@@ -1,4 +1,6 @@
-//! What is measured, and what the measuring chain does to it.
+//! A sensor: what it measures, and what the measuring chain does to it.
+
+pub use crate::sensors::{Axis, ChamberEnd, Measured};
 
 /// One sensor of the machine file: a measured quantity seen through a measuring chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,43 +21,11 @@ impl Sensor {
         sensor
     }
 
-    /// Whether it sees the gas or the crank's angle, and filters nothing.
-    pub(crate) fn is_of_gas(&self) -> bool {
-        let gas = matches!(
-            self.measured,
-            Measured::CylinderPressure { .. } | Measured::CrankAngle
-        );
-        gas && self.chain.mounting.is_none() && self.chain.low_pass.is_none()
+    /// Whether no contact moves it at once, and it filters nothing.
+    pub(crate) fn is_smooth(&self) -> bool {
+        let smooth = !self.measured.entry().declaration.feels_contacts;
+        smooth && self.chain.mounting.is_none() && self.chain.low_pass.is_none()
     }
-}
-
-/// A quantity that a sensor can see. `throw` is an index into the machine's throws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measured {
-    /// Acceleration of the crosshead along the cylinder, positive toward the head, m/s².
-    CrossheadAcceleration {
-        /// Which throw.
-        throw: usize,
-    },
-    /// Acceleration of the crosshead across the guide (not 0 only with guide clearance), m/s².
-    CrossheadLateralAcceleration {
-        /// Which throw.
-        throw: usize,
-    },
-    /// Acceleration of the frame along an axis, m/s².
-    FrameAcceleration {
-        /// Which axis.
-        axis: Axis,
-    },
-    /// Gas pressure in a chamber, Pa absolute.
-    CylinderPressure {
-        /// Which throw.
-        throw: usize,
-        /// Which chamber.
-        end: ChamberEnd,
-    },
-    /// Crank angle in [0, 2π), rad.
-    CrankAngle,
 }
 
 /// What kind of quantity a channel holds.
@@ -96,24 +66,6 @@ impl Quantity {
     pub fn is_pressure(self) -> bool {
         self == Self::Pressure
     }
-}
-
-/// A direction of the plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
-    /// Along the cylinder.
-    X,
-    /// Across it.
-    Y,
-}
-
-/// A chamber of a cylinder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ChamberEnd {
-    /// Between piston and head.
-    Head,
-    /// Between piston and crank-end cover.
-    Crank,
 }
 
 /// What happens between the quantity and the recorded number, in this order: delay, mounting resonance,
@@ -213,51 +165,4 @@ pub enum NoiseLevel {
     Absolute(f64),
     /// RMS as a share of the signal's own RMS about its mean.
     OfSignal(f64),
-}
-
-impl Measured {
-    /// The column name of this quantity, with its unit, as recording bundles have it. `throw`
-    /// names the throw in a machine of several and is empty otherwise.
-    pub fn column(&self, throws: &[&str]) -> String {
-        let name = match self {
-            Measured::CrossheadAcceleration { .. } => "crosshead_acceleration_m_s2",
-            Measured::CrossheadLateralAcceleration { .. } => "crosshead_lateral_acceleration_m_s2",
-            Measured::FrameAcceleration { axis: Axis::X } => "frame_acceleration_x_m_s2",
-            Measured::FrameAcceleration { axis: Axis::Y } => "frame_acceleration_y_m_s2",
-            Measured::CylinderPressure {
-                end: ChamberEnd::Head,
-                ..
-            } => "cylinder_pressure_pa",
-            Measured::CylinderPressure {
-                end: ChamberEnd::Crank,
-                ..
-            } => "cylinder_pressure_crank_end_pa",
-            Measured::CrankAngle => "crank_angle_rad",
-        };
-        match self.throw().and_then(|t| throws.get(t)) {
-            Some(throw) if !throw.is_empty() => format!("{throw}.{name}"),
-            _ => name.to_owned(),
-        }
-    }
-
-    /// The throw whose quantity this is; none for the frame and the crank.
-    pub fn throw(&self) -> Option<usize> {
-        match *self {
-            Measured::CrossheadAcceleration { throw }
-            | Measured::CrossheadLateralAcceleration { throw }
-            | Measured::CylinderPressure { throw, .. } => Some(throw),
-            Measured::FrameAcceleration { .. } | Measured::CrankAngle => None,
-        }
-    }
-
-    /// Unit of the recorded numbers, as in the column name's ending but written out.
-    pub fn unit(&self) -> &'static str {
-        match self {
-            Measured::CrossheadAcceleration { .. }
-            | Measured::CrossheadLateralAcceleration { .. }
-            | Measured::FrameAcceleration { .. } => "m/s^2",
-            Measured::CylinderPressure { .. } => "Pa",
-            Measured::CrankAngle => "rad",
-        }
-    }
 }

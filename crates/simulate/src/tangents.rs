@@ -5,8 +5,8 @@
 //! in full. Many tangents go in chunks of `N`: each chunk follows the trajectory on its own, bit
 //! for bit the same. Everything here is in the integration's own scales (clearances for offsets).
 
+use crate::error::Error;
 use crate::flow::{Cycle, Flow};
-use crate::record::Error;
 use crate::run::LONGEST_STEP;
 use integrate::{Integrator, Real, Step, System};
 use nalgebra::{DMatrix, DVector};

@@ -1,8 +1,9 @@
 //! A record under way, as a sequence of courses: whoever drives it integrates to the end of each.
 
 use crate::chain::Sampling;
+use crate::error::Error;
 use crate::leaving::{Leaving, Left};
-use crate::record::{Error, Record};
+use crate::record::Record;
 use crate::run::{Ledger, Run};
 use crate::sampler::{Sampler, Seen};
 use crate::sensor::Sensor;

@@ -7,6 +7,7 @@
 //! row(window)         its row; rows depend on their window alone
 //! ```
 
+mod counted;
 mod error;
 mod inputs;
 mod jobs;
@@ -17,11 +18,12 @@ mod units;
 mod warnings;
 mod window_length;
 
+pub use counted::counted;
 pub use error::Error;
 pub use inputs::{Input, Said, inputs};
 pub use jobs::Jobs;
 pub use shaft::Asked as CrankReference;
-pub use summary::{Summary, counted};
+pub use summary::Summary;
 pub use table::{Job, Row, row};
 pub use units::Unit;
 pub use window_length::WindowLength;

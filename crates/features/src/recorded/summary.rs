@@ -1,5 +1,6 @@
 //! What is said at the end: how many windows, what looks wrong, and which columns stay empty and why.
 
+use super::counted::counted;
 use super::table::Row;
 use crate::{Reason, Remedy};
 use recordings::{Schema, Value};
@@ -122,10 +123,4 @@ fn advice(reason: &Reason) -> String {
         Some(Remedy::HigherSampleRate) => "the sample rate is too low".into(),
         None => reason.to_string(),
     }
-}
-
-/// `1 window`, `2 windows`.
-pub fn counted(count: u64, what: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{plural}")
 }

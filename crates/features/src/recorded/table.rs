@@ -1,8 +1,8 @@
 //! The table of features: its columns over all files, and its rows.
 
+use super::counted::counted;
 use super::inputs::Input;
 use super::shaft::{self, Crank};
-use super::summary::counted;
 use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
 use super::{Error, Said, Unit};

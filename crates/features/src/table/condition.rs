@@ -1,7 +1,7 @@
 //! The part of the table that condition monitoring looks at: where the power lies, what comes in
 //! impacts, what repeats every revolution, and where in the revolution it is.
 
-use super::{Line, MCFADDEN, Unit, Value};
+use super::line::{Line, MCFADDEN, Unit, Value};
 use crate::spectral::{HIGHEST_ENVELOPE_ORDER, PASSED, SECTORS, SEGMENT_S, SHAPE_TO_HZ};
 
 const PEETERS: &str = "Peeters 2004, A large set of audio features, IRCAM, 6.1; spectrum: Welch \

@@ -1,6 +1,7 @@
 //! Contact and friction laws of a joint.
 
 use super::relation::{RelationSection, Stated};
+use super::surfaces::Surfaces;
 use super::value::{self, Value};
 use crate::choice::{Or, Pair};
 use crate::error::{Error, quoted};
@@ -278,15 +279,6 @@ enum Formula {
     Conformal,
 }
 
-/// The surfaces that touch.
-#[derive(Clone, Copy)]
-pub(super) enum Surfaces {
-    /// A journal of this radius in a bearing with this clearance, m.
-    Journal { radius: f64, clearance: f64 },
-    /// Flat faces with this gap, m.
-    Flat { clearance: f64 },
-}
-
 impl Contact {
     /// The law between `surfaces`, whose clearance may differ from the one that its parameters are
     /// stated for.
@@ -319,14 +311,6 @@ impl Contact {
         let (_, exponent) = law(1.0)?.spring();
         let stiffness = resolve_stiffness(source, exponent, surfaces);
         law(stiffness.map_err(|e| e.under("stiffness"))?)
-    }
-}
-
-impl Surfaces {
-    fn clearance(self) -> f64 {
-        match self {
-            Self::Journal { clearance, .. } | Self::Flat { clearance } => clearance,
-        }
     }
 }
 

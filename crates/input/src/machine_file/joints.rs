@@ -1,6 +1,7 @@
 //! The four joints: main bearing, big end, small end, crosshead guide.
 
-use super::contact::{Contact, Friction, Surfaces};
+use super::contact::{Contact, Friction};
+use super::surfaces::Surfaces;
 use crate::choice::{Ideal, Or};
 use crate::error::Error;
 use crate::quantity::{Length, NonNegative, Positive, text_schema};
@@ -52,7 +53,7 @@ pub(super) struct ThrowJoints {
 /// A journal in a bearing.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Bearing {
+pub(crate) struct Bearing {
     /// Radial clearance. With 0 or `ideal` the joint is ideal, whatever else stands here.
     clearance: Gap,
     /// Clearance up to which the joint counts as healthy; where it is left out, the clearance that

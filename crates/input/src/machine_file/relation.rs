@@ -9,7 +9,7 @@
 //!   at_clearance: 0.1 mm          # where the three hold as they stand
 //! ```
 
-use super::contact::Surfaces;
+use super::surfaces::Surfaces;
 use crate::choice::Or;
 use crate::error::Error;
 use crate::quantity::{Any, Length, Number, Positive};

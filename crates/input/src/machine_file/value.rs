@@ -54,6 +54,34 @@ impl<B: Bound> Valued for Number<B> {
     }
 }
 
+/// Something that is done with the kind of a quantity.
+pub(super) trait WithKind {
+    type Output;
+    fn with<K: Kind>(self) -> Self::Output;
+    fn with_number(self) -> Self::Output;
+}
+
+pub(super) fn with_kind<W: WithKind>(quantity: Quantity, then: W) -> W::Output {
+    match quantity {
+        Quantity::Number => then.with_number(),
+        Quantity::Ratio => then.with::<quantity::Ratio>(),
+        Quantity::Length => then.with::<quantity::Length>(),
+        Quantity::Angle => then.with::<quantity::Angle>(),
+        Quantity::Speed => then.with::<quantity::Speed>(),
+        Quantity::Frequency => then.with::<quantity::Frequency>(),
+        Quantity::Velocity => then.with::<quantity::Velocity>(),
+        Quantity::Acceleration => then.with::<quantity::Acceleration>(),
+        Quantity::Force => then.with::<quantity::Force>(),
+        Quantity::Damping => then.with::<quantity::Damping>(),
+        Quantity::Area => then.with::<quantity::Area>(),
+        Quantity::Compliance => then.with::<quantity::Compliance>(),
+        Quantity::Pressure => then.with::<quantity::Pressure>(),
+        Quantity::Viscosity => then.with::<quantity::Viscosity>(),
+        Quantity::StiffnessPerRoot => then.with::<quantity::StiffnessPerRoot>(),
+        Quantity::ForcePerPressure => then.with::<quantity::ForcePerPressure>(),
+    }
+}
+
 /// Something that is done with the type of a parameter.
 trait WithType {
     type Output;
@@ -62,36 +90,33 @@ trait WithType {
 }
 
 fn with_type<W: WithType>((quantity, range): Declared, then: W) -> W::Output {
-    match quantity {
-        Quantity::Number => match range {
-            Range::Any => then.with::<Number<Any>>(),
-            Range::AboveZero => then.with::<Number<AboveZero>>(),
-            Range::FromZero => then.with::<Number<FromZero>>(),
-            Range::ProperPart => then.with::<Number<ProperPart>>(),
-            Range::OnTheStroke => then.with::<Number<OnTheStroke>>(),
-            Range::FromOne => then.with::<Number<FromOne>>(),
-            Range::Rebound => then.with::<Number<Rebound>>(),
-            Range::Whole(low, high) => then.with_whole(WholeNumber { low, high }),
-        },
-        Quantity::Ratio => with_kind::<quantity::Ratio, W>(range, then),
-        Quantity::Length => with_kind::<quantity::Length, W>(range, then),
-        Quantity::Angle => with_kind::<quantity::Angle, W>(range, then),
-        Quantity::Speed => with_kind::<quantity::Speed, W>(range, then),
-        Quantity::Frequency => with_kind::<quantity::Frequency, W>(range, then),
-        Quantity::Velocity => with_kind::<quantity::Velocity, W>(range, then),
-        Quantity::Acceleration => with_kind::<quantity::Acceleration, W>(range, then),
-        Quantity::Force => with_kind::<quantity::Force, W>(range, then),
-        Quantity::Damping => with_kind::<quantity::Damping, W>(range, then),
-        Quantity::Area => with_kind::<quantity::Area, W>(range, then),
-        Quantity::Compliance => with_kind::<quantity::Compliance, W>(range, then),
-        Quantity::Pressure => with_kind::<quantity::Pressure, W>(range, then),
-        Quantity::Viscosity => with_kind::<quantity::Viscosity, W>(range, then),
-        Quantity::StiffnessPerRoot => with_kind::<quantity::StiffnessPerRoot, W>(range, then),
-        Quantity::ForcePerPressure => with_kind::<quantity::ForcePerPressure, W>(range, then),
+    struct Ranged<W>(Range, W);
+    impl<W: WithType> WithKind for Ranged<W> {
+        type Output = W::Output;
+        fn with<K: Kind>(self) -> W::Output {
+            with_range::<K, W>(self.0, self.1)
+        }
+        fn with_number(self) -> W::Output {
+            number_with_range(self.0, self.1)
+        }
+    }
+    with_kind(quantity, Ranged(range, then))
+}
+
+fn number_with_range<W: WithType>(range: Range, then: W) -> W::Output {
+    match range {
+        Range::Any => then.with::<Number<Any>>(),
+        Range::AboveZero => then.with::<Number<AboveZero>>(),
+        Range::FromZero => then.with::<Number<FromZero>>(),
+        Range::ProperPart => then.with::<Number<ProperPart>>(),
+        Range::OnTheStroke => then.with::<Number<OnTheStroke>>(),
+        Range::FromOne => then.with::<Number<FromOne>>(),
+        Range::Rebound => then.with::<Number<Rebound>>(),
+        Range::Whole(low, high) => then.with_whole(WholeNumber { low, high }),
     }
 }
 
-fn with_kind<K: Kind, W: WithType>(range: Range, then: W) -> W::Output {
+fn with_range<K: Kind, W: WithType>(range: Range, then: W) -> W::Output {
     match range {
         Range::Any => then.with::<Of<K, Any>>(),
         Range::AboveZero => then.with::<Of<K, AboveZero>>(),
@@ -118,6 +143,21 @@ pub(super) fn unit(declared: Declared) -> (Option<Dimension>, &'static str) {
         }
     }
     with_type(declared, Unit)
+}
+
+/// Dimension and SI unit of a quantity.
+pub(crate) fn unit_of_quantity(quantity: Quantity) -> (Dimension, &'static str) {
+    struct Unit;
+    impl WithKind for Unit {
+        type Output = (Dimension, &'static str);
+        fn with<K: Kind>(self) -> Self::Output {
+            (K::DIMENSION, K::UNIT)
+        }
+        fn with_number(self) -> Self::Output {
+            (Dimension::NONE, "")
+        }
+    }
+    with_kind(quantity, Unit)
 }
 
 /// Schema of a parameter's value.

@@ -2,6 +2,7 @@
 
 use input::effects::{CATALOGUE, Entry};
 use mechanism::joints::contact::CONTACT_LAWS;
+use simulate::sensors::SENSORS;
 use std::fs;
 use std::path::Path;
 
@@ -38,6 +39,19 @@ fn the_table_of_contact_laws_is_current() {
         ));
     }
     check("crates/mechanism/README.md", "contact laws", &table);
+}
+
+#[test]
+fn the_table_of_sensors_is_current() {
+    let mut table = String::from("| sensor | what it measures | columns |\n|---|---|---|\n");
+    for sensor in SENSORS {
+        let declared = &sensor.declaration;
+        let columns = declared.channels.iter().map(|channel| channel.column);
+        let columns = listed(columns);
+        let name = sensor.name;
+        table.push_str(&format!("| `{name}` | {} | {columns} |\n", declared.about));
+    }
+    check("crates/simulate/README.md", "sensors", &table);
 }
 
 fn row(entry: &Entry) -> String {

@@ -10,10 +10,10 @@
 //! stands on the oval surface. Form of the worn shell to second order (Dufrane, Kannel and McCloskey
 //! 1983). Signature: reversals along the long axis are hard, across it soft; twice the angle.
 
-use super::{Acts, Joint, Place, Shape};
-use crate::Machine;
+use super::acts::{Acts, Shape};
+use super::alternatives::{Alternatives, Oval};
 use crate::declaration;
-use crate::declaration::{Alternatives, Clash};
+use crate::declaration::Clash;
 use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -61,33 +61,16 @@ pub fn of(values: &[f64], alternatives: Alternatives) -> BearingOvality {
 }
 
 impl BearingOvality {
-    /// Refuses a machine in which the surfaces would meet all around.
-    pub(super) fn check(&self, machine: &Machine, place: &Place) -> Result<(), Clash> {
-        let throws = machine.throws.iter().enumerate();
-        let throws = throws.filter(|(i, _)| place.throw.is_none_or(|throw| throw == *i));
-        let joints: Vec<_> = match place.joint {
-            Some(Joint::BigEnd) => throws.map(|(_, t)| &t.big_end).collect(),
-            Some(Joint::SmallEnd) => throws.map(|(_, t)| &t.small_end).collect(),
-            Some(Joint::Main) | None => vec![&machine.main],
-        };
-        let mut clear = joints.into_iter().filter_map(|joint| joint.clear());
-        match clear.find(|clear| self.amplitude >= clear.clearance) {
-            None => Ok(()),
-            Some(clear) => Err(Clash {
+    /// Refuses a joint of this clearance, m, in which the surfaces would meet all around.
+    pub(super) fn check(&self, clearance: f64) -> Result<(), Clash> {
+        match self.amplitude >= clearance {
+            false => Ok(()),
+            true => Err(Clash {
                 key: "amplitude",
-                expected: format!("a length below the clearance, {} m", clear.clearance),
+                expected: format!("a length below the clearance, {clearance} m"),
             }),
         }
     }
-}
-
-/// What is oval in a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Oval {
-    /// The bearing.
-    Bearing,
-    /// The journal.
-    Journal,
 }
 
 impl<S: Scalar> Acts<S> for BearingOvality<S> {

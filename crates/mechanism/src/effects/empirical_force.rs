@@ -19,9 +19,9 @@
 //! positive toward the head.
 
 use crate::GRAVITY;
-use super::{Acts, PistonAt};
+use super::acts::{Acts, PistonAt};
+use super::alternatives::Alternatives;
 use crate::declaration;
-use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use scalar::Scalar;
 

@@ -8,7 +8,7 @@
 //! α is the crank angle since the throw's top dead centre. Signature: plateaus that wobble, with
 //! the order k; the same share at every pressure, strongest where k times the speed meets a resonance.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::{Scalar, inlined};

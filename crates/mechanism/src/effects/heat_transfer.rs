@@ -10,7 +10,7 @@
 //! temperature from p V = const T. It is the first law, Q̇ = h A (Tw − T) = p V/(m − 1) d ln p/dt, with
 //! cp/R = m/(m − 1). Signature: slopes of the polytropes that are not one exponent; other walls.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -9,7 +9,7 @@
 //! along x, α since the throw's top dead centre. Signature: orders 1 and 2; their size stays when
 //! speed and load change.
 
-use super::{Acts, PistonAt};
+use super::acts::{Acts, PistonAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -8,11 +8,17 @@
 //! here.
 
 mod acting;
+mod acts;
+mod alternatives;
+mod check;
+mod place;
 
-pub(crate) use acting::{Acting, Acts, AtJoint, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
+pub(crate) use acting::{Acting, AtJoint};
+pub(crate) use acts::{Acts, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
+pub use alternatives::{Alternatives, Oval, Shaken};
+pub use place::{End, Joint, Place};
 
-use crate::Machine;
-use crate::declaration::{Alternatives, Clash, Declaration};
+use crate::declaration::Declaration;
 use crate::lift::{alternatives, parameters};
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -100,22 +106,6 @@ pub struct Entry {
     pub law: fn(&[f64], Alternatives) -> Law,
 }
 
-impl Law {
-    /// Whether a machine, as it is without effects, can have it at `place`.
-    ///
-    /// # Errors
-    /// The first value that does not go together with the machine.
-    pub fn check(&self, machine: &Machine, place: &Place) -> Result<(), Clash> {
-        match self {
-            Law::BearingOvality(law) => law.check(machine, place),
-            _ => Ok(()),
-        }
-    }
-}
-
-pub use bearing_ovality::Oval;
-pub use rotating_unbalance::Shaken;
-
 parameters! {
     /// An effect of the catalogue at its place.
     pub struct Effect<S> {
@@ -126,37 +116,6 @@ parameters! {
             pub place: Place,
         }
     }
-}
-
-/// Where an effect acts, as far as its law leaves a choice. What is left open means everywhere.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Place {
-    /// Index of the throw.
-    pub throw: Option<usize>,
-    /// The joint.
-    pub joint: Option<Joint>,
-    /// The chamber of the cylinder.
-    pub end: Option<End>,
-}
-
-/// A joint of the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Joint {
-    /// Crankshaft in frame.
-    Main,
-    /// Crank pin in rod.
-    BigEnd,
-    /// Crosshead pin in rod.
-    SmallEnd,
-}
-
-/// A chamber of a cylinder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// Between piston and head.
-    Head,
-    /// Between piston and crank-end cover.
-    Crank,
 }
 
 impl<S> Law<S> {

@@ -8,7 +8,7 @@
 //!
 //! Signature: a step at both dead centres, odd orders; grows with pressure, not with speed.
 
-use super::{Acts, PistonAt};
+use super::acts::{Acts, PistonAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -12,7 +12,7 @@
 //! compresses; then the suction valve stays open (`gas`). Signature: compression too low, expansion too
 //! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

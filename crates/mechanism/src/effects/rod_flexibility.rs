@@ -10,7 +10,7 @@
 //! and crosshead of mass m it swings with ω² = k L² / (I + M a² + m L²). Signature: ringing of a few
 //! hundred Hz after every reversal, of one frequency at every speed.
 
-use super::{Acts, RodSpring};
+use super::acts::{Acts, RodSpring};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

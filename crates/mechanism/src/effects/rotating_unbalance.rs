@@ -12,9 +12,9 @@
 //! crosshead through its guide: m e θ̇² cos(α + φ), with the mass m of the crosshead. Signature:
 //! order 1, the square of the speed, no load.
 
-use super::{Acts, PistonAt};
+use super::acts::{Acts, PistonAt};
+use super::alternatives::{Alternatives, Shaken};
 use crate::declaration;
-use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -58,15 +58,6 @@ pub fn of(values: &[f64], alternatives: Alternatives) -> RotatingUnbalance {
         phase,
         body: alternatives.body.unwrap_or(Shaken::Frame),
     }
-}
-
-/// What an unbalance shakes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shaken {
-    /// The frame with everything on it.
-    Frame,
-    /// The crosshead along its guide.
-    Crosshead,
 }
 
 impl<S: Scalar> RotatingUnbalance<S> {

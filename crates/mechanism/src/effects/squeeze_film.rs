@@ -10,7 +10,7 @@
 //! film that fills a whole bearing is so stiff that nothing touches; `length` is what is wet.
 //! Signature: impacts rounded and late, less ringing, more so the smaller the clearance.
 
-use super::{Acts, JointAt};
+use super::acts::{Acts, JointAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -16,7 +16,7 @@
 //! Where the compression no longer reaches the discharge pressure, the expansion starts from what it
 //! has reached.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -13,9 +13,9 @@
 //! opening and a ripple on the plateau behind it, of the same frequency in Hz at every speed, from an angle
 //! that moves with the ratio of the pressures.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
+use super::alternatives::Alternatives;
 use crate::declaration;
-use crate::declaration::Alternatives;
 use crate::lift::parameters;
 use scalar::Scalar;
 use std::f64::consts::TAU;

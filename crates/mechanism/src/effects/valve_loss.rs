@@ -9,7 +9,7 @@
 //! 0 while gas flows out. Signature: the plateaus of the indicator diagram bulge at mid-stroke;
 //! orders 2 to 6; dissipates work.
 
-use super::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;

@@ -23,7 +23,7 @@
 //! A linear spring (n = 1) keeps its damping ratio by the conformal relation. A coefficient of
 //! restitution stays as it is. Friction does too: it does not depend on the clearance to first order.
 
-use super::contact::ContactLaw;
+use super::contact::{ContactLaw, Factors};
 use super::stiffness::{effective_radius_conformal, effective_radius_eq5};
 use scalar::Scalar;
 
@@ -47,13 +47,6 @@ pub enum Relation<S = f64> {
         /// Of IMPACT's depth.
         depth: S,
     },
-}
-
-/// Factors on the parameters of a law.
-pub(super) struct Factors<S> {
-    pub stiffness: S,
-    pub damping: S,
-    pub depth: S,
 }
 
 impl<S: Scalar> Relation<S> {

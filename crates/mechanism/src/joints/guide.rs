@@ -13,8 +13,8 @@
 //! Source of the geometry: Flores, Leine and Glocker 2010, section 5 (without its rigid contact).
 
 use super::contact::ContactLaw;
+use super::contact_guards::{CONTACT_GUARDS, contact_guards};
 use super::friction::FrictionLaw;
-use super::revolute::{CONTACT_GUARDS, contact_guards};
 use crate::lift::{Lift, parameters};
 use crate::mode::{ContactMode, flagged};
 use crate::plane::{Vec2, moment, origin};

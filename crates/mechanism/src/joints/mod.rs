@@ -2,6 +2,7 @@
 
 pub mod clearance_relation;
 pub mod contact;
+pub(crate) mod contact_guards;
 pub mod friction;
 pub mod guide;
 pub mod revolute;

@@ -1,9 +1,8 @@
 //! Where effects act, and what they do there.
 
 use crate::error::Error;
-use crate::machine_file::Sections;
-use mechanism::declaration::Alternatives;
-use mechanism::effects::{self, Effect, Law, Oval, Shaken};
+use crate::machine_file::joints::Bearing;
+use mechanism::effects::{self, Alternatives, Effect, Law, Oval, Shaken};
 use mechanism::{Machine, Throw};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -12,7 +11,7 @@ use simulate::{Measured, Sensor};
 /// A joint that an effect can act at.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(in crate::machine_file) enum Joint {
+pub(crate) enum Joint {
     /// Crankshaft in frame.
     Main,
     /// Crank pin in rod.
@@ -24,7 +23,7 @@ pub(in crate::machine_file) enum Joint {
 /// A chamber of a cylinder.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(in crate::machine_file) enum End {
+pub(crate) enum End {
     /// Between piston and head.
     Head,
     /// Between piston and crank-end cover.
@@ -34,7 +33,7 @@ pub(in crate::machine_file) enum End {
 /// A kind of sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(in crate::machine_file) enum Measure {
+pub(crate) enum Measure {
     /// Acceleration of the crosshead along the cylinder.
     CrossheadAcceleration,
     /// Acceleration of the frame.
@@ -46,7 +45,7 @@ pub(in crate::machine_file) enum Measure {
 /// What is shaken.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(in crate::machine_file) enum Body {
+pub(crate) enum Body {
     /// The frame with everything on it.
     Frame,
     /// The crosshead along its guide.
@@ -56,7 +55,7 @@ pub(in crate::machine_file) enum Body {
 /// A part of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(in crate::machine_file) enum Part {
+pub(crate) enum Part {
     /// What the journal lies in.
     Bearing,
     /// The pin.
@@ -65,7 +64,7 @@ pub(in crate::machine_file) enum Part {
 
 /// Where a section says that its effect acts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::machine_file) struct Place {
+pub(crate) struct Place {
     pub throw: Option<String>,
     pub joint: Option<Joint>,
     pub end: Option<End>,
@@ -137,10 +136,19 @@ impl Place {
     }
 }
 
+/// A machine file, as far as effects may change it before the machine is made of it.
+pub(crate) trait Draft {
+    /// Speed of the crank, or reference speed of a free one, rad/s.
+    fn speed(&self) -> f64;
+
+    /// The sections of the bearings at `place`; none where a joint has no section.
+    fn bearings(&mut self, place: &Place) -> Result<Vec<Option<&mut Bearing>>, Error>;
+}
+
 /// What an effect does.
-pub(in crate::machine_file) trait Act {
+pub(crate) trait Act {
     /// Changes what the file says, before the machine is made of it.
-    fn prepare(&self, _file: &mut Sections, _place: &Place) -> Result<(), Error> {
+    fn prepare(&self, _file: &mut dyn Draft, _place: &Place) -> Result<(), Error> {
         Ok(())
     }
 

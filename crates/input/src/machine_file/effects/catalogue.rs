@@ -4,8 +4,8 @@ use super::act::{Act, Place};
 use crate::amount::Amount;
 use crate::machine_file::value;
 use crate::unit::Dimension;
-use mechanism::declaration::{self, Alternatives, Declaration, Kind, PlaceKey, Proposal, Range};
-use mechanism::effects::Law;
+use mechanism::declaration::{self, Declaration, Kind, PlaceKey, Proposal, Range};
+use mechanism::effects::{Alternatives, Law};
 use serde_json::{Map, Value, json};
 use std::sync::LazyLock;
 

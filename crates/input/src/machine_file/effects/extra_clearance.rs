@@ -4,9 +4,8 @@
 //! (see `relation`) follows it here too; an ideal joint becomes clear with the contact that stands in
 //! its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
 
-use super::act::{Act, Place};
+use super::act::{Act, Draft, Place};
 use crate::error::Error;
-use crate::machine_file::Sections;
 use mechanism::declaration;
 
 declaration! {
@@ -21,7 +20,7 @@ declaration! {
 }
 
 impl Act for Values {
-    fn prepare(&self, file: &mut Sections, place: &Place) -> Result<(), Error> {
+    fn prepare(&self, file: &mut dyn Draft, place: &Place) -> Result<(), Error> {
         for bearing in file.bearings(place)? {
             let Some(bearing) = bearing else {
                 let expected = "a joint with a section that has journal_radius and contact";

@@ -7,19 +7,18 @@
 
 mod act;
 mod catalogue;
+mod present;
 mod section;
 
 pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry, proposed};
 pub use mechanism::declaration::{Kind, Proposal};
 
-use super::Sections;
-use crate::error::{Error, Problem};
-use act::Act;
-pub(super) use act::{Joint, Place};
-use mechanism::declaration::Declaration;
-use mechanism::{Machine, Throw};
+pub(super) use act::{Draft, Joint, Place};
+pub(super) use present::Effects;
 pub(super) use section::EffectSection;
-use simulate::Sensor;
+
+use act::Act;
+use mechanism::declaration::Declaration;
 
 /// The one list of the effects that act outside the equations, each group after the effect of
 /// [`mechanism::effects`] that it follows in the catalogue.
@@ -45,84 +44,5 @@ own! {
     after misalignment {
         speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, sensor_offset,
         mains_hum
-    }
-}
-
-impl EffectSection {
-    /// Whether nothing is left of it: all its amplitudes are where it vanishes.
-    fn is_absent(&self) -> bool {
-        let values = self.values();
-        let parameters = self.entry.parameters.iter().zip(values);
-        let mut amplitudes = parameters.filter_map(|(p, value)| Some((p.absent?, value)));
-        self.entry.amplitudes().next().is_some() && amplitudes.all(|(absent, v)| absent == v)
-    }
-
-    /// An effect must say how large it is.
-    fn check(&self) -> Result<(), Error> {
-        let parameters = self.entry.parameters.iter().zip(&self.stated);
-        let mut amplitudes = parameters.filter(|(p, _)| p.absent.is_some());
-        match self.entry.amplitudes().next() {
-            Some(first) if amplitudes.all(|(_, stated)| stated.is_none()) => {
-                let expected = None;
-                Err(Error::new(first.key, Problem::Missing { expected }))
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// The effects of a file, each at most once at its place.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Effects(Vec<(usize, EffectSection)>);
-
-impl Effects {
-    /// Those of the list `sections` that are there at all.
-    pub fn new(sections: &[EffectSection]) -> Result<Self, Error> {
-        for (i, effect) in sections.iter().enumerate() {
-            effect
-                .check()
-                .map_err(|e| e.under(effect.entry.name).under(i))?;
-            let alike = |other: &EffectSection| {
-                let same_place = effect.entry == other.entry && effect.place == other.place;
-                same_place && effect.orders() == other.orders()
-            };
-            if let Some(first) = sections[..i].iter().position(alike) {
-                let found = format_args!("the effect of effects.{first} again");
-                let expected = "each effect at most once at its place";
-                return Err(Error::found(i.to_string(), found, expected));
-            }
-        }
-        let present = sections.iter().cloned().enumerate();
-        Ok(Self(
-            present.filter(|(_, effect)| !effect.is_absent()).collect(),
-        ))
-    }
-
-    /// Changes what the file says, before the machine is made of it.
-    pub fn prepare(&self, file: &mut Sections) -> Result<(), Error> {
-        self.each(|effect| effect.effect().prepare(file, &effect.place))
-    }
-
-    /// Changes the machine.
-    pub fn act(&self, machine: &mut Machine) -> Result<(), Error> {
-        self.each(|effect| {
-            let place = effect.place.resolve(&machine.throws)?;
-            effect.effect().act(machine, &place)
-        })
-    }
-
-    /// Changes a sensor of a machine with these throws.
-    pub fn sense(&self, sensor: &mut Sensor, throws: &[Throw]) {
-        let names: Vec<&str> = throws.iter().map(|t| t.name.as_str()).collect();
-        for (_, effect) in &self.0 {
-            effect.effect().sense(sensor, &effect.place, &names);
-        }
-    }
-
-    fn each(&self, mut act: impl FnMut(&EffectSection) -> Result<(), Error>) -> Result<(), Error> {
-        let mut each = self.0.iter();
-        each.try_for_each(|(i, effect)| {
-            act(effect).map_err(|e| e.under(effect.entry.name).under(i))
-        })
     }
 }

@@ -1,7 +1,7 @@
 //! The section of an effect in the list `effects`, as its declaration has it.
 
 use super::act::{Act, Body, End, Joint, Measure, Part, Place};
-use super::catalogue::{CATALOGUE, Entry};
+use super::catalogue::{CATALOGUE, Entry, entry};
 use crate::machine_file::value::{self, Value};
 use mechanism::declaration::PlaceKey;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -15,7 +15,7 @@ use std::sync::LazyLock;
 
 /// Physics beyond the first model.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::machine_file) struct EffectSection {
+pub(crate) struct EffectSection {
     /// The effect.
     pub entry: &'static Entry,
     /// Where it acts.
@@ -59,7 +59,7 @@ impl<'de> Deserialize<'de> for EffectSection {
             }
             fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Self::Value, A::Error> {
                 let (name, content) = data.variant::<String>()?;
-                match super::entry(&name) {
+                match entry(&name) {
                     Some(entry) => content.newtype_variant_seed(Content(entry)),
                     None => Err(A::Error::unknown_variant(&name, &NAMES)),
                 }

@@ -12,9 +12,8 @@
 //! constant within a run. Signature: extra clearance that grows, or falls, from run to run with the
 //! speed.
 
-use super::act::{Act, Place};
+use super::act::{Act, Draft, Place};
 use crate::error::Error;
-use crate::machine_file::Sections;
 use scalar::Scalar;
 use mechanism::declaration;
 
@@ -34,8 +33,8 @@ declaration! {
 }
 
 impl Act for Values {
-    fn prepare(&self, file: &mut Sections, place: &Place) -> Result<(), Error> {
-        let speed = file.speed.si() / self.at_speed;
+    fn prepare(&self, file: &mut dyn Draft, place: &Place) -> Result<(), Error> {
+        let speed = file.speed() / self.at_speed;
         let change = self.change * Scalar::powf(speed, self.exponent);
         for bearing in file.bearings(place)?.into_iter().flatten() {
             if bearing.gap() > 0.0 {

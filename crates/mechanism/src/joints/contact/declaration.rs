@@ -1,7 +1,6 @@
 //! What a contact law says of itself, for files, schemas and tables.
 
-use super::ContactLaw;
-use crate::declaration::{Clash, Quantity, Range};
+use crate::declaration::{Quantity, Range};
 
 /// The declaration of a contact law.
 #[derive(Clone, Copy, Debug)]
@@ -34,17 +33,6 @@ impl Parameter {
     pub fn declared(&self) -> (Quantity, Range) {
         (self.quantity, self.range)
     }
-}
-
-/// A contact law of the list.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// Its name in the machine file.
-    pub name: &'static str,
-    /// What files, schemas and tables know of it.
-    pub declaration: Declaration,
-    /// The law with values of the parameters, SI, in their order.
-    pub law: fn(&Surfaces, &[f64]) -> Result<ContactLaw, Clash>,
 }
 
 /// What a law is made from beside its parameters.

@@ -1,6 +1,8 @@
 //! Hertz 1881: `F = K δⁿ` (n = 3/2 for point contact), without dissipation.
 
-use super::{Factors, Normal, NormalForce, contact_law, power};
+use super::contact_law;
+use super::factors::Factors;
+use super::normal::{Normal, NormalForce, power};
 use crate::lift::parameters;
 use crate::mode::ContactMode;
 use scalar::Scalar;

@@ -8,7 +8,9 @@
 //! Its restitution depends on the speed of impact; while δ stays well below d only C/d² can be
 //! told from the motion.
 
-use super::{Factors, Normal, NormalForce, contact_law, power};
+use super::contact_law;
+use super::factors::Factors;
+use super::normal::{Normal, NormalForce, power};
 use crate::lift::parameters;
 use crate::mode::{ContactMode, flagged};
 use scalar::Scalar;

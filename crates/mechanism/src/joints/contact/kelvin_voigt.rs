@@ -2,7 +2,9 @@
 //!
 //! The force jumps by `D δ̇` at touch; the pull it would give on the way out is cut off.
 
-use super::{Factors, Normal, NormalForce, contact_law};
+use super::contact_law;
+use super::factors::Factors;
+use super::normal::{Normal, NormalForce};
 use crate::lift::parameters;
 use crate::mode::ContactMode;
 use scalar::Scalar;

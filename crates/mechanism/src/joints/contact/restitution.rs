@@ -4,7 +4,8 @@
 //! For any χ of this family the restitution e' that a free impact delivers solves
 //! `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, whatever n, K, mass and v₀.
 
-use super::{Factors, Normal, NormalForce, power};
+use super::factors::Factors;
+use super::normal::{Normal, NormalForce, power};
 use crate::lift::parameters;
 use crate::mode::ContactMode;
 use scalar::Scalar;

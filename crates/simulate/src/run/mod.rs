@@ -1,8 +1,11 @@
 //! A machine on its way through time, over plain or dual numbers.
 
-use crate::leaving::{Leaving, Left};
-use crate::record::{Error, MOST_MISSING, MOST_SLIP};
-use crate::settings::Transient;
+mod ledger;
+
+pub(crate) use ledger::Ledger;
+
+use crate::error::{Error, MOST_SLIP};
+use crate::instants::Instants;
 use integrate::{Course, Integrator, Real, Step, System, Work};
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
@@ -13,6 +16,7 @@ use std::f64::consts::{PI, TAU};
 pub(crate) const LONGEST_STEP: f64 = 0.05;
 /// Steps in a longest step's time, of which a usual motion takes some 20.
 const HURRIED: f64 = 1000.0;
+
 /// A machine on its way.
 pub(crate) struct Run<S: Scalar> {
     dynamics: Dynamics<S>,
@@ -27,37 +31,6 @@ fn rpm(speed: f64) -> f64 {
     (1e4 * speed * 30.0 / PI).round() / 1e4
 }
 
-/// Equally spaced instants at which a run is looked at.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Instants {
-    /// The first, s.
-    pub first: f64,
-    /// How many a second.
-    pub rate: f64,
-    /// How many in all.
-    pub count: usize,
-}
-
-impl Instants {
-    pub(crate) fn at(&self, index: usize) -> f64 {
-        self.first + index as f64 / self.rate
-    }
-
-    /// Those up to `time`, and those after it.
-    pub(crate) fn split_at(self, time: f64) -> [Self; 2] {
-        let mut count = self.count;
-        while count > 0 && self.at(count - 1) > time {
-            count -= 1;
-        }
-        let after = Self {
-            first: self.at(count),
-            count: self.count - count,
-            ..self
-        };
-        [Self { count, ..self }, after]
-    }
-}
-
 /// Where a run stands.
 #[derive(Clone, Debug)]
 pub(crate) struct Standing {
@@ -67,14 +40,6 @@ pub(crate) struct Standing {
     pub state: Vec<f64>,
     /// The contacts and valves.
     pub mode: Mode<f64>,
-}
-
-/// Energy and works at an instant, J.
-pub(crate) struct Ledger {
-    energy: f64,
-    works: [f64; 4],
-    /// What the gas holds for the pistons; none where effects act on it.
-    gas: Option<f64>,
 }
 
 impl<S: Real> Run<S> {
@@ -127,28 +92,6 @@ impl<S: Real> Run<S> {
     /// What the integration took so far.
     pub(crate) fn work(&self) -> Work {
         self.integrator.work()
-    }
-
-    /// Leaves the start behind, but for the last revolution, which leads into the record. Tells how
-    /// many revolutions the transient takes, and after how many the motion repeats itself, if it had
-    /// settled.
-    pub(crate) fn leave_transient(
-        &mut self,
-        transient: Transient,
-    ) -> Result<(u32, Option<u32>), Error> {
-        let mut leaving = Leaving::new(self, transient);
-        loop {
-            let left = match leaving.next(self) {
-                Err(left) => Some(left),
-                Ok(end) => {
-                    self.advance(end)?;
-                    leaving.arrive(self)
-                }
-            };
-            if let Some(Left { transient, period }) = left {
-                return Ok((transient, period));
-            }
-        }
     }
 
     /// Where a revolution ends, s. A free crank does not keep to the reference speed: the time of its
@@ -425,97 +368,4 @@ impl Run<f64> {
         }
         Ok(())
     }
-
-    /// Where energy and works stand.
-    pub(crate) fn ledger(&mut self) -> Ledger {
-        let y = self.integrator.state().to_vec();
-        self.dynamics.evaluate(self.integrator.time(), &y);
-        let mut works = [0.0; 4];
-        if let Some(i) = self.dynamics.layout().ledger {
-            works.copy_from_slice(&y[i..i + 4]);
-        }
-        Ledger {
-            energy: self.dynamics.energy().total(),
-            works,
-            gas: self.dynamics.gas_energy(),
-        }
-    }
-
-    /// Goes on with the ledger for a revolution from where this run stands, which stays there: what the
-    /// ledger misses, over the energy turned over.
-    ///
-    /// # Errors
-    /// Where that is too much, the gas did more work than it held, or the revolution cannot be integrated.
-    pub(crate) fn audit(&self, tolerance: f64) -> Result<f64, Error> {
-        let at = self.standing();
-        let mut state = at.state.clone();
-        state.extend([0.0; 4]);
-        let machine = self.dynamics.machine().clone();
-        let mut run = Self::resume(machine, &at, &state, tolerance, true);
-        let before = run.ledger();
-        run.turn(1)?;
-        run.balance(&before)
-    }
-
-    /// What the ledger misses since `before`, at least a revolution ago, over the energy turned over.
-    ///
-    /// # Errors
-    /// Where that is too much, or the gas did more work than it held.
-    pub(crate) fn balance(&mut self, before: &Ledger) -> Result<f64, Error> {
-        self.check_gas(before)?;
-        self.residual(before)
-    }
-
-    /// What the ledger misses since `before`, over the energy turned over.
-    ///
-    /// # Errors
-    /// Where that is too much.
-    fn residual(&mut self, before: &Ledger) -> Result<f64, Error> {
-        let now = self.ledger();
-        let [gas, drive, friction, damping] = now.works_since(before);
-        let missing = now.energy - before.energy - (gas + drive - friction - damping);
-        let missing = over(missing, now.turned_since(before));
-        match missing.abs() <= MOST_MISSING {
-            true => Ok(missing),
-            false => Err(Error::EnergyMissing {
-                missing: missing.abs(),
-            }),
-        }
-    }
-
-    /// Checks that the gas has done no more work since `before`, at least a revolution ago, than it held.
-    /// The work is the integral of force times piston speed, and what the gas holds follows from pressure
-    /// and volume alone, so that neither can hide what the other has wrong. Within a stroke clearances
-    /// blur this, as the dead centres set the gas by where the ideal piston is.
-    ///
-    /// # Errors
-    /// Where it has.
-    fn check_gas(&mut self, before: &Ledger) -> Result<(), Error> {
-        let now = self.ledger();
-        let Some(held) = before.gas.zip(now.gas).map(|(before, now)| before - now) else {
-            return Ok(());
-        };
-        let [work, ..] = now.works_since(before);
-        let gained = over(work - held, now.turned_since(before));
-        match gained <= MOST_MISSING {
-            true => Ok(()),
-            false => Err(Error::EnergyFromGas { gained }),
-        }
-    }
-}
-
-impl Ledger {
-    fn works_since(&self, before: &Self) -> [f64; 4] {
-        std::array::from_fn(|i| self.works[i] - before.works[i])
-    }
-
-    /// Energy turned over, J.
-    fn turned_since(&self, before: &Self) -> f64 {
-        self.works_since(before).iter().map(|work| work.abs()).sum()
-    }
-}
-
-/// A share of a whole; 0 of nothing.
-fn over(part: f64, whole: f64) -> f64 {
-    if whole > 0.0 { part / whole } else { 0.0 }
 }

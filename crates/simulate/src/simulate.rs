@@ -1,0 +1,61 @@
+//! From machine to record: transient, sampling, energy ledger.
+
+use crate::error::Error;
+use crate::record::Record;
+use crate::sensor::Sensor;
+use crate::settings::Settings;
+use crate::task::{Asked, Kept, Task};
+use mechanism::Machine;
+
+/// Runs `machine` and records `sensors`; with `traced` also the motion itself.
+///
+/// # Errors
+/// Where the integration cannot meet its tolerance, a sensor's filter does not fit the rate, a free crank
+/// does not keep its speed, or the energy ledger of a traced run does not close.
+pub fn simulate(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+    traced: bool,
+) -> Result<Record, Error> {
+    simulate_later(machine, sensors, settings, 0.0, traced)
+}
+
+/// The same, the record beginning `delay` seconds (0 or more) after the transient: at a crank angle
+/// of choice, where without a delay a crank of given speed stands at angle 0.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_later(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+    delay: f64,
+    traced: bool,
+) -> Result<Record, Error> {
+    let asked = Asked {
+        machine,
+        sensors,
+        settings,
+    };
+    let kept = if traced { Kept::Trace } else { Kept::Series };
+    Task::start(asked, delay, kept)?.finish(&mut |_| ())
+}
+
+/// As [`simulate`] with a trace; `watch` is told after each step which share of the run is done.
+///
+/// # Errors
+/// As [`simulate`].
+pub fn simulate_watched(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+    watch: &mut dyn FnMut(f64),
+) -> Result<Record, Error> {
+    let asked = Asked {
+        machine,
+        sensors,
+        settings,
+    };
+    Task::start(asked, 0.0, Kept::Trace)?.finish(watch)
+}
