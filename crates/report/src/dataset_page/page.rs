@@ -7,7 +7,6 @@ use super::{
     CaseLevel, CaseWarning, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design, FailedCase,
     FaultCount, FeatureRow, ParameterRange, comparison, distributions,
 };
-use crate::figure::Colour;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, classes, text};
 use askama::Template;
@@ -67,12 +66,6 @@ impl DatasetPage {
             figures: figures.collect(),
         })
     }
-}
-
-/// The colour that a class has in all figures.
-pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
-    let labels = page.faults.iter().map(|count| count.fault.as_str());
-    classes::colour(fault, &page.joints, labels)
 }
 
 fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {

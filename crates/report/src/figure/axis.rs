@@ -1,6 +1,7 @@
 //! Ranges and tick marks.
 
-use super::{Axis, Mark, Panel, Scale};
+use super::panel::{Axis, Panel, Scale};
+use super::series::Mark;
 use crate::text;
 
 /// Room between the data and the frame, as a share of the range.
@@ -35,6 +36,19 @@ impl Direction {
 /// True for a value that can be drawn.
 pub(super) fn drawable(value: f64) -> bool {
     value.abs() <= LARGEST
+}
+
+/// Gives all panels the range of x and y that shows the data of each, for figures that are drawn
+/// apart and compared by eye.
+pub fn share_ranges<'a>(panels: impl IntoIterator<Item = &'a mut Panel>) {
+    let mut panels: Vec<&mut Panel> = panels.into_iter().collect();
+    let all: Vec<&Panel> = panels.iter().map(|panel| &**panel).collect();
+    let x = range(&all, Direction::X);
+    let y = range(&all, Direction::Y);
+    for panel in &mut panels {
+        panel.x.range = x;
+        panel.y.range = y;
+    }
 }
 
 /// The range that shows all data of the panels: the given range of the first panel that has one,
@@ -276,7 +290,8 @@ fn scaled_label(label: &str, exponent: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Colour, Series};
+    use super::super::colour::Colour;
+    use super::super::series::Series;
     use super::*;
 
     fn labels(axis: &Axis, range: (f64, f64), length: f64, spacing: f64) -> Vec<String> {
