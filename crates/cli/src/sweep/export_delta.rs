@@ -1,7 +1,6 @@
 //! `sweep export-delta`: a finished dataset as Delta tables.
 
 use crate::Failure;
-use crate::gen_dataset;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::{Output, export_delta};
@@ -28,8 +27,8 @@ pub struct Arguments {
 /// # Errors
 /// A dataset that is not complete, or an output that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
-    for table in export_delta(&output, &plan).map_err(gen_dataset::failed)? {
+    let (output, plan) = Output::join(&arguments.url)?;
+    for table in export_delta(&output, &plan)? {
         println!(
             "{}: {} files, {} rows",
             arguments.url.join(table.folder).display(),

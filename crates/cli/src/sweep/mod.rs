@@ -11,7 +11,6 @@ mod submit;
 
 use crate::Failure;
 use clap::{Args, Subcommand};
-use sweep::engines::{Error, slurm};
 
 /// Arguments of `sweep`.
 #[derive(Args, Debug)]
@@ -59,19 +58,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Step::Cancel(arguments) => cancel::run(arguments),
         Step::ExportDelta(arguments) => export_delta::run(arguments),
     }
-}
-
-/// The failure that an error of an engine is.
-fn of_engine(error: Error) -> Failure {
-    match error {
-        Error::Missing(_) => Failure::Incomplete(error.to_string()),
-        error if error.is_input() => Failure::input(error),
-        error => Failure::work(error),
-    }
-}
-
-/// Says what was submitted.
-fn tell(submission: &slurm::Submission) {
-    let slurm::Submission { shards, jobs } = submission;
-    println!("{shards} shards submitted: jobs {jobs}");
 }

@@ -39,16 +39,16 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::read(&arguments.sweep)?;
     let nominal = sweep.nominal()?;
-    nominal.check_size().map_err(gen_dataset::failed)?;
+    nominal.check_size()?;
     let cancel = interrupt::flag()?;
     let out = &arguments.out;
     let (claim, plan) = gen_dataset::claim(&sweep, nominal, out, sweep::Existing::Resume, &cancel)?;
     let mut plan = gen_dataset::with_format(plan, arguments.format);
     if let Some(shards) = arguments.shards {
-        plan = plan.with_shards(shards).map_err(gen_dataset::failed)?;
+        plan = plan.with_shards(shards)?;
     }
     gen_dataset::warn(&plan.census().mistakes());
-    let output = claim.open(&plan).map_err(gen_dataset::failed)?;
+    let output = claim.open(&plan)?;
     gen_dataset::warn(&output.take_warnings());
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",

@@ -1,6 +1,5 @@
 //! `sweep shard`: one shard is made.
 
-use super::of_engine;
 use crate::gen_dataset::{self, Bar};
 use crate::{Failure, interrupt, try_case};
 use clap::Args;
@@ -48,10 +47,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let index = match arguments.index {
         Some(index) => index,
-        None => task::index(|name| std::env::var(name).ok()).map_err(of_engine)?,
+        None => task::index(|name| std::env::var(name).ok())?,
     };
     let index = index.saturating_add(arguments.offset);
-    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    let (output, plan) = Output::join(&arguments.url)?;
     let cancel = interrupt::flag()?;
     let options = Options {
         existing: Existing::Resume,
@@ -77,6 +76,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => Err(Failure::work(
             format!("stopped; shard {index} is not made, and the same command begins it again"),
         )),
-        Err(error) => Err(gen_dataset::failed(error)),
+        Err(error) => Err(error.into()),
     }
 }

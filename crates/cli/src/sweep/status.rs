@@ -63,10 +63,10 @@ struct Attempts {
 /// # Errors
 /// Nothing planned, or records that cannot be read.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let found = status(&output, &plan, arguments.verify).map_err(gen_dataset::failed)?;
+    let (output, plan) = Output::look(&arguments.url)?;
+    let found = status(&output, &plan, arguments.verify)?;
     gen_dataset::warn(&output.take_warnings());
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
+    let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref());
     let jobs = jobs.map_or_else(|_| Vec::new(), |jobs| jobs.under_way());
     let made = plan.parts() - found.missing.len() as u64;
     if arguments.json {

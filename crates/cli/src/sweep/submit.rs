@@ -1,8 +1,6 @@
 //! `sweep submit`: an engine is handed the shards.
 
-use super::{of_engine, tell};
 use crate::Failure;
-use crate::gen_dataset;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use sweep::dataset::{Output, status};
@@ -50,14 +48,12 @@ enum Engine {
 /// # Errors
 /// Nothing planned, jobs that are under way already, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref()).map_err(of_engine)?;
-    let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let missing = status(&output, &plan, false)
-        .map_err(gen_dataset::failed)?
-        .missing;
+    let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref())?;
+    let (output, plan) = Output::look(&arguments.url)?;
+    let missing = status(&output, &plan, false)?.missing;
     let submitted = match arguments.engine {
         Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
     };
-    tell(&submitted.map_err(of_engine)?);
+    println!("{}", submitted?);
     Ok(())
 }

@@ -11,16 +11,18 @@ use recordings::{Column, FileEntry, Kind, Schema, Value};
 use simulate::bifurcation::{Chunk, Machines, Walk};
 use simulate::poincare::{Joint, Revolution, ThrowPoint};
 
-use super::commit::{Check, DiagramCommit, Found};
+use super::check::Check;
+use super::commit::{DiagramCommit, Found};
+use super::layout::DIAGRAMS;
+use super::options::Options;
 use super::output::Output;
+use super::progress::Progress;
+use super::recording::Failure;
 use super::tables::prefixed;
-use super::{Failure, Options, Progress, pool};
-use crate::in_order::in_order;
+use crate::in_order::{in_order, pool};
 use crate::plan::Diagram;
 use crate::{Error, Plan};
 
-/// The folder, and the name of the table that its files make up.
-pub(super) const FOLDER: &str = "bifurcations";
 /// Rows of one row group.
 const ROWS_PER_GROUP: usize = 256;
 
@@ -217,7 +219,7 @@ impl DiagramTable {
     ) -> Result<(), Error> {
         let name = &diagram.name;
         let before = DiagramCommit::find(output, plan, name, Check::Sums)?;
-        let path = format!("{FOLDER}/{name}.parquet");
+        let path = format!("{DIAGRAMS}/{name}.parquet");
         let file = output.store.create(&path)?;
         let mut table = TableWriter::new(file, &self.schema, ROWS_PER_GROUP)?;
         for row in rows {

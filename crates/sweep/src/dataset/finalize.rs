@@ -6,12 +6,15 @@ use input::paths;
 use recordings::{CaseWarning, Counts, DatasetCard, FailedCase, FileEntry, Manifest, Subset};
 
 use super::attempts;
-use super::commit::{Check, Damage, checksum};
-use super::diagrams::{self, DiagramTable};
-use super::output::{MANIFEST, Output, SUMS, strays};
+use super::check::Check;
+use super::diagrams::DiagramTable;
+use super::fault::{Damage, Fault};
+use super::layout::{DIAGRAMS, MANIFEST, SUMS, strays};
+use super::output::Output;
 use super::parts::{Made, scan};
+use super::record::checksum;
 use super::tables::Tables;
-use super::verify::{Fault, faults_of, sums};
+use super::verify::{faults_of, sums};
 use crate::split::Split;
 use crate::sweep_file::Format;
 use crate::{Error, Plan};
@@ -276,7 +279,7 @@ fn card(
         },
         unsplit: match plan.diagrams.as_slice() {
             [] => Vec::new(),
-            _ => vec![subset(diagrams::FOLDER, bifurcations)],
+            _ => vec![subset(DIAGRAMS, bifurcations)],
         },
         mcap_example: example.next().cloned(),
         command: "gen-dataset sweep.yaml --out another-folder".into(),

@@ -7,8 +7,9 @@ use std::path::Path;
 use recordings::{FileEntry, FileRecord};
 use serde_json::Value;
 
-use super::commit::text;
-use super::output::{CALIBRATION, Output};
+use super::layout::CALIBRATION;
+use super::output::Output;
+use super::record::text;
 use super::store::failed;
 use crate::{Error, Plan};
 

@@ -3,11 +3,16 @@
 
 use std::ops::Range;
 
-use super::commit::{Check, Commit, DiagramCommit};
+use super::check::Check;
+use super::commit::{Commit, DiagramCommit};
 use super::diagrams::compute;
+use super::options::Options;
 use super::output::Output;
-use super::{Options, Progress, Runner, pool, run_shards};
-use crate::in_order::in_order;
+use super::progress::Progress;
+use super::recording::Runner;
+use super::run_shards::run_shards;
+use super::store::READERS;
+use crate::in_order::{in_order, pool};
 use crate::plan::Diagram;
 use crate::{Error, Plan};
 
@@ -65,9 +70,6 @@ impl Made {
         }
     }
 }
-
-/// Records that are read at a time: on storage that takes its time they would else take long.
-pub(super) const READERS: usize = 16;
 
 /// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished or its
 /// record or files are damaged.

@@ -3,9 +3,11 @@
 use recordings::FailedCase;
 
 use super::attempts::{self, Attended};
-use super::commit::{Check, Damage};
+use super::check::Check;
+use super::fault::Damage;
 use super::finalize::Parts;
-use super::output::{Output, strays};
+use super::layout::strays;
+use super::output::Output;
 use super::parts::scan;
 use crate::{Error, Plan};
 

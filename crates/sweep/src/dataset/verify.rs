@@ -2,44 +2,18 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::fmt::{self, Display};
 use std::path::{Component, Path};
 
 use recordings::formats::parquet::rows_of_footer;
 use recordings::{FileEntry, Manifest};
 
-use super::commit::{Check, Damage, checksum, fault};
-use super::output::{MANIFEST, SUMS, strays};
-use super::parts::READERS;
-use super::pool;
-use super::store::Store;
+use super::check::{Check, damage_of};
+use super::fault::{Damage, Fault};
+use super::layout::{MANIFEST, SUMS, strays};
+use super::record::checksum;
+use super::store::{READERS, Store};
 use crate::Error;
-use crate::in_order::in_order;
-
-/// What is wrong with a file of a dataset.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// The file, within the dataset.
-    pub path: String,
-    /// What is wrong with it.
-    pub damage: Damage,
-}
-
-impl Fault {
-    pub(super) fn new(path: &str, damage: Damage) -> Self {
-        Self {
-            path: path.to_owned(),
-            damage,
-        }
-    }
-}
-
-impl Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        // A name from a manifest may hold anything.
-        write!(f, "{}: {}", self.path.escape_debug(), self.damage)
-    }
-}
+use crate::in_order::{in_order, pool};
 
 /// What [`verify`] found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -157,7 +131,7 @@ fn damage_in(store: &Store, file: &FileEntry) -> Result<Option<Damage>, Error> {
     if !is_inside(&file.path) {
         return Ok(Some(Damage::Outside));
     }
-    if let Some(damage) = fault(store, file, Check::Sums)? {
+    if let Some(damage) = damage_of(store, file, Check::Sums)? {
         return Ok(Some(damage));
     }
     let Some(expected) = file.rows else {

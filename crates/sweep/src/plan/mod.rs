@@ -4,6 +4,8 @@
 mod axis;
 mod block;
 mod case;
+mod census;
+mod checks;
 mod diagram;
 mod drawn;
 mod estimate;
@@ -15,14 +17,15 @@ mod parameter;
 mod sampler;
 mod settings;
 mod survey;
+mod swept_parameters;
 mod together;
 mod varied;
 
 pub use case::{Case, Judgement, OperatingPoint};
+pub use census::Census;
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
 pub use parameter::Parameter;
-pub use survey::Census;
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -31,7 +34,7 @@ use std::sync::OnceLock;
 
 use input::choice::Or;
 use input::yaml::Document;
-use input::{Error, MachineFile, Problem, Resolved, paths};
+use input::{Error, MachineFile, Resolved, paths};
 use mechanism::Machine;
 use rand::Rng;
 use scalar::random::{Purpose, stream};
@@ -46,8 +49,8 @@ use crate::split;
 use crate::sweep_file::{Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
+use census::Survey;
 use settings::{check_windows, judgement, settings, shares};
-use survey::Survey;
 use together::Together;
 use varied::Varied;
 
@@ -261,7 +264,7 @@ impl Plan {
             None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
                 plan.effects = plan.find_effects();
-                plan.parameters = parameter::find(&plan);
+                plan.parameters = plan.find_parameters();
                 Ok(plan)
             }
         }
@@ -413,53 +416,6 @@ impl Plan {
             rest -= block.count();
         }
         (self.blocks.len() - 1, rest)
-    }
-
-    /// Tries cases that between them have every value that the file names, so that a mistake is
-    /// found before anything is run.
-    fn try_cases(&self, document: &Document) -> Result<(), Error> {
-        let mut start = 0;
-        for (position, block) in self.blocks.iter().enumerate() {
-            for inside in block.probes() {
-                let case = self.case_before_splits((start + inside) * self.repeats);
-                if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
-                    let keys = block.keys(inside, &self.frame());
-                    return Err(document.locate(self.blame(error, keys, position, inside)));
-                }
-            }
-            start += block.count();
-        }
-        Ok(())
-    }
-
-    /// All rows of a table have the same columns, so all cases have the same joints and sensors.
-    fn check_columns(&self, case: &Case) -> Result<(), Error> {
-        if channels(&case.resolved, &self.throws) != self.channels() {
-            let found = "sensors that measure something else";
-            return Err(Error::found("sensors", found, "those of the machine file"));
-        }
-        if joints(&case.resolved.machine) != self.joints {
-            let found = "throws with other names";
-            return Err(Error::found("throws", found, "those of the machine file"));
-        }
-        Ok(())
-    }
-
-    /// `error` of a case, at the value of the sweep file that it comes from.
-    fn blame(&self, error: Error, keys: Vec<(String, String)>, block: usize, case: u64) -> Error {
-        let varied = self.varied().map(|(key, path)| (key, path.to_owned()));
-        let within = |path: &str, other: &str| {
-            let rest = path.strip_prefix(other);
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
-        let mut sources = keys.into_iter().chain(varied);
-        match sources.find(|(_, path)| within(path, error.key()) || within(error.key(), path)) {
-            Some((key, _)) => Error::new(key, error.problem().clone()),
-            None => {
-                let problem = format!("case {case} of this block: {error}");
-                Error::new(format!("cases.{block}"), Problem::Other(problem))
-            }
-        }
     }
 
     /// The values that blocks list for `path`.

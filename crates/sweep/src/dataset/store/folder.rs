@@ -10,7 +10,7 @@ use std::time::SystemTime;
 use recordings::{FileRecord, WholeFile, sync_folder};
 use sha2::{Digest, Sha256};
 
-use super::Holder;
+use super::holder::Holder;
 use super::temporary::temporary;
 use crate::Error;
 
@@ -185,4 +185,26 @@ pub(in crate::dataset) fn failed(action: &'static str, path: &Path, source: io::
         path,
         source,
     })
+}
+
+/// Makes `folder`, and those that it stands in.
+pub(in crate::dataset) fn make(folder: &Path) -> Result<(), Error> {
+    fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
+        path: folder.to_owned(),
+        source,
+    })
+}
+
+/// Removes what stands at `path`, if something does.
+pub(in crate::dataset) fn remove(
+    path: &Path,
+    how: impl Fn(&Path) -> io::Result<()>,
+) -> Result<(), Error> {
+    match how(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::Unwritable {
+            path: path.to_owned(),
+            source: error,
+        }),
+        _ => Ok(()),
+    }
 }
