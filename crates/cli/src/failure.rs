@@ -56,7 +56,7 @@ impl From<sweep::engines::Error> for Failure {
     }
 }
 
-/// Prints the message of a failure and tells the shell.
+/// Prints the message of a failure and returns the exit status.
 pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
     let (message, status) = match outcome {
         Ok(()) => return ExitCode::SUCCESS,

@@ -30,7 +30,7 @@ pub fn plan(
     if !done.results.complete {
         return Err(Failure::work(format!(
             "stopped during the calibration, before the first case; {} has the best so far, and \
-             --resume goes on from there",
+             --resume continues from there",
             folder.display()
         )));
     }

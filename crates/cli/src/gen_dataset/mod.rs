@@ -40,16 +40,16 @@ pub struct Arguments {
     /// Threads that simulate [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Go on with a dataset that was interrupted
+    /// Continue a dataset that was interrupted
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Make the shards with failed cases again, whatever these failed of
+    /// Make the shards with failed cases again
     #[arg(long, requires = "resume")]
     retry_failed: bool,
     /// Replace a dataset that is there
     #[arg(long)]
     overwrite: bool,
-    /// Tell what would be made, from a measured sample, and write nothing
+    /// Estimate size and time from a measured sample, and write nothing
     #[arg(long)]
     dry_run: bool,
 }

@@ -15,7 +15,7 @@ pub(crate) fn warn(warnings: &[String]) {
 }
 
 /// Prints what a finished dataset has, and says what is wrong with its labels beside the mistakes that
-/// were told when it was begun.
+/// were printed when it was begun.
 pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f64) {
     let bytes: u64 = manifest.files.iter().map(|file| file.bytes).sum();
     let rows: u64 = manifest
@@ -32,11 +32,11 @@ pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f
         manifest.files.len() + 2,
         bytes as f64 / 1e6
     );
-    let census = Census::of(plan, manifest);
+    let census = Census::from_manifest(plan, manifest);
     println!("{census}");
     let mut warnings = census.warnings();
-    let told = plan.census().mistakes();
-    warnings.retain(|warning| !told.contains(warning));
+    let printed = plan.census().mistakes();
+    warnings.retain(|warning| !printed.contains(warning));
     warn(&warnings);
     if let Some(text) = doubtful(&manifest.warnings) {
         println!("{text}");

@@ -11,7 +11,7 @@ use sweep::engines::slurm::Jobs;
 Example:
   crosshead sweep cancel /scratch/faults
 
-Shards that are made stay; `sweep submit` goes on from there.")]
+Finished shards stay; `sweep submit` continues with the others.")]
 pub struct Arguments {
     /// The dataset
     url: PathBuf,

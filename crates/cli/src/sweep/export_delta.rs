@@ -13,8 +13,8 @@ Example:
   python -c 'import deltalake; print(deltalake.DeltaTable(\"/scratch/faults/features\").count())'
 
 signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
-of Parquet see no difference, but for polars, which reads features/*.parquet and no longer the folder.
-Every table is compared with its checksum first. Doing it again changes nothing.
+of Parquet see no difference, except polars, which then reads features/*.parquet and not the folder.
+Every table is compared with its checksum first. The command is safe to repeat.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {

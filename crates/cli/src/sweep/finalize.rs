@@ -16,15 +16,15 @@ use sweep::ranges::ranges;
 Example:
   crosshead sweep finalize /scratch/faults || sbatch --array=$(crosshead sweep finalize /scratch/faults) ...
 
-Where shards are missing, their numbers are printed as schedulers take them: 0-3,7. Cases that failed
-do not hinder; the manifest has them. Doing it again changes nothing.
+If shards are missing, their numbers are printed as schedulers take them: 0-3,7. Failed cases do not
+prevent completion; the manifest lists them. The command is safe to repeat.
 
 Exit status: 0 the dataset is complete; 1 the work failed; 2 the input or the arguments are wrong;
 3 shards are missing.")]
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
-    /// Compare every file with its checksum before anything is written; what stands there stays
+    /// Compare every file with its checksum before anything is written; existing files stay
     #[arg(long)]
     verify: bool,
     /// Submit what is missing again to Slurm, as the finalising job of `sweep submit` does

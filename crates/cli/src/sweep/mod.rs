@@ -30,17 +30,17 @@ pub struct Arguments {
 enum Step {
     /// Begin a dataset: write what its shards need to know
     Plan(plan::Arguments),
-    /// Make one shard; again is no harm
+    /// Make one shard; safe to repeat
     Shard(shard::Arguments),
     /// Complete the dataset when all its shards are made
     Finalize(finalize::Arguments),
-    /// Tell how far the dataset has got
+    /// Show the progress of the dataset
     Status(status::Arguments),
-    /// Hand the shards to an engine that runs them on its machines
+    /// Submit the shards to an engine that runs them on its machines
     Submit(submit::Arguments),
-    /// Take back what was submitted
+    /// Cancel the submitted jobs
     Cancel(cancel::Arguments),
-    /// Make a finished dataset Delta tables, too
+    /// Add Delta tables to a finished dataset
     ExportDelta(export_delta::Arguments),
 }
 

@@ -10,7 +10,7 @@ impl DatasetPage {
     ///
     /// # Errors
     /// A table that cannot be read.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, Error> {
         let faults = counts::faults(dataset);
         let examples = examples::examples(dataset, &faults)?;
         let motions = match dataset.plan.study {

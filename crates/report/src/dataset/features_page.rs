@@ -25,7 +25,7 @@ impl FeaturesPage {
     ///
     /// # Errors
     /// A table that cannot be read.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, Error> {
         let channels = dataset.plan.channels();
         let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
         let columns = features::columns(named, dataset.plan.chaos).into_iter();

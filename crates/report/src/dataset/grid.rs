@@ -41,7 +41,7 @@ pub(super) fn grids(dataset: &Dataset, motions: Option<&Motions>) -> Result<Opti
     let firsts = operating_points
         .iter()
         .map(|points| points[0].cases[0].first);
-    let settings = Settings::of(dataset, &firsts.collect::<Vec<_>>());
+    let settings = Settings::new(dataset, &firsts.collect::<Vec<_>>());
     let sensors = dataset.sensors.channels().len();
     let all: Vec<(usize, usize)> = (0..operating_points.len())
         .flat_map(|at| (0..sensors.max(1)).map(move |sensor| (at, sensor)))

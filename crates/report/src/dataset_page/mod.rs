@@ -22,7 +22,7 @@ pub use warnings::CaseWarning;
 use crate::figure::Colour;
 use crate::{Level, classes};
 
-/// All that the page tells. Numbers are SI; labels and names are as in the data.
+/// The content of the page. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
 pub struct DatasetPage {
     /// Name of the dataset.

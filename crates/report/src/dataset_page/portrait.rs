@@ -4,8 +4,7 @@ use super::Response;
 use crate::figure::{Axis, Colour, Mark, Panel, Series};
 use crate::revolutions::last_turns;
 
-/// A portrait shows at most this many revolutions: with more, the lines of one that repeats itself
-/// only get thicker, and those of one that does not cannot be told apart.
+/// Most revolutions of a portrait: with more, the lines of a motion that does not repeat overlap.
 pub(super) const PORTRAIT_REVOLUTIONS: usize = 10;
 
 /// Acceleration against velocity over the last revolutions.

@@ -21,7 +21,7 @@ pub(super) enum Direction {
 }
 
 impl Direction {
-    fn of(self, point: [f64; 2]) -> f64 {
+    fn coordinate(self, point: [f64; 2]) -> f64 {
         point[self as usize]
     }
 
@@ -85,15 +85,15 @@ pub(super) fn range(panels: &[&Panel], direction: Direction) -> Option<(f64, f64
 /// Everything that the panel shows in this direction.
 fn values(panel: &Panel, direction: Direction) -> impl Iterator<Item = f64> {
     let circles = panel.circles.iter().flat_map(move |circle| {
-        let centre = direction.of(circle.centre);
+        let centre = direction.coordinate(circle.centre);
         [centre - circle.radius, centre + circle.radius]
     });
     let fields = panel.fields.iter().flat_map(move |field| {
-        let middle = direction.of(field.at);
+        let middle = direction.coordinate(field.at);
         [middle - 0.5, middle + 0.5]
     });
     let points = panel.series.iter().flat_map(|series| &series.points);
-    let points = points.map(move |&point| direction.of(point));
+    let points = points.map(move |&point| direction.coordinate(point));
     points.chain(circles).chain(fields)
 }
 

@@ -66,7 +66,7 @@ fn figure(figure: &Figure) -> String {
     )
 }
 
-/// What a reader who cannot see the image is told: the title, or that of the first panel.
+/// The description for readers who cannot see the image: the title, or that of the first panel.
 fn name(figure: &Figure) -> &str {
     let titles = figure
         .rows

@@ -18,8 +18,8 @@ struct Published {
 }
 
 impl Output {
-    /// Writes the records of a finished dataset of `plan`. Whether its files are as they were written
-    /// is for whoever goes on to see.
+    /// Writes the records of a finished dataset of `plan`. Its files are not
+    /// checked here.
     ///
     /// # Errors
     /// A manifest that cannot be read, or a record that cannot be written.

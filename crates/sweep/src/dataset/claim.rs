@@ -31,14 +31,15 @@ impl Claim {
     /// Locks the folder `root`.
     ///
     /// # Errors
-    /// Where the folder has something in it that `existing` does not allow for, another process
-    /// writes to it, or it cannot be written to. It is then as it was.
+    /// [`Error::Exists`], [`Error::NotOurs`] or [`Error::NoOverwrite`] if the content of the folder does not
+    /// agree with `existing`, [`Error::InUse`] if another process writes to it, [`Error::Unwritable`] if it
+    /// cannot be written to.
     pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
         let store = Store::at(root)?;
         if store.folder().is_none() {
             return Self::in_bucket(store, root, existing);
         }
-        let (empty, ours) = look(root)?;
+        let (empty, ours) = inspect(root)?;
         match existing {
             _ if empty => {}
             _ if !ours => return Err(Error::NotOurs(root.to_owned())),
@@ -89,11 +90,12 @@ impl Claim {
         })
     }
 
-    /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
-    /// already. Where it is not, a dataset that is to be replaced goes first.
+    /// The folder of the calibration that the dataset begins with; `is_kept` says whether
+    /// it is there already. If not, a dataset that is to be replaced is removed first.
     ///
     /// # Errors
-    /// Where a dataset was begun with another calibration, or the folder cannot be written to.
+    /// [`Error::NoCalibration`] in a bucket, [`Error::OtherCalibration`] if a dataset was begun with another
+    /// calibration, [`Error::Unwritable`] or [`Error::File`] if the old dataset cannot be removed.
     pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
         if self.output.store.folder().is_none() {
             return Err(Error::NoCalibration(self.output.root.clone()));
@@ -119,7 +121,8 @@ impl Claim {
     /// Makes the folder ready for the dataset of `plan`.
     ///
     /// # Errors
-    /// Where it holds the dataset of another plan, or cannot be written to.
+    /// [`Error::OtherPlan`] if it holds the dataset of another plan, [`Error::NotACalibration`] if the plan
+    /// names an invalid calibration, and errors of files that cannot be read or written.
     pub fn open(self, plan: &Plan) -> Result<Output, Error> {
         let own = self.output.path(CALIBRATION);
         let named = plan.calibrated.as_ref();
@@ -170,8 +173,7 @@ impl Output {
     /// Makes the folder ready for the dataset of `plan`, and locks it.
     ///
     /// # Errors
-    /// Where the folder has something in it that `existing` does not allow for, another process
-    /// writes to it, or it cannot be written to. It is then as it was.
+    /// As [`Claim::new`] and [`Claim::open`].
     pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
         Claim::new(root, existing)?.open(plan)
     }
@@ -188,7 +190,7 @@ impl Output {
         let record = text(&record)?;
         if let Some(before) = self.store.create_only(PLAN, &record)? {
             match self.check(&before, plan) {
-                // The sweep itself tells which plan it was.
+                // `sweep.yaml` gives the plan.
                 Err(Error::DamagedPlan { .. })
                     if self.plan_of_sweep().is_ok_and(|own| own.id == plan.id) =>
                 {
@@ -229,7 +231,7 @@ impl Output {
 }
 
 /// Whether a folder is empty or missing, and whether it is a dataset of ours.
-fn look(root: &Path) -> Result<(bool, bool), Error> {
+fn inspect(root: &Path) -> Result<(bool, bool), Error> {
     let unwritable = |source| Error::Unwritable {
         path: root.to_owned(),
         source,

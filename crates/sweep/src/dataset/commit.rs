@@ -41,7 +41,7 @@ pub struct Commit {
 pub(super) enum Found<T> {
     /// No record.
     Nothing,
-    /// A record that says nothing, or files that are not those of the record. It was told.
+    /// A record that cannot be parsed, or files that differ from it. A warning was kept.
     Damaged,
     /// The record, and its files.
     Made(T),

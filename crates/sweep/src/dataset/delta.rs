@@ -36,8 +36,8 @@ pub struct DeltaTable {
 /// were written. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where a file is damaged, the dataset has no manifest yet, the log of another table stands there, or it cannot be
-/// written.
+/// [`Error::NotFinalized`] without a manifest, [`Error::Faults`] for damaged files, [`Error::OtherDeltaTable`]
+/// if there is the log of another table, and errors of files that cannot be written.
 pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Error> {
     let manifest = manifest(output)?;
     let listed = manifest

@@ -29,8 +29,8 @@ const ROWS_PER_GROUP: usize = 256;
 /// Computes the diagrams of `plan` that are not there yet.
 ///
 /// # Errors
-/// Where a file cannot be written, or a diagram comes out differently than it did before. A value
-/// at which the machine fails is no error: its row has the reason.
+/// [`Error::DiagramsCancelled`] if it is stopped, [`Error::NotDeterministic`] if a diagram has other bytes
+/// than before, and errors of files. A value at which the machine fails is no error: its row has the reason.
 pub fn run_diagrams(
     plan: &Plan,
     output: &Output,
@@ -102,7 +102,7 @@ pub(super) fn compute(
     Ok(())
 }
 
-/// Runs a few revolutions of `diagram`, and tells how many: for an estimate of the time.
+/// Runs a few revolutions of `diagram` to estimate the time, and returns their number.
 ///
 /// # Errors
 /// Where the machine in its middle fails.

@@ -29,7 +29,8 @@ pub(super) struct Contents {
 /// Completes the dataset of `plan`. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where a shard or a bifurcation diagram is missing, or a file cannot be written.
+/// [`Error::Incomplete`] if a shard or a bifurcation diagram is missing, and errors of files that cannot be
+/// read or written.
 pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let contents = Contents::new(output, plan)?;
     contents.write(output, &[])?;
@@ -41,7 +42,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
 /// stays as it is.
 ///
 /// # Errors
-/// As [`finalize`], and all files that are not as they were written.
+/// As [`finalize`], and [`Error::Faults`] with all files that differ from what was written.
 pub fn finalize_verified(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let contents = Contents::new(output, plan)?;
     let mut standing = Vec::new();

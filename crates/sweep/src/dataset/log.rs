@@ -1,7 +1,7 @@
 //! What a process did at a dataset, and when: `_sweep/logs/NAME.PROCESS.log`, a line for each event.
 //!
 //! In a folder a line is there at once; in a bucket, where nothing is appended to, the log is put again
-//! every minute and at the end. The work does not depend on it: a log that cannot be written is none.
+//! every minute and at the end. The work does not depend on it: a log that cannot be written is left out.
 
 use std::fmt::{self, Display};
 use std::fs::{self, File, OpenOptions};

@@ -12,14 +12,14 @@ pub enum Existing {
     /// Leave it alone and stop.
     #[default]
     Refuse,
-    /// Go on with it, if it was begun with the same plan.
+    /// Continue it, if it was begun with the same plan.
     Resume,
     /// Replace it, if it is a dataset of this program.
     Overwrite,
 }
 
-/// The command that simulates case `case` of the dataset at `root` and throws the result away; none
-/// where there is no such program. It must end when its standard input does, because its parent then
+/// The command that simulates case `case` of the dataset at `root` and throws the result away;
+/// nothing if there is no such program. It must end when its standard input does, because its parent then
 /// has.
 pub type Trial<'a> = dyn Fn(&Path, u64) -> Option<Command> + Sync + 'a;
 
@@ -31,7 +31,7 @@ pub struct Options<'a> {
     pub threads: usize,
     /// Once true, nothing new is started and [`Error::Cancelled`] is handed back.
     pub cancel: &'a AtomicBool,
-    /// Whether finished shards with failed cases, for whatever reason they failed, are made again.
+    /// Whether finished shards with failed cases are made again, for any reason of failure.
     pub retry_failed: bool,
     /// Tries a case in a process of its own, where several processes ended without a result; without
     /// it, such a case is not found.

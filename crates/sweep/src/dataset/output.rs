@@ -40,10 +40,9 @@ impl Output {
     /// together.
     ///
     /// # Errors
-    /// Where nothing has been planned there, or by another version of the program, or a process
-    /// makes the whole dataset.
+    /// As [`Output::open_read_only`], and [`Error::InUse`] if a process makes the whole dataset.
     pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
-        let (mut output, plan) = Self::look(root)?;
+        let (mut output, plan) = Self::open_read_only(root)?;
         if output.store.folder().is_some() {
             output.lock = Mutex::new(lock_shared(root)?);
         }
@@ -53,8 +52,10 @@ impl Output {
     /// As [`Output::join`], to read only.
     ///
     /// # Errors
-    /// Where nothing has been planned there, or by another version of the program.
-    pub fn look(root: &Path) -> Result<(Self, Plan), Error> {
+    /// [`Error::NotPlanned`] without a plan, [`Error::DamagedPlan`] if its record cannot be parsed,
+    /// [`Error::OtherPlan`] if it belongs to another sweep or version, [`Error::Input`] if `sweep.yaml` has a
+    /// mistake.
+    pub fn open_read_only(root: &Path) -> Result<(Self, Plan), Error> {
         let output = Self {
             store: Store::at(root)?,
             root: root.to_owned(),

@@ -71,8 +71,8 @@ impl Made {
     }
 }
 
-/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished or its
-/// record or files are damaged.
+/// Hands to `each`, in order, what the parts `indices` left; nothing for a part that is not
+/// finished or whose record or files are damaged.
 ///
 /// # Errors
 /// The first error of `each`, or storage that cannot be read.
@@ -98,12 +98,12 @@ pub(super) fn scan(
     )
 }
 
-/// Makes part `index` of a sweep, and tells whether there was anything to do: a part that is
-/// finished stays as it is.
+/// Makes part `index` of a sweep. Returns false if the part was finished before; it then stays as it is.
 ///
 /// # Errors
-/// Where there is no such part, a file cannot be written, or the part comes out differently than
-/// another process made it meanwhile.
+/// [`Error::NoShard`] if there is no such part, [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it
+/// is stopped, [`Error::NotDeterministic`] if another process made the part with other bytes, and errors of
+/// files that cannot be read or written.
 pub fn run_part(
     plan: &Plan,
     output: &Output,

@@ -1,6 +1,6 @@
 //! Progress of a run.
 
-/// Is told how a sweep gets on. Called on the thread that writes.
+/// Receives the progress of a sweep, on the thread that writes.
 pub trait Progress {
     /// Cases of the sweep, and how many of them were finished before.
     fn begins(&mut self, _cases: u64, _finished: u64) {}
@@ -14,5 +14,5 @@ pub trait Progress {
     fn values_done(&mut self, _values: u64) {}
 }
 
-/// Nobody is told.
+/// Ignores the progress.
 impl Progress for () {}

@@ -1,4 +1,4 @@
-//! Shards are run: their cases in parallel, their rows in order.
+//! Runs shards: their cases in parallel, their rows in order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -26,7 +26,8 @@ const TOGETHER: u64 = 32;
 /// their cases are tried before they are run.
 ///
 /// # Errors
-/// Where a file cannot be written, or a shard comes out differently than it did before.
+/// [`Error::Cancelled`] if it is stopped, [`Error::NotDeterministic`] if a shard has other bytes than
+/// before, and errors of files that cannot be read or written.
 pub fn run_shards(
     plan: &Plan,
     output: &Output,

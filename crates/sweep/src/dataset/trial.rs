@@ -59,10 +59,10 @@ enum End {
     Unknown(String),
 }
 
-/// Tries `cases` of shard `shard`, and tells those whose processes died, with the reason.
+/// Tries `cases` of shard `shard`. Returns those whose processes died, with the reason.
 ///
 /// # Errors
-/// Where it is cancelled, or a record cannot be read or written.
+/// [`Error::Cancelled`], or a record that cannot be read or written.
 pub(super) fn try_cases(
     plan: &Plan,
     output: &Output,
@@ -115,7 +115,7 @@ fn known(output: &Output, shard: u64) -> Result<BTreeMap<u64, Option<String>>, E
     Ok(known)
 }
 
-/// Tries a case, and tells how its process died, if it did.
+/// Tries a case. Returns how its process died, if it did.
 fn try_case(
     plan: &Plan,
     output: &Output,
@@ -196,9 +196,9 @@ fn judged(status: ExitStatus) -> End {
 /// [`Trial`] does.
 ///
 /// # Errors
-/// Where nothing has been planned at `root`. A case that fails with a message is no error.
+/// As [`Output::open_read_only`]. A case that fails with a message is no error.
 pub fn try_here(root: &Path, case: u64, runner: &Runner) -> Result<(), Error> {
-    let (_, plan) = Output::look(root)?;
+    let (_, plan) = Output::open_read_only(root)?;
     let sweep_yaml = input::yaml::to_string(plan.sweep())?;
     run_cases(&plan, case..case + 1, &Dead::new(), runner, &sweep_yaml);
     Ok(())

@@ -11,7 +11,7 @@ impl Plan {
     /// Checks that the sweep is not too large to be run.
     ///
     /// # Errors
-    /// Where it is.
+    /// [`crate::Error::TooManyCases`] if it has more than [`MOST_CASES`] cases.
     pub fn check_size(&self) -> Result<(), crate::Error> {
         let (cases, most) = (self.cases(), MOST_CASES);
         if cases > most {

@@ -1,5 +1,5 @@
-//! A sweep, made ready: what its case at an index is. Nothing is expanded, so a sweep of 10^9
-//! cases takes no more memory than one of ten.
+//! The plan of a sweep: gives the case at any index. Nothing is expanded, so a sweep of 10^9 cases
+//! takes no more memory than one of ten.
 
 mod axis;
 mod block;
@@ -60,7 +60,7 @@ pub const MOST_CASES: u64 = 100_000_000;
 /// Changes when the same plan would give other bytes.
 const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 2");
 
-/// A sweep, made ready.
+/// The plan of a sweep.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name of the dataset.
@@ -69,13 +69,13 @@ pub struct Plan {
     pub study: Option<Study>,
     /// SHA-256 of everything that the dataset's bytes depend on, in hexadecimal.
     pub id: String,
-    /// What all random numbers follow from.
+    /// The seed of all random numbers.
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
-    /// How the motion of each case is judged from the equations, where that is asked for.
+    /// How the motion of each case is judged from the equations; absent if it is not.
     pub judgement: Option<Judgement>,
-    /// Whether the kind of motion is told from the recorded signals.
+    /// Whether the regime is computed from the recorded signals.
     pub chaos: bool,
     /// How recordings are cut.
     pub windows: Option<Windows>,
@@ -89,13 +89,13 @@ pub struct Plan {
     pub joints: Vec<Joint>,
     /// The effects that the sweep varies, each of them a label.
     pub effects: Vec<VariedEffect>,
-    /// What the sweep sets or varies beside clearances, speed and pressures.
+    /// Parameters that the sweep sets or varies, other than clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
     /// The bifurcation diagrams.
     pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
-    /// The folder of the calibration that the machine comes from, where there is one.
+    /// The folder of the calibration that the machine comes from, if it is calibrated.
     pub calibrated: Option<PathBuf>,
     throws: Vec<String>,
     tree: Value,
@@ -111,7 +111,7 @@ impl Plan {
     /// Reads the sweep file at `path`, and the machine file that it names.
     ///
     /// # Errors
-    /// The first mistake in either file, with its line; a sweep without cases.
+    /// The first mistake in either file, with its line; also a sweep without cases or with more than 2^64.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::new(&Document::open(path)?, folder)
@@ -166,7 +166,7 @@ impl Plan {
     /// evenly.
     ///
     /// # Errors
-    /// Where the shards would be too large.
+    /// [`crate::Error::LargeShards`] if a shard would have more than [`MOST_CASES_A_SHARD`] cases.
     pub fn with_shards(mut self, shards: u64) -> Result<Self, crate::Error> {
         let cases = self.cases();
         let size = cases.div_ceil(shards.max(1)).max(1);
@@ -348,7 +348,7 @@ impl Plan {
     /// of all cases where those are few (see [`Census`]); the first call looks at them.
     ///
     /// # Errors
-    /// Where the drawn values do not make a machine; `index` must be below [`Plan::cases`].
+    /// An input error if the values of the case make an invalid machine. `index` must be below [`Plan::cases`].
     pub fn case(&self, index: u64) -> Result<Case, Error> {
         let case = self.case_before_splits(index)?;
         let split = self.split(case.group);
@@ -389,7 +389,7 @@ impl Plan {
             motion: None,
             windows: self.windows,
             labels: labels(&self.joints, &self.effects, &tree, &resolved, &own),
-            operating_point: OperatingPoint::of(&resolved),
+            operating_point: OperatingPoint::new(&resolved),
             group,
             split: split::assign(self.shares, self.seed, group),
             seed: self.seed,
@@ -401,7 +401,7 @@ impl Plan {
     /// The machine of `diagram` at its value number `value`.
     ///
     /// # Errors
-    /// Where the value makes no machine.
+    /// An input error if the value makes an invalid machine.
     pub fn diagram_machine(&self, diagram: &Diagram, value: usize) -> Result<Machine, Error> {
         diagram.machine(value, &self.frame())
     }

@@ -1,4 +1,4 @@
-//! What a plan says of its cases before any is run: their labels, and with them their splits.
+//! Labels and splits of the cases of a plan, before any case is run.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ use crate::split::{Split, assign, stratify};
 const MOST_STRATIFIED: u64 = 20_000;
 
 impl Plan {
-    /// Cases by label and split, told by the plan; of a large sweep, of a sample of its cases.
+    /// Cases by label and split, computed from the plan; for a large sweep, from a sample of its cases.
     pub fn census(&self) -> &Census {
         &self.survey().census
     }
@@ -57,7 +57,7 @@ impl Survey {
         let mut cases: Vec<(u64, String)> = Vec::new();
         let mut unnamed = BTreeMap::new();
         for point in (0..looked_at).map(nth) {
-            // A case that is no machine fails later, and has neither label nor split.
+            // A case with an invalid machine fails later, and has neither label nor split.
             let Ok(case) = plan.case_before_splits(point * plan.repeats) else {
                 continue;
             };
@@ -91,8 +91,8 @@ impl Survey {
 }
 
 impl Census {
-    /// The cases that the finished dataset of `plan` has; those that failed are none of them.
-    pub fn of(plan: &Plan, manifest: &Manifest) -> Self {
+    /// The cases that the finished dataset of `plan` has; failed cases are not counted.
+    pub fn from_manifest(plan: &Plan, manifest: &Manifest) -> Self {
         let windows = plan.windows.map_or(1, |windows| windows.count.get());
         let mut census = Self::new(plan.shares, [plan.cases(); 2]);
         for (split, labels) in &manifest.counts.rows {

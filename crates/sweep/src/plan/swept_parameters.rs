@@ -1,4 +1,4 @@
-//! Which parameters a sweep sets or varies.
+//! The parameters that a sweep sets or varies.
 
 use input::paths;
 use recordings::Role;

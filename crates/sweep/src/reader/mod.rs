@@ -50,7 +50,7 @@ impl Dataset {
     pub fn read(folder: &Path) -> Result<Self, Error> {
         let files = Files::in_folder(folder)?;
         let plan = Plan::read(&folder.join("sweep.yaml"))?;
-        let sensors = Sensors::of(&plan);
+        let sensors = Sensors::new(&plan);
         let windows = Windows::read(&files, &plan, &sensors)?;
         Ok(Self {
             cases: windows.cases(),

@@ -10,7 +10,7 @@ impl ChaosPage {
     ///
     /// # Errors
     /// A table that cannot be read, or a case that cannot be simulated again.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, Error> {
         let known = cases::cases(dataset)?;
         let shown = shown::shown(dataset, &known);
         Ok(Self {

@@ -7,6 +7,6 @@ pub(in crate::dataset) enum Holder {
     AtWork,
     /// It has ended.
     Ended,
-    /// There are no locks that would tell.
+    /// The storage has no locks.
     Unknown,
 }
