@@ -48,7 +48,7 @@ struct Made {
 }
 
 impl Bench<'_> {
-    /// What tells a case from that of the same number under other settings. SHA-256 in hexadecimal.
+    /// Distinguishes a case from that of the same number under other settings. SHA-256 in hexadecimal.
     pub fn fingerprint(&self, case: &Case) -> String {
         let machine = &self.machines[case.machine];
         let runs: Vec<&[(String, Value)]> = machine.runs.iter().map(|r| &r.settings[..]).collect();
@@ -122,7 +122,7 @@ impl Bench<'_> {
         let found = explain(&asked, &folder);
         outcome.cpu_seconds = start.zip(cpu_seconds()).map(|(start, end)| end - start);
         match found {
-            Ok(results) => outcome.found = Some(Explained::of(&results)),
+            Ok(results) => outcome.found = Some(Explained::from_results(&results)),
             Err(message) => outcome.error = Some(message),
         }
         if !self.keep {
@@ -198,7 +198,7 @@ impl Bench<'_> {
     }
 }
 
-/// Processor time of this process, s, as Linux tells it in hundredths of a second (proc(5): user and
+/// Processor time of this process, s, as Linux reports it in hundredths of a second (proc(5): user and
 /// system time are the 14th and 15th field, and the 2nd, a name in brackets, may hold blanks).
 fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;

@@ -1,9 +1,9 @@
-//! Why a bench cannot go on.
+//! Errors of a bench.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a bench cannot go on.
+/// Why a bench stops.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A machine that cannot be used.

@@ -34,10 +34,10 @@ pub struct RunConditions {
 }
 
 impl Machine {
-    /// The machine that an entry of the file tells; paths start from the folder `base`.
+    /// The machine of an entry of the file; paths start from the folder `base`.
     ///
     /// # Errors
-    /// A bundle or a machine section that is none, or runs that it does not have; keys of mistakes in
+    /// An invalid bundle or machine section, or runs that it does not have; keys of mistakes in
     /// the entry are its own.
     pub fn open(entry: &BenchMachine, base: &Path) -> Result<Self, input::Error> {
         let folder = base.join(&entry.bundle);

@@ -103,7 +103,7 @@ pub struct Matrix<'a> {
 
 impl<'a> Matrix<'a> {
     /// Of these outcomes.
-    pub fn of(outcomes: &'a [Outcome]) -> Self {
+    pub fn new(outcomes: &'a [Outcome]) -> Self {
         Self { outcomes }
     }
 
@@ -348,11 +348,11 @@ fn place_is_right(outcome: &Outcome) -> bool {
             .is_some_and(|(first, hidden)| first.is_at(hidden))
 }
 
-/// Whether what is hidden is named or told as a rival of what is.
+/// Whether the hidden effect is named, or listed as a rival of a named one.
 fn is_among_rivals(outcome: &Outcome) -> bool {
     let found = outcome.found.iter().flat_map(|found| &found.named);
-    let mut told = found.flat_map(|named| named.rivals.iter().chain([&named.effect]));
-    told.any(|name| outcome.hidden.iter().any(|hidden| hidden.effect == *name))
+    let mut listed = found.flat_map(|named| named.rivals.iter().chain([&named.effect]));
+    listed.any(|name| outcome.hidden.iter().any(|hidden| hidden.effect == *name))
 }
 
 fn label(outcome: &Outcome) -> String {
@@ -462,7 +462,7 @@ mod tests {
             strange(outcome(&[], &["empirical_force"], [9.0, 1.0])),
             strange(outcome(&[], &[], [9.0, 9.0])),
         ];
-        let found = serde_json::to_value(Matrix::of(&outcomes).counts()).unwrap();
+        let found = serde_json::to_value(Matrix::new(&outcomes).counts()).unwrap();
         let share = |so: usize, of: usize| json!({"so": so, "of": of});
         assert_eq!(found["cases"], 13);
         assert_eq!(found["failed"], 1);
@@ -488,7 +488,7 @@ mod tests {
             found["hidden_against_named"]["nothing"],
             json!({"explained": 1, "x": 1})
         );
-        let page = Matrix::of(&outcomes).markdown();
+        let page = Matrix::new(&outcomes).markdown();
         assert!(page.contains("| 3 to 10 | 1 of 2 (50 %) | 0 of 2 (0 %) | 2 of 2 (100 %) |"));
         assert!(
             page.contains("| x + y | y 2 | 9.00 | 2.00 | 9.00 | 2.00 |"),
@@ -498,8 +498,8 @@ mod tests {
 
     #[test]
     fn nothing_comes_to_nothing() {
-        let found = serde_json::to_value(Matrix::of(&[]).counts()).unwrap();
+        let found = serde_json::to_value(Matrix::new(&[]).counts()).unwrap();
         assert_eq!(found["held_out_gap_closed"]["median"], Value::Null);
-        assert!(Matrix::of(&[]).markdown().contains("| below 3 | – |"));
+        assert!(Matrix::new(&[]).markdown().contains("| below 3 | – |"));
     }
 }

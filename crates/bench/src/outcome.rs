@@ -19,7 +19,7 @@ pub const CASES: &str = "cases.jsonl";
 pub struct Outcome {
     /// Number of the case.
     pub case: u64,
-    /// What tells the case from the same number of another file.
+    /// Distinguishes the case from the same number of another file.
     pub fingerprint: String,
     /// The machine's name.
     pub machine: String,
@@ -39,7 +39,7 @@ pub struct Outcome {
     /// Why it failed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// Processor time of the workflow, s, where the system tells it.
+    /// Processor time of the workflow, s, if the system reports it.
     pub cpu_seconds: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ pub struct Gap {
 
 impl Explained {
     /// From the results of an explanation.
-    pub fn of(results: &Results) -> Self {
+    pub fn from_results(results: &Results) -> Self {
         let named = |effect: &Effect| Named {
             effect: effect.effect.clone(),
             joint: effect.joint.clone(),
@@ -169,7 +169,7 @@ pub struct Ledger {
 
 impl Ledger {
     /// That of a folder.
-    pub fn of(folder: &Path) -> Self {
+    pub fn in_folder(folder: &Path) -> Self {
         Self {
             path: folder.join(CASES),
         }
@@ -183,7 +183,7 @@ impl Ledger {
     /// The cases that are done, by their number. A last line that was cut off is taken out of the file.
     ///
     /// # Errors
-    /// A line that is none, or a file that cannot be read.
+    /// An invalid line, or a file that cannot be read.
     pub fn read(&self) -> Result<Vec<Outcome>, Error> {
         let shown = self.path.display();
         let text = match std::fs::read_to_string(&self.path) {

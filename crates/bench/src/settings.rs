@@ -93,7 +93,7 @@ pub struct BenchMachine {
 }
 
 impl HiddenEffects {
-    /// Reads a file; `document` tells lines for what turns out later.
+    /// Reads a file; the document gives the lines of mistakes that are found later.
     ///
     /// # Errors
     /// The first mistake, with its line.

@@ -1,4 +1,4 @@
-//! What is true of the recorded machine and is not told: its contacts, and what is hidden in it.
+//! The hidden truth of a recorded machine: its contacts and its effects.
 
 use crate::error::Error;
 use crate::machine::Machine;
@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 
 /// True contact parameters over their nominal values.
 const CONTACT: [f64; 2] = [0.6, 1.4];
-/// An amplitude, and a constant that is none, is up to this factor off its usual value.
+/// Amplitudes and constants differ from their usual values by up to this factor.
 const AMPLITUDE: f64 = 1.25;
 const CONSTANT: f64 = 1.5;
 /// Coefficients of restitution of the other contact law.
@@ -22,7 +22,7 @@ const MAINS: [f64; 2] = [50.0, 60.0];
 const GRID: f64 = 0.002;
 /// Terms of a law: a force of many has none.
 const TERMS: usize = 2;
-/// Terms that are none of it, as effects with a name make them: misalignment, and friction of the rings.
+/// Terms that named effects make: misalignment, and friction of the rings.
 const NAMED: [&str; 6] = [
     "cos_1",
     "sin_1",

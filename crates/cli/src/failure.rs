@@ -37,7 +37,26 @@ impl From<input::Error> for Failure {
     }
 }
 
-/// Prints the message of a failure and tells the shell.
+impl From<sweep::Error> for Failure {
+    fn from(error: sweep::Error) -> Self {
+        match error.is_input() {
+            true => Self::input(error),
+            false => Self::work(error),
+        }
+    }
+}
+
+impl From<sweep::engines::Error> for Failure {
+    fn from(error: sweep::engines::Error) -> Self {
+        match error {
+            sweep::engines::Error::Missing(_) => Self::Incomplete(error.to_string()),
+            error if error.is_input() => Self::input(error),
+            error => Self::work(error),
+        }
+    }
+}
+
+/// Prints the message of a failure and returns the exit status.
 pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
     let (message, status) = match outcome {
         Ok(()) => return ExitCode::SUCCESS,

@@ -19,14 +19,14 @@ use sweep::in_order::in_order;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml) or
-a dataset of gen-dataset. A column of time (t, t_s, time) tells the sample rate. Units stand in the
+a dataset of gen-dataset. The sample rate is read from a column of time (t, t_s, time), units from the
 columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the folder of a file
 says what its channels are: crank angle, tacho, accelerations and pressures with their units.
 
 The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead centre,
 or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without a speed, a
 crank angle or a tacho nothing per order or revolution; without top dead centre no sectors of the
-crank angle. The column `missing` tells why a value is null, `warnings` what looks wrong.
+crank angle. The column `missing` has the reason for a null value, `warnings` lists what looks wrong.
 
 Gaps of up to 4 samples without a number are bridged by straight lines; a longer gap ends a window.
 
@@ -44,13 +44,13 @@ pub struct Arguments {
     /// Take this column only; may be repeated [default: every column of numbers]
     #[arg(long, value_name = "NAME")]
     column: Vec<String>,
-    /// Sample rate, where no column of time and no heading tells it; a plain number is in Hz
+    /// Sample rate, if neither a column of time nor a heading has it; a plain number is in Hz
     #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
     sample_rate: Option<String>,
     /// Unit of the columns that have none, or what 1 in the file is (in a WAV file: full scale)
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
-    /// Speed of the crank, where neither a crank angle nor the file tells it
+    /// Speed of the crank, if neither a crank angle nor the file has it
     #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
     speed: Option<String>,
     /// Crank angle, where its column is not called crank_angle_rad or crank_angle_deg; the unit in

@@ -20,11 +20,11 @@ pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
 /// Arguments of `crosshead hidden-effects`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each case makes a bundle of recordings of a machine whose contacts are not those that are told, hides
-effects in it (or none), and explains it as crosshead explain-gap does, which sees the bundle alone.
-DIR/cases.jsonl gets a line per case, matrix.json and matrix.md what they come to, and cases/ machine,
-results and page of each explanation. Several processes may share a folder, each with --cases of
-its own and --resume.
+Each case makes a bundle of recordings of a machine. The contacts of that machine differ from the stated
+ones, and effects are hidden in it (or none). The case then runs crosshead explain-gap on the bundle
+alone. DIR/cases.jsonl gets a line per case, matrix.json and matrix.md the counts, and cases/ machine,
+results and page of each explanation. Several processes may share a folder, each with its own --cases
+and --resume.
 
 Examples:
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --dry-run
@@ -45,7 +45,7 @@ pub struct Arguments {
     /// Only cases of these numbers, both ends included
     #[arg(long, value_name = "FIRST..LAST", value_parser = numbers)]
     cases: Option<RangeInclusive<u64>>,
-    /// Go on with a proof that was stopped
+    /// Continue a proof that was stopped
     #[arg(long)]
     resume: bool,
     /// Keep the true machine and the recordings, measured and simulated: some 10 MB a case
@@ -64,10 +64,10 @@ fn numbers(text: &str) -> Result<RangeInclusive<u64>, String> {
     }
 }
 
-/// Makes the cases, explains them, and tells what was found.
+/// Makes the cases, explains them, and counts what was found.
 ///
 /// # Errors
-/// Settings or machines that are none, a folder with the cases of others, or files that cannot be
+/// Invalid settings or machines, a folder with the cases of others, or files that cannot be
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (settings, document) = HiddenEffects::read(&arguments.settings)?;
@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         return Ok(());
     }
     let out = &arguments.out;
-    let ledger = Ledger::of(out);
+    let ledger = Ledger::in_folder(out);
     if ledger.exists() && !arguments.resume {
         return Err(Failure::input(format!(
             "{} is already there; --resume goes on with it, --out DIR writes elsewhere",
@@ -128,24 +128,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             )
         });
         if cancel.load(Ordering::Relaxed) {
-            write(&Matrix::of(&ledger.read().map_err(failure)?), out)?;
+            write(&Matrix::new(&ledger.read().map_err(failure)?), out)?;
             return Err(Failure::work(format!(
-                "stopped: {i} of {count} cases are done; --resume goes on from there"
+                "stopped: {i} of {count} cases are done; --resume continues from there"
             )));
         }
         let outcome = outcome.map_err(failure)?;
         ledger.add(&outcome).map_err(failure)?;
-        eprintln!("{} of {count}: {}", i + 1, told(case, &outcome));
+        eprintln!("{} of {count}: {}", i + 1, line(case, &outcome));
     }
     let done = ledger.read().map_err(failure)?;
-    let matrix = Matrix::of(&done);
+    let matrix = Matrix::new(&done);
     write(&matrix, out)?;
     print!("{}", matrix.summary());
     println!("{}", out.join(MATRIX[1]).display());
     Ok(())
 }
 
-/// Why a bench cannot go on.
+/// The failure of a bench.
 fn failure(error: bench::Error) -> Failure {
     match error.is_of_input() {
         true => Failure::input(error),
@@ -200,7 +200,7 @@ fn list(cases: &[Case], machines: &[Machine]) {
 }
 
 /// A case in a line.
-fn told(case: &Case, outcome: &Outcome) -> String {
+fn line(case: &Case, outcome: &Outcome) -> String {
     let what = match (&outcome.found, &outcome.error) {
         (Some(found), _) => {
             let named: Vec<&str> = found.named.iter().map(|n| n.effect.as_str()).collect();

@@ -1,7 +1,7 @@
 //! What the programs print, and the files that they write.
 //!
 //! The standard library's `println!` panics where standard output cannot be written: a full disk, a
-//! closed descriptor. Here it ends the program with one message and exit status 1; `eprintln!` goes on, as
+//! closed descriptor. Here it ends the program with one message and exit status 1; `eprintln!` continues, as
 //! a message that nobody can read is no reason to lose the work. A summary that nobody reads to its end
 //! (`| head`) ends the program without a word, as everywhere.
 //!
@@ -13,7 +13,7 @@ use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Exit status of a program that the signal of a broken pipe has ended, as the shell tells it.
+/// Exit status of a program that the signal of a broken pipe has ended, as the shell reports it.
 const BROKEN_PIPE: i32 = 128 + 13;
 
 /// Writes a file that appears whole or not at all.

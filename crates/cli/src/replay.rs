@@ -17,7 +17,7 @@ const SPEED: f64 = 1e-5;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 BUNDLE is a folder with recordings.yaml. Each run is simulated at the speed, load and clearances that
-the bundle tells, with the crank where the recording has it, settled and without noise.
+the bundle states, with the crank where the recording has it, settled and without noise.
 
 Examples:
   crosshead replay my-bundle --out replayed
@@ -43,10 +43,10 @@ pub struct Arguments {
     overwrite: bool,
 }
 
-/// Simulates the runs, writes them, and tells how far they are from the recordings.
+/// Simulates the runs, writes them, and prints how far they are from the recordings.
 ///
 /// # Errors
-/// A bundle or machine that is none, runs that cannot be used or simulated, or files that cannot be
+/// An invalid bundle or machine, runs that cannot be used or simulated, or files that cannot be
 /// written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let bundle = arguments.outside.read(&arguments.bundle)?;

@@ -7,20 +7,20 @@ const PAUSE: Duration = Duration::from_secs(5);
 
 /// Tells now and then how far a run has come.
 pub(crate) struct Progress {
-    told: Instant,
+    shown: Instant,
 }
 
 impl Progress {
     /// At the beginning of a run.
     pub fn new() -> Self {
-        let told = Instant::now();
-        Self { told }
+        let shown = Instant::now();
+        Self { shown }
     }
 
     /// So large a share is done.
-    pub fn tell(&mut self, share: f64) {
-        if self.told.elapsed() >= PAUSE {
-            self.told = Instant::now();
+    pub fn show(&mut self, share: f64) {
+        if self.shown.elapsed() >= PAUSE {
+            self.shown = Instant::now();
             eprintln!("{:.0} % simulated", 100.0 * share);
         }
     }

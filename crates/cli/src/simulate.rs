@@ -99,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     recordable.map_err(|e| Failure::input(format!("{}: {e}", machine.name)))?;
     let mut progress = Progress::new();
     let (m, sensors) = (&machine.machine, &machine.sensors);
-    let record = simulate::simulate_watched(m, sensors, &settings, &mut |done| progress.tell(done))
+    let record = simulate::simulate_watched(m, sensors, &settings, &mut |done| progress.show(done))
         .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
     let throws: Vec<&str> = machine
         .machine
@@ -243,7 +243,7 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
     let deep: String = deep.collect();
     let title = format!("{}, {}{deep}", machine.name, rpm(machine.speed));
     let trace = record.trace.as_ref();
-    let picture = trace.and_then(|trace| CasePicture::of(&title, trace));
+    let picture = trace.and_then(|trace| CasePicture::new(&title, trace));
     picture.map_or(String::new(), |picture| picture.svg())
 }
 

@@ -38,5 +38,5 @@ pub fn if_asked() -> Option<ExitCode> {
     // Whoever asked holds the other end: when that closes, nobody waits for the outcome.
     thread::spawn(|| end_with_parent());
     let tried = try_here(Path::new(root), case, &simulate_cases);
-    Some(crate::finish(tried.map_err(crate::gen_dataset::failed)))
+    Some(crate::finish(tried.map_err(crate::Failure::from)))
 }

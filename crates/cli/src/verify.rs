@@ -1,6 +1,6 @@
 //! `verify`: whether a finished dataset is the one that was written.
 
-use crate::{Failure, gen_dataset};
+use crate::Failure;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bar.set_position(done);
     });
     bar.finish_and_clear();
-    let found = found.map_err(gen_dataset::failed)?;
+    let found = found?;
     if !found.has_sums {
         eprintln!("warning: {dataset} has no SHA256SUMS: nothing vouches for manifest.json itself");
     }

@@ -71,8 +71,8 @@ pub fn content(file: File, most: u64) -> io::Result<Vec<u8>> {
     Ok(content)
 }
 
-/// Opens a file that is read and written while long work goes on, or makes it, and locks it as long as it stays open.
-/// Where the file system knows no locks there is none.
+/// Opens or makes a file that is read and written during long work, and locks it as long as it stays open.
+/// It is not locked if the file system has no locks.
 ///
 /// # Errors
 /// [`ErrorKind::ResourceBusy`] where another process holds it, or has just removed it; a file that cannot be opened.

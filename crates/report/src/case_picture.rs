@@ -42,7 +42,7 @@ pub struct ClearJoint<'a> {
 
 impl<'a> CasePicture<'a> {
     /// Of the first throw of a run and its joints with clearance; none without a throw.
-    pub fn of(title: &'a str, trace: &'a Trace) -> Option<Self> {
+    pub fn new(title: &'a str, trace: &'a Trace) -> Option<Self> {
         let throw = trace.throws.first()?;
         let joints = [
             ("main", &trace.main),

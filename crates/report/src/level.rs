@@ -39,7 +39,7 @@ impl Level {
         }
     }
 
-    /// Whether it is smaller than the other, larger, or neither as far as two recordings can tell.
+    /// Whether it is smaller than the other, larger, or neither within the spread of two recordings.
     pub fn against(self, other: Self) -> Ordering {
         let chance = SURE * self.spread.hypot(other.spread);
         let linearity = LINEARITY * self.value.abs().max(other.value.abs());

@@ -34,7 +34,7 @@ pub struct Amplitude {
     position: usize,
 }
 
-/// What tells an effect from the others of a file: its name, its place, and its order where it has
+/// Distinguishes an effect from the others of a file: its name, its place, and its order where it has
 /// one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Id {

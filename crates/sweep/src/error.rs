@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use crate::dataset::Fault;
 use crate::ranges::ranges;
 
-/// What can go wrong with a sweep. A case that fails is not among it: it stands in the manifest,
-/// and the others go on.
+/// What can go wrong with a sweep. A failed case is not an error: it is listed in the manifest, and
+/// the other cases are run.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A mistake in a file that a person wrote.
+    /// A mistake in a sweep or machine file.
     #[error(transparent)]
     Input(#[from] input::Error),
     /// A sweep that is too large to be run.
@@ -114,7 +114,7 @@ pub enum Error {
          then that folder's sweep.yaml in object storage", .0.display()
     )]
     NoCalibration(PathBuf),
-    /// A folder that is to be copied into a dataset as its calibration, and is none.
+    /// A folder that a sweep names as its calibration and that holds no calibration.
     #[error("`{}` is not the folder of a calibration: {reason}", path.display())]
     NotACalibration {
         /// The folder.
@@ -219,10 +219,10 @@ pub enum Error {
     /// A folder or bucket without the manifest of a dataset.
     #[error("`{}` holds no finished dataset: it has no manifest.json", .0.display())]
     NoManifest(PathBuf),
-    /// The user wanted it to stop after the cases.
+    /// The user stopped it after the cases.
     #[error(
         "stopped; all cases and {done} of {diagrams} bifurcation diagrams are finished, and \
-         --resume goes on from there"
+         --resume continues from there"
     )]
     DiagramsCancelled {
         /// Finished diagrams.
@@ -230,8 +230,8 @@ pub enum Error {
         /// Diagrams of the sweep.
         diagrams: usize,
     },
-    /// The user wanted it to stop.
-    #[error("stopped; {done} of {shards} shards are finished, and --resume goes on from there")]
+    /// The user stopped it.
+    #[error("stopped; {done} of {shards} shards are finished, and --resume continues from there")]
     Cancelled {
         /// Finished shards.
         done: u64,

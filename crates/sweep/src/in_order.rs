@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::mpsc;
 
+use crate::Error;
+
 /// Applies `work` to `inputs` on the threads of `pool`, and hands the results to `sink`, on this
 /// thread (which must not be one of the pool's), in the order of the inputs.
 ///
@@ -50,16 +52,21 @@ pub fn in_order<I: Send, T: Send, E>(
     })
 }
 
+/// So many threads, at least one, for [`in_order`].
+pub(crate) fn pool(threads: usize) -> Result<rayon::ThreadPool, Error> {
+    let threads = threads.max(1);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Error::Threads {
+        threads,
+        reason: e.to_string(),
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::sync::atomic::{AtomicUsize, Ordering::SeqCst};
     use std::time::Duration;
-
-    fn pool(threads: usize) -> rayon::ThreadPool {
-        let builder = rayon::ThreadPoolBuilder::new();
-        builder.num_threads(threads).build().unwrap()
-    }
 
     #[test]
     fn results_come_in_order_and_never_more_than_the_look_ahead_at_once() {
@@ -71,7 +78,7 @@ mod tests {
                 most.fetch_max(now, SeqCst);
             });
             in_order(
-                &pool(threads),
+                &pool(threads).unwrap(),
                 look_ahead,
                 inputs,
                 |&i: &u64| {
@@ -96,7 +103,7 @@ mod tests {
     fn the_first_error_of_the_sink_ends_it() {
         let worked = AtomicUsize::new(0);
         let result = in_order(
-            &pool(2),
+            &pool(2).unwrap(),
             3,
             0..1_000_000,
             |_| worked.fetch_add(1, SeqCst),
@@ -108,7 +115,7 @@ mod tests {
 
     #[test]
     fn a_panic_of_the_work_is_passed_on() {
-        let pool = pool(2);
+        let pool = pool(2).unwrap();
         let result = catch_unwind(AssertUnwindSafe(|| {
             in_order(
                 &pool,

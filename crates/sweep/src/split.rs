@@ -46,7 +46,7 @@ pub fn assign(shares: [f64; 3], seed: u64, group: u64) -> Split {
 ///
 /// 1. A split gets as many groups as its share of all, rounded by the largest remainders.
 /// 2. The largest split gets what the others leave. Each of the others first gets one group of every
-///    stratum that has enough for all splits, the larger strata first, then goes on by the method of
+///    stratum that has enough for all splits, the larger strata first, then continues by the method of
 ///    Sainte-Laguë (1910): each further group comes from the stratum with the largest n/(2k + 1), n
 ///    being its groups and k those that the split has of it.
 /// 3. Which groups of a stratum go where is drawn, from the seed and the group.

@@ -153,7 +153,7 @@ fn processes_at_work_are_no_reason_to_try_a_case() {
         let (output, plan) = Output::join(root).unwrap();
         let runner = each(|case: &Case| {
             if case.index == 3 && deep.fetch_add(1, SeqCst) < 5 {
-                let (seen, _) = Output::look(root).unwrap();
+                let (seen, _) = Output::open_read_only(root).unwrap();
                 let attended = status(&seen, &plan, false).unwrap().attempts[0].1;
                 assert_eq!((attended.at_work, attended.ended), (deep.load(SeqCst), 0));
                 // On a thread of its own, as another process would be.

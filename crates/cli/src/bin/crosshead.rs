@@ -21,7 +21,7 @@ enum Verb {
     Simulate(cli::simulate::Arguments),
     /// Compute the features of recordings, measured or simulated
     Features(cli::features::Arguments),
-    /// Tell whether the files of a finished dataset are those that were written
+    /// Check that the files of a finished dataset are those that were written
     Verify(cli::verify::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
     Report(cli::report::Arguments),
@@ -31,7 +31,7 @@ enum Verb {
     ExplainGap(cli::explain_gap::Arguments),
     /// Hide effects in recordings made here, and count which of them explain-gap finds
     HiddenEffects(cli::hidden_effects::Arguments),
-    /// Simulate the runs of a bundle in place of their recordings, and tell how far they differ
+    /// Simulate the runs of a bundle and report how far they differ from the recordings
     Replay(cli::replay::Arguments),
     /// Print the JSON Schema of a file, for editors and checks
     Schema(cli::schema::Arguments),

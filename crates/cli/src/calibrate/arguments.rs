@@ -63,7 +63,7 @@ pub struct Arguments {
     /// Seed of a random search [default: 0]
     #[arg(long)]
     seed: Option<u32>,
-    /// Go on with a calibration that was stopped
+    /// Continue a calibration that was stopped
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
     /// Replace a calibration that is there
@@ -101,7 +101,7 @@ enum Law {
 /// theirs; the folder from which their paths start, and their file where there is one.
 ///
 /// # Errors
-/// A settings file that is none, or one beside other inputs.
+/// An invalid settings file, or a settings file beside other inputs.
 pub(crate) fn read(
     input: &[PathBuf],
     machine: Option<&Path>,
@@ -127,7 +127,7 @@ impl Arguments {
     /// The settings, the folder from which their paths start, and their file where there is one.
     ///
     /// # Errors
-    /// A settings file that is none, or one beside other inputs.
+    /// An invalid settings file, or a settings file beside other inputs.
     pub(super) fn settings(&self) -> Result<(Calibration, PathBuf, Option<Document>), Failure> {
         let (mut settings, base, document) = read(&self.input, self.machine.as_deref())?;
         if !self.parameter.is_empty() {

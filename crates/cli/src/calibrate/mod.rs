@@ -10,10 +10,10 @@ use std::sync::atomic::AtomicBool;
 
 pub use arguments::Arguments;
 
-/// Calibrates from a settings file or from arguments, and tells what was found.
+/// Calibrates from a settings file or from arguments, and prints the results.
 ///
 /// # Errors
-/// A bundle or machine that is none, runs that cannot be used, or files that cannot be written.
+/// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (calibration, base, document) = arguments.settings()?;
     let locate = |error| match &document {
@@ -39,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     println!("{}", out.join(report::PAGE).display());
     if !done.results.complete {
         return Err(Failure::work(format!(
-            "stopped before the end: {} has the best so far; --resume goes on from there",
+            "stopped before the end: {} has the best so far; --resume continues from there",
             out.display()
         )));
     }

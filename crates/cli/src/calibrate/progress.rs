@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// How often the clock of the bar goes on between two steps.
+/// How often the clock of the bar is redrawn between two steps.
 const TICK: Duration = Duration::from_millis(500);
 
 /// The bar of the stage that is under way; `cancel` stops the calibration.

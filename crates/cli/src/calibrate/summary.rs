@@ -11,7 +11,7 @@ pub(crate) fn print(results: &Results) {
         println!("stopped; the best so far:");
     }
     for (path, estimate) in results.parameters.iter() {
-        println!("{path}: {}", found(estimate));
+        println!("{path}: {}", estimate_text(estimate));
     }
     for (id, run) in results.runs.iter() {
         let kind = match run.held_out {
@@ -45,7 +45,7 @@ pub(crate) fn print(results: &Results) {
     }
 }
 
-fn found(estimate: &Estimate) -> String {
+fn estimate_text(estimate: &Estimate) -> String {
     let value = estimate.value;
     match estimate.known() {
         Known::Within([low, high]) => {
@@ -89,11 +89,13 @@ fn corrections(corrections: &[Correction], tried: &[Tried]) {
         );
     }
     if corrections.len() > 1 && corrections.iter().all(|c| !c.applied) {
-        println!("data sheet: these are not told apart, and none is corrected: measure them");
+        println!(
+            "data sheet: the recordings do not distinguish these values, so none is corrected: measure them"
+        );
     }
     if let (true, Some(nearest)) = (corrections.is_empty(), tried.first()) {
         println!(
-            "data sheet: no single value of it explains the recordings; {} comes nearest, to {:.2} times the noise",
+            "data sheet: no single value explains the recordings; {} reduces the misfit most, to {:.2} times the noise",
             nearest.path, nearest.misfit
         );
     }
@@ -119,13 +121,13 @@ fn gas(run: &str, column: &str, found: &Gas) {
     };
     let both = events(measured).into_iter().zip(events(calibrated));
     let names = ["suction closes", "discharge opens", "suction opens"];
-    let told = names.iter().zip(both).map(|(name, (measured, fitted))| {
+    let events = names.iter().zip(both).map(|(name, (measured, fitted))| {
         format!("{name} at {measured:.0} deg, in the fit at {fitted:.0}")
     });
-    println!("  {}", told.collect::<Vec<_>>().join("; "));
+    println!("  {}", events.collect::<Vec<_>>().join("; "));
 }
 
-/// Prints how the relations between clearances compare, where the recordings tell them apart.
+/// Prints how the relations between clearances compare, if the recordings distinguish them.
 fn relations(found: &Relations) {
     let decided = &found.decision.relations;
     if decided.is_empty() {
@@ -140,10 +142,7 @@ fn relations(found: &Relations) {
         );
     }
     let decided: Vec<&str> = decided.iter().map(|relation| relation.name()).collect();
-    println!(
-        "relation that the recordings are for: {}",
-        decided.join(" or ")
-    );
+    println!("relation that the data favour: {}", decided.join(" or "));
 }
 
 /// Prints the sensors.

@@ -19,12 +19,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The machine is calibrated to the recordings first. Where that leaves more than noise, the effects of
-the catalogue are tried one after another, and those that the recordings show, and that predict the
-runs that were held out, are added to the machine file. Stopped with Ctrl-C, the same command goes on
-from what was finished.
+the catalogue are tried one after another. Those that the recordings show, and that also predict the
+held-out runs, are added to the machine file. After Ctrl-C, the same command continues from what was
+finished.
 
-A settings file, as crosshead calibrate reads it, says what is calibrated, with its bounds; how that is
-searched is not asked of it. Pressures that were recorded alone explain the gas.
+A settings file, as for crosshead calibrate, says what is calibrated, with its bounds; its optimiser
+is not used. Recordings of pressures alone explain the gas.
 
 Examples:
   crosshead explain-gap my-bundle --out explained
@@ -55,10 +55,10 @@ pub struct Arguments {
     overwrite: bool,
 }
 
-/// Explains the gap, and tells what was found.
+/// Explains the gap and prints the results.
 ///
 /// # Errors
-/// A bundle or machine that is none, runs that cannot be used, or files that cannot be written.
+/// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     if out.join(RESULTS).exists() && !arguments.overwrite {
@@ -106,7 +106,7 @@ pub(crate) fn into_folder(
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let results = gap::into_folder(asked, out, &|stage| bar.tell(stage), &watch);
+    let results = gap::into_folder(asked, out, &|stage| bar.show(stage), &watch);
     bar.finish();
     let results = results.map_err(|error| match error {
         gap::Error::Input(error) => Failure::input(error),

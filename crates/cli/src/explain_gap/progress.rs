@@ -4,10 +4,10 @@ use gap::Stage;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 
-/// How often the clock goes on between two stages.
+/// How often the clock is redrawn between two stages.
 const TICK: Duration = Duration::from_millis(500);
 
-/// A line that tells the present stage; nothing where standard error is no terminal.
+/// A line with the present stage; nothing if standard error is no terminal.
 pub struct Bar(ProgressBar);
 
 impl Bar {
@@ -20,7 +20,7 @@ impl Bar {
         Self(bar)
     }
 
-    pub fn tell(&self, stage: &Stage) {
+    pub fn show(&self, stage: &Stage) {
         let misfit = match stage.misfit.is_finite() {
             true => format!(", misfit {:.2}", stage.misfit),
             false => String::new(),

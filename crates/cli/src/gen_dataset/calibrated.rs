@@ -23,20 +23,18 @@ pub fn plan(
     cancel: &AtomicBool,
 ) -> Result<(Claim, Plan), Failure> {
     let prepared = prepare(sweep, root)?;
-    let mut claim = Claim::new(root, existing).map_err(super::failed)?;
-    let folder = claim
-        .calibration(prepared.is_done())
-        .map_err(super::failed)?;
+    let mut claim = Claim::new(root, existing)?;
+    let folder = claim.calibration(prepared.is_done())?;
     let done = finish(prepared, cancel)?;
-    tell(&done, &folder);
+    print(&done, &folder);
     if !done.results.complete {
         return Err(Failure::work(format!(
             "stopped during the calibration, before the first case; {} has the best so far, and \
-             --resume goes on from there",
+             --resume continues from there",
             folder.display()
         )));
     }
-    Ok((claim, sweep.kept(&folder).map_err(super::failed)?))
+    Ok((claim, sweep.kept(&folder)?))
 }
 
 /// The plan with the calibration that the dataset's folder `root` holds; none where it holds none
@@ -47,7 +45,7 @@ pub fn plan(
 pub fn plan_if_kept(sweep: &Sweep, root: &Path) -> Result<Option<Plan>, Failure> {
     let is_done = prepare(sweep, root)?.is_done();
     let plan = is_done.then(|| sweep.kept(&root.join(CALIBRATION)));
-    plan.transpose().map_err(super::failed)
+    Ok(plan.transpose()?)
 }
 
 fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
@@ -67,7 +65,7 @@ fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
     ::calibrate::prepare(&settings, &folder, existing).map_err(Failure::input)
 }
 
-fn tell(done: &Calibrated, folder: &Path) {
+fn print(done: &Calibrated, folder: &Path) {
     match done.reused {
         true => println!("calibrated before, and nothing has changed since:"),
         false => println!("calibrated into {}:", folder.display()),

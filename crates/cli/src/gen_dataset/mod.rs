@@ -1,20 +1,21 @@
 //! `gen-dataset`: a sweep becomes a labelled dataset.
 
+mod bar;
 mod calibrated;
+mod dry_run;
+mod summary;
+
+pub(crate) use bar::Bar;
+pub(crate) use summary::{failures, summarise, warn};
 
 use crate::{Failure, interrupt, try_case};
 use clap::{Args, ValueEnum};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use recordings::{CaseWarning, FailedCase, Manifest};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use sweep::dataset::{Claim, Existing, Options, Progress, check_calibration, generate_in};
+use sweep::dataset::{Claim, Existing, Options, check_calibration, generate_in};
 use sweep::sweep_file::Format;
-use sweep::{Census, Plan, Sweep, simulate_cases};
-
-/// Failed cases that are shown.
-const SHOWN_FAILURES: usize = 5;
+use sweep::{Plan, Sweep, simulate_cases};
 
 /// Arguments of `gen-dataset`.
 #[derive(Args, Debug)]
@@ -39,16 +40,16 @@ pub struct Arguments {
     /// Threads that simulate [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Go on with a dataset that was interrupted
+    /// Continue a dataset that was interrupted
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Make the shards with failed cases again, whatever these failed of
+    /// Make the shards with failed cases again
     #[arg(long, requires = "resume")]
     retry_failed: bool,
     /// Replace a dataset that is there
     #[arg(long)]
     overwrite: bool,
-    /// Tell what would be made, from a measured sample, and write nothing
+    /// Estimate size and time from a measured sample, and write nothing
     #[arg(long)]
     dry_run: bool,
 }
@@ -74,7 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| default_folder(&nominal.name));
     if arguments.dry_run {
-        return dry_run(&arguments.planned(&sweep, nominal, &out)?);
+        return dry_run::dry_run(&arguments.planned(&sweep, nominal, &out)?);
     }
     let cancel = interrupt::flag()?;
     let existing = match (arguments.resume, arguments.overwrite) {
@@ -116,8 +117,8 @@ pub(crate) fn claim(
 ) -> Result<(Claim, Plan), Failure> {
     match sweep.calibrate() {
         None => {
-            check_calibration(&nominal).map_err(failed)?;
-            Ok((Claim::new(out, existing).map_err(failed)?, nominal))
+            check_calibration(&nominal)?;
+            Ok((Claim::new(out, existing)?, nominal))
         }
         Some(_) => calibrated::plan(sweep, out, existing, cancel),
     }
@@ -204,194 +205,6 @@ fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {
         sweep::Error::TooManyCases { .. } => {
             Failure::input(format!("{}: cases: {error}", arguments.sweep.display()))
         }
-        error => failed(error),
+        error => error.into(),
     }
-}
-
-/// The failure that an error of a dataset is.
-pub(crate) fn failed(error: sweep::Error) -> Failure {
-    if error.is_input() {
-        Failure::input(error)
-    } else {
-        Failure::work(error)
-    }
-}
-
-/// The bar on standard error: rate and time left; nothing where that is no terminal.
-#[derive(Default)]
-pub(crate) struct Bar {
-    bar: Option<ProgressBar>,
-    failed: u64,
-}
-
-impl Progress for Bar {
-    fn begins(&mut self, cases: u64, finished: u64) {
-        self.show(cases, finished, "cases");
-    }
-
-    fn warning(&mut self, text: &str) {
-        warn(&[text.to_owned()]);
-    }
-
-    fn case_done(&mut self, _case: u64, failed: bool) {
-        let Some(bar) = &self.bar else { return };
-        bar.inc(1);
-        if failed {
-            self.failed += 1;
-            bar.set_message(format!("{} failed", self.failed));
-        }
-    }
-
-    fn diagrams_begin(&mut self, values: u64, finished: u64) {
-        self.finish();
-        self.show(values, finished, "values of bifurcation diagrams");
-    }
-
-    fn values_done(&mut self, values: u64) {
-        if let Some(bar) = &self.bar {
-            bar.inc(values);
-        }
-    }
-}
-
-impl Bar {
-    fn show(&mut self, total: u64, finished: u64, what: &str) {
-        let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-        let template =
-            format!("{{bar:40}} {{pos}}/{{len}} {what}  {{per_sec}}  {{eta}} left  {{msg}}");
-        if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
-        }
-        bar.set_position(finished);
-        bar.reset_eta();
-        self.bar = Some(bar);
-    }
-
-    /// Takes it off the terminal.
-    pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-/// Says what is wrong.
-pub(crate) fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("warning: {warning}");
-    }
-}
-
-/// Prints what a finished dataset has, and says what is wrong with its labels beside the mistakes that
-/// were told when it was begun.
-pub(crate) fn summarise(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f64) {
-    let bytes: u64 = manifest.files.iter().map(|file| file.bytes).sum();
-    let rows: u64 = manifest
-        .counts
-        .rows
-        .values()
-        .flat_map(|of| of.values())
-        .sum();
-    println!(
-        "{}: {} cases, {rows} rows, {} files, {:.1} MB in {seconds:.1} s",
-        out.display(),
-        manifest.counts.cases,
-        // With the manifest and SHA256SUMS.
-        manifest.files.len() + 2,
-        bytes as f64 / 1e6
-    );
-    let census = Census::of(plan, manifest);
-    println!("{census}");
-    let mut warnings = census.warnings();
-    let told = plan.census().mistakes();
-    warnings.retain(|warning| !told.contains(warning));
-    warn(&warnings);
-    if let Some(text) = doubtful(&manifest.warnings) {
-        println!("{text}");
-    }
-}
-
-/// What is doubtful about cases, if anything is: the first few.
-fn doubtful(all: &[CaseWarning]) -> Option<String> {
-    if all.is_empty() {
-        return None;
-    }
-    let mut text = format!("warnings: {}", all.len());
-    for CaseWarning { case_id, warning } in all.iter().take(SHOWN_FAILURES) {
-        text += &format!("\n  {case_id}: {warning}");
-    }
-    if all.len() > SHOWN_FAILURES {
-        let more = all.len() - SHOWN_FAILURES;
-        text += &format!("\n  and {more} more, in `warnings` of manifest.json");
-    }
-    Some(text)
-}
-
-/// What is to be said of the cases that failed, if any did: the first few, each with the command that
-/// runs it again.
-pub(crate) fn failures(failed: &[FailedCase], cases: u64, out: &Path) -> Option<String> {
-    if failed.is_empty() {
-        return None;
-    }
-    let mut text = format!("{} of {cases} cases failed:", failed.len());
-    for case in failed.iter().take(SHOWN_FAILURES) {
-        let (id, reason, again) = (&case.case_id, &case.reason, case.command_in(out));
-        text += &format!("\n  {id}: {reason}\n    again: {again}");
-    }
-    if failed.len() > SHOWN_FAILURES {
-        let more = failed.len() - SHOWN_FAILURES;
-        text += &format!("\n  and {more} more, in `failed` of manifest.json and in _sweep/logs");
-    }
-    Some(text)
-}
-
-/// Says how large the dataset will be and how long it will take, from a few simulated cases.
-fn dry_run(plan: &Plan) -> Result<(), Failure> {
-    let estimate = plan.estimate();
-    println!(
-        "{}: {} cases, {} rows, {} shards, {:.0} revolutions to simulate",
-        plan.name, estimate.cases, estimate.rows, estimate.shards, estimate.revolutions
-    );
-    println!(
-        "recordings before compression: {:.1} MB",
-        estimate.bytes / 1e6
-    );
-    println!("{}", plan.census());
-    warn(&plan.census().warnings());
-    let timing = plan.time_cases().map_err(failed)?;
-    println!(
-        "time: {:.0} s on one core, measured on {} cases ({:.2} s each)",
-        timing.all_s,
-        timing.sampled,
-        timing.sample_s / timing.sampled
-    );
-    dry_run_diagrams(plan)?;
-    if estimate.cases > sweep::plan::MOST_CASES {
-        println!(
-            "a dataset can have at most {} cases: this sweep will be refused",
-            sweep::plan::MOST_CASES
-        );
-    }
-    Ok(())
-}
-
-/// The same for the bifurcation diagrams, from a few revolutions of each.
-fn dry_run_diagrams(plan: &Plan) -> Result<(), Failure> {
-    let estimate = plan.estimate_diagrams();
-    if estimate.diagrams == 0 {
-        return Ok(());
-    }
-    println!(
-        "bifurcation diagrams: {}, {} values, {} revolutions to simulate, {:.1} MB before compression",
-        estimate.diagrams,
-        estimate.values,
-        estimate.revolutions,
-        estimate.bytes / 1e6
-    );
-    let timing = plan.time_diagrams().map_err(failed)?;
-    println!(
-        "time: {:.0} s more on one core, measured on {} revolutions",
-        timing.all_s, timing.sampled
-    );
-    Ok(())
 }

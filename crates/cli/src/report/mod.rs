@@ -61,9 +61,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the pages of the dataset in `folder`, its own to the file `out` and last: where it is, the others are.
 fn write_dataset(folder: &Path, out: &Path) -> Result<DatasetPage, Error> {
     let dataset = Dataset::read(folder)?;
-    let page = DatasetPage::of(&dataset)?;
-    let chaos = ChaosPage::of(&dataset)?.render()?;
-    let features = FeaturesPage::of(&dataset)?.render()?;
+    let page = DatasetPage::from_dataset(&dataset)?;
+    let chaos = ChaosPage::from_dataset(&dataset)?.render()?;
+    let features = FeaturesPage::from_dataset(&dataset)?.render()?;
     write_pages(&[
         (out.with_file_name("chaos.html"), chaos),
         (out.with_file_name("features.html"), features),
@@ -84,7 +84,7 @@ fn failed(error: Error) -> Failure {
 /// # Errors
 /// A folder that is no calibration, or a page that cannot be made or written.
 pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = CalibrationPage::of(folder)
+    let page = CalibrationPage::read(folder)
         .map_err(failed)?
         .render()
         .map_err(Failure::work)?;
@@ -97,7 +97,7 @@ pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Fa
 /// # Errors
 /// A folder that is no explanation, or a page that cannot be made or written.
 pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = GapPage::of(folder)
+    let page = GapPage::read(folder)
         .map_err(failed)?
         .render()
         .map_err(Failure::work)?;

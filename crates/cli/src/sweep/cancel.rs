@@ -1,6 +1,5 @@
 //! `sweep cancel`: what was submitted is taken back.
 
-use super::of_engine;
 use crate::Failure;
 use clap::Args;
 use std::path::PathBuf;
@@ -12,7 +11,7 @@ use sweep::engines::slurm::Jobs;
 Example:
   crosshead sweep cancel /scratch/faults
 
-Shards that are made stay; `sweep submit` goes on from there.")]
+Finished shards stay; `sweep submit` continues with the others.")]
 pub struct Arguments {
     /// The dataset
     url: PathBuf,
@@ -26,8 +25,7 @@ pub struct Arguments {
 /// # Errors
 /// Nothing submitted, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
-    let cancelled = jobs.and_then(|jobs| jobs.cancel()).map_err(of_engine)?;
+    let cancelled = Jobs::new(&arguments.url, arguments.scripts.as_deref())?.cancel()?;
     println!("cancelled: {cancelled}");
     Ok(())
 }

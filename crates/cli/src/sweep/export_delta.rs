@@ -1,7 +1,6 @@
 //! `sweep export-delta`: a finished dataset as Delta tables.
 
 use crate::Failure;
-use crate::gen_dataset;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::{Output, export_delta};
@@ -14,8 +13,8 @@ Example:
   python -c 'import deltalake; print(deltalake.DeltaTable(\"/scratch/faults/features\").count())'
 
 signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
-of Parquet see no difference, but for polars, which reads features/*.parquet and no longer the folder.
-Every table is compared with its checksum first. Doing it again changes nothing.
+of Parquet see no difference, except polars, which then reads features/*.parquet and not the folder.
+Every table is compared with its checksum first. The command is safe to repeat.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -28,8 +27,8 @@ pub struct Arguments {
 /// # Errors
 /// A dataset that is not complete, or an output that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
-    for table in export_delta(&output, &plan).map_err(gen_dataset::failed)? {
+    let (output, plan) = Output::join(&arguments.url)?;
+    for table in export_delta(&output, &plan)? {
         println!(
             "{}: {} files, {} rows",
             arguments.url.join(table.folder).display(),

@@ -1,6 +1,5 @@
 //! `sweep finalize`: the dataset is completed.
 
-use super::{of_engine, tell};
 use crate::Failure;
 use crate::gen_dataset;
 use clap::Args;
@@ -17,15 +16,15 @@ use sweep::ranges::ranges;
 Example:
   crosshead sweep finalize /scratch/faults || sbatch --array=$(crosshead sweep finalize /scratch/faults) ...
 
-Where shards are missing, their numbers are printed as schedulers take them: 0-3,7. Cases that failed
-do not hinder; the manifest has them. Doing it again changes nothing.
+If shards are missing, their numbers are printed as schedulers take them: 0-3,7. Failed cases do not
+prevent completion; the manifest lists them. The command is safe to repeat.
 
 Exit status: 0 the dataset is complete; 1 the work failed; 2 the input or the arguments are wrong;
 3 shards are missing.")]
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
-    /// Compare every file with its checksum before anything is written; what stands there stays
+    /// Compare every file with its checksum before anything is written; existing files stay
     #[arg(long)]
     verify: bool,
     /// Submit what is missing again to Slurm, as the finalising job of `sweep submit` does
@@ -42,7 +41,7 @@ pub struct Arguments {
 /// Shards that are missing, or an output that cannot be read or written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
-    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    let (output, plan) = Output::join(&arguments.url)?;
     let completed = match arguments.verify {
         true => finalize_verified(&output, &plan),
         false => finalize(&output, &plan),
@@ -53,14 +52,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Error::Incomplete { shards, missing }) => {
             println!("{}", ranges(&missing));
             if arguments.resubmit {
-                let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
-                let submitted = jobs.and_then(|jobs| jobs.submit_again(&missing));
-                tell(&submitted.map_err(of_engine)?);
+                let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref())?;
+                println!("{}", jobs.submit_again(&missing)?);
             }
             let text = format!("{} of {shards} shards are missing", missing.len());
             return Err(Failure::Incomplete(text));
         }
-        Err(error) => return Err(gen_dataset::failed(error)),
+        Err(error) => return Err(error.into()),
     };
     let seconds = started.elapsed().as_secs_f64();
     gen_dataset::summarise(&plan, &manifest, &arguments.url, seconds);

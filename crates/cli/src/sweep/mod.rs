@@ -11,7 +11,6 @@ mod submit;
 
 use crate::Failure;
 use clap::{Args, Subcommand};
-use sweep::engines::{Error, slurm};
 
 /// Arguments of `sweep`.
 #[derive(Args, Debug)]
@@ -31,17 +30,17 @@ pub struct Arguments {
 enum Step {
     /// Begin a dataset: write what its shards need to know
     Plan(plan::Arguments),
-    /// Make one shard; again is no harm
+    /// Make one shard; safe to repeat
     Shard(shard::Arguments),
     /// Complete the dataset when all its shards are made
     Finalize(finalize::Arguments),
-    /// Tell how far the dataset has got
+    /// Show the progress of the dataset
     Status(status::Arguments),
-    /// Hand the shards to an engine that runs them on its machines
+    /// Submit the shards to an engine that runs them on its machines
     Submit(submit::Arguments),
-    /// Take back what was submitted
+    /// Cancel the submitted jobs
     Cancel(cancel::Arguments),
-    /// Make a finished dataset Delta tables, too
+    /// Add Delta tables to a finished dataset
     ExportDelta(export_delta::Arguments),
 }
 
@@ -59,19 +58,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Step::Cancel(arguments) => cancel::run(arguments),
         Step::ExportDelta(arguments) => export_delta::run(arguments),
     }
-}
-
-/// The failure that an error of an engine is.
-fn of_engine(error: Error) -> Failure {
-    match error {
-        Error::Missing(_) => Failure::Incomplete(error.to_string()),
-        error if error.is_input() => Failure::input(error),
-        error => Failure::work(error),
-    }
-}
-
-/// Says what was submitted.
-fn tell(submission: &slurm::Submission) {
-    let slurm::Submission { shards, jobs } = submission;
-    println!("{shards} shards submitted: jobs {jobs}");
 }

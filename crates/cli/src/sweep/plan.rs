@@ -12,10 +12,10 @@ use sweep::Sweep;
 Example:
   crosshead sweep plan pipelines/bearing-faults.yaml --out /scratch/faults --shards 100
 
-A sweep that calibrates its machine does so here. Planned again, a sweep stays as it is; another
-sweep in its place is refused. The shards are of equal size, as `shard_size` of the sweep file has it
-or --shards; each bifurcation diagram is a shard more. The bytes of a dataset depend on that size and
-not on who makes the shards.
+A sweep that calibrates its machine does so here. The command is safe to repeat; another sweep in the
+same place is refused. The shards are of equal size, from `shard_size` of the sweep file or --shards;
+each bifurcation diagram is one more shard. The bytes of a dataset depend on that size and not on the
+machines that make the shards.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Folder of the dataset, seen by all machines that make it, or s3://BUCKET/PREFIX
     #[arg(long, value_name = "URL")]
     out: PathBuf,
-    /// Number of shards, or a few less where the cases do not divide evenly
+    /// Number of shards; a few less if the cases do not divide evenly
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     shards: Option<u64>,
     /// Format of the recordings, instead of the sweep's own
@@ -39,16 +39,16 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::read(&arguments.sweep)?;
     let nominal = sweep.nominal()?;
-    nominal.check_size().map_err(gen_dataset::failed)?;
+    nominal.check_size()?;
     let cancel = interrupt::flag()?;
     let out = &arguments.out;
     let (claim, plan) = gen_dataset::claim(&sweep, nominal, out, sweep::Existing::Resume, &cancel)?;
     let mut plan = gen_dataset::with_format(plan, arguments.format);
     if let Some(shards) = arguments.shards {
-        plan = plan.with_shards(shards).map_err(gen_dataset::failed)?;
+        plan = plan.with_shards(shards)?;
     }
     gen_dataset::warn(&plan.census().mistakes());
-    let output = claim.open(&plan).map_err(gen_dataset::failed)?;
+    let output = claim.open(&plan)?;
     gen_dataset::warn(&output.take_warnings());
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",

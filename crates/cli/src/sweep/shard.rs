@@ -1,6 +1,5 @@
 //! `sweep shard`: one shard is made.
 
-use super::of_engine;
 use crate::gen_dataset::{self, Bar};
 use crate::{Failure, interrupt, try_case};
 use clap::Args;
@@ -21,7 +20,7 @@ Without --index the number is taken from the first of these variables that has o
 SLURM_ARRAY_TASK_ID, PBS_ARRAY_INDEX, PBS_ARRAYID, LSB_JOBINDEX, SGE_TASK_ID, JOB_COMPLETION_INDEX.
 Shards count from 0; LSF and Grid Engine count tasks from 1, so that their task 1 is shard 0.
 
-A shard that is made already stays as it is. Two processes may make the same shard at once.
+A finished shard stays as it is. Two processes may make the same shard at once.
 
 Exit status: 0 the shard is made; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -30,13 +29,13 @@ pub struct Arguments {
     /// Number of the shard, from 0 [default: the engine's variable]
     #[arg(long)]
     index: Option<u64>,
-    /// Is added to the number, for arrays that cannot count far enough
+    /// Added to the number, for arrays that cannot count far enough
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     offset: u64,
     /// Threads that simulate [default: one per core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Make the shard again if cases of it failed, whatever these failed of
+    /// Make the shard again if cases of it failed
     #[arg(long)]
     retry_failed: bool,
 }
@@ -48,10 +47,10 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let index = match arguments.index {
         Some(index) => index,
-        None => task::index(|name| std::env::var(name).ok()).map_err(of_engine)?,
+        None => task::index(|name| std::env::var(name).ok())?,
     };
     let index = index.saturating_add(arguments.offset);
-    let (output, plan) = Output::join(&arguments.url).map_err(gen_dataset::failed)?;
+    let (output, plan) = Output::join(&arguments.url)?;
     let cancel = interrupt::flag()?;
     let options = Options {
         existing: Existing::Resume,
@@ -77,6 +76,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => Err(Failure::work(
             format!("stopped; shard {index} is not made, and the same command begins it again"),
         )),
-        Err(error) => Err(gen_dataset::failed(error)),
+        Err(error) => Err(error.into()),
     }
 }

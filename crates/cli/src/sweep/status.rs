@@ -16,8 +16,8 @@ use sweep::ranges::ranges;
 Example:
   crosshead sweep status /scratch/faults
 
-Records are read, and the lengths of files. With --verify the files are read too, which takes long.
-What is damaged counts as not made, and is named as a warning.")]
+Reads the records and the lengths of files; with --verify also the files, which takes long.
+A damaged shard counts as not made, and gives a warning.")]
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
@@ -63,10 +63,10 @@ struct Attempts {
 /// # Errors
 /// Nothing planned, or records that cannot be read.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let found = status(&output, &plan, arguments.verify).map_err(gen_dataset::failed)?;
+    let (output, plan) = Output::open_read_only(&arguments.url)?;
+    let found = status(&output, &plan, arguments.verify)?;
     gen_dataset::warn(&output.take_warnings());
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref());
+    let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref());
     let jobs = jobs.map_or_else(|_| Vec::new(), |jobs| jobs.under_way());
     let made = plan.parts() - found.missing.len() as u64;
     if arguments.json {

@@ -1,8 +1,6 @@
 //! `sweep submit`: an engine is handed the shards.
 
-use super::{of_engine, tell};
 use crate::Failure;
-use crate::gen_dataset;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use sweep::dataset::{Output, status};
@@ -15,11 +13,11 @@ Examples:
   crosshead sweep submit /scratch/faults --engine slurm -- --partition=long --cpus-per-task=8
   crosshead sweep submit s3://bucket/faults --engine slurm --scripts /scratch/jobs
 
-Writes batch scripts, submits the shards that are missing as job arrays, and a job
-that completes the dataset when they have ended, however they ended. That job submits again what is
-still missing, up to three times in all. Each task simulates on as many threads as it has processors
-(--cpus-per-task, else one). The jobs get the environment of this command, AWS_* for a bucket
-included. The program must stand at the same place on all machines.
+Writes batch scripts and submits the missing shards as job arrays. One more job runs when they have
+ended, with or without success. It completes the dataset, or submits the shards that are still missing,
+up to three times in all. Each task simulates on as many threads as it has processors (--cpus-per-task,
+else one). The jobs get the environment of this command, including AWS_* for a bucket. The program must
+have the same path on all machines.
 
 Exit status: 0 submitted; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -31,7 +29,7 @@ pub struct Arguments {
     /// Folder of the jobs' scripts and logs, which all machines see [default: URL/_sweep/slurm where URL is a folder]
     #[arg(long, value_name = "DIR")]
     scripts: Option<PathBuf>,
-    /// Most tasks of one array; MaxArraySize of the site is 1001 where nobody changed it
+    /// Most tasks of one array; the default of MaxArraySize in Slurm is 1001
     #[arg(long, default_value_t = 1001, value_parser = clap::value_parser!(u64).range(1..), value_name = "TASKS")]
     array_size: u64,
     /// Flags for sbatch
@@ -50,14 +48,12 @@ enum Engine {
 /// # Errors
 /// Nothing planned, jobs that are under way already, or an engine that refuses.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let jobs = Jobs::of(&arguments.url, arguments.scripts.as_deref()).map_err(of_engine)?;
-    let (output, plan) = Output::look(&arguments.url).map_err(gen_dataset::failed)?;
-    let missing = status(&output, &plan, false)
-        .map_err(gen_dataset::failed)?
-        .missing;
+    let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref())?;
+    let (output, plan) = Output::open_read_only(&arguments.url)?;
+    let missing = status(&output, &plan, false)?.missing;
     let submitted = match arguments.engine {
         Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
     };
-    tell(&submitted.map_err(of_engine)?);
+    println!("{}", submitted?);
     Ok(())
 }

@@ -273,7 +273,10 @@ fn an_interrupted_dataset_is_resumed_to_the_same_bytes() {
     let output = child.wait_with_output().unwrap();
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
-    assert!(message.contains("--resume goes on from there"), "{message}");
+    assert!(
+        message.contains("--resume continues from there"),
+        "{message}"
+    );
     assert!(!broken.join("manifest.json").exists());
 
     gen_dataset(&[sweep, "--out", out, "--resume"]);

@@ -41,7 +41,7 @@ fn where_nothing_is_hidden_it_says_so() {
         assert!(out.join(file).is_file(), "{file}");
     }
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("nothing is missing"));
+    assert!(page.contains("no effect is missing"));
     // The explained machine has the sensors that recorded.
     let explained = input::machine_file::read(&out.join("machine.yaml")).unwrap();
     assert_eq!(explained.resolve().unwrap().sample_rate, Some(10_000.0));

@@ -105,7 +105,7 @@ impl Dataset {
     }
 
     fn page(&self) -> DatasetPage {
-        DatasetPage::of(&self.read()).unwrap()
+        DatasetPage::from_dataset(&self.read()).unwrap()
     }
 
     fn html(&self) -> String {
@@ -259,7 +259,7 @@ fn chaos_and_features_have_pages_of_their_own() {
         column("lyapunov_true_per_s"),
         column("lyapunov_true_standard_error_per_s"),
     );
-    let page = ChaosPage::of(&dataset.read()).unwrap();
+    let page = ChaosPage::from_dataset(&dataset.read()).unwrap();
     assert_eq!(page.cases.len(), 4);
     for (i, case) in page.cases.iter().enumerate() {
         assert_eq!(

@@ -1,19 +1,19 @@
-//! Values of the data sheet that are wrong, or may be.
+//! Corrected values of the data sheet.
 
 use super::verdict::{quantity, size};
 use super::words;
 use crate::text;
 use calibrate::results::Correction;
 
-/// What they come to, in sentences.
+/// The corrections in sentences.
 pub(super) fn sentences(corrections: &[Correction]) -> Vec<String> {
     let name = |correction: &Correction| words::path(&correction.path);
     let applied = corrections.iter().filter(|correction| correction.applied);
     let mut said: Vec<String> = applied
         .map(|correction| {
             format!(
-                "With the {} freed the model explains the recordings: {} in place of {}. The calibrated machine \
-                 and the other values on this page have this correction.",
+                "The model explains the recordings if the {} is {} in place of {}. The calibrated machine and the other values on \
+                 this page have this correction.",
                 name(correction),
                 quantity(correction.value, &correction.unit),
                 stated(correction),
@@ -23,8 +23,8 @@ pub(super) fn sentences(corrections: &[Correction]) -> Vec<String> {
     if said.is_empty() && !corrections.is_empty() {
         let names: Vec<String> = corrections.iter().map(name).collect();
         said.push(format!(
-            "Each of these values by itself would explain the recordings, which do not tell them apart: {}. None is \
-             corrected in the calibrated machine; measure them.",
+            "A correction of any one of these values would explain the recordings: {}. The calibrated machine corrects \
+             none of them; measure them.",
             names.join(", ")
         ));
     }
@@ -35,7 +35,7 @@ fn stated(correction: &Correction) -> String {
     let quantity = |nominal| quantity(nominal, &correction.unit);
     match correction.nominal {
         Some(nominal) => format!("the stated {}", quantity(nominal)),
-        None => "none that is stated".to_owned(),
+        None => "no stated value".to_owned(),
     }
 }
 

@@ -21,7 +21,7 @@ impl CalibrationPage {
     ///
     /// # Errors
     /// A file that cannot be read, or that no calibration writes.
-    pub fn of(folder: &Path) -> Result<Self, Error> {
+    pub fn read(folder: &Path) -> Result<Self, Error> {
         let results = Results::read(&folder.join(RESULTS))?;
         let machine = input::machine_file::read(&folder.join(MACHINE))?;
         let tree = machine.to_tree();

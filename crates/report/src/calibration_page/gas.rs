@@ -75,13 +75,14 @@ impl Chamber<'_> {
             let [from, to] = phase.crank_angle_deg.map(|a| text::decimal(a, 0));
             let share = text::decimal(100.0 * phase.share, 0);
             format!(
-                " {share}\u{a0}% of the squared difference lies in the {} ({from}° to {to}°), where it is {}.",
+                " {share}\u{a0}% of the squared difference is in the {} ({from}° to {to}°), where the difference is {}.",
                 phase.phase,
                 kilo(phase.rms_pa)
             )
         });
         format!(
-            "{} from the recording, root mean square over the revolution; {} with the nominal parameters.{place}",
+            "The simulated pressure differs from the recorded one by {} (root mean square over the revolution), and by {} with \
+             the nominal parameters.{place}",
             kilo(self.found.rms_pa.calibrated),
             kilo(self.found.rms_pa.nominal)
         )
@@ -100,8 +101,8 @@ impl Chamber<'_> {
                 .join(" and ")
         };
         format!(
-            "Clearance and exponents are told only together: a clearance of {} of the stroke goes with exponents of {} \
-             (compression, expansion), one of {} with {}, and the lines are straight to {} and {} of the pressure.",
+            "Clearance and exponents are strongly correlated. A clearance of {} of the stroke goes with exponents of {} \
+             (compression, expansion), and one of {} with {}. The lines are then straight to {} and {} of the pressure.",
             share(first.clearance_share),
             exponents(first),
             share(last.clearance_share),
@@ -144,10 +145,9 @@ pub(super) fn plates(chambers: &[Chamber]) -> Vec<Plate> {
 fn plate(chamber: &Chamber) -> Plate {
     Plate {
         heading: format!("Indicator diagram: {}", chamber.name()),
-        caption: "Left: pressure over the distance from piston to cover, which is the volume over the piston's area. \
-                  Middle: the same on logarithmic axes, where a gas that is closed in follows a straight line whose slope is \
-                  its exponent; bold where the exponents are read off. Right: calibrated less measured pressure over the \
-                  crank angle."
+        caption: "Left: pressure over the distance from piston to cover, which is the volume divided by the piston's area. \
+                  Middle: the same on logarithmic axes. Enclosed gas follows a straight line there, and the slope is its \
+                  exponent; the fitted stretches are bold. Right: calibrated less measured pressure over the crank angle."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![
@@ -201,7 +201,7 @@ fn over_distance(chamber: &Chamber, logarithmic: bool) -> Panel {
             let inside = |p: &&Pressure| (p.crank_angle_deg - from).rem_euclid(360.0) <= length;
             let line = points.iter().filter(inside);
             let line = line.map(|p| [1e3 * p.distance_m[0], 1e-6 * p.measured_pa]);
-            series.push(Series::new("closed in", MEASURED, Mark::BoldLine, line));
+            series.push(Series::new("enclosed gas", MEASURED, Mark::BoldLine, line));
         }
     }
     let axis = |label: &str| match logarithmic {

@@ -57,9 +57,8 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
     };
     Some(Plate {
         heading: "Misfit of every run".to_owned(),
-        caption: "How far the simulation is from the recording of each run: differences of the orders' amplitudes over the standard \
-                  deviation of their noise, as a root mean square. At 1 noise is all that is left. A run that was held out was \
-                  predicted, not fitted to."
+        caption: "Root mean square difference between the amplitudes of the orders in simulation and recording, divided by the \
+                  standard deviation of their noise. At 1 only noise is left. Held-out runs are predicted, not fitted."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],

@@ -21,7 +21,7 @@ pub use gas::Pressure;
 use calibrate::results::{Estimate, Results};
 use std::collections::BTreeMap;
 
-/// All that the page tells.
+/// The content of the page.
 #[derive(Clone, Debug, Default)]
 pub struct CalibrationPage {
     /// Name of the machine.
@@ -38,7 +38,7 @@ pub struct CalibrationPage {
     pub pressures: BTreeMap<String, BTreeMap<String, Vec<Pressure>>>,
 }
 
-/// A parameter as the page tells it.
+/// A parameter on the page.
 #[derive(Clone, Copy)]
 struct Parameter<'a> {
     path: &'a str,

@@ -22,7 +22,7 @@ struct View<'a> {
     verdict: String,
     warnings: Vec<String>,
     found: Vec<String>,
-    untold: Vec<String>,
+    unidentifiable: Vec<String>,
     together: Vec<String>,
     corrections: Vec<String>,
     misfits: Vec<(usize, Plate)>,
@@ -48,8 +48,8 @@ impl CalibrationPage {
             results: &self.results,
             verdict: verdict::verdict(self),
             warnings: verdict::warnings(self),
-            found: verdict::found(&parameters),
-            untold: verdict::untold(&parameters),
+            found: verdict::estimates(&parameters),
+            unidentifiable: verdict::unidentifiable(&parameters),
             together: verdict::together(self),
             corrections: corrections::sentences(&self.results.corrections),
             misfits: numbered(misfits::plate(self).into_iter().collect()),
@@ -88,10 +88,10 @@ impl View<'_> {
         [fitted, held_out].map(text::count)
     }
 
-    fn told(&self) -> String {
+    fn identifiable(&self) -> String {
         let all = &self.parameters;
-        let told = all.iter().filter(|p| p.found.identifiable).count();
-        format!("{told} of {}", all.len())
+        let identifiable = all.iter().filter(|p| p.found.identifiable).count();
+        format!("{identifiable} of {}", all.len())
     }
 
     fn effort(&self) -> String {
@@ -150,8 +150,8 @@ impl View<'_> {
         transfers::spreads(self.page)
     }
 
-    fn none_untold(&self) -> &'static str {
-        verdict::none_untold(self.page)
+    fn all_identifiable(&self) -> &'static str {
+        verdict::all_identifiable(self.page)
     }
 
     fn decision(relations: &Relations) -> String {
@@ -191,7 +191,7 @@ impl View<'_> {
         match waveforms::left_out(&self.page.runs) {
             0 => String::new(),
             n => format!(
-                "{} without a picture here; waveforms.parquet has them all.",
+                "{} without a figure here; waveforms.parquet has all runs.",
                 text::counted(n, "run")
             ),
         }

@@ -36,23 +36,23 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
     }
     let top = ratios.len() as f64 - 1.0;
     let mut bars = Vec::new();
-    let (mut told, mut fitted, mut untold) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut identified, mut fitted, mut kept) = (Vec::new(), Vec::new(), Vec::new());
     for (i, parameter) in ratios.iter().enumerate() {
         let estimate = parameter.found;
         let y = top - i as f64;
         let place = |value: f64| [value / estimate.nominal, y];
         match estimate.known() {
             Known::Within([low, high]) => {
-                told.push(place(estimate.value));
+                identified.push(place(estimate.value));
                 bars.extend([place(low), place(high), [f64::NAN; 2]]);
             }
             Known::Fitted => fitted.push(place(estimate.value)),
-            Known::Nothing => untold.push(place(estimate.nominal)),
+            Known::Nothing => kept.push(place(estimate.nominal)),
         }
     }
     let positive = bars
         .iter()
-        .chain(&told)
+        .chain(&identified)
         .chain(&fitted)
         .all(|[x, _]| x.is_nan() || *x > 0.0);
     let label = "value over its nominal value";
@@ -76,33 +76,33 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
             ),
             Series::new("", AFTER, Mark::BoldLine, bars),
             Series::new(
-                named(&told, "found, with its 95 % interval"),
+                named(&identified, "estimate with its 95 % interval"),
                 AFTER,
                 Mark::Discs,
-                told,
+                identified,
             ),
             Series::new(
                 named(
                     &fitted,
-                    "found by a model that is wrong: no interval is known",
+                    "estimate of a model that is wrong: no interval is known",
                 ),
                 AFTER,
                 Mark::Rings,
                 fitted,
             ),
             Series::new(
-                named(&untold, "not identifiable: the nominal value stays"),
+                named(&kept, "not identifiable: nominal value kept"),
                 Colour::Ink,
                 Mark::Rings,
-                untold,
+                kept,
             ),
         ],
         ..Panel::default()
     };
     Some(Plate {
         heading: "Parameters against their nominal values".to_owned(),
-        caption: "The value found for each parameter, and the 95 % interval that the recordings leave for it, over the nominal \
-                  value. An interval that crosses the line at 1 leaves room for the nominal value."
+        caption: "Estimate of each parameter with its 95 % interval, divided by the nominal value. An interval that crosses the \
+                  line at 1 agrees with the nominal value."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],
@@ -121,12 +121,12 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
     if count < 2 {
         return None;
     }
-    let told = |i: usize| parameters[i].found.identifiable;
+    let is_identifiable = |i: usize| parameters[i].found.identifiable;
     let field = |i: usize, j: usize| {
         let r = page
             .results
             .correlation(parameters[i].path, parameters[j].path);
-        let both = told(i) && told(j);
+        let both = is_identifiable(i) && is_identifiable(j);
         let letters = match both {
             _ if i == j || count > WRITTEN => String::new(),
             true => text::decimal(r, 2),
@@ -149,8 +149,9 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
     };
     Some(Plate {
         heading: "Correlations".to_owned(),
-        caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 the recordings tell \
-                  only a combination of the two: if one is wrong, so is the other. A dash stands for a parameter that is not told."
+        caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 only a \
+                  combination of the two is identifiable: if one is wrong, so is the other. A dash stands for a parameter that \
+                  is not identifiable."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],

@@ -29,24 +29,24 @@ pub(super) fn words(relation: Relation) -> &'static str {
     }
 }
 
-/// What the recordings say about the relations.
+/// Which relation the recordings favour.
 pub(super) fn decision(relations: &Relations) -> String {
     let decision = &relations.decision;
     let names: Vec<&str> = decision.relations.iter().map(|r| words(*r)).collect();
     let which = if decision.runs == Basis::HeldOut {
-        "The fitted runs have one clearance and those held back have others, so that these decide how the contact parameters \
-         follow the clearance."
+        "The held-out runs have other clearances than the fitted ones. They decide how the contact parameters follow the \
+         clearance."
     } else {
-        "The recordings were made at several clearances, so that they can decide how the contact parameters follow the clearance."
+        "The recordings were made at several clearances. They decide how the contact parameters follow the clearance."
     };
     match names.as_slice() {
-        [] => "All recordings were made at the same clearances. Nothing in them tells how the contact parameters follow the \
-               clearance as the bearings wear; every relation fits them equally well. What each predicts stands below, side by \
-               side. One recording at another clearance would decide."
+        [] => "All recordings were made at the same clearances, so every relation between contact parameters and clearance fits \
+               them equally well. The figures compare what the relations predict. One recording at another clearance would \
+               decide."
             .to_owned(),
-        [one] => format!("{which} They are for: {one}."),
+        [one] => format!("{which} The data favour: {one}."),
         [best, rest @ ..] => format!(
-            "{which} The best is: {best}; but they do not rule out: {}.",
+            "{which} The data favour: {best}. They do not rule out: {}.",
             rest.join("; ")
         ),
     }
@@ -172,9 +172,9 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
         .map(|column| panel(&relations.compared, &forecasts, &runs, column));
     Plate {
         heading: self::state(state),
-        caption: "Greatest acceleration within a revolution at this clearance, under each relation, with the 95 % interval that the \
-                  calibrated parameters leave. A grey ring is a recording. Where the relations' bars lie apart, a recording at \
-                  this clearance would tell which of them holds."
+        caption: "Greatest acceleration within a revolution at this clearance for each relation, with the 95 % interval that \
+                  follows from the calibrated parameters. A grey ring is a recording. Where the bars of two relations do not \
+                  overlap, a recording at this clearance decides between them."
             .to_owned(),
         svg: Figure {
             rows: in_rows(panels.collect(), 2),
@@ -295,7 +295,7 @@ mod tests {
     fn the_decision_names_what_the_recordings_leave() {
         let of = |relations: &[Relation]| decision(&left(relations));
         assert!(of(&[]).contains("One recording at another clearance would decide"));
-        assert!(of(&[Relation::Constant]).ends_with("for: parameters carried over unchanged."));
+        assert!(of(&[Relation::Constant]).ends_with("favour: parameters carried over unchanged."));
         let two = of(&[Relation::Fitted, Relation::Equation5]);
         assert!(two.contains("do not rule out: Eq. (5)"));
     }

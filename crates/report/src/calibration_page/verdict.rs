@@ -1,13 +1,13 @@
-//! What came out, in sentences.
+//! The outcome of a calibration, in sentences.
 
 use super::{CalibrationPage, Misfit, Parameter, words};
 use crate::text;
 use calibrate::likelihood::NOISE;
 use calibrate::results::Known;
 
-/// A misfit that shrinks by less than this share has come no closer: nobody sees a twentieth in a figure.
+/// A misfit counts as smaller if it shrinks by more than this share.
 const CLOSER: f64 = 0.05;
-/// Estimates that are correlated more than this are told only together.
+/// Magnitude of a correlation above which two estimates are strongly correlated.
 const TOGETHER: f64 = 0.9;
 
 /// The one sentence at the top.
@@ -21,46 +21,41 @@ pub(super) fn verdict(page: &CalibrationPage) -> String {
     };
     let fitted = page.fitted();
     let held_out = page.held_out().map_or_else(String::new, |misfit| {
-        format!(
-            "; the runs that were held back, and that it had not seen, it predicts to {}",
-            shrank(misfit)
-        )
+        format!(". It predicts the held-out runs to {}", shrank(misfit))
     });
     let how = match fitted.after {
-        after if after <= NOISE => {
-            "agrees with the recordings as well as their noise allows: what is left is"
-        }
+        after if after <= NOISE => "fits the recordings within their noise: the misfit is",
         after if after < (1.0 - CLOSER) * fitted.before => {
-            "is closer to the recordings than the nominal one, but something is left that is no noise:"
+            "fits the recordings better than the nominal one, but not within their noise: the misfit is"
         }
-        _ => "is no closer to the recordings than the nominal one: what is left is",
+        _ => "does not fit the recordings better than the nominal one: the misfit is",
     };
     format!("The calibrated model {how} {}{held_out}.", shrank(fitted))
 }
 
-/// What the reader should be warned of.
+/// Warnings about the calibration.
 pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
     let mut warnings = Vec::new();
     let fitted = page.fitted().after;
     if !page.results.complete {
         warnings.push(
-            "The search was stopped before its end. These are the best values it had found; the bounds are those around them."
+            "The search was stopped before its end. The values are the best so far, and the intervals are those around them."
                 .to_owned(),
         );
     }
     if !page.results.model_is_adequate && !page.runs.is_empty() {
         warnings.push(
-            "The model is wrong: it does not explain the recordings, so that no interval is known for any parameter. Do not \
-             rely on the values below. The machine does something that the model does not have, or a value of its data sheet \
-             is wrong, or a better fit was not found: explain-gap looks for a missing effect; other parameters, wider bounds \
-             or more evaluations may help."
+            "The model is wrong: it does not explain the recordings, so no interval is known for any parameter. Do not rely \
+             on the values below. There are three possible reasons: the model lacks an effect, a value of the data sheet is \
+             wrong, or the search missed a better fit. Run explain-gap to find a missing effect, or try other parameters, \
+             wider bounds or more evaluations."
                 .to_owned(),
         );
     } else if fitted > NOISE {
         warnings.push(
-            "No choice of these parameters that was tried explains the recordings to within their noise. Either the machine \
-             does something that the model does not have, or a better fit was not found: try other parameters, wider bounds \
-             or more evaluations. The bounds were widened by what is left."
+            "No tried values of these parameters explain the recordings to within their noise. Either the model lacks an \
+             effect, or the search missed a better fit: try other parameters, wider bounds or more evaluations. The \
+             intervals were widened by the misfit."
                 .to_owned(),
         );
     }
@@ -69,7 +64,7 @@ pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
         && held_out.after > NOISE * fitted.max(1.0)
     {
         warnings.push(
-            "The runs that were held back are predicted less well than the fitted ones: do not rely on the model far from the \
+            "The held-out runs are predicted less well than the fitted ones: do not rely on the model far from the \
              conditions of the fitted runs."
                 .to_owned(),
         );
@@ -82,8 +77,8 @@ pub(crate) fn size(misfit: f64) -> String {
     text::decimal(misfit, if misfit < 10.0 { 2 } else { 0 })
 }
 
-/// What was found of each parameter that is told, as a mechanic would say it.
-pub(super) fn found(parameters: &[Parameter]) -> Vec<String> {
+/// A sentence about each identifiable parameter.
+pub(super) fn estimates(parameters: &[Parameter]) -> Vec<String> {
     let say = |parameter: &Parameter| {
         let Parameter { path, unit, found } = *parameter;
         let name = text::capitalised(&words::path(path));
@@ -92,7 +87,7 @@ pub(super) fn found(parameters: &[Parameter]) -> Vec<String> {
             Known::Fitted => {
                 let value = quantity(found.value, unit);
                 return Some(format!(
-                    "{name}: {value} in a model that is wrong; no interval is known."
+                    "{name}: {value}, in a model that is wrong; no interval is known."
                 ));
             }
             Known::Nothing => return None,
@@ -105,13 +100,13 @@ pub(super) fn found(parameters: &[Parameter]) -> Vec<String> {
         let holds = low.min(high) <= found.nominal && found.nominal <= low.max(high);
         let percent = percent(change(found.value).abs());
         let said = match change(found.value) {
-            _ if holds => "its nominal value, as far as the recordings tell".to_owned(),
+            _ if holds => "agrees with its nominal value".to_owned(),
             up if up > 0.0 => format!("{percent} above its nominal value"),
             _ => format!("{percent} below its nominal value"),
         };
         let half = (high - low).abs() / 2.0 / found.value.abs();
         let edge = match found.at_bound {
-            true => " It lies at the edge of its search range: give it wider bounds.",
+            true => " It is at the edge of its search range: give it wider bounds.",
             false => "",
         };
         let half = self::percent(half);
@@ -129,33 +124,32 @@ fn round(share: f64) -> f64 {
     format!("{share:.1e}").parse().unwrap_or(share)
 }
 
-/// What is not told, and why.
-pub(super) fn untold(parameters: &[Parameter]) -> Vec<String> {
+/// A sentence about each parameter that is not identifiable.
+pub(super) fn unidentifiable(parameters: &[Parameter]) -> Vec<String> {
     let say = |Parameter { path, unit, found }: &Parameter| {
         format!(
-            "{} keeps its nominal value {}: the recordings look the same over more than half of its range, the other \
-             parameters making up for it.",
+            "{} keeps its nominal value {}: over more than half of its range, the other parameters can make up for it.",
             text::capitalised(&words::path(path)),
             quantity(found.nominal, unit),
         )
     };
-    let not_told = parameters.iter().filter(|p| !p.found.identifiable);
-    not_told.map(say).collect()
+    let others = parameters.iter().filter(|p| !p.found.identifiable);
+    others.map(say).collect()
 }
 
-/// What stands in the place of parameters that are not identifiable, where there are none.
-pub(super) fn none_untold(page: &CalibrationPage) -> &'static str {
+/// The sentence that replaces an empty list of [`unidentifiable`] parameters.
+pub(super) fn all_identifiable(page: &CalibrationPage) -> &'static str {
     let results = &page.results;
     match (results.parameters.is_empty(), results.model_is_adequate) {
         (true, _) => "No parameter was fitted.",
         (_, true) => "Every parameter that was fitted is identifiable.",
         (_, false) => {
-            "A model that does not explain the recordings cannot tell which parameters they determine."
+            "The model does not explain the recordings, so it is not known which parameters are identifiable."
         }
     }
 }
 
-/// The pairs that are told only together.
+/// The pairs of strongly correlated estimates.
 pub(super) fn together(page: &CalibrationPage) -> Vec<String> {
     let results = &page.results;
     let paths: Vec<&str> = results.parameters.iter().map(|(path, _)| path).collect();
@@ -225,28 +219,28 @@ mod tests {
         let good = page([14.3, 1.04], Some([15.2, 1.12]));
         assert_eq!(
             verdict(&good),
-            "The calibrated model agrees with the recordings as well as their noise allows: what is left is 1.04 times the \
-             noise (before: 14); the runs that were held back, and that it had not seen, it predicts to 1.12 times the noise \
+            "The calibrated model fits the recordings within their noise: the misfit is 1.04 times the \
+             noise (before: 14). It predicts the held-out runs to 1.12 times the noise \
              (before: 15)."
         );
         assert!(warnings(&good).is_empty());
         let poor = page([14.0, 4.0], None);
-        assert!(verdict(&poor).contains("something is left that is no noise"));
+        assert!(verdict(&poor).contains("but not within their noise"));
         assert_eq!(warnings(&poor).len(), 1);
         assert!(warnings(&poor)[0].contains("The model is wrong"));
-        assert!(none_untold(&good).contains("No parameter"));
-        assert!(verdict(&page([2.0, 2.0], None)).contains("no closer"));
+        assert!(all_identifiable(&good).contains("No parameter"));
+        assert!(verdict(&page([2.0, 2.0], None)).contains("not fit the recordings better"));
         // Less than anybody sees: 204 before and after.
-        assert!(verdict(&page([204.3, 203.9], None)).contains("no closer"));
+        assert!(verdict(&page([204.3, 203.9], None)).contains("not fit the recordings better"));
         let narrow = page([14.0, 1.0], Some([14.0, 9.0]));
-        assert!(warnings(&narrow)[0].contains("held back"));
+        assert!(warnings(&narrow)[0].contains("held-out runs are predicted"));
         let mut stopped = good;
         stopped.results.complete = false;
         assert!(warnings(&stopped)[0].contains("stopped"));
     }
 
     #[test]
-    fn what_was_found_is_said_against_the_nominal_values() {
+    fn estimates_are_compared_with_the_nominal_values() {
         let of = |value: f64, interval: Option<[f64; 2]>, identifiable| Estimate {
             value,
             low: interval.map(|[low, _]| low),
@@ -268,22 +262,22 @@ mod tests {
             unit: "N/m^1.5",
             found,
         });
-        let found = found(&parameters);
+        let found = super::estimates(&parameters);
         assert_eq!(
             found,
             [
                 "Big end contact stiffness: 20\u{a0}% below its nominal value, known to ±5\u{a0}%.",
-                "Big end contact stiffness: its nominal value, as far as the recordings tell, known to ±9.5\u{a0}%.",
-                "Big end contact stiffness: 1.6 × 10¹⁰\u{a0}N/m^1.5 in a model that is wrong; no interval is known.",
+                "Big end contact stiffness: agrees with its nominal value, known to ±9.5\u{a0}%.",
+                "Big end contact stiffness: 1.6 × 10¹⁰\u{a0}N/m^1.5, in a model that is wrong; no interval is known.",
             ]
         );
-        let untold = untold(&parameters[3..]);
+        let others = unidentifiable(&parameters[3..]);
         assert!(
-            untold[0].starts_with(
-                "Big end contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: the"
+            others[0].starts_with(
+                "Big end contact stiffness keeps its nominal value 2 × 10¹⁰\u{a0}N/m^1.5: over"
             ),
             "{}",
-            untold[0]
+            others[0]
         );
     }
 }

@@ -38,9 +38,9 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
     Plate {
         heading: format!("{}, {kind}", run.id),
         caption: format!(
-            "Misfit {} times the noise before and {} after. Left: the mean over the revolutions, with the band that holds 95 % of \
-             them. Middle: simulation less recording, with the band in which noise alone would put it. Right: the same order by \
-             order, over its noise; noise alone lies about 1.",
+            "The misfit is {} times the noise before and {} after calibration. Left: the mean over the revolutions, with the \
+             band that holds 95 % of them. Middle: simulation less recording, with the band of the noise. Right: the same by \
+             order, divided by its noise; noise alone is about 1.",
             size(run.misfit.before),
             size(run.misfit.after)
         ),

@@ -40,7 +40,7 @@ pub(super) fn pairs(cases: &[CaseChaos]) -> Vec<([f64; 2], [f64; 3])> {
 
 impl Agreement {
     /// None where nothing can be compared: no true exponent, or no signal was ever asked.
-    pub(super) fn of(cases: &[CaseChaos]) -> Option<Self> {
+    pub(super) fn new(cases: &[CaseChaos]) -> Option<Self> {
         let pairs = pairs(cases);
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for (_, window) in windows(cases) {
@@ -131,7 +131,7 @@ mod tests {
             case(-2.0, &[Some([0.1, -0.1, 0.3])]),
             CaseChaos::default(),
         ];
-        let agreement = Agreement::of(&cases).unwrap();
+        let agreement = Agreement::new(&cases).unwrap();
         assert_eq!((agreement.compared, agreement.abstained), (4, 1));
         assert_eq!(
             (
@@ -142,7 +142,7 @@ mod tests {
             (2, 3, 2)
         );
         assert_eq!(agreement.reasons, [("no scaling region".to_owned(), 1)]);
-        assert!(Agreement::of(&[CaseChaos::default()]).is_none());
+        assert!(Agreement::new(&[CaseChaos::default()]).is_none());
     }
 
     #[test]

@@ -57,17 +57,17 @@ fn plate(diagram: &Bifurcation) -> Plate {
 
 fn caption(diagram: &Bifurcation, factor: f64, unit: &str) -> String {
     let mut said = format!(
-        "One dot per revolution at each value of {}, the state carried over from value to value: rising (blue, wide) and \
-         falling (orange, on top). One dot at a value is a motion that repeats itself every revolution, n dots one of n \
-         revolutions, a column of dots one that does not repeat. Orange without blue around it, or blue alone, is hysteresis: \
-         the way there decides.",
+        "One dot per revolution at each value of {}. The state is carried over from value to value: rising (blue, wide) and \
+         falling (orange, on top). One dot at a value is a motion with a period of one revolution, n dots a period of n \
+         revolutions, a column of dots a motion that does not repeat. Where only one colour has dots, the motion depends on \
+         the direction: hysteresis.",
         diagram.parameter
     );
     if let Some(first) = diagram.quantities.first() {
         let both = both_ways(first);
         let apart: Vec<f64> = apart(first, &both);
         said += &format!(
-            " At {} of {} the two ways have no range of the {} in common",
+            " At {} of {} values the two directions have no common range of the {}",
             apart.len(),
             text::counted(both.len(), "value"),
             first.name,

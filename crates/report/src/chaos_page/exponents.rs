@@ -26,7 +26,7 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
     if cases.is_empty() {
         return Vec::new();
     }
-    let speeds = Levels::of(cases.iter().map(|case| case.speed_rpm));
+    let speeds = Levels::from_values(cases.iter().map(|case| case.speed_rpm));
     let mut sets: Vec<&str> = Vec::new();
     for case in &cases {
         if !sets.contains(&case.joints.as_str()) {
@@ -59,8 +59,8 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
         caption: format!(
             "Largest Lyapunov exponent of each case: from the equations (discs, bars of ±{HALF} standard errors) and from the \
              measured acceleration of each window (rings, 95 % intervals), over the largest clearance. Above the grey line \
-             neighbouring motions part and the motion is chaotic; below it they join. A signal on a periodic orbit does not show \
-             how fast neighbours would join, so that rings cannot follow discs below the line.{}",
+             neighbouring motions diverge and the motion is chaotic; below it they converge. The signal of a periodic motion \
+             does not show how fast neighbours converge, so rings do not follow discs below the line.{}",
             speed_words(apart, &speeds)
         ),
         svg: Figure {
@@ -152,7 +152,7 @@ fn named(points: &[[f64; 2]], name: &'static str) -> &'static str {
 /// The scatter of one over the other, where any window has both.
 pub(super) fn scatter(page: &ChaosPage) -> Vec<Plate> {
     let pairs = agreement::pairs(&page.cases);
-    let Some(agreement) = Agreement::of(&page.cases).filter(|_| !pairs.is_empty()) else {
+    let Some(agreement) = Agreement::new(&page.cases).filter(|_| !pairs.is_empty()) else {
         return Vec::new();
     };
     let both = pairs
@@ -228,9 +228,9 @@ fn scatter_words(agreement: &Agreement) -> String {
         format!(" ({})", reasons.join("; "))
     };
     format!(
-        "A ring per window, with the 95 % interval of the signal's exponent upright and ±{HALF} standard errors of the \
-         equations' one across. Spearman's rank correlation: {correlation}. Intervals that hold the equations' exponent: {}; among those \
-         where it is positive: {}. The signal gave no exponent for {} of {}{reasons}.",
+        "A ring per window: upright the 95 % interval of the exponent from the signal, across ±{HALF} standard errors of the \
+         exponent from the equations. Spearman's rank correlation: {correlation}. Intervals that hold the exponent from the \
+         equations: {}; where that is positive: {}. The signal gives no exponent for {} of {}{reasons}.",
         share(agreement.covered, agreement.compared),
         share(agreement.positive_covered, agreement.positive),
         agreement.abstained,

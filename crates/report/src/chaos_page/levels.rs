@@ -16,7 +16,7 @@ pub(super) struct Levels {
 
 impl Levels {
     /// Of all finite values.
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub(super) fn from_values(values: impl Iterator<Item = f64>) -> Self {
         let mut lows: Vec<f64> = values.filter(|v| v.is_finite()).collect();
         lows.sort_by(f64::total_cmp);
         lows.dedup();
@@ -61,14 +61,14 @@ mod tests {
 
     #[test]
     fn few_values_are_levels_and_many_are_bins() {
-        let few = Levels::of([3e-4, 1e-4, 3e-4, f64::NAN].into_iter());
+        let few = Levels::from_values([3e-4, 1e-4, 3e-4, f64::NAN].into_iter());
         assert_eq!(few.names(1e3), ["0.1", "0.3"]);
         assert_eq!((few.index(3e-4), few.index(2e-4)), (Some(1), None));
-        let many = Levels::of((0..=80).map(f64::from));
+        let many = Levels::from_values((0..=80).map(f64::from));
         assert_eq!((many.count(), many.width), (8, 10.0));
         let places = [0.0, 9.9, 10.0, 80.0].map(|v| many.index(v));
         assert_eq!(places, [Some(0), Some(0), Some(1), Some(7)]);
         assert_eq!(many.names(1.0)[0], "5");
-        assert_eq!(Levels::of(std::iter::empty()).count(), 0);
+        assert_eq!(Levels::from_values(std::iter::empty()).count(), 0);
     }
 }

@@ -50,8 +50,8 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
             sets.push(case.joints.clone());
         }
     }
-    let clearances = Levels::of(clear.iter().map(|case| case.clearance_m));
-    let speeds = Levels::of(clear.iter().map(|case| case.speed_rpm));
+    let clearances = Levels::from_values(clear.iter().map(|case| case.clearance_m));
+    let speeds = Levels::from_values(clear.iter().map(|case| case.speed_rpm));
     let x = Axis::named("clearance (mm)", clearances.names(1e3));
     let mut plates = vec![by_joints(&clear, &sources, &sets, &clearances, &speeds, &x)];
     if speeds.count() > 1 {
@@ -182,12 +182,12 @@ fn figure(sources: &[(&str, Source)], rows: Vec<Vec<Panel>>, row_height: f64) ->
 
 fn caption(over: &str, bins: f64) -> String {
     let binned = if bins > 0.0 {
-        " The values are sorted into bins of equal width, named by their middles."
+        " The values are in bins of equal width; the axis shows their centres."
     } else {
         ""
     };
     format!(
         "The regime with clearances of different size {over}; darker is less regular. {KEY}. A star marks a field whose cases or \
-         windows do not agree; the most frequent regime stands for them. White fields have no case.{binned}"
+         windows disagree; it shows their most frequent regime. White fields have no case.{binned}"
     )
 }

@@ -20,7 +20,7 @@ mod table;
 pub use regime::Regime;
 pub(crate) use spectra::MOST_CLASSES;
 
-/// All that the page tells. Numbers are SI, speeds in rpm; labels are as in the data.
+/// The content of the page. Numbers are SI, speeds in rpm; labels are as in the data.
 #[derive(Clone, Debug, Default)]
 pub struct ChaosPage {
     /// Name of the dataset.
@@ -174,7 +174,7 @@ pub struct Quartiles {
 
 impl Quartiles {
     /// Of curves over the places `at`, each as long; places without a finite value are left out.
-    pub fn of(at: &[f64], curves: &[Vec<f64>]) -> Self {
+    pub fn from_curves(at: &[f64], curves: &[Vec<f64>]) -> Self {
         let mut quartiles = Self::default();
         for (i, &place) in at.iter().enumerate() {
             let here: Vec<f64> = curves

@@ -36,8 +36,8 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
         heading: "Portraits of the crosshead".to_owned(),
         caption: format!(
             "Acceleration of the crosshead against its velocity over the last {REVOLUTIONS} revolutions or fewer. All \
-             panels have the same axes: what is larger is larger. A single closed curve repeats itself every revolution, \
-             a double one every other; a band that fills is a motion that does not repeat. {}",
+             panels share one scale. A single closed curve is a motion that repeats every revolution, a double one a motion \
+             that repeats every second revolution; a filled band is a motion that does not repeat. {}",
             cases(page)
         ),
         svg: small_multiples(page, panel, Share::All, HEIGHT),
@@ -80,9 +80,9 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
     let mut made = plates(page, || Plate {
         heading: "Sections once a revolution".to_owned(),
         caption: format!(
-            "Velocity and acceleration of the crosshead whenever the crank passes angle 0, a dot per revolution, all panels \
-             with the same axes. One dot is a motion that repeats itself every revolution, two are one of two revolutions, a \
-             curve is quasi-periodic, a scatter is chaotic or has not settled. {}",
+            "Velocity and acceleration of the crosshead when the crank passes angle 0, one dot per revolution. All panels \
+             share one scale. One dot is a motion that repeats every revolution, two dots one that repeats every second \
+             revolution. A curve is quasi-periodic, a scatter is chaotic or has not settled. {}",
             cases(page)
         ),
         svg: small_multiples(page, strobe, Share::All, HEIGHT),
@@ -90,9 +90,9 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
     made.extend(plates(page, || Plate {
         heading: "Sections at impact".to_owned(),
         caption: format!(
-            "Where in the revolution the journal meets the bearing again, and how fast, a dot per impact, all panels with \
-             the same axes. Impacts at the same angles with the same speeds are those of a periodic motion; clouds are those of \
-             one that does not repeat. A panel without dots is of a journal that never leaves its bearing. {}",
+            "Crank angle and speed of each impact of the journal on its bearing. All panels share one scale. A periodic \
+             motion has impacts at the same angles with the same speeds; a motion that does not repeat has clouds. A panel \
+             without dots belongs to a journal that never leaves its bearing. {}",
             cases(page)
         ),
         svg: small_multiples(page, impacts, Share::All, HEIGHT),
@@ -127,10 +127,10 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
     plates(page, || Plate {
         heading: "Orbits in the clearance circle".to_owned(),
         caption: format!(
-            "The centre of the journal in its bearing over the last {ORBIT_REVOLUTIONS} revolutions or fewer. Inside the grey \
-             circle, whose radius is the clearance, the journal flies; outside of it journal and bearing are pressed together, the \
-             deeper the further. One closed curve is a periodic motion. Where there is clearance in two joints, both orbits are in \
-             one panel. Every panel has its own scale, the same along both axes. {}",
+            "The centre of the journal in its bearing over the last {ORBIT_REVOLUTIONS} revolutions or fewer. The radius of \
+             the grey circle is the clearance. Inside the circle the journal is free; outside, journal and bearing are in contact, \
+             and the distance to the circle is the penetration. One closed curve is a periodic motion. With clearance in two \
+             joints, both orbits are in one panel. Every panel has its own scale, the same along both axes. {}",
             cases(page)
         ),
         svg: small_multiples(page, panel, Share::None, ORBIT_HEIGHT),

@@ -17,7 +17,7 @@ const ADD_EXPONENT: &str =
 const ADD_SIGNAL: &str = "The features of this dataset have no exponent and no regime from the signal: windows of many \
      revolutions (windows: {count: 1, revolutions: 60}) of a crosshead_acceleration sensor have.";
 const ADD_CLEARANCE: &str = "Add cases with clearance to the sweep file:  joints: [[big_end]]  and  clearance: [0.1 mm, 0.2 mm].";
-const ADD_BIFURCATION: &str = "This dataset has no bifurcation diagram. The key bifurcations of the sweep file adds some; pipelines/chaos-map.yaml \
+const ADD_BIFURCATION: &str = "This dataset has no bifurcation diagram. The key bifurcations of the sweep file adds diagrams; pipelines/chaos-map.yaml \
      has examples.";
 const ADD_SIGNALS: &str = "There are no recordings in tables to make spectra of: a sensor has to measure \
      crosshead_acceleration, and the format has to be parquet.";
@@ -63,7 +63,7 @@ impl ChaosPage {
             claims: claims::claims(&self.cases, self.claims),
             sections: sections(self),
             regimes: agreement::regimes(&self.cases),
-            table: Table::of(listed(self)),
+            table: Table::new(listed(self)),
         };
         let html = view.render()?;
         let plates = view.sections.into_iter().flat_map(|section| section.plates);
@@ -135,7 +135,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
         section(
             "sections",
             "Poincaré sections",
-            "The same cases, over all recorded revolutions: where the motion stands once a revolution, and at each impact."
+            "The same cases over all recorded revolutions: the motion once per revolution, and each impact."
                 .to_owned(),
             unless(motions_there, ADD_CLEARANCE),
             motions::sections(page),
@@ -144,7 +144,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
         section(
             "bifurcations",
             "Bifurcation diagrams",
-            "How the motion changes as one number of the machine does, both ways.".to_owned(),
+            "The motion while one number of the machine rises and falls.".to_owned(),
             unless(!page.bifurcations.is_empty(), ADD_BIFURCATION),
             bifurcations::plates(page),
             Follows::None,
@@ -162,7 +162,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
         section(
             "regimes",
             "Regimes",
-            "What kind of motion it is, where.".to_owned(),
+            "The kind of motion by clearance, joint and speed.".to_owned(),
             unless(page.has_regimes(), &format!("No case has a regime. {ADD_EXPONENT}")),
             maps::plates(page),
             Follows::Regimes,
@@ -170,7 +170,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
         section(
             "spectra",
             "Spectra",
-            "What an accelerometer on the crosshead sees of it.".to_owned(),
+            "The motion as an accelerometer on the crosshead measures it.".to_owned(),
             unless(!page.spectra.is_empty(), ADD_SIGNALS),
             spectra::plates(page),
             Follows::None,
@@ -178,7 +178,7 @@ fn sections(page: &ChaosPage) -> Vec<Section> {
         section(
             "orbits",
             "Journal orbits",
-            "The cases of the phase portraits, seen inside the joints.".to_owned(),
+            "The journals of the same cases inside their bearings.".to_owned(),
             unless(motions_there, ADD_CLEARANCE),
             motions::orbits(page),
             Follows::None,

@@ -9,7 +9,7 @@ pub enum Regime {
     QuasiPeriodic,
     /// Deterministic, and neighbouring motions part.
     Chaotic,
-    /// As noise looks: not told from it.
+    /// Not distinguishable from noise.
     Stochastic,
     /// The data do not decide.
     Undecided,
@@ -18,7 +18,7 @@ pub enum Regime {
 impl Regime {
     /// The regime of a label of the data, with its period in revolutions where that is known.
     /// None for any other text.
-    pub fn of(label: &str, period: Option<u32>) -> Option<Self> {
+    pub fn from_label(label: &str, period: Option<u32>) -> Option<Self> {
         Some(match label {
             "periodic" => Self::Periodic(period.unwrap_or(0)),
             "quasi-periodic" => Self::QuasiPeriodic,

@@ -33,7 +33,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
             heading: "Spectra of each class".to_owned(),
             caption: format!(
                 "Amplitude density of the measured acceleration (Welch 1967, Hann window, 1024 samples, half overlapping). Lines at the \
-                 left are the orders of the crank; what clearance adds is the level above them, and broad humps where parts \
+                 left are the orders of the crank; clearance raises the level above them, and adds broad humps where parts \
                  ring. {from}"
             ),
             svg: small_multiples(shown, "frequency (Hz)", "density (m/s²/√Hz)", |class| {

@@ -21,7 +21,7 @@ pub(super) struct Table {
 }
 
 impl Table {
-    pub(super) fn of(cases: &[CaseChaos]) -> Self {
+    pub(super) fn new(cases: &[CaseChaos]) -> Self {
         let rows: Vec<[String; 9]> = cases.iter().map(cells).collect();
         let there = |column: usize| rows.iter().any(|row| row[column] != NOTHING);
         let kept: Vec<usize> = (0..9).filter(|&column| there(column)).collect();

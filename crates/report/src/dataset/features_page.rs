@@ -20,27 +20,31 @@ const GROUPS: [(Group, &str); 8] = [
     (Group::Reasons, "Why values are missing"),
 ];
 
-/// # Errors
-/// A table that cannot be read.
-pub(super) fn page(dataset: &Dataset) -> Result<FeaturesPage, Error> {
-    let channels = dataset.plan.channels();
-    let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
-    let columns = features::columns(named, dataset.plan.chaos).into_iter();
-    let definitions: Vec<Definition> = columns.map(|(definition, _)| definition).collect();
-    let groups = GROUPS.iter().map(|(group, heading)| {
-        let own = definitions.iter().filter(|d| d.group == *group);
-        FeatureGroup {
-            heading: (*heading).to_owned(),
-            features: entries(own),
-        }
-    });
-    let groups = groups.filter(|group| !group.features.is_empty()).collect();
-    Ok(FeaturesPage {
-        name: dataset.plan.name.clone(),
-        version: dataset.manifest().version.clone(),
-        groups,
-        columns: labels(dataset, &definitions)?,
-    })
+impl FeaturesPage {
+    /// The page about the features of a dataset.
+    ///
+    /// # Errors
+    /// A table that cannot be read.
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, Error> {
+        let channels = dataset.plan.channels();
+        let named = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
+        let columns = features::columns(named, dataset.plan.chaos).into_iter();
+        let definitions: Vec<Definition> = columns.map(|(definition, _)| definition).collect();
+        let groups = GROUPS.iter().map(|(group, heading)| {
+            let own = definitions.iter().filter(|d| d.group == *group);
+            FeatureGroup {
+                heading: (*heading).to_owned(),
+                features: entries(own),
+            }
+        });
+        let groups = groups.filter(|group| !group.features.is_empty()).collect();
+        Ok(Self {
+            name: dataset.plan.name.clone(),
+            version: dataset.manifest().version.clone(),
+            groups,
+            columns: labels(dataset, &definitions)?,
+        })
+    }
 }
 
 /// An entry for each feature, whatever the channels, and for each run of names that differ in

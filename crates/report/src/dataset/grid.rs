@@ -1,10 +1,11 @@
 //! Sweeps that compare joints and clearances, all else equal.
 
+use super::chaos::cases::is_chaotic;
 use super::examples::operating_point;
 use super::features::HIGH_FROM_HZ;
 use super::operating_points::Settings;
 use super::recording::Recording;
-use super::{chaos, words};
+use super::words;
 use crate::dataset_page::{CaseLevel, ClearanceGrid, JointSet, Response};
 use crate::{Error, Level};
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,7 +41,7 @@ pub(super) fn grids(dataset: &Dataset, motions: Option<&Motions>) -> Result<Opti
     let firsts = operating_points
         .iter()
         .map(|points| points[0].cases[0].first);
-    let settings = Settings::of(dataset, &firsts.collect::<Vec<_>>());
+    let settings = Settings::new(dataset, &firsts.collect::<Vec<_>>());
     let sensors = dataset.sensors.channels().len();
     let all: Vec<(usize, usize)> = (0..operating_points.len())
         .flat_map(|at| (0..sensors.max(1)).map(move |sensor| (at, sensor)))
@@ -157,7 +158,7 @@ impl Context<'_> {
             high_share: high.iter().sum::<f64>() / variance,
             chaotic: self
                 .motions
-                .and_then(|m| chaos::is_chaotic(m, point.cases[0].first)),
+                .and_then(|m| is_chaotic(m, point.cases[0].first)),
         };
         if own.len() == 1 && self.dataset.has_signals() {
             let recording = Recording::read(self.dataset, own[0], sensor)?;

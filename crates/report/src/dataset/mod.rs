@@ -4,6 +4,7 @@ mod about;
 mod chaos;
 mod columns;
 mod counts;
+mod dataset_page;
 mod examples;
 mod features;
 mod features_page;
@@ -12,76 +13,3 @@ mod operating_points;
 mod random;
 mod recording;
 mod words;
-
-use crate::Error;
-use crate::chaos_page::ChaosPage;
-use crate::dataset_page::{ClearanceGrids, DatasetPage, Design};
-use crate::features_page::FeaturesPage;
-use sweep::reader::Dataset;
-
-impl DatasetPage {
-    /// The page of a dataset.
-    ///
-    /// # Errors
-    /// A table that cannot be read.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
-        let faults = counts::faults(dataset);
-        let examples = examples::examples(dataset, &faults)?;
-        let motions = match dataset.plan.study {
-            Some(_) => Some(dataset.motions()?),
-            None => None,
-        };
-        let design = match grid::grids(dataset, motions.as_ref())? {
-            Some(grids) => Design::Grid(ClearanceGrids {
-                grids: grids.shown,
-                left_out: grids.left_out,
-                claims: dataset.plan.study.is_some(),
-            }),
-            None => Design::Random(random::sweep(dataset, &faults)),
-        };
-        let (features, feature_rows) = features::by_fault(dataset, &faults);
-        let channels = dataset.plan.channels().into_iter();
-        Ok(Self {
-            name: dataset.plan.name.clone(),
-            about: about::dataset(dataset),
-            version: dataset.manifest().version.clone(),
-            seed: dataset.manifest().seed,
-            sample_rate_hz: dataset.plan.settings.sample_rate,
-            revolutions_per_window: dataset.revolutions_per_window(),
-            samples_per_window: counts::samples_per_window(dataset),
-            channels: channels.map(|(name, _)| name).collect(),
-            joints: dataset.joints(),
-            splits: dataset.splits(),
-            faults,
-            ranges: counts::ranges(dataset),
-            failed: counts::failed(dataset),
-            warnings: counts::warnings(dataset),
-            no_examples: about::no_recordings(dataset).to_owned(),
-            examples,
-            design,
-            features,
-            feature_rows,
-            columns: columns::columns(dataset)?,
-        })
-    }
-}
-
-impl ChaosPage {
-    /// The page about chaos of a dataset. The few cases whose motion it shows are simulated again.
-    ///
-    /// # Errors
-    /// A table that cannot be read, or a case that cannot be simulated again.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
-        chaos::page(dataset)
-    }
-}
-
-impl FeaturesPage {
-    /// The page about the features of a dataset.
-    ///
-    /// # Errors
-    /// A table that cannot be read.
-    pub fn of(dataset: &Dataset) -> Result<Self, Error> {
-        features_page::page(dataset)
-    }
-}

@@ -14,7 +14,7 @@ pub(super) struct Settings {
 impl Settings {
     /// Of operating points of which each has one of the windows `points`. Values that go together, such
     /// as the damping of several joints, are one.
-    pub(super) fn of(dataset: &Dataset, points: &[usize]) -> Self {
+    pub(super) fn new(dataset: &Dataset, points: &[usize]) -> Self {
         let numbers = dataset.windows.labels.iter();
         let numbers = numbers.filter(|label| label.joint().is_none());
         let mut columns: Vec<(Vec<String>, Vec<String>)> = numbers

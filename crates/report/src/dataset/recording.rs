@@ -144,7 +144,7 @@ impl Recording {
     }
 
     /// Amplitude over frequency: rms over stretches of two revolutions, each overlapping the next
-    /// by a half, through Hann windows (Welch 1967). So short a stretch cannot tell neighbouring
+    /// by a half, through Hann windows (Welch 1967). So short a stretch does not separate neighbouring
     /// orders apart and shows what lies over them all: resonances, noise.
     ///
     /// # Errors

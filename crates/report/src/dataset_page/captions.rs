@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 /// known to a quarter, and each long enough for a motion that repeats itself after a few revolutions.
 const PARTS: usize = 10;
 
-/// Peak and root mean square of a response over its finite values; none where there are none.
+/// Peak and root mean square of a response over its finite values; none where there is no finite value.
 pub(super) fn levels(response: &Response) -> Option<[Level; 2]> {
     let turns = Revolutions::new(&response.crank_angle_rad, &response.acceleration_m_s2);
     let complete: Vec<&Vec<[f64; 2]>> = turns.complete().collect();

@@ -27,7 +27,7 @@ pub(super) enum Verdict {
 
 impl Verdict {
     /// Of so many comparisons, `for_it` of which are as claimed.
-    fn of(for_it: usize, all: usize) -> Self {
+    fn from_counts(for_it: usize, all: usize) -> Self {
         match for_it {
             _ if all == 0 => Self::NotTested,
             0 => Self::DoesNotHold,
@@ -159,7 +159,7 @@ fn compared(claim: &'static str, measure: &Measure, pairs: &[Pair]) -> Claim {
     }
     Claim {
         claim,
-        verdict: Verdict::of(for_it.len(), pairs.len()),
+        verdict: Verdict::from_counts(for_it.len(), pairs.len()),
         figures,
         evidence,
     }
@@ -194,7 +194,7 @@ fn place(levels: &[CaseLevel], measures: &[Measure; 2]) -> Claim {
         });
     Claim {
         claim: "The place of the clearance matters",
-        verdict: Verdict::of(differ, pairs.len()),
+        verdict: Verdict::from_counts(differ, pairs.len()),
         figures: format!("{differ} of {}", pairs.len()),
         evidence: evidence.collect::<Vec<_>>().join("; "),
     }
@@ -327,7 +327,7 @@ mod tests {
             "rms above 160 Hz: one place 1.2 to 1.5 times the other; \
              peak: one place 1.17 to 1.25 times the other"
         );
-        // A difference that may be noise is none.
+        // A difference that may be noise does not count.
         grid.levels[5].high_rms.value = 12.05;
         assert_eq!(verdicts(&grid)[3], "holds in part");
         grid.levels[3].high_rms.value = 10.5;

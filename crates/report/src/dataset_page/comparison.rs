@@ -3,8 +3,7 @@
 //! reciprocating compressor with clearance joints, section 3 and 4).
 
 use super::captions;
-use super::examples::{PORTRAIT_REVOLUTIONS, portrait};
-use super::page::class_colour;
+use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
 use crate::classes::{self, HEALTHY};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
@@ -152,7 +151,7 @@ fn by_colour_of_set<'a>(
         let response = at_clearance(set, clearance)?;
         Some(Drawn {
             name: text::words(&set.joints),
-            colour: class_colour(page, &set.joints),
+            colour: page.class_colour(&set.joints),
             response,
         })
     });

@@ -1,6 +1,5 @@
 //! How the cases of a random sweep lie, and how features go with parameters.
 
-use super::page::class_colour;
 use super::{DatasetPage, Histogram, RandomSweep, Scatter};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
@@ -108,7 +107,7 @@ fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let series = scatter.classes.iter().map(|(fault, points)| {
         Series::new(
             classes::name(fault),
-            class_colour(page, fault),
+            page.class_colour(fault),
             Mark::Points,
             points.iter().map(|p| [p[0] * x_factor, p[1]]),
         )

@@ -1,24 +1,20 @@
 //! One example of each class.
 
-use super::page::class_colour;
+use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
 use super::{ClassExample, DatasetPage, Spectrum, captions};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::revolutions::{Revolutions, last_turns};
+use crate::revolutions::Revolutions;
 use crate::text;
 
 /// At most this many classes have an example on the page.
 pub(crate) const MOST_EXAMPLES: usize = 16;
-/// A portrait shows at most this many revolutions: with more, the lines of one that repeats itself
-/// only get thicker, and those of one that does not cannot be told apart.
-pub(super) const PORTRAIT_REVOLUTIONS: usize = 10;
-
 /// The figures of the first classes, all with the same axes.
 pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
     let shown = || page.examples.iter().take(MOST_EXAMPLES);
     let mut rows: Vec<[Panel; 4]> = shown()
-        .map(|example| panels(example, class_colour(page, &example.fault)))
+        .map(|example| panels(example, page.class_colour(&example.fault)))
         .collect();
     for column in 0..4 {
         figure::share_ranges(rows.iter_mut().map(|row| &mut row[column]));
@@ -104,26 +100,4 @@ fn panels(example: &ClassExample, colour: Colour) -> [Panel; 4] {
             &example.order_spectrum,
         ),
     ]
-}
-
-/// Acceleration against velocity over the last revolutions.
-pub(super) fn portrait(title: &str, response: &super::Response, colour: Colour) -> Panel {
-    let points = response
-        .velocity_m_s
-        .iter()
-        .zip(&response.acceleration_m_s2)
-        .skip(last_turns(&response.crank_angle_rad, PORTRAIT_REVOLUTIONS))
-        .map(|(&v, &a)| [v, a]);
-    Panel {
-        title: title.to_owned(),
-        x: Axis::linear("velocity (m/s)"),
-        y: Axis::linear("acceleration (m/s²)"),
-        series: vec![Series::new("", colour, Mark::Line, points)],
-        note: if response.velocity_m_s.is_empty() {
-            "no velocity in the data".to_owned()
-        } else {
-            String::new()
-        },
-        ..Panel::default()
-    }
 }

@@ -12,15 +12,17 @@ mod distributions;
 mod examples;
 mod levels;
 mod page;
+mod portrait;
 mod settings;
 mod warnings;
 
 pub(crate) use examples::MOST_EXAMPLES;
 pub use warnings::CaseWarning;
 
-use crate::Level;
+use crate::figure::Colour;
+use crate::{Level, classes};
 
-/// All that the page tells. Numbers are SI; labels and names are as in the data.
+/// The content of the page. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
 pub struct DatasetPage {
     /// Name of the dataset.
@@ -278,4 +280,12 @@ pub struct Column {
     pub unit: String,
     /// What it is.
     pub meaning: String,
+}
+
+impl DatasetPage {
+    /// The colour that a class has in all figures.
+    fn class_colour(&self, fault: &str) -> Colour {
+        let labels = self.faults.iter().map(|count| count.fault.as_str());
+        classes::colour(fault, &self.joints, labels)
+    }
 }

@@ -7,7 +7,6 @@ use super::{
     CaseLevel, CaseWarning, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design, FailedCase,
     FaultCount, FeatureRow, ParameterRange, comparison, distributions,
 };
-use crate::figure::Colour;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Error, classes, text};
 use askama::Template;
@@ -69,12 +68,6 @@ impl DatasetPage {
     }
 }
 
-/// The colour that a class has in all figures.
-pub(super) fn class_colour(page: &DatasetPage, fault: &str) -> Colour {
-    let labels = page.faults.iter().map(|count| count.fault.as_str());
-    classes::colour(fault, &page.joints, labels)
-}
-
 fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
     let left_out = if page.examples.len() > MOST_EXAMPLES {
         format!(
@@ -98,8 +91,8 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
         Design::Random(sweep) => galleries.push(Gallery {
             id: "distributions".to_owned(),
             heading: "Distributions".to_owned(),
-            introduction: "The cases of this dataset are drawn at random. This is how their parameters lie, and how features \
-                           go with them.",
+            introduction: "The cases of this dataset are drawn at random: the distributions of their parameters, and the \
+                           features over them.",
             left_out: String::new(),
             nothing: &page.no_examples,
             first: 1,
@@ -142,7 +135,7 @@ fn responses<'a>(page: &'a DatasetPage, grids: &ClearanceGrids) -> Vec<Gallery<'
         left_out: match shown {
             _ if at > 0 || shown == all => String::new(),
             _ => format!(
-                "Figures show the first {shown} of {all} operating points and sensors; the levels of the others stand below."
+                "Figures show the first {shown} of {all} operating points and sensors; the tables below have the levels of all."
             ),
         },
         nothing: &page.no_examples,
@@ -215,7 +208,7 @@ impl View<'_> {
         levels::level_cells(level)
     }
 
-    /// Whether rows of features are told apart by their sensors.
+    /// Whether the rows of features come from several sensors.
     fn has_sensors(&self) -> bool {
         let rows = &self.page.feature_rows;
         rows.iter().any(|row| row.sensor != rows[0].sensor)

@@ -1,6 +1,7 @@
 //! Ranges and tick marks.
 
-use super::{Axis, Mark, Panel, Scale};
+use super::panel::{Axis, Panel, Scale};
+use super::series::Mark;
 use crate::text;
 
 /// Room between the data and the frame, as a share of the range.
@@ -20,7 +21,7 @@ pub(super) enum Direction {
 }
 
 impl Direction {
-    fn of(self, point: [f64; 2]) -> f64 {
+    fn coordinate(self, point: [f64; 2]) -> f64 {
         point[self as usize]
     }
 
@@ -35,6 +36,19 @@ impl Direction {
 /// True for a value that can be drawn.
 pub(super) fn drawable(value: f64) -> bool {
     value.abs() <= LARGEST
+}
+
+/// Gives all panels the range of x and y that shows the data of each, for figures that are drawn
+/// apart and compared by eye.
+pub fn share_ranges<'a>(panels: impl IntoIterator<Item = &'a mut Panel>) {
+    let mut panels: Vec<&mut Panel> = panels.into_iter().collect();
+    let all: Vec<&Panel> = panels.iter().map(|panel| &**panel).collect();
+    let x = range(&all, Direction::X);
+    let y = range(&all, Direction::Y);
+    for panel in &mut panels {
+        panel.x.range = x;
+        panel.y.range = y;
+    }
 }
 
 /// The range that shows all data of the panels: the given range of the first panel that has one,
@@ -71,15 +85,15 @@ pub(super) fn range(panels: &[&Panel], direction: Direction) -> Option<(f64, f64
 /// Everything that the panel shows in this direction.
 fn values(panel: &Panel, direction: Direction) -> impl Iterator<Item = f64> {
     let circles = panel.circles.iter().flat_map(move |circle| {
-        let centre = direction.of(circle.centre);
+        let centre = direction.coordinate(circle.centre);
         [centre - circle.radius, centre + circle.radius]
     });
     let fields = panel.fields.iter().flat_map(move |field| {
-        let middle = direction.of(field.at);
+        let middle = direction.coordinate(field.at);
         [middle - 0.5, middle + 0.5]
     });
     let points = panel.series.iter().flat_map(|series| &series.points);
-    let points = points.map(move |&point| direction.of(point));
+    let points = points.map(move |&point| direction.coordinate(point));
     points.chain(circles).chain(fields)
 }
 
@@ -276,7 +290,8 @@ fn scaled_label(label: &str, exponent: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Colour, Series};
+    use super::super::colour::Colour;
+    use super::super::series::Series;
     use super::*;
 
     fn labels(axis: &Axis, range: (f64, f64), length: f64, spacing: f64) -> Vec<String> {

@@ -4,7 +4,9 @@ use super::axis::drawable;
 use super::layout::{
     self, Frame, HEADING_SIZE, LABEL_SIZE, Placed, TICK_SIZE, TITLE_SIZE, text_width,
 };
-use super::{Figure, Mark, Series, decimate, palette};
+use super::rows::Figure;
+use super::series::{Mark, Series};
+use super::{decimate, palette};
 use crate::text::{escape, shortened};
 use std::fmt::Write;
 
@@ -16,8 +18,15 @@ const GRID: &str = "#e9e9e9";
 const KEY: f64 = 22.0;
 const KEY_GAP: f64 = 18.0;
 
+impl Figure {
+    /// The image as an `<svg>` element that stands alone or inside an HTML page.
+    pub fn svg(&self) -> String {
+        figure(self)
+    }
+}
+
 /// The figure as an `<svg>` element.
-pub(super) fn figure(figure: &Figure) -> String {
+fn figure(figure: &Figure) -> String {
     let mut body = String::new();
     let mut top = 10.0;
     if !figure.title.is_empty() {
@@ -57,7 +66,7 @@ pub(super) fn figure(figure: &Figure) -> String {
     )
 }
 
-/// What a reader who cannot see the image is told: the title, or that of the first panel.
+/// The description for readers who cannot see the image: the title, or that of the first panel.
 fn name(figure: &Figure) -> &str {
     let titles = figure
         .rows

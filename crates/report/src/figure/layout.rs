@@ -1,7 +1,8 @@
 //! Where each panel stands in the image.
 
 use super::axis::{self, Direction, Ruler};
-use super::{Figure, Panel, Share};
+use super::panel::Panel;
+use super::rows::{Figure, Share};
 
 /// Font sizes in pixels.
 pub(super) const TITLE_SIZE: f64 = 15.0;

@@ -1,6 +1,6 @@
 //! Colours that stay apart for colour-blind readers and on paper.
 
-use super::Colour;
+use super::colour::Colour;
 
 /// M. Okabe and K. Ito, "Color universal design" (2008), in the order of their contrast on white;
 /// their yellow, too light for a line on white, is left out.

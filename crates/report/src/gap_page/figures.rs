@@ -83,9 +83,9 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
     };
     Some(Plate {
         heading: "The gap, step by step".to_owned(),
-        caption: "Root mean square of the difference between simulation and recording, order by order, over its noise. Each bar is \
-                  what one step takes of it: calibration first, then one effect after another. At 1 noise is all that is left. \
-                  Runs that were held out were never fitted to."
+        caption: "Root mean square difference between simulation and recording, by order, divided by its noise. Each bar is the \
+                  reduction by one step: calibration first, then one effect after another. At 1 only noise is left. Held-out \
+                  runs are never fitted."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],
@@ -115,9 +115,9 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        heading: "The force that is missing".to_owned(),
-        caption: "Force of all effects on the crosshead with which the model comes nearest to the recordings, estimated without \
-                  a law: what a name or a formula would have to give."
+        heading: "The missing force".to_owned(),
+        caption: "Force on the crosshead with which the model fits the recordings best, estimated without a law. A named effect or \
+                  a formula would have to reproduce it."
             .to_owned(),
         svg: Figure {
             rows: vec![vec![panel]],
@@ -151,7 +151,7 @@ pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
     chosen.map(|map| plate(map, bands)).collect()
 }
 
-/// The map of a channel, without the effects and with them; one where there are none.
+/// The map of a channel without and with the effects; a single map without any effect.
 fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
     let (channel, _) = words::column(&before.channel);
     let bands = &bands[..bands.len().min(before.excess.len())];
@@ -164,8 +164,7 @@ fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
     };
     Plate {
         heading: format!("{}, {channel}", before.run),
-        caption: "The residual over the noise, by crank angle and order: the darker, the further from the recording. White is noise \
-                  alone; numbers are multiples of it."
+        caption: "Residual divided by the noise, by crank angle and order; darker is larger. White is noise alone."
             .to_owned(),
         svg: Figure {
             rows: vec![panels],

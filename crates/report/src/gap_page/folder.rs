@@ -18,7 +18,7 @@ impl GapPage {
     ///
     /// # Errors
     /// A file that cannot be read, or that no explanation writes.
-    pub fn of(folder: &Path) -> Result<Self, Error> {
+    pub fn read(folder: &Path) -> Result<Self, Error> {
         let results = Results::read(&folder.join(RESULTS))?;
         let machine = input::machine_file::read(&folder.join(MACHINE))?;
         let runs = results.runs.iter().map(|(id, run)| Run {

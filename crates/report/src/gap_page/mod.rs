@@ -8,7 +8,7 @@ mod page;
 use crate::calibration_page::Run;
 use gap::Results;
 
-/// All that the page tells.
+/// The content of the page.
 #[derive(Clone, Debug)]
 pub struct GapPage {
     /// Name of the machine.

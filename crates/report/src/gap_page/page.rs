@@ -52,7 +52,7 @@ impl GapPage {
     }
 }
 
-/// What the explanation comes to, in a sentence.
+/// The outcome in a few sentences.
 fn verdict(results: &Results) -> String {
     let named: Vec<String> = results
         .effects
@@ -72,30 +72,29 @@ fn verdict(results: &Results) -> String {
         .iter()
         .map(|e| e.sentence.as_str())
         .collect();
-    // An effect at two places is told once.
+    // An effect at two places is described once.
     sentences.dedup();
     let sentences = sentences.join(" ");
     let [before, after] = [results.gap.before, results.gap.after].map(size);
     match results.verdict {
         Verdict::NoGap => format!(
-            "The calibrated model agrees with the recordings within their noise ({before} times): nothing is missing."
+            "The calibrated model fits the recordings within their noise ({before} times): no effect is missing."
         ),
         Verdict::Explained => format!(
-            "The calibrated model missed the recordings by {before} times their noise. What was missing is {named}; with {it} \
-             {after} times the noise are left. {sentences}"
+            "The misfit of the calibrated model is {before} times the noise. The missing part is {named}: with {it} the misfit is \
+             {after} times the noise. {sentences}"
         ),
         Verdict::PartlyExplained => format!(
-            "The calibrated model missed the recordings by {before} times their noise. {sentences} With {named} \
-             {after} times the noise are left; something smaller is still missing."
+            "The misfit of the calibrated model is {before} times the noise. {sentences} With {named} the misfit is {after} times \
+             the noise: a smaller effect is still missing."
         ),
         Verdict::Unexplained => format!(
-            "The calibrated model misses the recordings by {before} times their noise, and nothing in the catalogue of effects \
-             explains it."
+            "The misfit of the calibrated model is {before} times the noise. No effect of the catalogue explains it."
         ),
     }
 }
 
-/// By how much the pressures are off, in a sentence.
+/// The error of the simulated pressures, in a sentence.
 fn pressure(results: &Results) -> String {
     let rms = results.gap.pressure_rms_pa.both();
     let Some([before, after]) = rms.filter(|_| !results.effects.is_empty()) else {
@@ -103,8 +102,7 @@ fn pressure(results: &Results) -> String {
     };
     let [before, after] = [before, after].map(|pa| text::quantity(pa / 1e3, "kPa"));
     format!(
-        " The simulated pressure was {before} from the recorded one, root mean square over the revolution, and is {after} from it \
-         now."
+        " The error of the simulated pressure (root mean square over the revolution) falls from {before} to {after}."
     )
 }
 
@@ -159,7 +157,7 @@ impl View<'_> {
                 let [low, high] = ends.map(|end| text::number(factor * end, digits));
                 format!("{low} to {high}")
             }
-            None => "not told".to_owned(),
+            None => "not identifiable".to_owned(),
         }
     }
 
@@ -202,7 +200,7 @@ impl View<'_> {
         match waveforms::left_out(&self.page.runs) {
             0 => String::new(),
             n => format!(
-                "{} without a picture here; waveforms.parquet has them all.",
+                "{} without a figure here; waveforms.parquet has all runs.",
                 text::counted(n, "run")
             ),
         }
@@ -225,8 +223,8 @@ mod tests {
         assert_eq!(View::interval("m", &narrow), "0.16918 to 0.16922");
         let wide = parameter(0.18, Some([0.123_456, 0.234_567]));
         assert_eq!(View::interval("", &wide), "0.1235 to 0.2346");
-        let untold = parameter(5e-6, None);
-        assert_eq!(View::value("m^2", &untold), "5\u{a0}mm²");
-        assert_eq!(View::interval("m^2", &untold), "not told");
+        let unidentifiable = parameter(5e-6, None);
+        assert_eq!(View::value("m^2", &unidentifiable), "5\u{a0}mm²");
+        assert_eq!(View::interval("m^2", &unidentifiable), "not identifiable");
     }
 }

@@ -16,7 +16,7 @@ fn every_section_is_there_and_every_figure_is_well_formed() {
     assert!(page.html.len() < 1_500_000, "{} bytes", page.html.len());
     for id in [
         "parameters",
-        "untold",
+        "unidentifiable",
         "correlations",
         "clearances",
         "sensors",
@@ -38,7 +38,7 @@ fn every_section_is_there_and_every_figure_is_well_formed() {
 fn the_numbers_are_those_of_the_calibration() {
     let html = calibration::page().render().unwrap().html;
     for said in [
-        "what is left is 1.04 times the noise (before: 14)",
+        "the misfit is 1.04 times the noise (before: 14)",
         "Big end contact stiffness: 21\u{a0}% below its nominal value, known to ±3\u{a0}%.",
         "Big end friction coefficient keeps its nominal value 0.05:",
         "big end contact stiffness and small end contact stiffness trade off (−0.94)",
@@ -49,14 +49,14 @@ fn the_numbers_are_those_of_the_calibration() {
         "4.78\u{a0}m/s², 2\u{a0}% of the signal",
         "range not identifiable, assumed ±",
         "<td class=\"n\">465\u{a0}m/s²</td><td class=\"n\">615\u{a0}m/s²</td>",
-        "62\u{a0}% of the squared difference lies in the compression (250° to 290°), where it is 340\u{a0}kPa.",
-        "a clearance of 10.0\u{a0}% of the stroke goes with exponents of 1.20 and 1.00",
+        "62\u{a0}% of the squared difference is in the compression (250° to 290°), where the difference is 340\u{a0}kPa.",
+        "A clearance of 10.0\u{a0}% of the stroke goes with exponents of 1.20 and 1.00",
         "<td>suction closes</td><td class=\"n\">250.0°</td><td class=\"n\">248.0° to 253.0°</td><td class=\"n\">180.0°</td><td class=\"n\">−70.0°</td>",
     ] {
         assert!(html.contains(said), "{said}");
     }
-    let untold = html.split("class=\"untold\"").nth(1).unwrap();
-    assert!(untold[..300].contains("not identifiable"));
+    let row = html.split("class=\"unidentifiable\"").nth(1).unwrap();
+    assert!(row[..300].contains("not identifiable"));
 }
 
 /// Whatever the names and the numbers, the page is a page.
@@ -66,7 +66,7 @@ fn empty_hostile_and_infinite_content_is_borne() {
     assert!(
         empty
             .html
-            .contains("The recordings tell none of the parameters.")
+            .contains("No parameter is identifiable from the recordings.")
     );
     let estimate = Estimate {
         value: f64::NAN,

@@ -76,8 +76,8 @@ fn the_numbers_of_the_table_and_of_the_scatter_are_those_of_the_cases() {
         "1.500 ± 0.030",
         "11\u{a0}[9.5,\u{a0}13]; no scaling region",
         "chaotic; undecided",
-        "Intervals that hold the equations&#39; exponent: 1 of 1 (100\u{a0}%)",
-        "The signal gave no exponent for 1 of 2\u{a0}windows (no scaling region: 1)",
+        "Intervals that hold the exponent from the equations: 1 of 1 (100\u{a0}%)",
+        "The signal gives no exponent for 1 of 2\u{a0}windows (no scaling region: 1)",
         "Chaotic by the equations are 1 of 1 with clearance in 1\u{a0}joint.",
     ] {
         assert!(html.contains(said), "{said}");

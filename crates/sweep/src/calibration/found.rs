@@ -81,7 +81,7 @@ impl Calibration {
                 continue;
             }
             for place in paths::matching(&machine, name)? {
-                let estimate = Estimate::of(&machine, &place, found);
+                let estimate = Estimate::from_results(&machine, &place, found);
                 let incomplete = || {
                     let path = folder.join(RESULTS);
                     Error::DamagedCalibration(format!("{}: {name} is not complete", path.display()))
@@ -96,7 +96,7 @@ impl Calibration {
         };
         Ok(Self {
             correlations: names.iter().map(row).collect(),
-            relations: Relations::of(&results, &machine)?,
+            relations: Relations::not_excluded(&results, &machine)?,
             is_adequate: results.model_is_adequate,
             machine,
             estimates,
@@ -108,7 +108,7 @@ impl Relations {
     /// The relations to the clearance that the recordings do not exclude: those that the comparison
     /// leaves, weighted by Schwarz's criterion; where every run has the same clearances, all that have a
     /// name, each as likely. Exponents that were fitted are estimates like others.
-    fn of(results: &Results, machine: &Value) -> Result<Self, Error> {
+    fn not_excluded(results: &Results, machine: &Value) -> Result<Self, Error> {
         let mut joints = Vec::new();
         for (joint, stated) in results.relation.iter() {
             let own = paths::get(machine, &format!("{joint}.contact.relation"))?;
@@ -126,9 +126,9 @@ impl Relations {
 }
 
 impl Estimate {
-    /// What was `found` of the value at `place` of the calibrated machine; none where the machine has no
+    /// The estimate `found` of the value at `place` of the calibrated machine; none if the machine has no
     /// number there.
-    fn of(machine: &Value, place: &str, found: &results::Estimate) -> Option<Self> {
+    fn from_results(machine: &Value, place: &str, found: &results::Estimate) -> Option<Self> {
         let value = paths::get(machine, place).ok()??.clone();
         let dimension = Amount::of(&value)?.dimension;
         let width = match (found.known(), found.logarithmic) {

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use recordings::{CaseWarning, FailedCase, FileEntry, Manifest};
 
 use super::commit::{Commit, DiagramCommit};
-use super::diagrams;
-use super::output::{MANIFEST, Output};
+use super::layout::{DIAGRAMS, MANIFEST};
+use super::output::Output;
 use crate::{Error, Plan};
 
 /// What a manifest says, by what it says it of.
@@ -18,8 +18,8 @@ struct Published {
 }
 
 impl Output {
-    /// Writes the records of a finished dataset of `plan`. Whether its files are as they were written
-    /// is for whoever goes on to see.
+    /// Writes the records of a finished dataset of `plan`. Its files are not
+    /// checked here.
     ///
     /// # Errors
     /// A manifest that cannot be read, or a record that cannot be written.
@@ -29,7 +29,7 @@ impl Output {
             published.commit(plan, shard)?.create(self, plan)?;
         }
         for diagram in &plan.diagrams {
-            let path = format!("{}/{}.parquet", diagrams::FOLDER, diagram.name);
+            let path = format!("{}/{}.parquet", DIAGRAMS, diagram.name);
             let Some(file) = published.files.get(&path).cloned() else {
                 continue;
             };

@@ -19,16 +19,15 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
-use super::commit::text;
+use super::layout::ATTEMPTS;
 use super::output::Output;
-use super::parts::READERS;
-use super::pool;
-use super::store::{Holder, process};
-use super::trial::TRIED;
+use super::record::text;
+use super::store::{Holder, READERS, process};
 use crate::Error;
-use crate::in_order::in_order;
+use crate::in_order::{in_order, pool};
 
-pub(super) const FOLDER: &str = "_sweep/attempts";
+/// The end of the names of trials that are over.
+pub(super) const TRIED: &str = ".tried";
 /// So many processes may end without a result before the shard's cases are tried.
 const PATIENCE: u64 = 3;
 /// How often a marker without a lock is put again.
@@ -102,7 +101,7 @@ impl<'a> Attempts<'a> {
             number,
             unix_time_s: since,
         })?;
-        let path = format!("{FOLDER}/{shard}.{}-{number}", process());
+        let path = format!("{ATTEMPTS}/{shard}.{}-{number}", process());
         let lock = self.output.store.hold(&path, &record)?;
         let marker = Marker { path, record, lock };
         self.under_way().insert(shard, marker);
@@ -161,9 +160,9 @@ pub(super) fn counts(
     output: &Output,
     of: impl Fn(u64) -> bool,
 ) -> Result<BTreeMap<u64, Attended>, Error> {
-    let names = output.store.names(FOLDER)?.into_iter();
+    let names = output.store.names(ATTEMPTS)?.into_iter();
     let names = names.filter(|name| !name.ends_with(TRIED));
-    let names = names.filter_map(|name| Some((shard_of(&name)?, format!("{FOLDER}/{name}"))));
+    let names = names.filter_map(|name| Some((shard_of(&name)?, format!("{ATTEMPTS}/{name}"))));
     let clock = OnceLock::new();
     let mut counts: BTreeMap<u64, Attended> = BTreeMap::new();
     in_order(
@@ -211,9 +210,9 @@ fn is_at_work(
 
 /// Removes every marker and trial of the shards that `of` names.
 pub(super) fn forget(output: &Output, of: impl Fn(u64) -> bool) -> Result<(), Error> {
-    for name in output.store.names(FOLDER)? {
+    for name in output.store.names(ATTEMPTS)? {
         if shard_of(&name).is_some_and(&of) {
-            output.store.remove(&format!("{FOLDER}/{name}"))?;
+            output.store.remove(&format!("{ATTEMPTS}/{name}"))?;
         }
     }
     Ok(())

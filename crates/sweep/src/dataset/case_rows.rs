@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::fmt::{self, Display};
 use std::ops::Range;
 use std::path::Path;
 
@@ -9,9 +10,8 @@ use recordings::formats::mcap;
 use recordings::{FailedCase, Value};
 use signal::channel::Channel;
 
+use super::recording::{Failure, Recording, Runner};
 use super::tables::{features_row, labels, signals_row};
-use super::trial::Death;
-use super::{Failure, Recording, Runner};
 use crate::Plan;
 use crate::plan::Case;
 use crate::split::Split;
@@ -36,6 +36,18 @@ pub(super) enum Signals {
     /// The bytes of an MCAP file.
     Mcap(Vec<u8>),
 }
+
+/// Why a case failed whose process died.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Death(pub String);
+
+impl Display for Death {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Death {}
 
 /// The cases whose processes died when they were tried.
 pub(super) type Dead = BTreeMap<u64, Death>;

@@ -7,9 +7,11 @@ use std::time::Duration;
 use recordings::{FileEntry, Manifest};
 use serde::Deserialize;
 
-use super::delta;
+use super::delta::VERSION;
+use super::layout::{CALIBRATION, DELTA_LOG, FILES, FOLDERS, PLAN, WORK, strays};
 use super::lock::alone;
-use super::output::{CALIBRATION, FILES, FOLDERS, Output, PLAN, WORK, make, remove, strays};
+use super::output::Output;
+use super::store::{make, remove};
 use crate::Error;
 use crate::split::Split;
 
@@ -45,8 +47,8 @@ impl Output {
                     remove(&self.path(&path), |path| fs::remove_file(path))?;
                 }
             }
-            let log = self.path(&format!("{folder}/{}", delta::FOLDER));
-            remove(&log.join(delta::VERSION), |path| fs::remove_file(path))?;
+            let log = self.path(&format!("{folder}/{}", DELTA_LOG));
+            remove(&log.join(VERSION), |path| fs::remove_file(path))?;
             // Folders that still have something in them are not removed.
             let _ = fs::remove_dir(log);
             let _ = fs::remove_dir(self.path(folder));

@@ -11,10 +11,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use recordings::{CaseWarning, FailedCase, FileEntry};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
+use super::check::{Check, damage_of};
 use super::output::Output;
-use super::store::Store;
+use super::record::{checksum, text};
 use crate::{Error, Plan};
 
 /// A finished shard.
@@ -37,23 +37,11 @@ pub struct Commit {
     pub warnings: Vec<CaseWarning>,
 }
 
-/// How much of the files of a record is compared with it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Check {
-    /// Their lengths.
-    Lengths,
-    /// Their checksums: everything is read.
-    Sums,
-    /// Checksums in a folder. A bucket keeps checksums of its own, and reading it back takes as long
-    /// as writing it did: their lengths there.
-    Resume,
-}
-
 /// What stands for a shard or a diagram.
 pub(super) enum Found<T> {
     /// No record.
     Nothing,
-    /// A record that says nothing, or files that are not those of the record. It was told.
+    /// A record that cannot be parsed, or files that differ from it. A warning was kept.
     Damaged,
     /// The record, and its files.
     Made(T),
@@ -307,94 +295,9 @@ fn find<T>(
         Err(reason) => return damaged(name, format!("is damaged ({reason})")),
     };
     for file in files(&commit) {
-        if let Some(fault) = fault(&output.store, file, check)? {
-            return damaged(&file.path, fault.to_string());
+        if let Some(damage) = damage_of(&output.store, file, check)? {
+            return damaged(&file.path, damage.to_string());
         }
     }
     Ok(Found::Made(commit))
-}
-
-/// What is wrong with a file, if anything is.
-pub(super) fn fault(
-    store: &Store,
-    file: &FileEntry,
-    check: Check,
-) -> Result<Option<Damage>, Error> {
-    let expected = file.bytes;
-    match store.length(&file.path)? {
-        None => return Ok(Some(Damage::Missing)),
-        Some(found) if found != expected => return Ok(Some(Damage::Length { found, expected })),
-        Some(_) => {}
-    }
-    if check == Check::Lengths || check == Check::Resume && store.folder().is_none() {
-        return Ok(None);
-    }
-    let found = store.record(&file.path)?;
-    let is_same = found.is_some_and(|found| found.sha256 == file.sha256);
-    Ok((!is_same).then_some(Damage::Content))
-}
-
-/// What is wrong with a file of a dataset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Damage {
-    /// It is not there.
-    #[error("is missing")]
-    Missing,
-    /// It is shorter or longer.
-    #[error("has {found} bytes instead of {expected}")]
-    Length {
-        /// Its length in bytes.
-        found: u64,
-        /// The length that was written.
-        expected: u64,
-    },
-    /// Its content is not what was written.
-    #[error("has another checksum than when it was written")]
-    Content,
-    /// A table with other rows than the manifest says.
-    #[error("has {found} rows instead of {expected}")]
-    Rows {
-        /// Its rows.
-        found: u64,
-        /// The rows that the manifest says.
-        expected: u64,
-    },
-    /// A table whose footer cannot be read.
-    #[error("is no Parquet file")]
-    Table,
-    /// No record has it.
-    #[error("is in no record of this dataset, and readers of its folder read it too")]
-    Extra,
-    /// `SHA256SUMS` is not that of the manifest: one of them was changed.
-    #[error("does not agree with manifest.json: one of the two was changed")]
-    Sums,
-    /// The counts of the manifest contradict its files or failures.
-    #[error("its counts are not those of its files and failures")]
-    Counts,
-    /// The manifest has a file twice.
-    #[error("has a file twice")]
-    Twice,
-    /// The manifest names a file outside of the dataset.
-    #[error("lies outside of the dataset and is not read")]
-    Outside,
-}
-
-/// A record as it is written.
-pub(super) fn text(record: &impl Serialize) -> Result<String, Error> {
-    Ok(serde_json::to_string_pretty(record).map_err(unwritable)? + "\n")
-}
-
-/// A record on one line, without the line's end.
-pub(super) fn line(record: &impl Serialize) -> Result<String, Error> {
-    Ok(serde_json::to_string(record).map_err(unwritable)?)
-}
-
-fn unwritable(error: serde_json::Error) -> recordings::Error {
-    recordings::Error::Write(std::io::Error::other(error.to_string()))
-}
-
-/// SHA-256 of a text, in hexadecimal.
-pub(super) fn checksum(text: &str) -> String {
-    let digest = Sha256::digest(text.as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -9,17 +9,16 @@ use recordings::{Column, FileEntry, Kind, Manifest, Schema};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use super::commit::line;
-use super::diagrams::{self, DiagramTable};
+use super::diagrams::DiagramTable;
+use super::layout::{DELTA_LOG, DIAGRAMS};
 use super::output::Output;
+use super::record::line;
 use super::store::failed;
 use super::tables::Tables;
 use super::verify::faults_of;
 use crate::{Error, Plan};
 
-/// The log of a Delta table, beside its files.
-pub(super) const FOLDER: &str = "_delta_log";
-/// Its first version, which is the only one here.
+/// The first version of the log, which is the only one here.
 pub(super) const VERSION: &str = "00000000000000000000.json";
 
 /// A Delta table of a dataset.
@@ -37,8 +36,8 @@ pub struct DeltaTable {
 /// were written. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where a file is damaged, the dataset has no manifest yet, the log of another table stands there, or it cannot be
-/// written.
+/// [`Error::NotFinalized`] without a manifest, [`Error::Faults`] for damaged files, [`Error::OtherDeltaTable`]
+/// if there is the log of another table, and errors of files that cannot be written.
 pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Error> {
     let manifest = manifest(output)?;
     let listed = manifest
@@ -55,7 +54,7 @@ pub fn export_delta(output: &Output, plan: &Plan) -> Result<Vec<DeltaTable>, Err
     let tables = [
         ("signals", tables.signals),
         ("features", tables.features),
-        (diagrams::FOLDER, diagrams.schema),
+        (DIAGRAMS, diagrams.schema),
     ];
     let mut exported = Vec::new();
     for (folder, schema) in tables {
@@ -98,7 +97,7 @@ fn rows(files: &[(&str, &FileEntry)]) -> u64 {
 
 /// Writes a log, or compares it with the one that is there.
 fn write(output: &Output, folder: &str, log: &str) -> Result<(), Error> {
-    let path = format!("{folder}/{FOLDER}/{VERSION}");
+    let path = format!("{folder}/{DELTA_LOG}/{VERSION}");
     if output.store.folder().is_some()
         && let Some(folder) = output.path(&path).parent()
     {

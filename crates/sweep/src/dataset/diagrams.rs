@@ -11,24 +11,26 @@ use recordings::{Column, FileEntry, Kind, Schema, Value};
 use simulate::bifurcation::{Chunk, Machines, Walk};
 use simulate::poincare::{Joint, Revolution, ThrowPoint};
 
-use super::commit::{Check, DiagramCommit, Found};
+use super::check::Check;
+use super::commit::{DiagramCommit, Found};
+use super::layout::DIAGRAMS;
+use super::options::Options;
 use super::output::Output;
+use super::progress::Progress;
+use super::recording::Failure;
 use super::tables::prefixed;
-use super::{Failure, Options, Progress, pool};
-use crate::in_order::in_order;
+use crate::in_order::{in_order, pool};
 use crate::plan::Diagram;
 use crate::{Error, Plan};
 
-/// The folder, and the name of the table that its files make up.
-pub(super) const FOLDER: &str = "bifurcations";
 /// Rows of one row group.
 const ROWS_PER_GROUP: usize = 256;
 
 /// Computes the diagrams of `plan` that are not there yet.
 ///
 /// # Errors
-/// Where a file cannot be written, or a diagram comes out differently than it did before. A value
-/// at which the machine fails is no error: its row has the reason.
+/// [`Error::DiagramsCancelled`] if it is stopped, [`Error::NotDeterministic`] if a diagram has other bytes
+/// than before, and errors of files. A value at which the machine fails is no error: its row has the reason.
 pub fn run_diagrams(
     plan: &Plan,
     output: &Output,
@@ -100,7 +102,7 @@ pub(super) fn compute(
     Ok(())
 }
 
-/// Runs a few revolutions of `diagram`, and tells how many: for an estimate of the time.
+/// Runs a few revolutions of `diagram` to estimate the time, and returns their number.
 ///
 /// # Errors
 /// Where the machine in its middle fails.
@@ -217,7 +219,7 @@ impl DiagramTable {
     ) -> Result<(), Error> {
         let name = &diagram.name;
         let before = DiagramCommit::find(output, plan, name, Check::Sums)?;
-        let path = format!("{FOLDER}/{name}.parquet");
+        let path = format!("{DIAGRAMS}/{name}.parquet");
         let file = output.store.create(&path)?;
         let mut table = TableWriter::new(file, &self.schema, ROWS_PER_GROUP)?;
         for row in rows {

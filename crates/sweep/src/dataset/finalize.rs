@@ -6,12 +6,15 @@ use input::paths;
 use recordings::{CaseWarning, Counts, DatasetCard, FailedCase, FileEntry, Manifest, Subset};
 
 use super::attempts;
-use super::commit::{Check, Damage, checksum};
-use super::diagrams::{self, DiagramTable};
-use super::output::{MANIFEST, Output, SUMS, strays};
+use super::check::Check;
+use super::diagrams::DiagramTable;
+use super::fault::{Damage, Fault};
+use super::layout::{DIAGRAMS, MANIFEST, SUMS, strays};
+use super::output::Output;
 use super::parts::{Made, scan};
+use super::record::checksum;
 use super::tables::Tables;
-use super::verify::{Fault, faults_of, sums};
+use super::verify::{faults_of, sums};
 use crate::split::Split;
 use crate::sweep_file::Format;
 use crate::{Error, Plan};
@@ -26,7 +29,8 @@ pub(super) struct Contents {
 /// Completes the dataset of `plan`. Doing it again changes nothing.
 ///
 /// # Errors
-/// Where a shard or a bifurcation diagram is missing, or a file cannot be written.
+/// [`Error::Incomplete`] if a shard or a bifurcation diagram is missing, and errors of files that cannot be
+/// read or written.
 pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let contents = Contents::new(output, plan)?;
     contents.write(output, &[])?;
@@ -38,7 +42,7 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
 /// stays as it is.
 ///
 /// # Errors
-/// As [`finalize`], and all files that are not as they were written.
+/// As [`finalize`], and [`Error::Faults`] with all files that differ from what was written.
 pub fn finalize_verified(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     let contents = Contents::new(output, plan)?;
     let mut standing = Vec::new();
@@ -276,7 +280,7 @@ fn card(
         },
         unsplit: match plan.diagrams.as_slice() {
             [] => Vec::new(),
-            _ => vec![subset(diagrams::FOLDER, bifurcations)],
+            _ => vec![subset(DIAGRAMS, bifurcations)],
         },
         mcap_example: example.next().cloned(),
         command: "gen-dataset sweep.yaml --out another-folder".into(),

@@ -7,8 +7,9 @@ use std::path::Path;
 use recordings::{FileEntry, FileRecord};
 use serde_json::Value;
 
-use super::commit::text;
-use super::output::{CALIBRATION, Output};
+use super::layout::CALIBRATION;
+use super::output::Output;
+use super::record::text;
 use super::store::failed;
 use crate::{Error, Plan};
 
@@ -74,7 +75,7 @@ pub(super) fn read(from: &Path) -> Result<Vec<Kept>, Error> {
 /// Checks that what `plan` names as the calibration that its dataset begins with is one.
 ///
 /// # Errors
-/// A folder that is something else.
+/// [`Error::NotACalibration`] for a folder that is something else.
 pub fn check_calibration(plan: &Plan) -> Result<(), Error> {
     plan.calibrated
         .as_deref()

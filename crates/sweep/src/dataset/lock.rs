@@ -10,7 +10,6 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::output::Output;
 use crate::Error;
 
 /// So long is waited for a process that tidies up.
@@ -118,24 +117,12 @@ pub(super) fn alone(
     done
 }
 
-impl Output {
-    /// Whether nobody else writes to this dataset.
-    pub(super) fn is_alone(&self) -> bool {
-        let lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
-        lock.as_ref().is_some_and(|lock| lock.alone)
-    }
-
-    /// Waits until nobody commits a shard, or until nobody does so `alone`; none where one process
-    /// makes the whole dataset, or where there are no locks.
-    pub(super) fn committing(&self, alone: bool) -> Result<Option<File>, Error> {
-        let Some(root) = self.store.folder().filter(|_| !self.is_alone()) else {
-            return Ok(None);
-        };
-        let (file, _) = open(root, "_sweep/commit.lock")?;
-        let locked = match alone {
-            true => file.lock(),
-            false => file.lock_shared(),
-        };
-        Ok(locked.is_ok().then_some(file))
-    }
+/// Locks `_sweep/commit.lock`: together with others, or `alone`; nothing where there are no locks.
+pub(super) fn lock_commits(root: &Path, alone: bool) -> Result<Option<File>, Error> {
+    let (file, _) = open(root, "_sweep/commit.lock")?;
+    let locked = match alone {
+        true => file.lock(),
+        false => file.lock_shared(),
+    };
+    Ok(locked.is_ok().then_some(file))
 }

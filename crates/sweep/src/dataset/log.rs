@@ -1,7 +1,7 @@
 //! What a process did at a dataset, and when: `_sweep/logs/NAME.PROCESS.log`, a line for each event.
 //!
 //! In a folder a line is there at once; in a bucket, where nothing is appended to, the log is put again
-//! every minute and at the end. The work does not depend on it: a log that cannot be written is none.
+//! every minute and at the end. The work does not depend on it: a log that cannot be written is left out.
 
 use std::fmt::{self, Display};
 use std::fs::{self, File, OpenOptions};
@@ -9,12 +9,9 @@ use std::io::Write;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use super::output::Output;
-use super::store::process;
-use crate::Error;
+use super::layout::LOGS;
+use super::store::{Store, process};
 
-/// The folder of all logs.
-pub(super) const FOLDER: &str = "_sweep/logs";
 /// How often the log in a bucket is put again.
 const PUT_EVERY: Duration = Duration::from_secs(60);
 
@@ -37,43 +34,28 @@ impl Log {
     fn open(&self) -> MutexGuard<'_, Open> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
 
-impl Output {
-    /// Does `work` with a log called `name`, in which its error is the last line.
-    pub(super) fn logged<T>(
-        &self,
-        name: &str,
-        work: impl FnOnce() -> Result<T, Error>,
-    ) -> Result<T, Error> {
-        name.clone_into(&mut self.log.open().name);
-        let result = work();
-        if let Err(error) = &result {
-            self.say(format_args!("ended: {error}"));
-        }
-        let mut log = self.log.open();
-        if log.put.is_some() {
-            self.put(&mut log);
-        }
-        result
+    /// Names what the process does: `gen-dataset`, `shard-17`.
+    pub(super) fn begin(&self, name: &str) {
+        name.clone_into(&mut self.open().name);
     }
 
-    /// Appends a line to the log.
-    pub(super) fn say(&self, what: impl Display) {
-        let mut log = self.log.open();
+    /// Appends a line to the log, which is kept in `store`.
+    pub(super) fn say(&self, store: &Store, what: impl Display) {
+        let mut log = self.open();
         let line = format!("{} {what}\n", utc(SystemTime::now()));
-        let Some(folder) = self.store.folder() else {
+        let Some(folder) = store.folder() else {
             log.text += &line;
             match log.put {
                 None => log.put = Some(Instant::now()),
-                Some(put) if put.elapsed() > PUT_EVERY => self.put(&mut log),
+                Some(put) if put.elapsed() > PUT_EVERY => log.put(store),
                 Some(_) => {}
             }
             return;
         };
         if log.file.is_none() {
             let path = folder.join(path(&log.name));
-            let _ = fs::create_dir_all(folder.join(FOLDER));
+            let _ = fs::create_dir_all(folder.join(LOGS));
             log.file = OpenOptions::new().create(true).append(true).open(path).ok();
         }
         if let Some(file) = &mut log.file {
@@ -81,14 +63,24 @@ impl Output {
         }
     }
 
-    fn put(&self, log: &mut Open) {
-        let _ = self.store.write(&path(&log.name), log.text.as_bytes());
-        log.put = Some(Instant::now());
+    /// Puts the log of a bucket a last time.
+    pub(super) fn end(&self, store: &Store) {
+        let mut log = self.open();
+        if log.put.is_some() {
+            log.put(store);
+        }
+    }
+}
+
+impl Open {
+    fn put(&mut self, store: &Store) {
+        let _ = store.write(&path(&self.name), self.text.as_bytes());
+        self.put = Some(Instant::now());
     }
 }
 
 fn path(name: &str) -> String {
-    format!("{FOLDER}/{name}.{}.log", process())
+    format!("{LOGS}/{name}.{}.log", process())
 }
 
 /// How fast cases are made.

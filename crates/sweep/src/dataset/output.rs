@@ -1,52 +1,18 @@
-//! The folder that a dataset is written to.
-//!
-//! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
-//! `sweep.yaml`, `SHA256SUMS`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
-//! shard K is finished, `attempts/` who is at work on which shard, `logs/` what each process did and
-//! when, `tmp/` holds files that are being written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
-//! or by any number that make a shard each. The operating system unlocks it when a process ends,
-//! however it ends.
-//!
-//! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
-//! sweep names that folder, and whoever runs it gets a copy.
+//! The place of a dataset that has been begun.
 
-use std::fs;
-use std::io;
+use std::fmt::Display;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use input::yaml::Document;
-use recordings::Manifest;
 use serde::{Deserialize, Serialize};
 
-use super::commit::text;
-use super::kept;
-use super::lock::{Lock, lock, lock_shared};
-use super::log::{self, Log};
+use super::layout::{PLAN, SWEEP};
+use super::lock::{Lock, lock_commits, lock_shared};
+use super::log::Log;
 use super::store::Store;
-use super::{attempts, delta, diagrams};
 use crate::{Error, Plan};
-
-/// What to do with a folder that has something in it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Existing {
-    /// Leave it alone and stop.
-    #[default]
-    Refuse,
-    /// Go on with it, if it was begun with the same plan.
-    Resume,
-    /// Replace it, if it is a dataset of this program.
-    Overwrite,
-}
-
-/// An output folder that this process has locked, before it is known which plan it is for.
-#[derive(Debug)]
-pub struct Claim {
-    output: Output,
-    existing: Existing,
-    /// Whether the dataset begins with the calibration in the folder.
-    calibrated: bool,
-}
 
 /// The place of a dataset that has been begun, locked unless it is only looked at.
 #[derive(Debug)]
@@ -55,192 +21,28 @@ pub struct Output {
     pub(super) root: PathBuf,
     pub(super) log: Log,
     pub(super) lock: Mutex<Option<Lock>>,
-    warnings: Mutex<Vec<String>>,
+    pub(super) warnings: Mutex<Vec<String>>,
 }
 
 /// Content of `_sweep/plan.json`.
 #[derive(Serialize, Deserialize)]
-struct PlanRecord {
-    plan_id: String,
-    name: String,
-    cases: u64,
-    shards: u64,
+pub(super) struct PlanRecord {
+    pub(super) plan_id: String,
+    pub(super) name: String,
+    pub(super) cases: u64,
+    pub(super) shards: u64,
     #[serde(default)]
-    diagrams: u64,
-}
-
-pub(super) const PLAN: &str = "_sweep/plan.json";
-const SWEEP: &str = "sweep.yaml";
-pub(super) const SUMS: &str = "SHA256SUMS";
-pub(super) const MANIFEST: &str = "manifest.json";
-/// What a dataset has in its folder, apart from `_sweep`.
-pub(super) const FOLDERS: [&str; 4] = ["signals", "features", "mcap", diagrams::FOLDER];
-pub(super) const FILES: [&str; 4] = ["README.md", SWEEP, SUMS, MANIFEST];
-pub(super) const WORK: [&str; 4] = [
-    "_sweep/commits",
-    attempts::FOLDER,
-    log::FOLDER,
-    "_sweep/tmp",
-];
-/// The folder of the calibration that a dataset begins with.
-pub const CALIBRATION: &str = "calibration";
-impl Claim {
-    /// Locks the folder `root`.
-    ///
-    /// # Errors
-    /// Where the folder has something in it that `existing` does not allow for, another process
-    /// writes to it, or it cannot be written to. It is then as it was.
-    pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
-        let store = Store::at(root)?;
-        if store.folder().is_none() {
-            return Self::in_bucket(store, root, existing);
-        }
-        let (empty, ours) = look(root)?;
-        match existing {
-            _ if empty => {}
-            _ if !ours => return Err(Error::NotOurs(root.to_owned())),
-            Existing::Refuse => return Err(Error::Exists(root.to_owned())),
-            Existing::Resume | Existing::Overwrite => {}
-        }
-        for folder in WORK {
-            make(&root.join(folder))?;
-        }
-        let output = Output {
-            store,
-            log: Log::default(),
-            lock: Mutex::new(Some(lock(root)?)),
-            root: root.to_owned(),
-            warnings: Mutex::default(),
-        };
-        // What an interrupted process left: nobody else writes here now.
-        remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
-        make(&output.path("_sweep/tmp"))?;
-        Ok(Self {
-            output,
-            existing,
-            calibrated: false,
-        })
-    }
-
-    /// The same in object storage. Nothing is locked there: whose plan is written first has it.
-    fn in_bucket(store: Store, root: &Path, existing: Existing) -> Result<Self, Error> {
-        let begun = store.length(PLAN)?.is_some();
-        let empty = begun || store.names("")?.is_empty();
-        let root = root.to_owned();
-        match existing {
-            _ if !empty => return Err(Error::NotOurs(root)),
-            Existing::Overwrite => return Err(Error::NoOverwrite(root)),
-            Existing::Refuse if begun => return Err(Error::Exists(root)),
-            Existing::Refuse | Existing::Resume => {}
-        }
-        Ok(Self {
-            output: Output {
-                store,
-                root,
-                log: Log::default(),
-                lock: Mutex::default(),
-                warnings: Mutex::default(),
-            },
-            existing,
-            calibrated: false,
-        })
-    }
-
-    /// The folder of the calibration that the dataset begins with; `is_kept` tells that it is there
-    /// already. Where it is not, a dataset that is to be replaced goes first.
-    ///
-    /// # Errors
-    /// Where a dataset was begun with another calibration, or the folder cannot be written to.
-    pub fn calibration(&mut self, is_kept: bool) -> Result<PathBuf, Error> {
-        if self.output.store.folder().is_none() {
-            return Err(Error::NoCalibration(self.output.root.clone()));
-        }
-        self.calibrated = true;
-        if !is_kept {
-            match self.existing {
-                Existing::Overwrite => self.output.clear(self.calibrated)?,
-                _ if self.begun() => {
-                    return Err(Error::OtherCalibration(self.output.root.clone()));
-                }
-                _ => {}
-            }
-        }
-        Ok(self.output.path(CALIBRATION))
-    }
-
-    /// Whether a dataset has been begun here, or a finished one was copied here.
-    fn begun(&self) -> bool {
-        self.output.path(PLAN).exists() || self.output.is_published()
-    }
-
-    /// Makes the folder ready for the dataset of `plan`.
-    ///
-    /// # Errors
-    /// Where it holds the dataset of another plan, or cannot be written to.
-    pub fn open(self, plan: &Plan) -> Result<Output, Error> {
-        let own = self.output.path(CALIBRATION);
-        let named = plan.calibrated.as_ref();
-        let is_own = named.is_some_and(|from| {
-            let from = fs::canonicalize(from).ok();
-            from.is_some() && from == fs::canonicalize(&own).ok()
-        });
-        let has_it = self.calibrated || is_own;
-        // Before anything is written or removed.
-        let copied = match named.filter(|_| !has_it) {
-            Some(from) => kept::read(from)?,
-            None => Vec::new(),
-        };
-        if self.output.store.folder().is_none() {
-            self.output.record(plan)?;
-            self.output.keep_calibration(copied)?;
-            return Ok(self.output);
-        }
-        let begun = self.begun();
-        let output = self.output;
-        if self.existing == Existing::Overwrite {
-            output.clear(has_it)?;
-        } else if !begun && !has_it {
-            output.clear_calibration()?;
-        }
-        let published = output.is_published();
-        if published {
-            output.check_published(plan)?;
-        }
-        output.record(plan)?;
-        if published {
-            output.adopt(plan)?;
-        }
-        output.keep_calibration(copied)?;
-        let folders: &[&str] = match plan.format {
-            crate::sweep_file::Format::Parquet => &["signals", "features"],
-            crate::sweep_file::Format::Mcap => &["mcap", "features"],
-        };
-        let diagrams = Some("bifurcations").filter(|_| !plan.diagrams.is_empty());
-        for folder in folders.iter().copied().chain(diagrams) {
-            make(&output.path(folder))?;
-        }
-        Ok(output)
-    }
+    pub(super) diagrams: u64,
 }
 
 impl Output {
-    /// Makes the folder ready for the dataset of `plan`, and locks it.
-    ///
-    /// # Errors
-    /// Where the folder has something in it that `existing` does not allow for, another process
-    /// writes to it, or it cannot be written to. It is then as it was.
-    pub fn open(root: &Path, plan: &Plan, existing: Existing) -> Result<Self, Error> {
-        Claim::new(root, existing)?.open(plan)
-    }
-
     /// The planned dataset at `root`, and its plan, for one of any number of processes that make it
     /// together.
     ///
     /// # Errors
-    /// Where nothing has been planned there, or by another version of the program, or a process
-    /// makes the whole dataset.
+    /// As [`Output::open_read_only`], and [`Error::InUse`] if a process makes the whole dataset.
     pub fn join(root: &Path) -> Result<(Self, Plan), Error> {
-        let (mut output, plan) = Self::look(root)?;
+        let (mut output, plan) = Self::open_read_only(root)?;
         if output.store.folder().is_some() {
             output.lock = Mutex::new(lock_shared(root)?);
         }
@@ -250,8 +52,10 @@ impl Output {
     /// As [`Output::join`], to read only.
     ///
     /// # Errors
-    /// Where nothing has been planned there, or by another version of the program.
-    pub fn look(root: &Path) -> Result<(Self, Plan), Error> {
+    /// [`Error::NotPlanned`] without a plan, [`Error::DamagedPlan`] if its record cannot be parsed,
+    /// [`Error::OtherPlan`] if it belongs to another sweep or version, [`Error::Input`] if `sweep.yaml` has a
+    /// mistake.
+    pub fn open_read_only(root: &Path) -> Result<(Self, Plan), Error> {
         let output = Self {
             store: Store::at(root)?,
             root: root.to_owned(),
@@ -285,55 +89,39 @@ impl Output {
         self.store.path(path)
     }
 
-    /// Writes which plan the folder is for, or checks it.
-    fn record(&self, plan: &Plan) -> Result<(), Error> {
-        let record = PlanRecord {
-            plan_id: plan.id.clone(),
-            name: plan.name.clone(),
-            cases: plan.cases(),
-            shards: plan.shards(),
-            diagrams: plan.diagrams.len() as u64,
-        };
-        let record = text(&record)?;
-        if let Some(before) = self.store.create_only(PLAN, &record)? {
-            match self.check(&before, plan) {
-                // The sweep itself tells which plan it was.
-                Err(Error::DamagedPlan { .. })
-                    if self.plan_of_sweep().is_ok_and(|own| own.id == plan.id) =>
-                {
-                    let path = self.path(PLAN);
-                    self.warn(format!(
-                        "`{}` is damaged: it is written again",
-                        path.display()
-                    ));
-                    self.store.write(PLAN, record.as_bytes())?;
-                }
-                checked => checked?,
-            }
+    /// Does `work` with a log called `name`, in which its error is the last line.
+    pub(super) fn logged<T>(
+        &self,
+        name: &str,
+        work: impl FnOnce() -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.log.begin(name);
+        let result = work();
+        if let Err(error) = &result {
+            self.say(format_args!("ended: {error}"));
         }
-        let sweep = input::yaml::to_string(plan.sweep())?;
-        self.store.write(SWEEP, sweep.as_bytes())?;
-        Ok(())
+        self.log.end(&self.store);
+        result
     }
 
-    /// Whether it is a finished dataset that came without `_sweep`.
-    fn is_published(&self) -> bool {
-        !self.path(PLAN).exists() && self.path(MANIFEST).exists()
+    /// Appends a line to the log.
+    pub(super) fn say(&self, what: impl Display) {
+        self.log.say(&self.store, what);
     }
 
-    /// Checks that a finished dataset that came without `_sweep` is that of `plan`; it stays as it was
-    /// where it is not.
-    fn check_published(&self, plan: &Plan) -> Result<(), Error> {
-        let found = self.plan_of_sweep().map(|own| own.id);
-        if found.as_ref().is_ok_and(|found| *found == plan.id) {
-            return Ok(());
+    /// Whether nobody else writes to this dataset.
+    pub(super) fn is_alone(&self) -> bool {
+        let lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
+        lock.as_ref().is_some_and(|lock| lock.alone)
+    }
+
+    /// Waits until nobody commits a shard, or until nobody does so `alone`; none where one process
+    /// makes the whole dataset, or where there are no locks.
+    pub(super) fn committing(&self, alone: bool) -> Result<Option<File>, Error> {
+        match self.store.folder().filter(|_| !self.is_alone()) {
+            Some(root) => lock_commits(root, alone),
+            None => Ok(None),
         }
-        remove(&self.path("_sweep"), |path| fs::remove_dir_all(path))?;
-        Err(Error::OtherPlan {
-            path: self.root.clone(),
-            found: found.unwrap_or_else(|_| "unknown".into()),
-            expected: plan.id.clone(),
-        })
     }
 
     /// The plan of the `sweep.yaml` that stands there.
@@ -345,7 +133,7 @@ impl Output {
     }
 
     /// Checks that `record` is that of `plan`.
-    fn check(&self, record: &[u8], plan: &Plan) -> Result<(), Error> {
+    pub(super) fn check(&self, record: &[u8], plan: &Plan) -> Result<(), Error> {
         let record: PlanRecord =
             serde_json::from_slice(record).map_err(|e| Error::DamagedPlan {
                 path: self.path(PLAN),
@@ -361,63 +149,4 @@ impl Output {
             expected: plan.id.clone(),
         })
     }
-}
-
-/// Whether a folder is empty or missing, and whether it is a dataset of ours.
-fn look(root: &Path) -> Result<(bool, bool), Error> {
-    let unwritable = |source| Error::Unwritable {
-        path: root.to_owned(),
-        source,
-    };
-    let empty = match fs::read_dir(root) {
-        Ok(mut entries) => entries.next().is_none(),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => true,
-        Err(error) => return Err(unwritable(error)),
-    };
-    let ours = root.join(PLAN).is_file() || Manifest::read(&root.join("manifest.json")).is_ok();
-    // A crash before the plan is written leaves only work files, and perhaps a calibration.
-    let begun = !empty && only_work_files(root).map_err(unwritable)?;
-    Ok((empty || begun, ours))
-}
-
-fn only_work_files(root: &Path) -> io::Result<bool> {
-    for entry in fs::read_dir(root)? {
-        let name = entry?.file_name();
-        if name != "_sweep" && name != CALIBRATION {
-            return Ok(false);
-        }
-    }
-    let work = root.join("_sweep");
-    Ok(work.exists() && !work.join("plan.json").exists())
-}
-
-pub(super) fn make(folder: &Path) -> Result<(), Error> {
-    fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
-        path: folder.to_owned(),
-        source,
-    })
-}
-
-pub(super) fn remove(path: &Path, how: impl Fn(&Path) -> io::Result<()>) -> Result<(), Error> {
-    match how(path) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(Error::Unwritable {
-            path: path.to_owned(),
-            source: error,
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// Files among the data that `known` does not know, by path: readers take them for data too.
-pub(super) fn strays(store: &Store, known: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
-    let mut strays = Vec::new();
-    for folder in FOLDERS {
-        let names = store.names(folder)?.into_iter();
-        let paths = names
-            .filter(|name| name != delta::FOLDER)
-            .map(|name| format!("{folder}/{name}"));
-        strays.extend(paths.filter(|path| !known(path)));
-    }
-    strays.sort();
-    Ok(strays)
 }

@@ -3,11 +3,16 @@
 
 use std::ops::Range;
 
-use super::commit::{Check, Commit, DiagramCommit};
+use super::check::Check;
+use super::commit::{Commit, DiagramCommit};
 use super::diagrams::compute;
+use super::options::Options;
 use super::output::Output;
-use super::{Options, Progress, Runner, pool, run_shards};
-use crate::in_order::in_order;
+use super::progress::Progress;
+use super::recording::Runner;
+use super::run_shards::run_shards;
+use super::store::READERS;
+use crate::in_order::{in_order, pool};
 use crate::plan::Diagram;
 use crate::{Error, Plan};
 
@@ -66,11 +71,8 @@ impl Made {
     }
 }
 
-/// Records that are read at a time: on storage that takes its time they would else take long.
-pub(super) const READERS: usize = 16;
-
-/// Hands to `each`, in order, what the parts `indices` left, or none where one is not finished or its
-/// record or files are damaged.
+/// Hands to `each`, in order, what the parts `indices` left; nothing for a part that is not
+/// finished or whose record or files are damaged.
 ///
 /// # Errors
 /// The first error of `each`, or storage that cannot be read.
@@ -96,12 +98,12 @@ pub(super) fn scan(
     )
 }
 
-/// Makes part `index` of a sweep, and tells whether there was anything to do: a part that is
-/// finished stays as it is.
+/// Makes part `index` of a sweep. Returns false if the part was finished before; it then stays as it is.
 ///
 /// # Errors
-/// Where there is no such part, a file cannot be written, or the part comes out differently than
-/// another process made it meanwhile.
+/// [`Error::NoShard`] if there is no such part, [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it
+/// is stopped, [`Error::NotDeterministic`] if another process made the part with other bytes, and errors of
+/// files that cannot be read or written.
 pub fn run_part(
     plan: &Plan,
     output: &Output,

@@ -6,8 +6,9 @@ use recordings::formats::parquet::{PENDING_ROWS, TableWriter};
 use recordings::{CaseWarning, Column, FailedCase, FileEntry, Kind, Schema, Value};
 
 use super::case_rows::{CaseRows, Signals};
-use super::commit::{Check, Commit, Found, Standing};
-use super::diagrams;
+use super::check::Check;
+use super::commit::{Commit, Found, Standing};
+use super::layout::DIAGRAMS;
 use super::output::Output;
 use super::store::NewFile;
 use super::tables::Tables;
@@ -63,7 +64,7 @@ impl Plan {
                     && self.format == Format::Mcap
                     && *name == format!("{}.mcap", self.case_id(case))
             }),
-            diagrams::FOLDER => {
+            DIAGRAMS => {
                 let mut own = self.diagrams.iter();
                 own.any(|diagram| *name == format!("{}.parquet", diagram.name))
             }

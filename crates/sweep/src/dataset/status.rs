@@ -1,15 +1,17 @@
-//! How far a sweep has got.
+//! Progress of a sweep.
 
 use recordings::FailedCase;
 
 use super::attempts::{self, Attended};
-use super::commit::{Check, Damage};
+use super::check::Check;
+use super::fault::Damage;
 use super::finalize::Parts;
-use super::output::{Output, strays};
+use super::layout::strays;
+use super::output::Output;
 use super::parts::scan;
 use crate::{Error, Plan};
 
-/// How far a sweep has got.
+/// The progress of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     /// Numbers of the shards that are not finished; bifurcation diagrams follow the shards.
@@ -24,12 +26,12 @@ pub struct Status {
     pub complete: bool,
 }
 
-/// How far the sweep has got. Damaged records and files count as not made; they, and files of no shard
+/// The progress of the sweep. Damaged records and files count as not made; they, and files of no shard
 /// of this sweep, are named by [`Output::take_warnings`]. Of files the lengths are compared, and with
 /// `verify` the checksums, for which everything is read.
 ///
 /// # Errors
-/// Where the storage cannot be read.
+/// Errors of a storage that cannot be read.
 pub fn status(output: &Output, plan: &Plan, verify: bool) -> Result<Status, Error> {
     let check = match verify {
         true => Check::Sums,

@@ -12,7 +12,6 @@
 //! process that is killed between two trials does not begin again.
 
 use std::collections::BTreeMap;
-use std::fmt::{self, Display};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
@@ -20,20 +19,15 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use super::attempts::{FOLDER, shard_of};
-use super::case_rows::{Dead, run_cases};
-use super::commit::text;
+use super::attempts::{TRIED, shard_of};
+use super::case_rows::{Dead, Death, run_cases};
+use super::layout::ATTEMPTS;
+use super::options::{Options, Trial};
 use super::output::Output;
-use super::{Options, Runner, check_cancelled};
+use super::record::text;
+use super::recording::Runner;
 use crate::{Error, Plan};
 
-/// The command that simulates case `case` of the dataset at `root` and throws the result away; none
-/// where there is no such program. It must end when its standard input does, because its parent then
-/// has.
-pub type Trial<'a> = dyn Fn(&Path, u64) -> Option<Command> + Sync + 'a;
-
-/// The end of the names of trials that are over.
-pub(super) const TRIED: &str = ".tried";
 /// So often is a process killed before its case is to blame.
 const KILLS: u32 = 3;
 /// How often it is looked whether a process has ended.
@@ -50,18 +44,6 @@ const OWN: [(i32, &str); 5] = [
     (8, "SIGFPE"),
 ];
 
-/// Why a case failed whose process died.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Death(pub String);
-
-impl Display for Death {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Death {}
-
 /// What `K.CASE.tried` says.
 #[derive(Serialize, Deserialize)]
 struct Outcome {
@@ -77,10 +59,10 @@ enum End {
     Unknown(String),
 }
 
-/// Tries `cases` of shard `shard`, and tells those whose processes died, with the reason.
+/// Tries `cases` of shard `shard`. Returns those whose processes died, with the reason.
 ///
 /// # Errors
-/// Where it is cancelled, or a record cannot be read or written.
+/// [`Error::Cancelled`], or a record that cannot be read or written.
 pub(super) fn try_cases(
     plan: &Plan,
     output: &Output,
@@ -95,7 +77,7 @@ pub(super) fn try_cases(
     let known = known(output, shard)?;
     let mut dead = Dead::new();
     for &case in cases {
-        check_cancelled(plan, options, done)?;
+        options.check_cancelled(plan, done)?;
         let before = known.get(&case);
         // Who tries again does not believe in an earlier death.
         let before = before.filter(|died| died.is_none() || !options.retry_failed);
@@ -103,9 +85,9 @@ pub(super) fn try_cases(
             Some(died) => died.clone(),
             None => {
                 let died = try_case(plan, output, case, trial, options)?;
-                check_cancelled(plan, options, done)?;
+                options.check_cancelled(plan, done)?;
                 let outcome = text(&Outcome { died: died.clone() })?;
-                let path = format!("{FOLDER}/{shard}.{case}{TRIED}");
+                let path = format!("{ATTEMPTS}/{shard}.{case}{TRIED}");
                 output.store.write(&path, outcome.as_bytes())?;
                 died
             }
@@ -118,7 +100,7 @@ pub(super) fn try_cases(
 /// How the trials of a shard ended that are over: a death, or none.
 fn known(output: &Output, shard: u64) -> Result<BTreeMap<u64, Option<String>>, Error> {
     let mut known = BTreeMap::new();
-    for name in output.store.names(FOLDER)? {
+    for name in output.store.names(ATTEMPTS)? {
         let case = name.strip_suffix(TRIED).and_then(|name| {
             let (_, case) = name.split_once('.')?;
             case.parse().ok()
@@ -126,14 +108,14 @@ fn known(output: &Output, shard: u64) -> Result<BTreeMap<u64, Option<String>>, E
         let (Some(case), true) = (case, shard_of(&name) == Some(shard)) else {
             continue;
         };
-        let found = output.store.read(&format!("{FOLDER}/{name}"))?;
+        let found = output.store.read(&format!("{ATTEMPTS}/{name}"))?;
         let outcome = found.and_then(|found| serde_json::from_str::<Outcome>(&found).ok());
         known.extend(outcome.map(|outcome| (case, outcome.died)));
     }
     Ok(known)
 }
 
-/// Tries a case, and tells how its process died, if it did.
+/// Tries a case. Returns how its process died, if it did.
 fn try_case(
     plan: &Plan,
     output: &Output,
@@ -214,9 +196,9 @@ fn judged(status: ExitStatus) -> End {
 /// [`Trial`] does.
 ///
 /// # Errors
-/// Where nothing has been planned at `root`. A case that fails with a message is no error.
+/// As [`Output::open_read_only`]. A case that fails with a message is no error.
 pub fn try_here(root: &Path, case: u64, runner: &Runner) -> Result<(), Error> {
-    let (_, plan) = Output::look(root)?;
+    let (_, plan) = Output::open_read_only(root)?;
     let sweep_yaml = input::yaml::to_string(plan.sweep())?;
     run_cases(&plan, case..case + 1, &Dead::new(), runner, &sweep_yaml);
     Ok(())

@@ -2,44 +2,18 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
-use std::fmt::{self, Display};
 use std::path::{Component, Path};
 
 use recordings::formats::parquet::rows_of_footer;
 use recordings::{FileEntry, Manifest};
 
-use super::commit::{Check, Damage, checksum, fault};
-use super::output::{MANIFEST, SUMS, strays};
-use super::parts::READERS;
-use super::pool;
-use super::store::Store;
+use super::check::{Check, damage_of};
+use super::fault::{Damage, Fault};
+use super::layout::{MANIFEST, SUMS, strays};
+use super::record::checksum;
+use super::store::{READERS, Store};
 use crate::Error;
-use crate::in_order::in_order;
-
-/// What is wrong with a file of a dataset.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// The file, within the dataset.
-    pub path: String,
-    /// What is wrong with it.
-    pub damage: Damage,
-}
-
-impl Fault {
-    pub(super) fn new(path: &str, damage: Damage) -> Self {
-        Self {
-            path: path.to_owned(),
-            damage,
-        }
-    }
-}
-
-impl Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        // A name from a manifest may hold anything.
-        write!(f, "{}: {}", self.path.escape_debug(), self.damage)
-    }
-}
+use crate::in_order::{in_order, pool};
 
 /// What [`verify`] found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,11 +30,12 @@ pub struct Verified {
 
 /// Compares every file of the finished dataset at `root` with its manifest, and the manifest with
 /// `SHA256SUMS`; reads the rows of tables from their footers; and names files of data that the
-/// manifest does not have. Nothing is written. `progress` is told the bytes of all files and, after
-/// each, those that are compared.
+/// manifest does not have. Nothing is written. `progress` gets the bytes of all files and,
+/// after each file, the bytes that are compared.
 ///
 /// # Errors
-/// Where there is no manifest, it cannot be read, or the storage fails.
+/// [`Error::NoManifest`] without a manifest, [`Error::File`] if it cannot be parsed or a file cannot be read.
+/// Damaged files are no error: they are in [`Verified::faults`].
 pub fn verify(root: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Verified, Error> {
     let store = Store::at(root)?;
     let no_manifest = || Error::NoManifest(root.to_owned());
@@ -122,8 +97,8 @@ pub fn verify(root: &Path, progress: &mut dyn FnMut(u64, u64)) -> Result<Verifie
     })
 }
 
-/// What is wrong with `files`, of which everything is read. `progress` is told how many bytes are
-/// compared, after each file.
+/// What is wrong with `files`, all of which are read. `progress` gets the number of compared bytes after
+/// each file.
 pub(super) fn faults_of<'a>(
     store: &Store,
     files: impl Iterator<Item = &'a FileEntry>,
@@ -145,10 +120,10 @@ pub(super) fn faults_of<'a>(
     Ok(faults)
 }
 
-/// What is wrong with `file` of the dataset at `root`, if anything is: all of it is read.
+/// The damage of `file` of the dataset at `root`, if any. The whole file is read.
 ///
 /// # Errors
-/// Where it cannot be read.
+/// [`Error::File`] if the storage cannot be read.
 pub fn damage(root: &Path, file: &FileEntry) -> Result<Option<Damage>, Error> {
     damage_in(&Store::at(root)?, file)
 }
@@ -157,7 +132,7 @@ fn damage_in(store: &Store, file: &FileEntry) -> Result<Option<Damage>, Error> {
     if !is_inside(&file.path) {
         return Ok(Some(Damage::Outside));
     }
-    if let Some(damage) = fault(store, file, Check::Sums)? {
+    if let Some(damage) = damage_of(store, file, Check::Sums)? {
         return Ok(Some(damage));
     }
     let Some(expected) = file.rows else {

@@ -17,7 +17,7 @@ const VARIABLES: [(&str, u64); 6] = [
 /// The number that an engine's variable says; `variable` reads one.
 ///
 /// # Errors
-/// Where there is none.
+/// [`Error::NoIndex`] if no variable has a number.
 pub fn index(variable: impl Fn(&str) -> Option<String>) -> Result<u64, Error> {
     // Outside an array, LSF says 0 and Grid Engine `undefined`.
     let index =

@@ -29,7 +29,7 @@ pub struct Case {
     pub judgement: Option<Judgement>,
     /// What was found, once the case has been simulated; none where nothing moves freely.
     pub motion: Option<Motion>,
-    /// How the recording is cut; one window, all of it, where there is none.
+    /// How the recording is cut; one window, all of it, if there are no windows.
     pub windows: Option<Windows>,
     /// Which joints are faulty.
     pub labels: Labels,
@@ -71,7 +71,7 @@ pub struct OperatingPoint {
 }
 
 impl OperatingPoint {
-    pub(super) fn of(case: &Resolved) -> Self {
+    pub(super) fn new(case: &Resolved) -> Self {
         let throws = case.machine.throws.iter();
         Self {
             speed_rpm: rpm(case.speed),

@@ -1,4 +1,4 @@
-//! Which effects a sweep varies, from what its blocks set and what it draws.
+//! The effects that a sweep varies, from the values that its blocks set and those that it draws.
 
 use input::paths;
 use serde_json::Value;
@@ -8,7 +8,7 @@ use super::together::Together;
 use crate::effects::{VariedEffect, varied};
 
 impl Plan {
-    /// The effects that differ among the cases, told by files that show every value of each axis.
+    /// The effects that differ among the cases, found from files that show every value of each axis.
     pub(super) fn find_effects(&self) -> Vec<VariedEffect> {
         let is_of_effects = |path: &str| path.split('.').next() == Some("effects");
         let alone = self.vary.iter().flat_map(|varied| {
@@ -32,7 +32,7 @@ impl Plan {
 fn one_at_a_time(tree: &Value, axes: &[(&str, Vec<Value>)]) -> Vec<Value> {
     let mut first = tree.clone();
     for (path, values) in axes {
-        // What cannot be set is told where the cases are tried.
+        // A value that cannot be set is reported when the cases are tried.
         let _ = values
             .first()
             .map(|v| paths::set(&mut first, path, v.clone()));

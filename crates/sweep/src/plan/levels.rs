@@ -21,7 +21,7 @@ pub(super) enum Levels {
 }
 
 impl Levels {
-    /// The values that the file tells.
+    /// The values in the file.
     pub(super) fn new(levels: &sweep_file::Levels) -> Result<Self, Error> {
         let range = match levels {
             Values::One(value) => return Ok(Self::List(vec![value.clone()])),

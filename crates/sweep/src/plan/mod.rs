@@ -1,9 +1,11 @@
-//! A sweep, made ready: what its case at an index is. Nothing is expanded, so a sweep of 10^9
-//! cases takes no more memory than one of ten.
+//! The plan of a sweep: gives the case at any index. Nothing is expanded, so a sweep of 10^9 cases
+//! takes no more memory than one of ten.
 
 mod axis;
 mod block;
 mod case;
+mod census;
+mod checks;
 mod diagram;
 mod drawn;
 mod estimate;
@@ -15,14 +17,15 @@ mod parameter;
 mod sampler;
 mod settings;
 mod survey;
+mod swept_parameters;
 mod together;
 mod varied;
 
 pub use case::{Case, Judgement, OperatingPoint};
+pub use census::Census;
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
 pub use parameter::Parameter;
-pub use survey::Census;
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -31,7 +34,7 @@ use std::sync::OnceLock;
 
 use input::choice::Or;
 use input::yaml::Document;
-use input::{Error, MachineFile, Problem, Resolved, paths};
+use input::{Error, MachineFile, Resolved, paths};
 use mechanism::Machine;
 use rand::Rng;
 use scalar::random::{Purpose, stream};
@@ -46,8 +49,8 @@ use crate::split;
 use crate::sweep_file::{Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
+use census::Survey;
 use settings::{check_windows, judgement, settings, shares};
-use survey::Survey;
 use together::Together;
 use varied::Varied;
 
@@ -57,7 +60,7 @@ pub const MOST_CASES: u64 = 100_000_000;
 /// Changes when the same plan would give other bytes.
 const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 2");
 
-/// A sweep, made ready.
+/// The plan of a sweep.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name of the dataset.
@@ -66,13 +69,13 @@ pub struct Plan {
     pub study: Option<Study>,
     /// SHA-256 of everything that the dataset's bytes depend on, in hexadecimal.
     pub id: String,
-    /// What all random numbers follow from.
+    /// The seed of all random numbers.
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
-    /// How the motion of each case is judged from the equations, where that is asked for.
+    /// How the motion of each case is judged from the equations; absent if it is not.
     pub judgement: Option<Judgement>,
-    /// Whether the kind of motion is told from the recorded signals.
+    /// Whether the regime is computed from the recorded signals.
     pub chaos: bool,
     /// How recordings are cut.
     pub windows: Option<Windows>,
@@ -86,13 +89,13 @@ pub struct Plan {
     pub joints: Vec<Joint>,
     /// The effects that the sweep varies, each of them a label.
     pub effects: Vec<VariedEffect>,
-    /// What the sweep sets or varies beside clearances, speed and pressures.
+    /// Parameters that the sweep sets or varies, other than clearances, speed and pressures.
     pub parameters: Vec<Parameter>,
     /// The bifurcation diagrams.
     pub diagrams: Vec<Diagram>,
     /// The machine and its sensors as the file has them, before any case changes them.
     pub base: Resolved,
-    /// The folder of the calibration that the machine comes from, where there is one.
+    /// The folder of the calibration that the machine comes from, if it is calibrated.
     pub calibrated: Option<PathBuf>,
     throws: Vec<String>,
     tree: Value,
@@ -108,7 +111,7 @@ impl Plan {
     /// Reads the sweep file at `path`, and the machine file that it names.
     ///
     /// # Errors
-    /// The first mistake in either file, with its line; a sweep without cases.
+    /// The first mistake in either file, with its line; also a sweep without cases or with more than 2^64.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::new(&Document::open(path)?, folder)
@@ -163,7 +166,7 @@ impl Plan {
     /// evenly.
     ///
     /// # Errors
-    /// Where the shards would be too large.
+    /// [`crate::Error::LargeShards`] if a shard would have more than [`MOST_CASES_A_SHARD`] cases.
     pub fn with_shards(mut self, shards: u64) -> Result<Self, crate::Error> {
         let cases = self.cases();
         let size = cases.div_ceil(shards.max(1)).max(1);
@@ -261,7 +264,7 @@ impl Plan {
             None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
                 plan.effects = plan.find_effects();
-                plan.parameters = parameter::find(&plan);
+                plan.parameters = plan.find_parameters();
                 Ok(plan)
             }
         }
@@ -345,7 +348,7 @@ impl Plan {
     /// of all cases where those are few (see [`Census`]); the first call looks at them.
     ///
     /// # Errors
-    /// Where the drawn values do not make a machine; `index` must be below [`Plan::cases`].
+    /// An input error if the values of the case make an invalid machine. `index` must be below [`Plan::cases`].
     pub fn case(&self, index: u64) -> Result<Case, Error> {
         let case = self.case_before_splits(index)?;
         let split = self.split(case.group);
@@ -386,7 +389,7 @@ impl Plan {
             motion: None,
             windows: self.windows,
             labels: labels(&self.joints, &self.effects, &tree, &resolved, &own),
-            operating_point: OperatingPoint::of(&resolved),
+            operating_point: OperatingPoint::new(&resolved),
             group,
             split: split::assign(self.shares, self.seed, group),
             seed: self.seed,
@@ -398,7 +401,7 @@ impl Plan {
     /// The machine of `diagram` at its value number `value`.
     ///
     /// # Errors
-    /// Where the value makes no machine.
+    /// An input error if the value makes an invalid machine.
     pub fn diagram_machine(&self, diagram: &Diagram, value: usize) -> Result<Machine, Error> {
         diagram.machine(value, &self.frame())
     }
@@ -413,53 +416,6 @@ impl Plan {
             rest -= block.count();
         }
         (self.blocks.len() - 1, rest)
-    }
-
-    /// Tries cases that between them have every value that the file names, so that a mistake is
-    /// found before anything is run.
-    fn try_cases(&self, document: &Document) -> Result<(), Error> {
-        let mut start = 0;
-        for (position, block) in self.blocks.iter().enumerate() {
-            for inside in block.probes() {
-                let case = self.case_before_splits((start + inside) * self.repeats);
-                if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
-                    let keys = block.keys(inside, &self.frame());
-                    return Err(document.locate(self.blame(error, keys, position, inside)));
-                }
-            }
-            start += block.count();
-        }
-        Ok(())
-    }
-
-    /// All rows of a table have the same columns, so all cases have the same joints and sensors.
-    fn check_columns(&self, case: &Case) -> Result<(), Error> {
-        if channels(&case.resolved, &self.throws) != self.channels() {
-            let found = "sensors that measure something else";
-            return Err(Error::found("sensors", found, "those of the machine file"));
-        }
-        if joints(&case.resolved.machine) != self.joints {
-            let found = "throws with other names";
-            return Err(Error::found("throws", found, "those of the machine file"));
-        }
-        Ok(())
-    }
-
-    /// `error` of a case, at the value of the sweep file that it comes from.
-    fn blame(&self, error: Error, keys: Vec<(String, String)>, block: usize, case: u64) -> Error {
-        let varied = self.varied().map(|(key, path)| (key, path.to_owned()));
-        let within = |path: &str, other: &str| {
-            let rest = path.strip_prefix(other);
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
-        };
-        let mut sources = keys.into_iter().chain(varied);
-        match sources.find(|(_, path)| within(path, error.key()) || within(error.key(), path)) {
-            Some((key, _)) => Error::new(key, error.problem().clone()),
-            None => {
-                let problem = format!("case {case} of this block: {error}");
-                Error::new(format!("cases.{block}"), Problem::Other(problem))
-            }
-        }
     }
 
     /// The values that blocks list for `path`.

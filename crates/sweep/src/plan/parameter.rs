@@ -4,7 +4,6 @@ use input::paths;
 use recordings::Role;
 use serde_json::Value;
 
-use super::{Block, Plan};
 use crate::effects::{Amplitude, VariedEffect};
 use crate::sweep_file::Amount;
 
@@ -39,99 +38,28 @@ impl Parameter {
             None => recordings::Value::Missing,
         }
     }
-}
 
-/// The parameters of `plan`, whose effects are known: what varies, what the blocks set, and the
-/// amplitudes of varied effects that are not among these.
-pub(super) fn find(plan: &Plan) -> Vec<Parameter> {
-    let varied: Vec<&str> = plan.varied().map(|(_, path)| path).collect();
-    let set = plan.blocks.iter().flat_map(Block::paths);
-    let mut paths = varied.clone();
-    paths.extend(set.map(|(path, _)| path));
-    let mut seen = std::collections::BTreeSet::new();
-    let has_column = |path: &str| {
-        path == "speed"
-            || path.ends_with("cylinder.suction")
-            || path.ends_with("cylinder.discharge")
-            || plan.joints.iter().any(|j| j.clearance_path == path)
-    };
-    paths.retain(|path| !has_column(path) && seen.insert(*path));
-    let role = |path: &str| match varied.contains(&path) {
-        _ if is_of_a_label(plan, path) => Role::Label,
-        true => Role::Unknown,
-        false => Role::Condition,
-    };
-    let own = paths.iter().map(|path| parameter(plan, path, role(path)));
-    let amplitudes = plan.effects.iter().flat_map(|effect| {
-        let amplitudes = effect.amplitudes.iter();
-        amplitudes.map(move |amplitude| (effect, amplitude))
-    });
-    let others = amplitudes.filter(|(effect, amplitude)| {
-        let place = keys_of(plan, effect, amplitude);
-        let leads_there = |path: &&str| place.is_some() && keys(plan, path) == place;
-        !paths.iter().any(leads_there)
-    });
-    let others = others.map(|(effect, amplitude)| size(effect, amplitude));
-    own.chain(others).collect()
-}
-
-/// How `path` stands in the file and in the first case that says what it is: a number only if no case has
-/// anything else there, such as a stiffness by a formula.
-fn parameter(plan: &Plan, path: &str, role: Role) -> Parameter {
-    let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
-    let first = || value(&plan.case_before_splits(0).ok()?.tree);
-    let amount = value(&plan.tree).or_else(first);
-    let amount = amount.filter(|_| !plan.listed(path).any(|v| Amount::of(&v).is_none()));
-    let unit = amount.and_then(|a| a.dimension).map(|d| d.to_string());
-    let suffix = unit.as_deref().map_or(String::new(), suffix);
-    Parameter {
-        path: path.to_owned(),
-        column: format!("{path}{suffix}"),
-        is_number: amount.is_some(),
-        unit,
-        role,
-        amplitude: None,
+    /// The parameter at `path`.
+    pub(super) fn at(path: &str, is_number: bool, unit: Option<String>, role: Role) -> Self {
+        let suffix = unit.as_deref().map_or(String::new(), suffix);
+        Self {
+            path: path.to_owned(),
+            column: format!("{path}{suffix}"),
+            is_number,
+            unit,
+            role,
+            amplitude: None,
+        }
     }
-}
 
-/// The column of an amplitude.
-fn size(effect: &VariedEffect, amplitude: &Amplitude) -> Parameter {
-    let unit = amplitude.parameter.dimension.map(|d| d.to_string());
-    let suffix = unit.as_deref().map_or(String::new(), suffix);
-    Parameter {
-        path: amplitude.path.clone(),
-        column: format!("{}{suffix}", amplitude.path),
-        is_number: true,
-        unit,
-        role: Role::Label,
-        amplitude: Some((effect.clone(), amplitude.clone())),
+    /// The parameter that is the amplitude of a varied effect.
+    pub(super) fn of_amplitude(effect: &VariedEffect, amplitude: &Amplitude) -> Self {
+        let unit = amplitude.parameter.dimension.map(|d| d.to_string());
+        Self {
+            amplitude: Some((effect.clone(), amplitude.clone())),
+            ..Self::at(&amplitude.path, true, unit, Role::Label)
+        }
     }
-}
-
-/// Whether `path` is that of an amplitude of a varied effect, or of something that holds one.
-fn is_of_a_label(plan: &Plan, path: &str) -> bool {
-    let Some(keys) = keys(plan, path) else {
-        return false;
-    };
-    if keys == ["effects"] {
-        return !plan.effects.is_empty();
-    }
-    plan.effects.iter().any(|effect| {
-        let amplitudes = effect.amplitudes.iter();
-        let mut places = amplitudes.filter_map(|amplitude| keys_of(plan, effect, amplitude));
-        places.any(|place| place.starts_with(&keys))
-    })
-}
-
-/// Keys and indices of an amplitude in the sweep's machine file, where that has the effect.
-fn keys_of(plan: &Plan, effect: &VariedEffect, amplitude: &Amplitude) -> Option<Vec<String>> {
-    let index = effect.index_in(&plan.tree)?.to_string();
-    let keys = ["effects", &index, effect.name(), amplitude.parameter.key];
-    Some(keys.map(str::to_owned).into())
-}
-
-fn keys(plan: &Plan, path: &str) -> Option<Vec<String>> {
-    paths::keys(&plan.tree, path).ok()
 }
 
 /// `_n_s_m` of `N s/m`: the ending of a column's name.

@@ -1,6 +1,7 @@
 //! The files of a dataset.
 
-use super::{Error, Subset};
+use super::error::Error;
+use super::subset::Subset;
 use crate::dataset::damage;
 use recordings::formats::parquet::ParquetFile;
 use recordings::{Manifest, Table};
@@ -20,7 +21,7 @@ pub(super) struct Files {
 impl Files {
     /// # Errors
     /// A folder without a manifest, or a manifest that cannot be read.
-    pub(super) fn of(folder: &Path) -> Result<Self, Error> {
+    pub(super) fn in_folder(folder: &Path) -> Result<Self, Error> {
         let manifest = folder.join("manifest.json");
         if !manifest.is_file() {
             return Err(no_manifest(folder));

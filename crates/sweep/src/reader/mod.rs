@@ -8,6 +8,7 @@ mod labels;
 mod motions;
 mod sensors;
 mod signal_row;
+mod subset;
 mod windows;
 
 pub use channel_features::{Band, ChannelFeatures};
@@ -17,6 +18,7 @@ pub use labels::{Label, Meaning, Side, Text};
 pub use motions::Motions;
 pub use sensors::Sensors;
 pub use signal_row::SignalRow;
+pub use subset::Subset;
 pub use windows::{Case, Windows};
 
 use crate::Plan;
@@ -26,28 +28,6 @@ use std::path::Path;
 
 /// The channel of the crank angle.
 const CRANK_ANGLE: &str = "crank_angle_rad";
-
-/// The tables of a dataset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subset {
-    /// The recordings, a row for each window.
-    Signals,
-    /// The features, a row for each window.
-    Features,
-    /// The bifurcation diagrams, a file for each.
-    Bifurcations,
-}
-
-impl Subset {
-    /// Its folder in that of the dataset.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Signals => "signals",
-            Self::Features => "features",
-            Self::Bifurcations => "bifurcations",
-        }
-    }
-}
 
 /// A finished dataset, its table of features read.
 pub struct Dataset {
@@ -68,9 +48,9 @@ impl Dataset {
     /// # Errors
     /// A folder without a manifest, or a file that cannot be read or is not the one that was written.
     pub fn read(folder: &Path) -> Result<Self, Error> {
-        let files = Files::of(folder)?;
+        let files = Files::in_folder(folder)?;
         let plan = Plan::read(&folder.join("sweep.yaml"))?;
-        let sensors = Sensors::of(&plan);
+        let sensors = Sensors::new(&plan);
         let windows = Windows::read(&files, &plan, &sensors)?;
         Ok(Self {
             cases: windows.cases(),

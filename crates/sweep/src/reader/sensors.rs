@@ -13,7 +13,7 @@ pub struct Sensors {
 }
 
 impl Sensors {
-    pub(super) fn of(plan: &Plan) -> Self {
+    pub(super) fn new(plan: &Plan) -> Self {
         let names: Vec<&str> = plan.throws().iter().map(String::as_str).collect();
         let measured: Vec<Measured> = plan.base.sensors.iter().map(|s| s.measured).collect();
         let first = |wanted: &dyn Fn(&Measured) -> bool| measured.iter().copied().find(wanted);

@@ -152,7 +152,7 @@ fn a_record_that_cannot_be_read_counts_as_not_made() {
     let latin = [&record[..40], &[0xff], &record[41..]].concat();
     for damaged in [&record[..30], b"", other.as_bytes(), &latin] {
         fs::write(&place, damaged).unwrap();
-        let (output, found) = Output::look(&root).unwrap();
+        let (output, found) = Output::open_read_only(&root).unwrap();
         let status = status(&output, &found, false).unwrap();
         assert_eq!((status.missing, status.complete), (vec![1], false));
         let (runs, warnings) = resume(&plan, &root).unwrap();
@@ -162,7 +162,7 @@ fn a_record_that_cannot_be_read_counts_as_not_made() {
     }
     // The plan's own record follows from the sweep.
     fs::write(root.join("_sweep/plan.json"), "{\"plan_id\": \"01").unwrap();
-    let told = Output::look(&root).unwrap_err().to_string();
+    let told = Output::open_read_only(&root).unwrap_err().to_string();
     assert!(
         told.contains("--resume") && !told.contains("--overwrite"),
         "{told}"
@@ -293,7 +293,7 @@ fn verifying_rewrites_nothing_that_stands_there() {
 fn complete_is_what_has_the_manifest_of_its_records() {
     let plan = plan(SWEEP);
     let (_folder, root) = made(&plan);
-    let (output, plan) = Output::look(&root).unwrap();
+    let (output, plan) = Output::open_read_only(&root).unwrap();
     let complete = || status(&output, &plan, false).unwrap().complete;
     assert!(complete());
     let manifest = fs::read_to_string(root.join("manifest.json")).unwrap();

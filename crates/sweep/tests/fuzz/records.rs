@@ -86,7 +86,7 @@ pub fn records(executions: u64) {
 }
 
 fn look(root: &Path) -> Result<String, Error> {
-    let (output, plan) = Output::look(root)?;
+    let (output, plan) = Output::open_read_only(root)?;
     let status = status(&output, &plan, false)?;
     let manifest = finalize(&output, &plan)?;
     Ok(format!(

@@ -42,7 +42,7 @@ pub(super) fn cases(dataset: &Dataset) -> Result<Vec<CaseChaos>, Error> {
 
 fn true_regime(motions: &Motions, window: usize) -> Option<Regime> {
     let (label, period) = motions.true_regime(window)?;
-    Regime::of(label, period)
+    Regime::from_label(label, period)
 }
 
 /// Whether the case of the window is chaotic by the equations; none where nobody asked them.
@@ -56,7 +56,7 @@ fn of_window(motions: &Motions, window: usize) -> WindowChaos {
     WindowChaos {
         exponent: motions.exponent(window),
         reason: motions.reason(window).unwrap_or_default().to_owned(),
-        regime: regime.and_then(|label| Regime::of(label, None)),
+        regime: regime.and_then(|label| Regime::from_label(label, None)),
     }
 }
 
@@ -71,9 +71,9 @@ fn clear_joints(windows: &Windows, window: usize) -> String {
     }
 }
 
-/// Whether cases are told apart by their fault: where all have clearance in the same joints but
+/// Whether cases are grouped by their fault: where all have clearance in the same joints but
 /// faults in different ones, as machines with worn and with sound bearings have. Otherwise they
-/// are told apart by the joints that have any clearance.
+/// are grouped by the joints that have any clearance.
 fn by_fault(dataset: &Dataset) -> bool {
     let firsts = || dataset.cases.iter().map(|case| case.first);
     let sets = firsts().map(|first| clear_joints(&dataset.windows, first));

@@ -59,7 +59,7 @@ fn of_class(dataset: &Dataset, class: &str, own: &[usize]) -> Result<ClassSpectr
     Ok(ClassSpectra {
         class: class.to_owned(),
         windows: own.len(),
-        spectrum: Quartiles::of(&frequencies, &densities),
-        envelope: Quartiles::of(&orders, &envelopes),
+        spectrum: Quartiles::from_curves(&frequencies, &densities),
+        envelope: Quartiles::from_curves(&orders, &envelopes),
     })
 }

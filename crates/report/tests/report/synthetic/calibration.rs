@@ -124,7 +124,7 @@ fn pressures() -> Vec<Pressure> {
     points.collect()
 }
 
-/// What is told of them.
+/// Their estimates.
 fn gas() -> Gas {
     let event = |angle: f64| Event {
         crank_angle_deg: angle,

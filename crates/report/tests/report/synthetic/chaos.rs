@@ -150,7 +150,7 @@ fn spectra(set: &str) -> ClassSpectra {
     ClassSpectra {
         class: set.to_owned(),
         windows: 7,
-        envelope: Quartiles::of(&orders, &amplitudes),
-        spectrum: Quartiles::of(&at, &amplitudes),
+        envelope: Quartiles::from_curves(&orders, &amplitudes),
+        spectrum: Quartiles::from_curves(&at, &amplitudes),
     }
 }

@@ -84,7 +84,7 @@ impl Bucket {
         };
         match self.persist(put) {
             Ok(_) => Ok(None),
-            // Perhaps by this put, whose answer was lost: the content tells.
+            // Perhaps by this put, whose answer was lost: the caller compares the content.
             Err(object_store::Error::AlreadyExists { .. }) => self.bytes(path),
             Err(error) => Err(failed("create", &self.path(path), &error)),
         }
@@ -93,19 +93,19 @@ impl Bucket {
     pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
         let key = self.key(path);
         let bytes = || async { self.objects.get(&key).await?.bytes().await };
-        let content = self.found("read", path, bytes)?;
+        let content = self.if_exists("read", path, bytes)?;
         Ok(content.map(|content| content.to_vec()))
     }
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
         let key = self.key(path);
-        let head = self.found("read", path, || self.objects.head(&key))?;
+        let head = self.if_exists("read", path, || self.objects.head(&key))?;
         Ok(head.map(|object| object.size))
     }
 
     pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
         let key = self.key(path);
-        let head = self.found("read", path, || self.objects.head(&key))?;
+        let head = self.if_exists("read", path, || self.objects.head(&key))?;
         Ok(head.map(|object| object.last_modified.into()))
     }
 
@@ -143,12 +143,12 @@ impl Bucket {
 
     pub(super) fn remove(&self, path: &str) -> Result<(), Error> {
         let key = self.key(path);
-        self.found("remove", path, || self.objects.delete(&key))
+        self.if_exists("remove", path, || self.objects.delete(&key))
             .map(|_| ())
     }
 
-    /// What an action finds; none where nothing stands there.
-    fn found<T, F: Future<Output = Result<T, object_store::Error>>>(
+    /// The result of an action; nothing if there is no object.
+    fn if_exists<T, F: Future<Output = Result<T, object_store::Error>>>(
         &self,
         action: &'static str,
         path: &str,

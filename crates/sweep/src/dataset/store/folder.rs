@@ -1,5 +1,5 @@
-//! A dataset in a folder: hard links make records that are created once, or exclusive creation where
-//! there are none.
+//! A dataset in a folder: hard links make records that are created once; without hard links,
+//! exclusive creation does.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -10,7 +10,7 @@ use std::time::SystemTime;
 use recordings::{FileRecord, WholeFile, sync_folder};
 use sha2::{Digest, Sha256};
 
-use super::Holder;
+use super::holder::Holder;
 use super::temporary::temporary;
 use crate::Error;
 
@@ -66,8 +66,8 @@ impl Folder {
         }
     }
 
-    /// The lock is taken before the file has its name, so that nobody sees it without; it is none
-    /// where the file system knows no locks.
+    /// The lock is taken before the file has its name, so that nobody sees it without one. There
+    /// is no lock if the file system has none.
     pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
         let (temporary, path) = (self.path(&temporary(path)), self.path(path));
         let mut file =
@@ -81,7 +81,7 @@ impl Folder {
 
     pub(super) fn holder(&self, path: &str) -> Result<Option<Holder>, Error> {
         let path = self.path(path);
-        let file = found("read", &path, File::open(&path))?;
+        let file = if_exists("read", &path, File::open(&path))?;
         Ok(file.map(|file| match file.try_lock_shared() {
             Ok(()) => Holder::Ended,
             Err(TryLockError::WouldBlock) => Holder::AtWork,
@@ -92,17 +92,17 @@ impl Folder {
     pub(super) fn modified(&self, path: &str) -> Result<Option<SystemTime>, Error> {
         let path = self.path(path);
         let modified = fs::metadata(&path).and_then(|found| found.modified());
-        found("read", &path, modified)
+        if_exists("read", &path, modified)
     }
 
     pub(super) fn bytes(&self, path: &str) -> Result<Option<Vec<u8>>, Error> {
         let path = self.path(path);
-        found("read", &path, fs::read(&path))
+        if_exists("read", &path, fs::read(&path))
     }
 
     pub(super) fn length(&self, path: &str) -> Result<Option<u64>, Error> {
         let path = self.path(path);
-        Ok(found("read", &path, fs::metadata(&path))?.map(|found| found.len()))
+        Ok(if_exists("read", &path, fs::metadata(&path))?.map(|found| found.len()))
     }
 
     pub(super) fn range(&self, path: &str, range: Range<u64>) -> Result<Vec<u8>, Error> {
@@ -119,11 +119,11 @@ impl Folder {
 
     pub(super) fn record(&self, path: &str) -> Result<Option<FileRecord>, Error> {
         let path = self.path(path);
-        // A pipe would be waited for, and a folder is none.
+        // Reading a pipe would wait, and a folder is no file.
         if fs::metadata(&path).is_ok_and(|found| !found.is_file()) {
             return Ok(None);
         }
-        let Some(mut file) = found("read", &path, File::open(&path))? else {
+        let Some(mut file) = if_exists("read", &path, File::open(&path))? else {
             return Ok(None);
         };
         let (mut hash, mut bytes, mut part) = (Sha256::new(), 0, vec![0; 1 << 16]);
@@ -144,7 +144,7 @@ impl Folder {
 
     pub(super) fn names(&self, folder: &str) -> Result<Vec<String>, Error> {
         let folder = self.path(folder);
-        let Some(entries) = found("read", &folder, fs::read_dir(&folder))? else {
+        let Some(entries) = if_exists("read", &folder, fs::read_dir(&folder))? else {
             return Ok(Vec::new());
         };
         let name = |entry: io::Result<fs::DirEntry>| {
@@ -156,7 +156,7 @@ impl Folder {
 
     pub(super) fn remove(&self, path: &str) -> Result<(), Error> {
         let path = self.path(path);
-        found("remove", &path, fs::remove_file(&path)).map(|_| ())
+        if_exists("remove", &path, fs::remove_file(&path)).map(|_| ())
     }
 }
 
@@ -168,8 +168,12 @@ fn create_exclusively(path: &Path, content: &str) -> io::Result<()> {
     file.sync_all()
 }
 
-/// What was found at `path`; none where nothing stands there.
-fn found<T>(action: &'static str, path: &Path, result: io::Result<T>) -> Result<Option<T>, Error> {
+/// The result of reading `path`; nothing if there is no file.
+fn if_exists<T>(
+    action: &'static str,
+    path: &Path,
+    result: io::Result<T>,
+) -> Result<Option<T>, Error> {
     match result {
         Ok(found) => Ok(Some(found)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
@@ -185,4 +189,26 @@ pub(in crate::dataset) fn failed(action: &'static str, path: &Path, source: io::
         path,
         source,
     })
+}
+
+/// Makes `folder`, and those that it stands in.
+pub(in crate::dataset) fn make(folder: &Path) -> Result<(), Error> {
+    fs::create_dir_all(folder).map_err(|source| Error::Unwritable {
+        path: folder.to_owned(),
+        source,
+    })
+}
+
+/// Removes what stands at `path`, if something does.
+pub(in crate::dataset) fn remove(
+    path: &Path,
+    how: impl Fn(&Path) -> io::Result<()>,
+) -> Result<(), Error> {
+    match how(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::Unwritable {
+            path: path.to_owned(),
+            source: error,
+        }),
+        _ => Ok(()),
+    }
 }

@@ -4,6 +4,7 @@
 #[cfg(feature = "s3")]
 mod bucket;
 mod folder;
+mod holder;
 mod new_file;
 mod temporary;
 
@@ -19,10 +20,14 @@ use crate::Error;
 #[cfg(feature = "s3")]
 use bucket::Bucket;
 use folder::Folder;
-pub(super) use folder::failed;
+pub(super) use folder::{failed, make, remove};
+pub(super) use holder::Holder;
 pub(super) use new_file::NewFile;
 pub(super) use temporary::process;
 use temporary::temporary;
+
+/// Records that are read at a time: on storage that takes its time they would else take long.
+pub(super) const READERS: usize = 16;
 
 /// The place of a dataset. Paths in it have `/` between folders.
 #[derive(Debug)]
@@ -32,17 +37,6 @@ pub(super) enum Store {
     /// A prefix of a bucket.
     #[cfg(feature = "s3")]
     Bucket(Bucket),
-}
-
-/// The process that holds a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Holder {
-    /// It runs.
-    AtWork,
-    /// It has ended.
-    Ended,
-    /// There are no locks that would tell.
-    Unknown,
 }
 
 impl Store {

@@ -11,16 +11,16 @@ use super::Error;
 use crate::ranges::ranges;
 use programs::{run, sbatch};
 use recordings::WholeFile;
+use std::fmt::{self, Display};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf, absolute};
+pub(super) use submitted::ROUNDS;
 use submitted::{JobId, Submitted, joined};
 
 /// The files in the folder of the jobs' scripts.
 const SHARD: &str = "shard.sh";
 const FINALIZE: &str = "finalize.sh";
 const SUBMITTED: &str = "submitted.json";
-/// How often shards are submitted in all.
-pub(super) const ROUNDS: u64 = 3;
 
 /// What was submitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,6 +29,13 @@ pub struct Submission {
     pub shards: usize,
     /// The numbers of the jobs.
     pub jobs: String,
+}
+
+impl Display for Submission {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { shards, jobs } = self;
+        write!(f, "{shards} shards submitted: jobs {jobs}")
+    }
 }
 
 /// The jobs of a dataset.
@@ -45,7 +52,7 @@ impl Jobs {
     ///
     /// # Errors
     /// A bucket without such a folder: it can hold neither scripts nor logs.
-    pub fn of(url: &Path, scripts: Option<&Path>) -> Result<Self, Error> {
+    pub fn new(url: &Path, scripts: Option<&Path>) -> Result<Self, Error> {
         let url = match url.starts_with("s3:") {
             true if scripts.is_none() => return Err(Error::NoScripts(url.to_owned())),
             true => url.to_owned(),

@@ -40,7 +40,7 @@ exec {program} sweep finalize {url} --resubmit --scripts {}
     ))
 }
 
-/// How a batch script begins. Where it logs to is told on the command line: the lines of a script cannot carry
+/// How a batch script begins. The path of its log is on the command line: the lines of a script cannot carry
 /// every path.
 fn header(submitted: &Submitted) -> String {
     format!(

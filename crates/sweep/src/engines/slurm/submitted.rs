@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
+/// How often shards are submitted in all.
+pub(crate) const ROUNDS: u64 = 3;
+
 /// What was submitted: `submitted.json`.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Submitted {
