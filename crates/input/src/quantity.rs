@@ -108,6 +108,10 @@ impl<K: Kind, B: Bound> Quantity<K, B> {
     }
 
     /// Reads a text.
+    ///
+    /// # Errors
+    /// The text, quoted, with the reason: it is no number with a unit, its unit has another dimension
+    /// than the kind, or the bound forbids the value.
     pub fn parse(text: &str) -> Result<Self, String> {
         let measure = unit::parse(text).map_err(|error| found(text, &error))?;
         if measure.dimension != K::DIMENSION {
