@@ -56,7 +56,7 @@ const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) wi
     Royer 1993), or a map with errors in variables; crate chaos, modules forced and exponent";
 const MARWAN: &str = "Marwan et al. 2007, Physics Reports 438, 237";
 
-/// The numbers that tell a motion; the same for every recording.
+/// The numbers that describe a motion; the same for every recording.
 pub fn motion_definitions() -> Vec<Definition> {
     let line = |name: &str, unit: &str, description: &str, formula, source| Definition {
         name: name.to_owned(),

@@ -130,7 +130,7 @@ fn name_alone(schema: &mut Schema) {
 }
 
 impl Calibration {
-    /// The settings with which recordings are calibrated where nobody says more.
+    /// The default settings of a calibration.
     pub fn of(bundles: Vec<PathBuf>) -> Self {
         Self {
             bundle: Or::Section(bundles),
@@ -145,7 +145,7 @@ impl Calibration {
         }
     }
 
-    /// Reads a settings file; `document` tells lines for what turns out later.
+    /// Reads a settings file; `document` gives the lines of mistakes that are found later.
     ///
     /// # Errors
     /// The first mistake, with its line.

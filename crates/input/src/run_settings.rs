@@ -47,8 +47,8 @@ pub(crate) struct Clear {
 
 /// What the entry `run` of a bundle's list of runs sets in `machine`, the tree of a machine file:
 /// the speed (for a free crank `speed_reference_rpm`), the pressures of each throw, and the
-/// clearances of its joints. Paths and values are those of [`paths::set`]; what the run does not
-/// tell stays as the machine has it.
+/// clearances of its joints. Paths and values are those of [`paths::set`]; keys that the run
+/// leaves out stay as the machine has them.
 ///
 /// # Errors
 /// The first value that cannot be, key that is unknown, or throw that the machine does not have;

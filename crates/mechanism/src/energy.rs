@@ -36,7 +36,7 @@ impl<S: Scalar> Energy<S> {
 pub struct Powers<S> {
     /// Of the gas (and line pressures) on the crosshead bodies.
     pub gas: S,
-    /// Of the drive on the shaft, and of whatever shakes the frame.
+    /// Of the drive on the shaft, and of the effects that shake the frame.
     pub drive: S,
     /// Lost to friction, rings included.
     pub friction: S,

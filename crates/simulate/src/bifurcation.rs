@@ -53,7 +53,7 @@ pub trait Continuation {
     /// Where there is no such system.
     fn carry(&self, state: Self::State, value: usize) -> Result<Self::State, Self::Error>;
 
-    /// Goes on for one revolution; `watched` tells that its point counts, or the next one's.
+    /// Goes on for one revolution; `watched` is true where its point counts, or the next one's.
     ///
     /// # Errors
     /// Where it fails.
@@ -199,7 +199,7 @@ impl<C: Continuation> Iterator for Walk<'_, C> {
             self.position += 1;
             let recorded = if own { self.settings.revolutions } else { 0 };
             let visited = self.visit(value, recorded);
-            // What fails before the chunk's own values is told by the chunk that they belong to.
+            // What fails before the chunk's own values is reported by the chunk that they belong to.
             if own {
                 return Some((value, visited));
             }

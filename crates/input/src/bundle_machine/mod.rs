@@ -153,7 +153,7 @@ fn split(section: &Map<String, Value>) -> Result<[Map<String, Value>; 2], Error>
 struct Throw {
     name: String,
     radius: Number<AboveZero>,
-    /// Its sections; in a list of throws also what tells it from the others.
+    /// Its sections; in a list of throws also what distinguishes it from the others.
     sections: Map<String, Value>,
 }
 

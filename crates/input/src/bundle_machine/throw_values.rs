@@ -181,7 +181,7 @@ impl ThrowValues {
             .collect())
     }
 
-    /// The sections, and what tells the throw from others.
+    /// The sections, and what distinguishes the throw from others.
     pub(super) fn entry(&self) -> Result<Map<String, Value>, Error> {
         let mut entry = Map::new();
         entry.insert("name".into(), self.name.as_deref().into());

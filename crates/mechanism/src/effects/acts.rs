@@ -1,4 +1,4 @@
-//! Where effects act in the equations: one method a place, which does nothing unless a law says so.
+//! Where effects act in the equations: one method for each place. By default a method does nothing.
 
 use crate::plane::Vec2;
 use scalar::Scalar;
