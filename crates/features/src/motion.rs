@@ -3,10 +3,10 @@
 //! One signal of the window is analysed: its first acceleration (m/s^2), else its first channel but the
 //! crank angle. Entropies, dimension and recurrence take it decimated, against aliasing, to at most
 //! [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period; what is still too long loses
-//! its end. Regime, exponent and 0-1 test come from the same samples where no shaft is known, or where
-//! it repeats less than half of the signal; else from the signal over crank angle, with
-//! [`PER_REVOLUTION`] samples a revolution, whose scatter from revolution to revolution is judged
-//! (crate chaos, module forced).
+//! its end. Regime, exponent and 0-1 test come from the signal over crank angle, with [`PER_REVOLUTION`]
+//! samples a revolution, by its scatter from revolution to revolution (crate chaos, module forced). They
+//! come from the decimated samples where no shaft is known, or where the shaft repeats less than half of
+//! the signal.
 
 use crate::definition::{Definition, Group};
 use crate::reason::Reason;

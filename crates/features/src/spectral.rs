@@ -46,8 +46,8 @@ pub(crate) const SHAPE_TO_HZ: f64 = 2560.0;
 /// Nyquist frequency. Recorders sample at 2.5 times their bandwidth or more (2.56 in analysers).
 pub(crate) const PASSED: f64 = 0.4;
 
-/// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm, the lowest
-/// usual speed of process compressors (API 618), so that the lines of faster ones stand apart.
+/// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm. That is the
+/// lowest usual speed of process compressors (API 618), so that the lines of faster ones are resolved.
 pub(crate) const SEGMENT_S: f64 = 0.2;
 
 /// Mean squares in the bands. A Hann window keeps the strong low orders from leaking into the

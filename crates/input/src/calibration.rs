@@ -130,8 +130,8 @@ fn name_alone(schema: &mut Schema) {
 }
 
 impl Calibration {
-    /// The default settings of a calibration.
-    pub fn of(bundles: Vec<PathBuf>) -> Self {
+    /// The default settings for these bundles.
+    pub fn with_defaults(bundles: Vec<PathBuf>) -> Self {
         Self {
             bundle: Or::Section(bundles),
             machine: None,
@@ -194,7 +194,7 @@ impl Calibration {
 
 /// The JSON Schema of calibration.yaml, for editors and checks.
 pub fn schema() -> Value {
-    let mut schema = crate::schema::of::<Calibration>();
+    let mut schema = crate::schema::generate::<Calibration>();
     schema["title"] = "calibration.yaml".into();
     schema
 }

@@ -45,7 +45,7 @@ pub struct Powers<S> {
 }
 
 #[inline(always)]
-pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<S> {
+pub(crate) fn energy<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<S> {
     let gravity = Vec2::new(machine.gravity_x, machine.gravity_y);
     let shaft = &machine.crankshaft;
     let (sine, cosine) = at.angle.sin_cos();

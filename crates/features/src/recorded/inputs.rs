@@ -145,7 +145,7 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     }
     files.sort();
     if files.is_empty() {
-        return Err(Error::of(
+        return Err(Error::in_file(
             folder,
             "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset)",
         ));

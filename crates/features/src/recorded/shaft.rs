@@ -85,7 +85,7 @@ pub(super) fn reference(
         (None, None) => Ok(None),
         (None, Some(i)) => {
             let angle = scaled(&channels[i], None);
-            let mut angle = angle.map_err(|reason| Error::of(path, reason))?;
+            let mut angle = angle.map_err(|reason| Error::in_file(path, reason))?;
             angle.role = Role::CrankAngle {
                 top_dead_centre: asked.top_dead_centre.or(Some(0.0)),
             };
@@ -160,7 +160,7 @@ fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Res
                 "column `{column}`: the unit of a crank angle is rad, deg or rev, but found {found}; \
                  write it in brackets: --crank-angle '{column} [deg]'"
             );
-            return Err(Error::of(path, reason));
+            return Err(Error::in_file(path, reason));
         }
     };
     Ok(ToSi { offset: 0.0, scale })

@@ -106,12 +106,12 @@ impl Layout {
         let shown = input.path.display().to_string();
         let mut label = |column: Column| {
             let position = labels.position(column);
-            position.map_err(|error| Error::of(&input.path, error))
+            position.map_err(|error| Error::in_file(&input.path, error))
         };
         let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
         let reference = shaft::reference(&input.path, file, &said.crank, meaning)?;
         let channels = channels(input, file, said.unit.as_ref(), reference);
-        let channels = channels.map_err(|reason| Error::of(&input.path, reason))?;
+        let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
         let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();

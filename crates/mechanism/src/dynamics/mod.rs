@@ -91,7 +91,7 @@ impl<S: Scalar> Dynamics<S> {
     pub fn energy(&self) -> Energy<S> {
         S::vectorised(
             #[inline(always)]
-            || energy::of(&self.machine, &self.evaluation),
+            || energy::energy(&self.machine, &self.evaluation),
         )
     }
 }
