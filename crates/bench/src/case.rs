@@ -112,7 +112,7 @@ impl Bench<'_> {
             WholeFile::write(&folder.join(TRUTH), text.as_bytes())?;
         }
         let start = cpu_seconds();
-        let calibration = Calibration::of(vec![bundle.clone()]);
+        let calibration = Calibration::with_defaults(vec![bundle.clone()]);
         let asked = Asked {
             calibration: &calibration,
             base: Path::new(""),

@@ -151,7 +151,7 @@ impl HiddenEffects {
 
 /// The JSON Schema of hidden-effects.yaml, for editors and checks.
 pub fn schema() -> Value {
-    let mut schema = input::schema::of::<HiddenEffects>();
+    let mut schema = input::schema::generate::<HiddenEffects>();
     schema["title"] = "hidden-effects.yaml".into();
     schema
 }

@@ -20,10 +20,10 @@ pub struct Definition {
     pub source: &'static str,
 }
 
-/// What features tell of a signal, in the order in which they are documented.
+/// What features describe of a signal, in the order in which they are documented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
-    /// Of its samples, whatever their order.
+    /// Of its samples, independent of their order.
     Statistics,
     /// Of its frequencies.
     Spectrum,

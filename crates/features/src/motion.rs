@@ -3,10 +3,10 @@
 //! One signal of the window is analysed: its first acceleration (m/s^2), else its first channel but the
 //! crank angle. Entropies, dimension and recurrence take it decimated, against aliasing, to at most
 //! [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period; what is still too long loses
-//! its end. Regime, exponent and 0-1 test come from the same samples where no shaft is known, or where
-//! it repeats less than half of the signal; else from the signal over crank angle, with
-//! [`PER_REVOLUTION`] samples a revolution, whose scatter from revolution to revolution is judged
-//! (crate chaos, module forced).
+//! its end. Regime, exponent and 0-1 test come from the signal over crank angle, with [`PER_REVOLUTION`]
+//! samples a revolution, by its scatter from revolution to revolution (crate chaos, module forced). They
+//! come from the decimated samples where no shaft is known, or where the shaft repeats less than half of
+//! the signal.
 
 use crate::definition::{Definition, Group};
 use crate::reason::Reason;
@@ -56,7 +56,7 @@ const ROSENSTEIN: &str = "Rosenstein et al. 1993 at equal phases (Stark 1999) wi
     Royer 1993), or a map with errors in variables; crate chaos, modules forced and exponent";
 const MARWAN: &str = "Marwan et al. 2007, Physics Reports 438, 237";
 
-/// The numbers that tell a motion; the same for every recording.
+/// The numbers that describe a motion; the same for every recording.
 pub fn motion_definitions() -> Vec<Definition> {
     let line = |name: &str, unit: &str, description: &str, formula, source| Definition {
         name: name.to_owned(),

@@ -3,7 +3,7 @@
 /// Why a feature has no value in a window.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Reason {
-    /// The feature tells the shape of a fluctuation, and there is none.
+    /// The feature describes the shape of a fluctuation, and the signal has no fluctuation.
     #[error("the signal is constant")]
     Constant,
     /// A frequency band begins where the recording ends.

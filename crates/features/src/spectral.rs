@@ -14,7 +14,7 @@ use signal::welch::welch_over;
 use signal::windows;
 
 /// Edges of the frequency bands, Hz: octaves, the first reaching down to 0 and the last up to
-/// the Nyquist frequency, whatever it is. They are the same for every sample rate, so that
+/// the Nyquist frequency. They are the same for every sample rate, so that
 /// recordings can be compared.
 pub(crate) const BAND_EDGES_HZ: [f64; 10] = [
     0.0,
@@ -38,7 +38,7 @@ pub(crate) const HIGHEST_ENVELOPE_ORDER: usize = 5;
 /// Sectors of the crank angle, 30° each.
 pub(crate) const SECTORS: usize = 12;
 
-/// The shape of a spectrum is told up to this frequency, Hz: the last edge of the octave bands, which
+/// The shape of a spectrum is described up to this frequency, Hz: the last edge of the octave bands, which
 /// are the same for every sample rate. What lies above has a band of its own.
 pub(crate) const SHAPE_TO_HZ: f64 = 2560.0;
 
@@ -46,8 +46,8 @@ pub(crate) const SHAPE_TO_HZ: f64 = 2560.0;
 /// Nyquist frequency. Recorders sample at 2.5 times their bandwidth or more (2.56 in analysers).
 pub(crate) const PASSED: f64 = 0.4;
 
-/// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm, the lowest
-/// usual speed of process compressors (API 618), so that the lines of faster ones stand apart.
+/// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm. That is the
+/// lowest usual speed of process compressors (API 618), so that the lines of faster ones are resolved.
 pub(crate) const SEGMENT_S: f64 = 0.2;
 
 /// Mean squares in the bands. A Hann window keeps the strong low orders from leaking into the

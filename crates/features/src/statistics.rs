@@ -1,4 +1,4 @@
-//! Statistics of the samples, whatever their order in time.
+//! Statistics of the samples, independent of their order in time.
 
 use crate::reason::Reason;
 

@@ -154,7 +154,7 @@ impl Bundle {
             .file
             .components()
             .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        // One that is not there is told by who opens it.
+        // The caller that opens it reports one that is missing.
         let leads_out = || match (path.canonicalize(), self.folder().canonicalize()) {
             (Ok(path), Ok(folder)) => !path.starts_with(folder),
             _ => false,

@@ -1,7 +1,7 @@
 //! What a channel of a bundle is, and how its numbers become SI values.
 //!
-//! The column's name tells it where it is one that this program writes
-//! (`throw1.crosshead_acceleration_m_s2`), else the channel's name in words: `throw1 crosshead
+//! It follows from the column's name where this program writes such a column
+//! (`throw1.crosshead_acceleration_m_s2`), else from the channel's name in words: `throw1 crosshead
 //! acceleration`, `cylinder pressure`, `crank-end cylinder pressure`, `crank angle`, `tacho`, `time`.
 
 use crate::error::{Error, Problem};
@@ -76,8 +76,8 @@ impl ToSi {
     }
 }
 
-/// Slips of the keyboard by which a name is taken for a known one that is misspelt: `oil pressure` is
-/// none.
+/// Slips of the keyboard up to which a name is taken for a known one that is misspelt. `oil pressure`
+/// is further away.
 const SLIPS: usize = 2;
 
 const ACCELERATION: Dimension = Dimension::of(1.0, 0.0, -2.0, 0.0);

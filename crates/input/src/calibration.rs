@@ -130,8 +130,8 @@ fn name_alone(schema: &mut Schema) {
 }
 
 impl Calibration {
-    /// The settings with which recordings are calibrated where nobody says more.
-    pub fn of(bundles: Vec<PathBuf>) -> Self {
+    /// The default settings for these bundles.
+    pub fn with_defaults(bundles: Vec<PathBuf>) -> Self {
         Self {
             bundle: Or::Section(bundles),
             machine: None,
@@ -145,7 +145,7 @@ impl Calibration {
         }
     }
 
-    /// Reads a settings file; `document` tells lines for what turns out later.
+    /// Reads a settings file; `document` gives the lines of mistakes that are found later.
     ///
     /// # Errors
     /// The first mistake, with its line.
@@ -194,7 +194,7 @@ impl Calibration {
 
 /// The JSON Schema of calibration.yaml, for editors and checks.
 pub fn schema() -> Value {
-    let mut schema = crate::schema::of::<Calibration>();
+    let mut schema = crate::schema::generate::<Calibration>();
     schema["title"] = "calibration.yaml".into();
     schema
 }

@@ -68,7 +68,7 @@ pub fn get<'a>(tree: &'a Value, path: &str) -> Result<Option<&'a Value>, Error> 
 /// item of a list. A pattern without one stands for itself.
 ///
 /// # Errors
-/// Where the format has no such path, whatever stands for `*`.
+/// Where the format has no such path for any value of `*`.
 pub fn matching(tree: &Value, pattern: &str) -> Result<Vec<String>, Error> {
     let parts: Vec<&str> = pattern.split('.').collect();
     let Some(star) = parts.iter().position(|part| *part == "*") else {

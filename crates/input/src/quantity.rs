@@ -108,8 +108,12 @@ impl<K: Kind, B: Bound> Quantity<K, B> {
     }
 
     /// Reads a text.
+    ///
+    /// # Errors
+    /// The text, quoted, with the reason: it is no number with a unit, its unit has another dimension
+    /// than the kind, or the bound forbids the value.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let measure = unit::parse(text).map_err(|error| found(text, &error))?;
+        let measure = unit::parse(text).map_err(|error| describe_error(text, &error))?;
         if measure.dimension != K::DIMENSION {
             return Err(format!("{} ({})", quoted(text), describe(&measure)));
         }
@@ -118,7 +122,7 @@ impl<K: Kind, B: Bound> Quantity<K, B> {
 }
 
 /// `text` and what keeps it from being a quantity.
-pub(crate) fn found(text: &str, error: &UnitError) -> String {
+pub(crate) fn describe_error(text: &str, error: &UnitError) -> String {
     match error {
         UnitError::NoNumber => quoted(text),
         error => format!("{} ({error})", quoted(text)),

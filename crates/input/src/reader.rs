@@ -1,9 +1,9 @@
 //! Reading a tree into typed structs, so that every mistake knows its dotted path.
 //!
 //! The tree is the same whether it was written by hand or put together by a sweep, and so are the
-//! messages. Beyond what serde does by itself there is one convention: an enum whose serde name is
-//! `tag:law=impact` is a section whose key `law` names the variant, `impact` where it is left out
-//! (`tag:measure`: it must be there). serde's own `tag` attribute would lose the path; schemars'
+//! messages. There is one convention beyond serde's: an enum whose serde name is `tag:law=impact` is a
+//! section whose key `law` names the variant. Where the key is left out, the variant is `impact`; with
+//! `tag:measure` the key is required. serde's own `tag` attribute would lose the path. That of schemars
 //! stays, for the schema.
 
 use crate::error::{Error, unexpected};

@@ -45,10 +45,11 @@ pub(crate) struct Clear {
     clearance_m: Number<FromZero>,
 }
 
-/// What the entry `run` of a bundle's list of runs sets in `machine`, the tree of a machine file:
-/// the speed (for a free crank `speed_reference_rpm`), the pressures of each throw, and the
-/// clearances of its joints. Paths and values are those of [`paths::set`]; what the run does not
-/// tell stays as the machine has it.
+/// What an entry of a bundle's list of runs sets in `machine`, the tree of a machine file.
+///
+/// It sets the speed (for a free crank `speed_reference_rpm`), the pressures of each throw, and the
+/// clearances of its joints. Paths and values are those of [`paths::set`]. Keys that the run leaves out
+/// stay as the machine has them.
 ///
 /// # Errors
 /// The first value that cannot be, key that is unknown, or throw that the machine does not have;

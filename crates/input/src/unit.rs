@@ -201,6 +201,9 @@ const COMMON: [&str; 32] = [
 ];
 
 /// Reads a number with its unit.
+///
+/// # Errors
+/// A text that does not begin with a number in range, or whose unit is missing or not known.
 pub fn parse(text: &str) -> Result<Measure, UnitError> {
     let text = text.trim();
     let (number, rest) = split_number(text).ok_or(UnitError::NoNumber)?;

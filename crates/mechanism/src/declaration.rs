@@ -190,7 +190,7 @@ pub enum PlaceKey {
 }
 
 /// Declares an effect. The module gets `DECLARATION` and a struct `Values` of plain numbers, SI; with
-/// `as Law` also `of`, which makes the law from them where the names of its fields are the keys.
+/// `as Law` also `law`, which makes the law from them where the names of its fields are the keys.
 ///
 /// ```text
 /// declaration! {
@@ -256,20 +256,20 @@ macro_rules! declaration {
 
         impl Values {
             /// The values in the order of the declaration.
-            pub fn of(values: &[f64]) -> Self {
+            pub fn new(values: &[f64]) -> Self {
                 let mut values = values.iter().copied();
                 Self { $( $key: values.next().unwrap_or($start), )+ }
             }
         }
 
-        $crate::declaration! { @of [$($key)+] $($type)? }
+        $crate::declaration! { @law [$($key)+] $($type)? }
     };
 
-    (@of [$($key:ident)+]) => {};
-    (@of [$($key:ident)+] $type:ident) => {
+    (@law [$($key:ident)+]) => {};
+    (@law [$($key:ident)+] $type:ident) => {
         /// The law with these values.
-        pub fn of(values: &[f64], _: $crate::effects::Alternatives) -> $type {
-            let Values { $($key),+ } = Values::of(values);
+        pub fn law(values: &[f64], _: $crate::effects::Alternatives) -> $type {
+            let Values { $($key),+ } = Values::new(values);
             $type { $($key),+ }
         }
     };

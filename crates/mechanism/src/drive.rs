@@ -14,7 +14,7 @@ alternatives! {
 }
 
 parameters! {
-    /// A crank that turns as it is told, whatever it takes:
+    /// A crank that turns at a given speed, which no load changes:
     ///
     /// ```text
     /// θ = φ + Σ (d_k / k) sin(k φ + ψ_k),   φ = ω t

@@ -36,7 +36,7 @@ impl<S: Scalar> Energy<S> {
 pub struct Powers<S> {
     /// Of the gas (and line pressures) on the crosshead bodies.
     pub gas: S,
-    /// Of the drive on the shaft, and of whatever shakes the frame.
+    /// Of the drive on the shaft, and of the effects that shake the frame.
     pub drive: S,
     /// Lost to friction, rings included.
     pub friction: S,
@@ -45,7 +45,7 @@ pub struct Powers<S> {
 }
 
 #[inline(always)]
-pub(crate) fn of<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<S> {
+pub(crate) fn energy<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Energy<S> {
     let gravity = Vec2::new(machine.gravity_x, machine.gravity_y);
     let shaft = &machine.crankshaft;
     let (sine, cosine) = at.angle.sin_cos();

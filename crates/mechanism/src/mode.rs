@@ -60,8 +60,8 @@ parameters! {
         pub suction: S,
         /// 1 while the discharge valve is open.
         pub discharge: S,
-        /// What is trapped, as p xᵐ at the stroke's beginning over what the stroke would begin with at its
-        /// dead centre had a valve been open there: 1 in a crank that comes round with valves that open.
+        /// What is trapped: p xᵐ at the stroke's beginning, over its value at the dead centre with an open
+        /// valve. It is 1 where the crank comes round and the valves open.
         pub trapped: S,
     }
 }

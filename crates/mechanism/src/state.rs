@@ -11,9 +11,16 @@ use crate::effects::{Acting, Acts};
 use crate::machine::Machine;
 use scalar::Scalar;
 
-/// Where each part of the state lies. An offset joint takes `x, y, ẋ, ẏ`; a guide `y, τ, ẏ, τ̇`;
-/// an elastic rod `η, η̇` (its stretch); gas that leaves its polytrope the drifts of head and crank
-/// end; a free crank `θ − ω_ref t, θ̇ − ω_ref`; a frame `x, y, ẋ, ẏ`; the ledger four works.
+/// Where each part of the state lies: the index of its first component.
+///
+/// | part | components |
+/// |---|---|
+/// | joint with clearance, frame | `x, y, ẋ, ẏ` (m, m/s) |
+/// | guide | `y, τ, ẏ, τ̇` (m, rad, per second) |
+/// | elastic rod | its stretch `η, η̇` (1, 1/s) |
+/// | gas that leaves its polytrope | the drifts of head end and crank end (1) |
+/// | free crank | `θ − ω_ref t, θ̇ − ω_ref` (rad, rad/s) |
+/// | ledger | four works (J) |
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// The main bearing's offset.

@@ -210,9 +210,10 @@ impl<S: Real> Dynamics<S> {
         }
     }
 
-    /// What the present forces depend on beside time, state and switches: the approach speeds of
-    /// closed contacts whose law has a coefficient of restitution, m/s; and what chambers have trapped
-    /// where no dead centre has set it.
+    /// What the present forces depend on beside time, state and switches:
+    ///
+    /// - the approach speeds of closed contacts whose law has a coefficient of restitution, m/s;
+    /// - what chambers have trapped where no dead centre has set it.
     pub fn memory_mut(&mut self) -> Vec<&mut S> {
         let Dynamics { machine, mode, .. } = self;
         let joint = |joint: &Revolute<S>| {

@@ -12,11 +12,10 @@
 //! [`SETTLE`] times the transient, and is continued to its first value before anything is kept. The
 //! cuts depend on the settings alone, so the result does not depend on the threads.
 //!
-//! What this follows: every motion that is reached from the start, and every one that a walk of
-//! `LEAD` values leads onto. What it does not: a branch that is reached only by coming from further
-//! away (a hysteresis wider than a chunk is seen up to the end of the chunk and may be lost there,
-//! which shows as a jump at a cut). Where that matters, a chunk as long as the diagram walks each
-//! direction in one piece.
+//! It follows every motion that is reached from the start, and every one that a walk of `LEAD` values
+//! leads onto. It can miss a branch that is reached only from further away: a hysteresis wider than a
+//! chunk may be lost at the end of the chunk, which shows as a jump at a cut. Where that matters, a
+//! chunk as long as the diagram walks each direction in one piece.
 //!
 //! A value at which the system fails is reported as such; the next one starts afresh.
 
@@ -53,7 +52,7 @@ pub trait Continuation {
     /// Where there is no such system.
     fn carry(&self, state: Self::State, value: usize) -> Result<Self::State, Self::Error>;
 
-    /// Goes on for one revolution; `watched` tells that its point counts, or the next one's.
+    /// Goes on for one revolution; `watched` is true where its point counts, or the next one's.
     ///
     /// # Errors
     /// Where it fails.
@@ -199,7 +198,7 @@ impl<C: Continuation> Iterator for Walk<'_, C> {
             self.position += 1;
             let recorded = if own { self.settings.revolutions } else { 0 };
             let visited = self.visit(value, recorded);
-            // What fails before the chunk's own values is told by the chunk that they belong to.
+            // What fails before the chunk's own values is reported by the chunk that they belong to.
             if own {
                 return Some((value, visited));
             }

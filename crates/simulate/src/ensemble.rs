@@ -11,7 +11,7 @@ use scalar::{InLanes, Lanes, Scalar, in_lanes};
 
 /// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
 /// same bits. A record whose energy does not balance over the revolution after it is an error. Each record becomes what `keep` makes of it as soon as it is there, so that none waits
-/// for the others at its full size; `keep` is told which of `asked` it is of.
+/// for the others at its full size; `keep` receives its index in `asked`.
 pub fn simulate_together<T>(
     asked: &[Asked],
     mut keep: impl FnMut(usize, Result<Record, Error>) -> T,
@@ -142,7 +142,7 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &
             coach.widen();
         }
     }
-    // Whoever is left alone is faster by itself.
+    // A machine that is left alone is faster by itself.
     let last = coach.passengers.iter_mut().enumerate();
     for (lane, passenger) in last {
         if let Some(Passenger {

@@ -24,7 +24,7 @@ pub trait Flow {
     }
 }
 
-/// The angle that tells where in its cycle a flow stands: `rate` · t, plus a component of the state
+/// The phase of a flow in its cycle: `rate` · t, plus a component of the state
 /// where nothing dictates the angle. In that case the flow must depend on time through the angle
 /// alone: it is autonomous, and the length of its period is its own.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use crate::run::Run;
 use crate::settings::Transient;
 use integrate::Real;
 
-/// Revolutions in which a motion that settles comes nearer to itself at least by this factor.
+/// Within so many revolutions the distance of a settling motion from itself falls at least by this factor.
 const PATIENCE: usize = 4;
 const NEARER: f64 = 0.5;
 /// Periods, in revolutions, that count as settled.
@@ -94,8 +94,8 @@ impl Leaving {
 }
 
 impl<S: Real> Run<S> {
-    /// Leaves the start behind, but for the last revolution, which leads into the record. Tells how
-    /// many revolutions the transient takes, and after how many the motion repeats itself, if it had
+    /// Leaves the start behind, but for the last revolution, which leads into the record. Returns
+    /// how many revolutions the transient takes, and after how many the motion repeats itself, if it has
     /// settled.
     pub(crate) fn leave_transient(
         &mut self,

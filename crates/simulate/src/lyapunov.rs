@@ -9,10 +9,9 @@
 //! free crank makes the system autonomous: a regular motion then shows 0.
 //!
 //! Where rigid joints catch their journals without rebound, two directions a joint are lost for
-//! good. An exponent of a direction that shrinks below rounding within a renormalisation's time is
-//! −∞; what the integration's error leaves of the other one fades at the rate at which a following
-//! joint is drawn back onto its surface (Baumgarte 1972). So do the two directions that lead off a
-//! massless link: those exponents are not the machine's.
+//! good. A direction that shrinks below rounding between two renormalisations has the exponent −∞. The
+//! other one fades at the rate at which a following joint is drawn back onto its surface (Baumgarte
+//! 1972). So do the two directions that lead off a massless link. Those exponents are not the machine's.
 
 use crate::error::Error;
 use crate::flow::Flow;
@@ -23,8 +22,8 @@ use crate::tangents::Tangents;
 const STRETCHES: u32 = 4;
 /// And of several: a stiff contact must not shrink one against another to rounding.
 const MANY_STRETCHES: u32 = 64;
-/// Where a revolution begins, as a share of one: no dead centre of any throw is there, so that a
-/// run can be taken up from the end of a revolution without a switch at that instant.
+/// Where a revolution begins, as a share of one. No throw has a dead centre there, so that a run can go
+/// on from the end of a revolution without a switch at that instant.
 const OFFSET: f64 = 0.07;
 /// Batches that the standard error is judged from.
 const BATCHES: usize = 10;
@@ -120,7 +119,7 @@ impl<F: Flow, const N: usize> Followed<F, N> {
         let of = |i: usize| growth.iter().map(|grown| grown[i]).collect::<Vec<_>>();
         Ok(Self {
             exponents: (0..tangents.count())
-                .map(|i| Exponent::of(&of(i), revolution))
+                .map(|i| Exponent::from_growth(&of(i), revolution))
                 .collect(),
             end: tangents,
             strobes,
@@ -135,7 +134,7 @@ impl Exponent {
     }
 
     /// From the growth over each revolution.
-    fn of(growth: &[f64], revolution: f64) -> Self {
+    fn from_growth(growth: &[f64], revolution: f64) -> Self {
         let count = growth.len() as f64;
         let mean = growth.iter().sum::<f64>() / count;
         let mut sum = 0.0;

@@ -2,9 +2,8 @@
 //!
 //! A motion y that repeats itself after a period satisfies y = φ(y, p), with φ the flow over the
 //! period. Hence dy/dp = (1 − ∂φ/∂y)⁻¹ ∂φ/∂p (Seydel 2010, section 7.3: the sensitivity of a fixed
-//! point), and what a sensor sees changes by its tangent toward p plus its tangents toward each
-//! component of y times those of dy/dp. One period with tangents is all that it takes: the transient
-//! is integrated without.
+//! point). What a sensor sees changes by its tangent toward p, plus its tangents toward each component
+//! of y times those of dy/dp. Only one period is integrated with tangents, the transient without.
 //!
 //! With a free crank the period moves, too. The crank angle at the start is held in its place, and
 //! tangents at the end are taken at the same angle a whole number of turns later.

@@ -5,10 +5,12 @@ use mechanism::joints::revolute::Revolute;
 use mechanism::state::Layout;
 use mechanism::{Dynamics, Machine};
 
-/// Penetration over clearance beyond which a contact law says little: 1. There the overlapping arc of pin
-/// and bearing is 120° wide (half of it is arccos(c / (c + δ)), 60° at δ = c), where the laws take the
-/// contact for narrow against the radius (Johnson 1985, Contact Mechanics, section 4.2), and the journal
-/// moves by its deformation as much as by its clearance, so that the clearance no longer says what is worn.
+/// Penetration over clearance beyond which a contact law says little: 1.
+///
+/// There the overlapping arc of pin and bearing is 120° wide: half of it is arccos(c / (c + δ)), 60° at
+/// δ = c. The laws assume a contact that is narrow against the radius (Johnson 1985, Contact Mechanics,
+/// section 4.2). The journal moves by its deformation as much as by its clearance, so that the clearance
+/// is no measure of the wear.
 pub const DEEPEST_OVER_CLEARANCE: f64 = 1.0;
 
 /// How deep the surfaces of a joint were pressed into each other.
@@ -98,8 +100,8 @@ impl Watch {
         Self(joints)
     }
 
-    /// Looks at a state, of which `y` gives the components.
-    pub fn look(&mut self, y: impl Fn(usize) -> f64) {
+    /// Takes in a state, of which `y` gives the components.
+    pub fn update(&mut self, y: impl Fn(usize) -> f64) {
         for (place, seen) in &mut self.0 {
             let away = match *place {
                 Place::Journal(i) => (y(i) * y(i) + y(i + 1) * y(i + 1)).sqrt(),

@@ -2,9 +2,11 @@
 //! and each time a journal touches its bearing.
 //!
 //! Both are located, not sampled. The section is one more guard of the integration, zero where the
-//! crank passes, so a free crank is caught at the angle itself and not at multiples of a period;
-//! impacts are the guards of the contacts. What lies on a curve or a cloud of points in the first
-//! section is quasi-periodic or chaotic; n points that repeat are a period of n revolutions.
+//! crank passes. So a free crank is caught at the angle itself, not at multiples of a period. Impacts
+//! are the guards of the contacts.
+//!
+//! n points that repeat are a period of n revolutions. Points on a curve are a quasi-periodic motion,
+//! a cloud of points is a chaotic one.
 
 pub use crate::section::{
     Impact, Joint, JointPoint, Revolution, Sections, ThrowPoint, clear_joints,

@@ -158,7 +158,7 @@ fn settled_orbit<F: Flow, const N: usize>(
     Ok(None)
 }
 
-/// What tells an exponent from 0.
+/// What separates an exponent from 0.
 struct Limits {
     /// The tangent of a regular motion grows at most in proportion to time: after n revolutions
     /// the average of its logarithm is at most ln n / n per revolution.

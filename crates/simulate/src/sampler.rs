@@ -1,7 +1,7 @@
 //! What sensors see of a run: its motion at equally spaced instants.
 //!
-//! Instants are many, four to eight of them to a recorded sample, so that those within a step are
-//! evaluated side by side; or those within the steps of several runs, where these are in lanes.
+//! A recorded sample takes four to eight instants. Those within a step are evaluated side by side. Where
+//! several runs are in lanes, those within their steps are.
 
 use crate::chain::UnderWay;
 use crate::instants::Instants;
@@ -67,7 +67,7 @@ impl<'a> Sampler<'a> {
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
-            sampler.look(first);
+            sampler.sample(first);
         }
         sampler
     }
@@ -77,7 +77,7 @@ impl<'a> Sampler<'a> {
         self.instants.at(self.instants.count.saturating_sub(1))
     }
 
-    fn look(&mut self, at: &Evaluation<f64>) {
+    fn sample(&mut self, at: &Evaluation<f64>) {
         for (sensor, series) in self.sensors.iter().zip(&mut self.series) {
             series.extend([sensor.measured.value(at)]);
         }
@@ -101,7 +101,7 @@ impl<'a> Sampler<'a> {
 
     /// Looks at the instants within a step.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
-        self.joints.look(|i| step.to[i]);
+        self.joints.update(|i| step.to[i]);
         let within = self.within(step.start + step.length);
         if within == 0 {
             return;
@@ -112,7 +112,7 @@ impl<'a> Sampler<'a> {
                 let t = self.instants.at(self.seen);
                 let mut state = std::mem::take(&mut self.state);
                 step.interpolate((t - step.start) / step.length, &mut state);
-                self.look(dynamics.evaluate(t, &state));
+                self.sample(dynamics.evaluate(t, &state));
                 self.state = state;
             }
             return;
@@ -154,7 +154,7 @@ impl<'a> Sampler<'a> {
         self.finish();
         let last = run.evaluate();
         while self.seen < self.instants.count {
-            self.look(last);
+            self.sample(last);
         }
         let series = self.series.into_iter().map(|series| series.end(start));
         Seen {
@@ -178,7 +178,7 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
         if let Some(sampler) = sampler
             && stands[lane]
         {
-            sampler.joints.look(|i| step.to[i].get(lane));
+            sampler.joints.update(|i| step.to[i].get(lane));
             within[lane] = sampler.within(stop.get(lane));
         }
     }

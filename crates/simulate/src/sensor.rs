@@ -129,7 +129,7 @@ pub struct Resonance {
     pub damping_ratio: f64,
 }
 
-/// A sine whose frequency has nothing to do with the machine.
+/// A sine whose frequency is independent of the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hum {
     /// Amplitude, in the channel's unit.
@@ -158,7 +158,7 @@ pub struct Noise {
     pub pink_share: f64,
 }
 
-/// How the size of the noise is told.
+/// How the size of the noise is given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NoiseLevel {
     /// RMS in the channel's unit.

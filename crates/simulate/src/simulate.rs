@@ -42,7 +42,7 @@ pub fn simulate_later(
     Task::start(asked, delay, kept)?.finish(&mut |_| ())
 }
 
-/// As [`simulate`] with a trace; `watch` is told after each step which share of the run is done.
+/// As [`simulate`] with a trace; after each step `watch` receives the share of the run that is done.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 use scalar::Dual;
 
 /// A tangent shorter than this share of its length, once its parts along the others are taken
-/// away, is rounding: a rigid impact swallowed its direction, or a contact too stiff to tell.
+/// away, is rounding: a rigid impact swallowed its direction, or the contact is too stiff to resolve.
 const LOST: f64 = 1e-12;
 
 /// A trajectory and its tangents.

@@ -1,4 +1,4 @@
-//! A record under way, as a sequence of courses: whoever drives it integrates to the end of each.
+//! A record under way, as a sequence of courses; the caller integrates to the end of each.
 
 use crate::chain::Sampling;
 use crate::error::Error;
@@ -212,7 +212,7 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Goes to the end by itself; `watch` is told after each step which share of the way is done.
+    /// Goes to the end by itself; after each step `watch` receives the share of the way that is done.
     pub fn finish(mut self, watch: &mut dyn FnMut(f64)) -> Result<Record, Error> {
         let whole = self.planned_end();
         loop {

@@ -113,7 +113,11 @@ pub(crate) fn read(
             let base = file.parent().unwrap_or(Path::new("")).to_owned();
             (settings, base, Some(document))
         }
-        bundles => (Calibration::of(bundles.to_vec()), PathBuf::new(), None),
+        bundles => (
+            Calibration::with_defaults(bundles.to_vec()),
+            PathBuf::new(),
+            None,
+        ),
     };
     if let Some(machine) = machine {
         // From here on, and not from the folder of the file.

@@ -36,7 +36,7 @@ pub enum Error {
 
 impl Error {
     /// That the file at `path` cannot be used.
-    pub(super) fn of(path: &Path, reason: impl ToString) -> Self {
+    pub(super) fn in_file(path: &Path, reason: impl ToString) -> Self {
         Self::Wrong {
             file: path.display().to_string(),
             reason: reason.to_string(),
@@ -54,13 +54,13 @@ impl Error {
                 let nearest = input::nearest(&name, names.iter().map(String::as_str));
                 let hint = nearest.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
                 let among = among.join(", ");
-                Self::of(
+                Self::in_file(
                     path,
                     format!("no column `{name}`; there are: {among}{hint}"),
                 )
             }
             error @ (recordings::Error::SampleRate(_) | recordings::Error::ValueKind { .. }) => {
-                Self::of(path, error)
+                Self::in_file(path, error)
             }
             error => Self::File(error),
         }

@@ -15,7 +15,7 @@ pub struct Input {
     pub path: PathBuf,
     pub(super) options: Options,
     pub(super) speed_rpm: Option<f64>,
-    /// Labels that the bundle tells.
+    /// Labels from the bundle.
     pub(super) labels: Vec<(Column, Value)>,
     /// What the bundle says that its columns are, with their units.
     pub(super) meanings: BTreeMap<String, (Meaning, String)>,
@@ -51,7 +51,7 @@ pub struct Said {
 }
 
 impl Said {
-    /// The options for a file of which these columns tell where the crank stands.
+    /// The options for a file in which these columns give the crank angle.
     fn options(&self, references: impl Iterator<Item = String>) -> Options {
         let mut options = self.options.clone();
         // Without a choice of columns all are read.
@@ -145,7 +145,7 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     }
     files.sort();
     if files.is_empty() {
-        return Err(Error::of(
+        return Err(Error::in_file(
             folder,
             "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset)",
         ));
@@ -194,7 +194,7 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
     })
 }
 
-/// What a bundle tells about a run.
+/// What a bundle states of a run.
 fn labels(run: &Run) -> Vec<(Column, Value)> {
     let real = |name: String, unit: &str, meaning: &str, value: f64| {
         let column = Column::new(name, Kind::Real, meaning).unit(unit).optional();

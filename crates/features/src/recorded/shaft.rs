@@ -36,7 +36,7 @@ impl Asked {
     }
 }
 
-/// The channel that tells where the crank stands, and how: the one asked for, else that of the bundle,
+/// The channel that gives the crank angle, and how: the one asked for, else that of the bundle,
 /// else the column `crank_angle_rad` or `crank_angle_deg`.
 pub(super) fn reference(
     path: &Path,
@@ -85,7 +85,7 @@ pub(super) fn reference(
         (None, None) => Ok(None),
         (None, Some(i)) => {
             let angle = scaled(&channels[i], None);
-            let mut angle = angle.map_err(|reason| Error::of(path, reason))?;
+            let mut angle = angle.map_err(|reason| Error::in_file(path, reason))?;
             angle.role = Role::CrankAngle {
                 top_dead_centre: asked.top_dead_centre.or(Some(0.0)),
             };
@@ -160,7 +160,7 @@ fn angle_unit(path: &Path, channel: &MeasuredChannel, unit: Option<&str>) -> Res
                 "column `{column}`: the unit of a crank angle is rad, deg or rev, but found {found}; \
                  write it in brackets: --crank-angle '{column} [deg]'"
             );
-            return Err(Error::of(path, reason));
+            return Err(Error::in_file(path, reason));
         }
     };
     Ok(ToSi { offset: 0.0, scale })
@@ -195,7 +195,7 @@ pub(super) fn crank(samples: &[f32], by: &Scaled) -> Option<Result<Crank, signal
     }
 }
 
-/// The mean speed that the crank angle tells, rpm.
+/// The mean speed by the crank angle, rpm.
 pub(super) fn speed_rpm(crank: &Crank, sample_rate_hz: f64) -> Result<f64, signal::Error> {
     let readings: Vec<f64> = crank.angles.iter().map(|a| f64::from(*a)).collect();
     let angle = CrankAngle::from_encoder(&readings)?;

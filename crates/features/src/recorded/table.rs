@@ -84,7 +84,7 @@ pub(super) struct Layout {
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
     feature_positions: Vec<usize>,
-    /// Places among the labels of all files; none of what is told by a column of its own.
+    /// Places among the labels of all files; none for a label that has a column of its own.
     label_positions: Vec<Option<usize>>,
     /// Labels from elsewhere, with their places.
     known: Vec<(usize, Value)>,
@@ -106,12 +106,12 @@ impl Layout {
         let shown = input.path.display().to_string();
         let mut label = |column: Column| {
             let position = labels.position(column);
-            position.map_err(|error| Error::of(&input.path, error))
+            position.map_err(|error| Error::in_file(&input.path, error))
         };
         let meaning = |channel: &MeasuredChannel| input.meaning(channel).map(|(m, _)| m.clone());
         let reference = shaft::reference(&input.path, file, &said.crank, meaning)?;
         let channels = channels(input, file, said.unit.as_ref(), reference);
-        let channels = channels.map_err(|reason| Error::of(&input.path, reason))?;
+        let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
         let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();
@@ -172,8 +172,8 @@ impl Layout {
         }
     }
 
-    /// Where the crank stands at each of these samples of the channels; none without a channel that
-    /// tells it.
+    /// Where the crank stands at each of these samples of the channels; none without a channel
+    /// for it.
     pub(super) fn crank(&self, samples: &[&[f32]]) -> Option<Result<Crank, signal::Error>> {
         let mut channels = self.channels.iter().zip(samples);
         channels.find_map(|(channel, samples)| shaft::crank(samples, channel))
@@ -189,8 +189,8 @@ impl Layout {
     }
 }
 
-/// The channels of a file in SI, each with a name of its own. `reference` is the one that tells where
-/// the crank stands.
+/// The channels of a file in SI, each with a name of its own. `reference` is the one that gives the
+/// crank angle.
 fn channels(
     input: &Input,
     file: &MeasuredFile,

@@ -25,16 +25,16 @@ pub(super) struct Scaled {
 pub(super) enum Role {
     /// It has features.
     Measured,
-    /// It tells where the crank stands, with the reading at top dead centre, rad, if that is known.
+    /// The crank angle, with its reading at top dead centre, rad, if that is known.
     CrankAngle { top_dead_centre: Option<f64> },
-    /// Its pulses tell it; the angle from a pulse to top dead centre, rad, if that is known.
+    /// Pulses once per revolution, with the angle from a pulse to top dead centre, rad, if that is known.
     Tacho { top_dead_centre: Option<f64> },
-    /// It tells of the crank too, but another channel is asked.
+    /// A crank angle too, but another channel is used for it.
     Unused,
 }
 
 impl Scaled {
-    /// The channel that tells where the crank stands.
+    /// The channel that gives the crank angle.
     pub(super) fn reference(role: Role, to_si: ToSi) -> Self {
         Self {
             name: "crank_angle".to_owned(),

@@ -14,7 +14,7 @@ const RANDALL: &str = "Randall, Antoni 2011, Mechanical Systems and Signal Proce
 const CEPSTRUM: &str = "Randall 2017, Mechanical Systems and Signal Processing 97, 3; over crank \
     angle, magnitudes not below 1e-4 of the largest";
 const OWN: &str = "crate signal, module crank_waterfall";
-/// Over what the shape of a spectrum is told.
+/// The frequencies over which the shape of a spectrum is described.
 fn shape_of() -> String {
     format!(
         "up to {SHAPE_TO_HZ} Hz ({PASSED} of the sample rate if that is less), in segments of one \

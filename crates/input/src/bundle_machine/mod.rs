@@ -78,7 +78,11 @@ enum Driven {
 
 /// The keys of a machine section: of the whole, and of a throw.
 static KEYS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
-    [schema::of::<Whole>(), schema::of::<ThrowValues>()].map(|schema| {
+    [
+        schema::generate::<Whole>(),
+        schema::generate::<ThrowValues>(),
+    ]
+    .map(|schema| {
         let keys = schema["properties"].as_object().into_iter().flatten();
         keys.map(|(key, _)| key.clone()).collect()
     })
@@ -153,7 +157,7 @@ fn split(section: &Map<String, Value>) -> Result<[Map<String, Value>; 2], Error>
 struct Throw {
     name: String,
     radius: Number<AboveZero>,
-    /// Its sections; in a list of throws also what tells it from the others.
+    /// Its sections; in a list of throws also what distinguishes it from the others.
     sections: Map<String, Value>,
 }
 
@@ -227,8 +231,8 @@ fn sensors(throws: &[Throw], several: bool) -> Value {
 
 /// The schema of a machine section.
 pub(crate) fn machine_schema() -> Value {
-    let mut whole = schema::of::<Whole>();
-    let throw = schema::of::<ThrowValues>();
+    let mut whole = schema::generate::<Whole>();
+    let throw = schema::generate::<ThrowValues>();
     for part in ["properties", "$defs"] {
         if let (Some(whole), Value::Object(throw)) = (whole[part].as_object_mut(), &throw[part]) {
             for (key, value) in throw.iter().filter(|(key, _)| *key != "ThrowValues") {

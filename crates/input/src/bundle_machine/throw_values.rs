@@ -140,7 +140,7 @@ impl<B: Bound> JsonSchema for Ends<B> {
 }
 
 impl<B: Bound> PerEnd<B> {
-    fn of(&self, end: End) -> Number<B> {
+    fn at_end(&self, end: End) -> Number<B> {
         match (self, end) {
             (Or::Scalar(both), _) => *both,
             (Or::Section(ends), End::Big) => ends.big_end,
@@ -181,7 +181,7 @@ impl ThrowValues {
             .collect())
     }
 
-    /// The sections, and what tells the throw from others.
+    /// The sections, and what distinguishes the throw from others.
     pub(super) fn entry(&self) -> Result<Map<String, Value>, Error> {
         let mut entry = Map::new();
         entry.insert("name".into(), self.name.as_deref().into());
@@ -269,12 +269,12 @@ impl ThrowValues {
             "contact": self.contact(end)?,
             "friction": {
                 "law": "coulomb",
-                "coefficient": coefficient.of(end).get(),
-                "slip_speed": text::<Velocity>(slip_speed.of(end)),
+                "coefficient": coefficient.at_end(end).get(),
+                "slip_speed": text::<Velocity>(slip_speed.at_end(end)),
             },
         });
         if let Some(normal) = &self.normal_clearance_m {
-            bearing["normal_clearance"] = text::<Length>(normal.of(end));
+            bearing["normal_clearance"] = text::<Length>(normal.at_end(end));
         }
         Ok(bearing)
     }
@@ -292,8 +292,8 @@ impl ThrowValues {
             "law": "impact",
             "stiffness": self.stiffness(end)?,
             "exponent": 1.5,
-            "damping": text::<Damping>(damping.of(end)),
-            "depth": text::<Length>(depth.of(end)),
+            "damping": text::<Damping>(damping.at_end(end)),
+            "depth": text::<Length>(depth.at_end(end)),
         });
         match (&self.contact_relation, &self.contact_at_clearance_m) {
             (None, None) => {}
@@ -303,7 +303,7 @@ impl ThrowValues {
                 let check: Result<RelationSection, Error> = reader::read(relation);
                 check.map_err(|error| error.under("contact_relation"))?;
                 contact["relation"] = relation.clone();
-                contact["at_clearance"] = text::<Length>(clearance.of(end));
+                contact["at_clearance"] = text::<Length>(clearance.at_end(end));
             }
         }
         Ok(contact)
@@ -318,7 +318,7 @@ impl ThrowValues {
         match (&self.contact_stiffness_nominal_n_m15, materials) {
             (Some(stiffness), _) => {
                 let measure = Measure {
-                    si: stiffness.of(end).get(),
+                    si: stiffness.at_end(end).get(),
                     dimension: Dimension::stiffness(1.5),
                 };
                 Ok(measure.to_string().into())

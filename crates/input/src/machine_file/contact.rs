@@ -7,7 +7,7 @@ use crate::choice::{Or, Pair};
 use crate::error::{Error, quoted};
 use crate::quantity::{
     Contraction, FromZero, Length, NonNegative, Number, Positive, Pressure, Velocity, describe,
-    found, text_schema,
+    describe_error, text_schema,
 };
 use crate::unit::{self, Dimension};
 use mechanism::declaration::Quantity;
@@ -229,7 +229,8 @@ impl<'de> Deserialize<'de> for Stiffness {
             }
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Stiffness, E> {
                 let wrong = |found: &str| E::invalid_value(Unexpected::Other(found), &self);
-                let measure = unit::parse(text).map_err(|error| wrong(&found(text, &error)))?;
+                let measure =
+                    unit::parse(text).map_err(|error| wrong(&describe_error(text, &error)))?;
                 let exponent = measure
                     .dimension
                     .stiffness_exponent()

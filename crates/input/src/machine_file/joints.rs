@@ -54,7 +54,7 @@ pub(super) struct ThrowJoints {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bearing {
-    /// Radial clearance. With 0 or `ideal` the joint is ideal, whatever else stands here.
+    /// Radial clearance. With 0 or `ideal` the joint is ideal, and the other keys have no effect.
     clearance: Gap,
     /// Clearance up to which the joint counts as healthy; where it is left out, the clearance that
     /// the joint has in this file.
@@ -62,7 +62,7 @@ pub(crate) struct Bearing {
     normal_clearance: Option<NonNegative<Length>>,
     /// Radius of the journal.
     journal_radius: Positive<Length>,
-    /// Which motions of the journal the joint tells apart; three_mode where it is left out.
+    /// Which motions of the journal the joint distinguishes; three_mode where it is left out.
     #[serde(default)]
     model: JointModel,
     /// Normal force between the surfaces.
@@ -93,7 +93,7 @@ pub(super) struct GuideFaces {
     friction: Option<Friction>,
 }
 
-/// Which motions of the journal inside its bearing a joint tells apart.
+/// Which motions of the journal inside its bearing a joint distinguishes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum JointModel {

@@ -36,7 +36,7 @@ pub(super) struct Crank {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum DriveChoice {
-    /// The crank turns at the given speed, whatever it takes.
+    /// The crank turns at the given speed, which no load changes.
     #[default]
     Given,
     /// A motor pulls on the free crank: torque = mean_torque + slope (speed − crank's speed).

@@ -1,6 +1,6 @@
 //! The schema of recordings.yaml.
 
-use super::generate::of;
+use super::generate::generate;
 use crate::bundle_machine;
 use crate::run_settings::{Joints, Load};
 use serde_json::{Value, json};
@@ -21,8 +21,8 @@ pub fn bundle_schema() -> Value {
         }
         without_heading(part)
     };
-    let load = by_throw(part(of::<Load>()));
-    let joints = by_throw(part(of::<Joints>()));
+    let load = by_throw(part(generate::<Load>()));
+    let joints = by_throw(part(generate::<Joints>()));
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "recordings.yaml",

@@ -6,7 +6,7 @@ use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
 /// The schema (draft 2020-12) of type `T`.
-pub fn of<T: JsonSchema>() -> Value {
+pub fn generate<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft2020_12().with_transform(RecursiveTransform(tidy));
     let generator = settings.into_generator();
     generator.into_root_schema_for::<T>().to_value()

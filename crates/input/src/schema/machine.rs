@@ -1,6 +1,6 @@
 //! The schema of machine.yaml.
 
-use super::generate::of;
+use super::generate::generate;
 use crate::machine_file::Sections;
 use serde_json::{Map, Value, json};
 
@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 /// In a machine of several throws a section may be spread over the top and the throws, so that
 /// its keys are required only in a machine of one.
 pub fn machine_schema() -> Value {
-    let mut schema = of::<Sections>();
+    let mut schema = generate::<Sections>();
     schema["title"] = "machine.yaml".into();
     let mut defs = schema["$defs"].take();
     let mut parts = Map::new();

@@ -7,6 +7,6 @@ mod node;
 
 pub use bundle::bundle_schema;
 pub(crate) use generate::default_variant;
-pub use generate::of;
+pub use generate::generate;
 pub use machine::machine_schema;
 pub(crate) use node::Node;

@@ -1,11 +1,11 @@
 //! A place in the schema of the machine file: what may stand there.
 
-use super::generate::of;
+use super::generate::generate;
 use crate::machine_file::Sections;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-static MACHINE: LazyLock<Value> = LazyLock::new(of::<Sections>);
+static MACHINE: LazyLock<Value> = LazyLock::new(generate::<Sections>);
 
 /// A place in a schema: the alternatives that may stand there, references followed.
 pub(crate) struct Node<'a> {

@@ -26,7 +26,8 @@ impl<S: Scalar> Dynamics<S> {
         }
     }
 
-    /// Evaluates the equations of motion at `(t, y)` in the present mode.
+    /// Evaluates the equations of motion in the present mode, at time `t` (s) and state `y` (SI, in
+    /// the order of [`layout`](Self::layout)).
     pub fn evaluate(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
         self.evaluate_forces(t, y);
         self.respond();
@@ -36,7 +37,7 @@ impl<S: Scalar> Dynamics<S> {
         &self.evaluation
     }
 
-    /// As [`evaluate`](Self::evaluate), but for what sensors on crosshead, frame and cylinder do not see.
+    /// As [`evaluate`](Self::evaluate), without what sensors on crosshead, frame and cylinder do not see.
     pub fn evaluate_sensed(&mut self, t: S, y: &[S]) -> &Evaluation<S> {
         // Effects may shake the frame.
         if self.machine.effects.is_empty() {

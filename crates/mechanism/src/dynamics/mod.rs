@@ -49,7 +49,7 @@ impl<S: Scalar> Dynamics<S> {
         &self.mode
     }
 
-    /// The present mode, to be changed: whoever steps lanes puts each lane into its own.
+    /// The present mode, to be changed: a caller that steps lanes puts each lane into its own.
     pub fn mode_mut(&mut self) -> &mut Mode<S> {
         &mut self.mode
     }
@@ -91,7 +91,7 @@ impl<S: Scalar> Dynamics<S> {
     pub fn energy(&self) -> Energy<S> {
         S::vectorised(
             #[inline(always)]
-            || energy::of(&self.machine, &self.evaluation),
+            || energy::energy(&self.machine, &self.evaluation),
         )
     }
 }

@@ -35,8 +35,8 @@ impl<'a, S: Scalar> Acting<'a, S> {
         self.effects.iter().filter(acting).map(|effect| &effect.law)
     }
 
-    /// Whether there are any on the whole machine. Where the compiler knows that there are none, nothing
-    /// is left of those who ask first.
+    /// Whether the machine has any effects. Where the compiler knows the answer, it removes the code that
+    /// asks first.
     #[inline(always)]
     pub fn any(self) -> bool {
         !self.effects.is_empty()

@@ -1,4 +1,4 @@
-//! Where effects act in the equations: one method a place, which does nothing unless a law says so.
+//! Where effects act in the equations: one method for each place. By default a method does nothing.
 
 use crate::plane::Vec2;
 use scalar::Scalar;
@@ -109,9 +109,9 @@ pub(crate) struct ChamberAt<S> {
 }
 
 impl<S: Scalar> ChamberAt<S> {
-    /// Crank angle since suction and discharge valve opened where they do at these shares of the lines'
-    /// pressures, which the polytropes of a piston with ideal joints reach then, rad: from a quarter of a turn
-    /// before to three quarters after.
+    /// Crank angle since suction and discharge valve opened, rad, from a quarter of a turn before to three
+    /// quarters after. They open at these shares of the lines' pressures, by the polytropes of a piston with
+    /// ideal joints.
     #[inline(always)]
     pub fn since_opening(&self, [suction, discharge]: [S; 2]) -> [S; 2] {
         let ratio = self.discharge / self.suction;
@@ -138,8 +138,8 @@ impl<S: Scalar> ChamberAt<S> {
         since
     }
 
-    /// Sine, of this sign, and cosine of the crank angle at which the ideal piston stands at a distance from
-    /// the cover: the law of cosines in the triangle of crank, rod and line of stroke.
+    /// Sine, of this sign, and cosine of the crank angle at which the ideal piston is at a distance from the
+    /// cover, by the law of cosines in the triangle of crank, rod and line of stroke.
     #[inline(always)]
     fn crank_at(&self, distance: S, sign: S) -> (S, S) {
         let (radius, length) = (self.crank_radius, self.rod_length);

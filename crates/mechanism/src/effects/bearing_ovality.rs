@@ -48,11 +48,11 @@ declaration! {
 }
 
 /// The law with these values.
-pub fn of(values: &[f64], alternatives: Alternatives) -> BearingOvality {
+pub fn law(values: &[f64], alternatives: Alternatives) -> BearingOvality {
     let Values {
         amplitude,
         direction,
-    } = Values::of(values);
+    } = Values::new(values);
     BearingOvality {
         amplitude,
         direction,

@@ -1,6 +1,6 @@
-//! A force on the crosshead along the cylinder whose law was found in recordings: a sum of terms out
-//! of a closed library, each with a coefficient in newtons (sparse regression on a library of terms:
-//! Brunton, Proctor and Kutz 2016).
+//! A force on the crosshead along the cylinder whose law was found in recordings. It is a sum of terms
+//! out of a closed library, each with a coefficient in newtons. Method: sparse regression on a library of
+//! terms (Brunton, Proctor and Kutz 2016).
 //!
 //! ```text
 //! F = c0 + Σ (ak cos kα + bk sin kα)                              k = 1..4, crank angle α
@@ -11,12 +11,13 @@
 //!   + c11 eb/cb + c12 es/cs                                       G = gas force/(piston area × 1 bar)
 //! ```
 //!
-//! Every factor is free of units, and none holds the speed of the crank: what a spring, a damper or a
-//! rubbing seal does depends on its own position, velocity or load, so that a law carries over to
-//! other speeds and loads. (The velocity over the crank pin's would be the same at all speeds, and
-//! c3 V no damper.) p is the head-end pressure, a the acceleration of an ideal crosshead, eb and es
-//! the offsets of big and small end along the cylinder over their clearances, φ the rod's angle. F is
-//! positive toward the head.
+//! p is the head-end pressure and a the acceleration of an ideal crosshead. eb and es are the offsets of
+//! big and small end along the cylinder, cb and cs their clearances. φ is the rod's angle. F is positive
+//! toward the head.
+//!
+//! Every factor is dimensionless, and no factor holds the speed of the crank. The force of a spring, a
+//! damper or a rubbing seal depends on its own position, velocity or load. So a law carries over to other
+//! speeds and loads. With the velocity over the crank pin's, c3 V would be no damper.
 
 use crate::GRAVITY;
 use super::acts::{Acts, PistonAt};
@@ -108,8 +109,8 @@ declaration! {
 }
 
 /// The law with these values.
-pub fn of(values: &[f64], _: Alternatives) -> EmpiricalForce {
-    let v = Values::of(values);
+pub fn law(values: &[f64], _: Alternatives) -> EmpiricalForce {
+    let v = Values::new(values);
     EmpiricalForce {
         constant: v.constant,
         cosines: [v.cos_1, v.cos_2, v.cos_3, v.cos_4],

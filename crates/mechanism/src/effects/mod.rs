@@ -53,7 +53,7 @@ macro_rules! catalogue {
         pub const CATALOGUE: &[Entry] = &[$( Entry {
             name: stringify!($module),
             declaration: $module::DECLARATION,
-            law: |values, alternatives| Law::$kind($module::of(values, alternatives)),
+            law: |values, alternatives| Law::$kind($module::law(values, alternatives)),
         } ),*];
 
         alternatives! {

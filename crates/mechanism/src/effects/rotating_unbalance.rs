@@ -48,11 +48,11 @@ declaration! {
 }
 
 /// The law with these values.
-pub fn of(values: &[f64], alternatives: Alternatives) -> RotatingUnbalance {
+pub fn law(values: &[f64], alternatives: Alternatives) -> RotatingUnbalance {
     let Values {
         eccentricity,
         phase,
-    } = Values::of(values);
+    } = Values::new(values);
     RotatingUnbalance {
         eccentricity,
         phase,

@@ -1,7 +1,7 @@
-//! A valve whose plate sticks and then swings on its spring: it lets go late, when the gas has passed the
-//! line's pressure by a share b, and until the plate has come to rest the pressure in the cylinder swings about
-//! the line's (Costagliola 1950, whose plate of mass m on a spring k has the natural frequency
-//! ω = √(k/m); here as a damped oscillation of its own, which the flow does not change).
+//! A valve whose plate sticks and then swings on its spring. It lets go late, when the gas has passed the
+//! line's pressure by a share b. Until the plate is at rest, the pressure in the cylinder swings about the
+//! line's. In Costagliola 1950 a plate of mass m on a spring k has the natural frequency ω = √(k/m). Here
+//! it is a damped oscillation that the flow does not change.
 //!
 //! ```text
 //! suction valve open: p = ps (1 − b s(t))      discharge valve open: p = pd (1 + b s(t))
@@ -51,8 +51,8 @@ declaration! {
 }
 
 /// The law with these values.
-pub fn of(values: &[f64], _: Alternatives) -> ValveFlutter {
-    let values = Values::of(values);
+pub fn law(values: &[f64], _: Alternatives) -> ValveFlutter {
+    let values = Values::new(values);
     ValveFlutter {
         natural_frequency: TAU * values.frequency,
         damping_ratio: values.damping_ratio,

@@ -41,10 +41,13 @@ impl<S: Scalar> GasState<S> {
         }
     }
 
-    /// What a dead centre traps for the next stroke ([`ChamberMode::trapped`]), where `next` is the same
-    /// gas as that stroke has it with 1: the valve that was open leaves the line's pressure behind,
-    /// at the ideal piston's place. Gas that never came to the line stays what it was. `expanding` is of
-    /// the next stroke, `held` whether its suction valve is held open.
+    /// What a dead centre traps for the next stroke ([`ChamberMode::trapped`]). The valve that was open
+    /// leaves the line's pressure behind, at the ideal piston's place. Gas that never came to the line
+    /// stays what it was.
+    ///
+    /// - `next` is the same gas in the next stroke, with 1 trapped.
+    /// - `expanding` is of the next stroke.
+    /// - `held` is true where the suction valve of that stroke is held open.
     #[inline(always)]
     pub(crate) fn past_centre(&self, next: &Self, expanding: S, held: bool) -> S {
         let one = S::one();
@@ -101,9 +104,11 @@ impl<S: Scalar> GasState<S> {
 }
 
 impl<S: Scalar> Chamber<S> {
-    /// The gas with the piston `distance` from the cover; `expanding` is 1 while it moves away,
-    /// `open` are the pressures at which open valves hold the chamber, `drift` is the logarithm of
-    /// how far the closed chamber has left its polytrope.
+    /// The gas with the piston `distance` from the cover.
+    ///
+    /// - `expanding` is 1 while the piston moves away.
+    /// - `open` are the pressures at which the open suction and discharge valve hold the chamber, Pa.
+    /// - `drift` is the logarithm of how far the closed chamber has left its polytrope.
     #[inline(always)]
     pub fn state(
         &self,

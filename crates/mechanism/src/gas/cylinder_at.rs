@@ -259,8 +259,8 @@ impl<S: Scalar> CylinderAt<'_, S> {
     }
 
     /// Rate of the drift, 1/s, where a valve stands open in the stroke that closed it; 0 elsewhere. Near a
-    /// dead centre gas that leaks is faster than the piston: the pressure falls back to the line's, and stays
-    /// there until the piston is the faster one, as what leaks flows in again. Where a clearance alone has the
+    /// dead centre gas that leaks is faster than the piston. The pressure falls back to the line's, as what
+    /// leaks flows in again, and stays there until the piston is the faster one. Where a clearance alone has the
     /// piston beyond its dead centre nothing drifts.
     #[inline(always)]
     fn reopened(&self, end: End, state: &GasState<S>, rate: S) -> S {

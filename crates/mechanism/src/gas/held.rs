@@ -14,7 +14,7 @@ impl Gas<f64> {
     /// A (∫ (p − ps) dx − ps x),   p xᵐ constant
     /// ```
     ///
-    /// It falls with whatever passes a valve and a reversal, and changes by the work alone elsewhere.
+    /// It falls when gas passes a valve and when the crank turns back. Elsewhere only the work changes it.
     pub(crate) fn held(&self, throw: &Throw<f64>, motion: &Motion<f64>) -> Option<f64> {
         let cylinder = &throw.cylinder;
         let (exponent, suction) = (cylinder.exponent, cylinder.suction);

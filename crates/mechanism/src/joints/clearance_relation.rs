@@ -3,8 +3,8 @@
 //!
 //! An impact of mass m at speed v on `F = K δⁿ + STEP(δ, 0, 0, d, C) δ̇` reaches a depth
 //! `δₘ ∝ (m v²/K)^(1/(n + 1))` (for n = 3/2 Hertz 1881; Johnson 1985, Contact Mechanics, section
-//! 11.4), and only `d/δₘ` and `C δₘ/(m v)` decide what it comes back with: nothing else in the
-//! equation of motion is without dimension. Both stay as they are, at every mass and speed, where
+//! 11.4). The dimensionless groups of the equation of motion are `d/δₘ` and `C δₘ/(m v)`, so that they
+//! alone decide the restitution. Both keep their values, at every mass and speed, where
 //!
 //! ```text
 //! d ∝ K^(−1/(n + 1)),  C ∝ K^(1/(n + 1))
@@ -13,12 +13,12 @@
 //! so that the same materials give the same restitution. That is the conformal relation: with
 //! n = 3/2 and the stiffness K ∝ c^(−1/2) of a journal in a bearing, d ∝ c^(1/5) and C ∝ c^(−1/5).
 //!
-//! Eq. (5) speaks of the stiffness alone, which by it hardly depends on the clearance; with an equal
-//! restitution nothing would depend on the clearance, and Eq. (5) would not differ from a constant.
-//! Here, and this is our choice, its damping follows the patch of contact: a journal lies in its
-//! bearing conformally whichever formula gives the spring, and a wider clearance makes the patch
-//! smaller. So C takes the power 1/(n + 1) of the conformal stiffness, c^(−1/5), and the depth, which
-//! belongs to the surfaces, stays.
+//! Eq. (5) gives the stiffness alone, and that hardly depends on the clearance. With an equal
+//! restitution no parameter would follow the clearance, and Eq. (5) would be a constant relation. Here
+//! the damping follows the patch of contact, which is our choice. A journal lies in its bearing
+//! conformally whichever formula gives the spring, and a wider clearance makes the patch smaller. So C
+//! takes the power 1/(n + 1) of the conformal stiffness, c^(−1/5). The depth belongs to the surfaces
+//! and stays.
 //!
 //! A linear spring (n = 1) keeps its damping ratio by the conformal relation. A coefficient of
 //! restitution stays as it is. Friction does too: it does not depend on the clearance to first order.

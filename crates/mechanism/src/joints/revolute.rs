@@ -30,13 +30,13 @@ parameters! {
         /// Tangential force between the surfaces.
         pub friction: FrictionLaw<S>,
         fixed {
-            /// Which motions of the journal the joint tells apart.
+            /// Which motions of the journal the joint distinguishes.
             pub model: JointModel,
         }
     }
 }
 
-/// Which motions of the journal inside its bearing a joint tells apart.
+/// Which motions of the journal inside its bearing a joint distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum JointModel {
     /// Free flight, impact and following: all three come out of the one contact law (Miedema and
@@ -181,7 +181,7 @@ impl<S: Scalar> Clearance<S> {
         )
     }
 
-    /// As [`find`](Self::find), with the joint's model told by the caller, who may know it when compiled.
+    /// As [`find`](Self::find), with the joint's model as an argument, which may be known when compiled.
     #[inline(always)]
     pub(crate) fn find_as(
         &self,

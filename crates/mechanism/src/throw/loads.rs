@@ -13,7 +13,7 @@ use scalar::{Scalar, inlined};
 /// moved it off (Baumgarte 1972).
 const STABILISATION: f64 = 300.0;
 
-/// What acts on the bodies of one throw, as far as poses and rates tell.
+/// What acts on the bodies of one throw, as far as it follows from poses and rates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Loads<S> {
     pub rod_force: Vec2<S>,

@@ -95,7 +95,7 @@ pub const MOST_CASES_A_SHARD: u32 = 1_000_000;
 
 /// The JSON Schema of sweep.yaml, for editors and checks.
 pub fn schema() -> Value {
-    let mut schema = input::schema::of::<SweepFile>();
+    let mut schema = input::schema::generate::<SweepFile>();
     schema["title"] = "sweep.yaml".into();
     schema
 }

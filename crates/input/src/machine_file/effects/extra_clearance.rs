@@ -1,7 +1,7 @@
 //! More clearance in a joint than the file says.
 //!
-//! The clearance is added before the contact is worked out, so that whatever follows the clearance
-//! (see `relation`) follows it here too; an ideal joint becomes clear with the contact that stands in
+//! The clearance is added before the contact is worked out, so that contact parameters
+//! that follow the clearance (see `relation`) follow it here too; an ideal joint becomes clear with the contact that stands in
 //! its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
 
 use super::act::{Act, Draft, Place};

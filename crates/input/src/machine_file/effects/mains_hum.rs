@@ -1,6 +1,6 @@
 //! Mains hum on the cable of an accelerometer.
 //!
-//! A sine of the line's frequency, which has nothing to do with the crank: its phase counts from the
+//! A sine of the line's frequency, which is independent of the crank: its phase counts from the
 //! start of the machine, and in the mean over revolutions it fades as they become many, unless it
 //! meets an order (50 Hz is order 6 at 500 rpm).
 

@@ -33,7 +33,7 @@ macro_rules! own {
             stringify!($after),
             stringify!($module),
             $module::DECLARATION,
-            |values| Box::new($module::Values::of(values)),
+            |values| Box::new($module::Values::new(values)),
         ) ),+ ),+];
     };
 }

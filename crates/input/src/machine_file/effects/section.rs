@@ -37,7 +37,7 @@ impl EffectSection {
         self.entry.effect(&self.values(), &self.place)
     }
 
-    /// The whole numbers among its values, which tell it apart from the same effect at the same place.
+    /// The whole numbers among its values, which distinguish it from the same effect at the same place.
     pub fn orders(&self) -> Vec<f64> {
         let each = self.values().into_iter().zip(self.entry.parameters);
         each.filter(|(_, parameter)| parameter.whole)

@@ -42,7 +42,7 @@ const BRANCH: f64 = 0.34954;
 
 /// The parameters with these values. In an ideal joint, where the law does not act, they are those of
 /// the smallest clearance.
-pub(super) fn of(surfaces: &Surfaces, values: &[f64]) -> Result<Cylinder, Clash> {
+pub(super) fn law(surfaces: &Surfaces, values: &[f64]) -> Result<Cylinder, Clash> {
     let [length, modulus, restitution, slowest_approach] = *values else {
         unreachable!("the declaration has four parameters")
     };

@@ -45,7 +45,7 @@ pub struct Surfaces {
 }
 
 /// Declares a contact law. The module gets a type `Law`, `DECLARATION`, and, unless `by hand` follows,
-/// `of`, which makes the parameters where the names of their fields are `stiffness` and the keys.
+/// `law`, which makes the parameters where the names of their fields are `stiffness` and the keys.
 ///
 /// ```text
 /// contact_law! {
@@ -84,14 +84,14 @@ macro_rules! contact_law {
             }
         };
 
-        super::contact_law! { @of $name [$($key)+] $($hand)? }
+        super::contact_law! { @law $name [$($key)+] $($hand)? }
     };
 
     (@option) => { None };
     (@option $value:literal) => { Some($value) };
-    (@of $name:ident [$($key:ident)+]) => {
+    (@law $name:ident [$($key:ident)+]) => {
         /// The parameters with these values.
-        pub(super) fn of(
+        pub(super) fn law(
             surfaces: &super::Surfaces,
             values: &[f64],
         ) -> Result<$name, crate::declaration::Clash> {
@@ -102,7 +102,7 @@ macro_rules! contact_law {
             })
         }
     };
-    (@of $name:ident [$($key:ident)+] hand) => {};
+    (@law $name:ident [$($key:ident)+] hand) => {};
 }
 
 pub(super) use contact_law;

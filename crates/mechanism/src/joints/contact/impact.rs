@@ -5,8 +5,8 @@
 //! STEP(δ, 0, 0, d, C) = C u² (3 − 2u),  u = clamp(δ/d, 0, 1)
 //! ```
 //!
-//! Its restitution depends on the speed of impact; while δ stays well below d only C/d² can be
-//! told from the motion.
+//! Its restitution depends on the speed of impact. While δ stays well below d, only C/d² is
+//! identifiable from the motion.
 
 use super::contact_law;
 use super::factors::Factors;

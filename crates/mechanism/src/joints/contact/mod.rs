@@ -41,7 +41,7 @@ macro_rules! contact_laws {
         pub const CONTACT_LAWS: &[Entry] = &[$( Entry {
             name: stringify!($module),
             declaration: $module::DECLARATION,
-            law: |surfaces, values| $module::of(surfaces, values).map(ContactLaw::$kind),
+            law: |surfaces, values| $module::law(surfaces, values).map(ContactLaw::$kind),
         } ),*];
 
         impl<S: Scalar> ContactLaw<S> {

@@ -2,7 +2,7 @@
 //! restitution e.
 //!
 //! For any χ of this family the restitution e' that a free impact delivers solves
-//! `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, whatever n, K, mass and v₀.
+//! `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, for any n, K, mass and v₀.
 
 use super::factors::Factors;
 use super::normal::{Normal, NormalForce, power};
