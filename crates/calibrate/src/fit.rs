@@ -108,7 +108,7 @@ impl Fit {
         self.model_is_adequate() && fitted.is_some_and(|fitted| fitted <= NOISE)
     }
 
-    /// Whether the model explains the recordings: no more than noise is left of the fitted runs, nor of the
+    /// Whether the model explains the recordings: they do if no more than noise is left of the fitted runs, nor of the
     /// held-out runs that have the clearances of a fitted one. Runs at other clearances judge the relation between
     /// clearances, not the parameters.
     pub fn model_is_adequate(&self) -> bool {

@@ -12,8 +12,8 @@ use crate::problem::Problem;
 /// than that of the noise.
 const AS_NEAR: f64 = 1.5;
 
-/// The problem with parts of its runs alone, as they are at the coordinates `x`: the better-fitting half, the
-/// other half, and every other run from the best on. None for a single run, nor where a run cannot be simulated.
+/// The problem with parts of its runs alone, as they are at the coordinates `x`. The parts are the better-fitting half,
+/// the other half, and every other run from the best on. None for a single run, nor where a run cannot be simulated.
 pub(crate) fn halves(problem: &Problem, x: &[f64]) -> Vec<Problem> {
     let parts = misfits(problem, x).map(|misfits| parts(&misfits));
     let parts = parts.unwrap_or_default().into_iter();

@@ -166,7 +166,7 @@ fn take_delays(sensors: &mut [Sensor]) -> Vec<f64> {
 }
 
 /// The rate at which the motion is sampled, Hz. Without filters between motion and recorder four
-/// samples to each recorded one are enough: order 3700 is the first to fold down to those that are
+/// samples to each recorded one are enough. Order 3700 is the first to fold down to those that are
 /// compared.
 fn inner_rate(machine: &Resolved) -> f64 {
     let chains = machine.sensors.iter().map(|sensor| &sensor.chain);

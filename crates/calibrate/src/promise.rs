@@ -13,7 +13,7 @@ pub(crate) fn split(jacobian: &DMatrix<f64>, known: usize) -> (DMatrix<f64>, DMa
     (part(0, known), part(known, doubted))
 }
 
-/// What each value in doubt promises to first order, the known parameters adapting: the misfit that it leaves,
+/// What each value in doubt promises to first order, the known parameters adapting. It is the misfit that it leaves,
 /// and the length of the part of its derivative that they cannot imitate. None for a value without any effect.
 ///
 /// A column of `known` and of `doubted` is the derivative of the residuals by one value.

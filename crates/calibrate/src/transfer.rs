@@ -4,7 +4,7 @@
 //! - Recordings at one clearance do not determine the relation: every one fits them equally well, and
 //!   the predictions stand side by side.
 //! - With recordings at two clearances or more the machine is fitted again under each relation, from the
-//!   calibrated values. The relations are compared by Schwarz's criterion (1978): the sum of squared residuals
+//!   calibrated values. The relations are compared by Schwarz's criterion (1978), the sum of squared residuals
 //!   plus ln N for every exponent that was fitted, N being the number of residuals.
 //! - Where the fitted runs have one clearance and those held out others, the held-out runs decide, by how
 //!   well they are predicted.

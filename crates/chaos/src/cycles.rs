@@ -18,7 +18,7 @@ pub(crate) struct Cycles {
     pub length: f64,
 }
 
-/// How much the signal is like itself later: 1 minus the mean square difference at each lag up to half of
+/// How much the signal is like itself later. It is 1 minus the mean square difference at each lag up to half of
 /// the signal, over twice the variance (de Cheveigné and Kawahara 2002). Unlike the autocorrelation it
 /// is 1 at a period of a signal of any length.
 pub(crate) fn similarity(signal: &[f64]) -> Vec<f64> {

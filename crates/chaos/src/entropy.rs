@@ -2,7 +2,7 @@
 
 use crate::error::{Error, checked};
 
-/// Sample entropy (Richman and Moorman 2000) in nats: minus the logarithm of the probability that
+/// Sample entropy (Richman and Moorman 2000) in nats. It is minus the logarithm of the probability that
 /// `length` samples that agree within `tolerance` also agree in the next one. `None` where no
 /// stretch agrees in the next one. `length` must be at least 1 and less than the samples.
 ///
@@ -21,7 +21,7 @@ pub fn sample_entropy(signal: &[f64], length: usize, tolerance: f64) -> Result<O
     Ok(matches_ratio(signal, length, tolerance))
 }
 
-/// Sample entropy of the signal averaged in blocks of 1, 2, ..., `scales` samples, with the
+/// Sample entropy of the signal averaged in blocks of 1, 2, ..., `scales` samples. It has the
 /// tolerance 0.15 standard deviations of the signal itself and stretches of 2 (Costa, Goldberger and
 /// Peng 2002).
 ///
@@ -40,7 +40,7 @@ pub fn multiscale_entropy(signal: &[f64], scales: usize) -> Result<Vec<Option<f6
         .collect())
 }
 
-/// Permutation entropy (Bandt and Pompe 2002) of `order` samples `delay` apart, 0 to 1: the entropy
+/// Permutation entropy (Bandt and Pompe 2002) of `order` samples `delay` apart, 0 to 1. It is the entropy
 /// of the orders in which they stand, over the logarithm of the number of orders. Equal samples stand
 /// in order of time. `order` must be 2 to 8.
 ///

@@ -31,7 +31,7 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// Fits to the signal `y`, starting from the estimate `start` of it: map, noise and signal in
+    /// Fits to the signal `y`, starting from the estimate `start` of it. Map, noise and signal in
     /// turn, as long as the likelihood grows and at most `passes` times.
     pub fn fitted(basis: Basis, y: &[f64], start: &[f64], passes: usize) -> Option<Self> {
         let mut design = basis.design(start, 0..basis.rows(start));
@@ -56,7 +56,7 @@ impl Model {
             basis.redesign(&mut design, &signal, 0..basis.rows(&signal));
             let next = if noise > 0.0 && pass < passes {
                 // Regression with whitened errors. The functions are taken at the most likely
-                // signal, the target is moved by what the last slopes make of the difference to
+                // signal, and the target is moved by what the last slopes make of the difference to
                 // `y`; the value at the signal itself cancels.
                 let errors = errors(&linear, y, &signal);
                 let target = errors.iter().zip(&linear.values).map(|(e, v)| e + v);
@@ -232,7 +232,7 @@ impl Band {
         vector.reverse();
     }
 
-    /// The same for every row of `rows`, block after block of columns: what earlier columns
+    /// The same for every row of `rows`, block after block of columns. What earlier columns
     /// contribute is taken off, then the inverse of the block of `L` on the diagonal multiplies.
     fn whiten(&self, rows: &mut DMatrix<f64>) {
         let block = self.width.max(8);

@@ -54,7 +54,7 @@ const QUANTILE: f64 = 2.093;
 /// Fewest samples of a signal (after taking means).
 const FEWEST: usize = 300;
 /// Standard error by what noise leaves in curved maps, as a share of the exponent for noise as large
-/// as the signal: about 1 % at 5 % noise on the tinkerbell and the delayed logistic map
+/// as the signal. It is about 1 % at 5 % noise on the tinkerbell and the delayed logistic map
 /// (`examples/intervals`), which the differences between maps do not show.
 const LEFT_BY_NOISE: f64 = 0.2;
 /// Noise and error of the map, together, from which nothing is said, as a share of the standard

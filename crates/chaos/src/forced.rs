@@ -79,7 +79,7 @@ const QUANTILE: f64 = 2.365;
 /// and Kalnay (1987), whose law is for squared distances. It is below 1 where small distances grow fastest
 /// (Aurell et al. 1997), as between parts that touch now and then. Distances that start near saturation
 /// do not determine it, so the interval spans 1/2 to 2. The best estimate's power is one at which it is
-/// neither low nor high on average on 23 chaotic compressors; on them the interval was chosen, too.
+/// neither low nor high on average on 23 chaotic compressors. On them the interval was chosen, too.
 const POWER: f64 = 0.7;
 const POWERS: [f64; 2] = [0.5, 2.0];
 
@@ -145,8 +145,8 @@ struct Parting {
 }
 
 impl Parting {
-    /// Each window is paired with that of another cycle, at the same phase, which it is most like;
-    /// their distances are taken after the window, over windows of the same length.
+    /// Each window is paired with that of another cycle, at the same phase, which it is most like.
+    /// Their distances are taken after the window, over windows of the same length.
     fn new(residual: &[f64], per_cycle: usize, window: usize) -> Self {
         let distance = |a: usize, b: usize| -> f64 {
             let pairs = residual[a..a + window].iter().zip(&residual[b..]);
@@ -223,7 +223,7 @@ impl Parting {
     }
 }
 
-/// Rate at the start of a growth that saturates: a small distance D grows as
+/// Rate at the start of a growth that saturates. A small distance D grows as
 /// `d ln D / dt = rate (1 - (D / D_saturated)^power)` (Stroe and Royer 1993; power 1: Lorenz 1982), so
 /// `ln((D_saturated / D)^power - 1)` falls in a straight line, fitted with weights for the error of
 /// `ln D`.

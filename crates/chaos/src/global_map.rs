@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Width of the basis functions in standard deviations of the signal: wide enough that a smooth
+/// Width of the basis functions in standard deviations of the signal. It is wide enough that a smooth
 /// map needs few of them (the flat limit of Fornberg and Driscoll 2002), narrow enough for double
 /// precision.
 const WIDTH: f64 = 2.5;
@@ -115,7 +115,7 @@ impl Basis {
     }
 
     /// At every vector of `design`, the next sample by each map and its derivatives by the
-    /// coordinates: with weights `a` and multiquadrics `v`, those of the sum of `a v` are
+    /// coordinates. With weights `a` and multiquadrics `v`, those of the sum of `a v` are
     /// `-(z sum(a v^3) - sum(a c v^3)) / w^2`.
     pub fn along(&self, maps: &[&[f64]], design: &DMatrix<f64>) -> Vec<Linear> {
         let (m, size) = (self.dimension, self.size());

@@ -91,7 +91,7 @@ const HALVINGS: usize = 3;
 const COORDINATES: usize = 4;
 const MOST_STATES: usize = 4096;
 
-/// Whether there are states of a signal without a known drive from which chance goes on: a cell of alike
+/// Whether there are states of a signal without a known drive from which chance goes on. That is a cell of alike
 /// states in which those most alike have futures no more alike than others of the cell.
 pub(crate) fn chance_enters_a_cell(signal: &[f64], times: &Times) -> bool {
     let delays = Delays {

@@ -1,6 +1,6 @@
 //! Nearest neighbours among delay vectors, with temporally close ones left out.
 //!
-//! The k-d tree is the crate `kiddo`'s, whose dimension is a constant of the type; everything
+//! The k-d tree is the crate `kiddo`'s, whose dimension is a constant of the type. Everything
 //! else asks for a dimension at run time, so this file chooses among the types.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};

@@ -42,7 +42,7 @@ pub fn recurrence(delays: &Delays, theiler: usize, radius: f64) -> Result<Recurr
         });
     }
     let count = delays.count().min(MOST_VECTORS);
-    // One lag after the other. Along a lag run the diagonal lines; from lag to lag the column of a
+    // One lag after the other. Along a lag run the diagonal lines. From lag to lag the column of a
     // pair's later vector is extended upwards, and that of its earlier vector downwards (which is
     // the row of the same plot mirrored). The band about the diagonal ends a line.
     let mut diagonals = Lines::new(count);

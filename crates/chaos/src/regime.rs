@@ -290,7 +290,7 @@ pub fn predictability(signal: &[f64], times: &Times) -> Result<Comparison, Error
     .ok_or(too_short)
 }
 
-/// The stretch of a length that transforms fast whose end meets its start best: a jump there would
+/// The stretch of a length that transforms fast whose end meets its start best. A jump there would
 /// spread over the surrogate's spectrum (Schreiber and Schmitz 2000, section 4.5).
 fn joined_at_the_ends(signal: &[f64], needed: usize) -> &[f64] {
     let most = (signal.len() - signal.len() / 20).clamp(needed, SURROGATE_SAMPLES.max(needed));

@@ -1,8 +1,8 @@
 //! Signals whose nature is known: chaotic systems with their largest Lyapunov exponent, regular
 //! signals and noises. Estimators are measured against them.
 //!
-//! The exponents come from the tangent method (Benettin, Galgani, Giorgilli and Strelcyn 1980):
-//! the equations are evaluated with dual numbers, and the growth of the tangent is averaged.
+//! The exponents come from the tangent method (Benettin, Galgani, Giorgilli and Strelcyn 1980).
+//! The equations are evaluated with dual numbers, and the growth of the tangent is averaged.
 
 mod flows;
 mod machines;

@@ -1,4 +1,4 @@
-//! Largest exponent after Wolf, Swift, Swinney and Vastano 1985: a neighbour is followed for a fixed
+//! Largest exponent after Wolf, Swift, Swinney and Vastano 1985. A neighbour is followed for a fixed
 //! time, then replaced by one that lies in nearly the same direction.
 
 use crate::blocks::{block_means, mean};

@@ -6,7 +6,7 @@ use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
-/// throw; a step of two joints takes some 7 µs.
+/// throw. A step of two joints takes some 7 µs.
 const BUDGET: u64 = 24_000_000;
 /// By how much more it may cost for each effect that was found, so that what is left has its chance too.
 const FOR_ANOTHER: u64 = BUDGET * 3 / 4;

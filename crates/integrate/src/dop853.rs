@@ -124,7 +124,7 @@ impl<S: Scalar> Step<S> {
     }
 
     /// Squares of the estimated errors of order 5 and 3, summed over the components, each over its
-    /// entry of `scale`; components with an infinite scale do not count.
+    /// entry of `scale`. Components with an infinite scale do not count.
     pub fn squared_errors(&self, scale: impl Fn(usize) -> S) -> [S; 2] {
         let rows = [ERROR_5, ERROR_3];
         S::vectorised(

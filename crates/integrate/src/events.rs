@@ -155,7 +155,7 @@ impl<S: Real> Finder<S> {
 
     /// Where a guard crosses that is not positive at the first two looks. Either it came back
     /// between them (a short flight after the switch that began the step), or it never was
-    /// positive: then the switch is overdue, and the crossing at the very beginning.
+    /// positive. Then the switch is overdue, and the crossing at the very beginning.
     fn early(
         &mut self,
         system: &mut impl System<S>,

@@ -400,7 +400,7 @@ impl<S: Real> Integrator<S> {
 
     /// Whether a step of these squared errors of order 5 and 3, summed over so many components, keeps
     /// the tolerance. Sets the length to try next, as the errors of this step and of the one before call
-    /// for (Gustafsson 1991): a step's error swings, and one that happens to be small promises nothing.
+    /// for (Gustafsson 1991). A step's error swings, and one that happens to be small promises nothing.
     pub(crate) fn judge(&mut self, trial: Trial, squares: [f64; 2], counted: usize) -> bool {
         let error = weighted_error(trial.length, squares, counted);
         // Powers by square roots, which round the same on every machine.

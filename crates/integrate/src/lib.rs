@@ -3,7 +3,7 @@
 //! A [`System`] is an ordinary differential equation whose right-hand side depends on a discrete
 //! *mode* that the system keeps (which contacts are closed, which valves are open). Within a mode
 //! the right-hand side is smooth, also a little beyond the mode's boundary. *Guards* are positive
-//! inside the boundary. The [`Integrator`] takes steps of DOP853 with the mode frozen, looks for the
+//! inside the boundary. The [`Integrator`] takes steps of DOP853 with the mode frozen. It looks for the
 //! first guard that crosses zero, ends the step there and lets the system switch. So no step
 //! crosses a kink, and the order of the method holds throughout (measured in the tests).
 //!

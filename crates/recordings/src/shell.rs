@@ -1,7 +1,7 @@
 //! Words of the shell, for commands to paste and for scripts.
 
-/// `text` as one word. It stands unquoted where the shell takes every character for itself, else in single quotation
-/// marks (POSIX.1-2024, *Shell Command Language*, 2.2.2), in which only a quotation mark ends the word.
+/// `text` as one word. It stands unquoted where the shell takes every character for itself, else in single
+/// quotation marks (POSIX.1-2024, *Shell Command Language*, 2.2.2), in which only a quotation mark ends the word.
 pub fn word(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_-./:=,+@%".contains(c);
     if !text.is_empty() && text.chars().all(plain) {

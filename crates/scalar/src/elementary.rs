@@ -1,7 +1,7 @@
 //! Sine, cosine, exponential and logarithm in IEEE additions, multiplications, divisions and fused
 //! multiply-adds. These are written where they are meant and nowhere else: the same bits on every machine.
 //!
-//! Each reduces its argument to a short interval and sums a polynomial there, whose error is below 4e-18 of
+//! Each reduces its argument to a short interval and sums a polynomial there. The error is below 4e-18 of
 //! the result everywhere (found by the exchange algorithm of Remez 1934 in 60 digits, and rounded). The
 //! tests below hold each to 4 units in the last place of the platform's function over 200,000 arguments.
 
@@ -17,7 +17,7 @@ pub trait Bits: Scalar {
     fn split(self) -> (Self, Self);
 }
 
-/// What to add to the bits of x so that the exponent then is k + 1023: minus the bits of sqrt(1/2), and
+/// What to add to the bits of x so that the exponent then is k + 1023. It is minus the bits of sqrt(1/2), and
 /// the bits of 1.
 pub(crate) const SPLIT_BIAS: u64 = (1023_u64 << 52).wrapping_sub(0x3fe6_a09e_667f_3bcd);
 /// 2^52, as bits: with a whole number below 2^52 in its place for the fraction it is the sum of both.

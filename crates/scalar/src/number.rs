@@ -16,7 +16,7 @@ pub trait Mask: Copy + Debug {
     fn any(self) -> bool;
 }
 
-/// The closure itself: only where a closure is handed over it may be marked `#[inline(always)]`, and the
+/// The closure itself. Only where a closure is handed over it may be marked `#[inline(always)]`, and the
 /// compiler keeps one that is used twice out of line, without the instructions of lanes.
 #[inline(always)]
 pub fn inlined<F>(closure: F) -> F {

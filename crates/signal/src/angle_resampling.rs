@@ -34,7 +34,7 @@ impl AngleGrid {
     /// The grid of a recording.
     ///
     /// With fewer points than the recording has samples per revolution, channels are resampled
-    /// more finely first and then decimated ([`Decimator`]), so that nothing aliases into the
+    /// more finely first and then decimated ([`Decimator`]). Thus nothing aliases into the
     /// orders up to 0.4 of the points.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// A recursive low-pass filter with gain 1 at rest.
 ///
 /// Made from the analogue filter by the bilinear transform, pre-warped so that the response is
-/// exact at the given frequency (and at 0 Hz). Elsewhere the frequency axis is bent: the filter
+/// exact at the given frequency (and at 0 Hz). Elsewhere the frequency axis is bent. The filter
 /// does at f what the analogue one does at f_a with tan(πf/f_s)/tan(πf₀/f_s) = f_a/f₀, 1 % apart
 /// at f = f_s/18. Run it at a rate well above the frequencies that matter.
 ///

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 const ENCODER_STEP: f64 = TAU / 65536.0;
 
 /// The angle is smoothed over this much to either side, rad (2°). Fluctuations of speed at the
-/// low orders that a flywheel lets through change by less than 1e-6 rad; the error of a 16-bit
+/// low orders that a flywheel lets through change by less than 1e-6 rad. The error of a 16-bit
 /// encoder shrinks with the root of the samples in the span.
 const SMOOTHING: f64 = 2.0 * PI / 180.0;
 
@@ -80,8 +80,8 @@ impl CrankAngle {
         self.angle.len() as f64 / self.samples_per_revolution()
     }
 
-    /// The sample index, with its fraction, at which the crank stands at `angle`: cubic
-    /// interpolation of the inverse map; beyond the ends the speed is taken as constant.
+    /// The sample index, with its fraction, at which the crank stands at `angle`. Cubic
+    /// interpolation of the inverse map. Beyond the ends the speed is taken as constant.
     pub(crate) fn position(&self, angle: f64) -> f64 {
         let a = &self.angle;
         let last = a.len() - 1;
@@ -108,7 +108,7 @@ impl CrankAngle {
 ///
 /// # Errors
 /// A reading that is not finite or outside the range, one that falls further, and one that jumps
-/// by more than half a revolution (which looks the same): the sample is named.
+/// by more than half a revolution (which looks the same). The sample is named.
 pub fn unwrap(wrapped: &[f64]) -> Result<Vec<f64>, Error> {
     let mut unwrapped = Vec::with_capacity(wrapped.len());
     let mut angle = 0.0;
@@ -157,7 +157,7 @@ fn check_length(got: usize) -> Result<(), Error> {
 }
 
 /// Each value replaced by that of the quadratic fitted to it and `half` neighbours on either
-/// side; near the ends, by that of the first or last such quadratic. `y` has 2·`half` + 1 values
+/// side. Near the ends, by that of the first or last such quadratic. `y` has 2·`half` + 1 values
 /// or more.
 fn smooth(y: &[f64], half: usize) -> Vec<f64> {
     if half == 0 {

@@ -52,7 +52,7 @@ impl Decimator {
         outputs.saturating_sub(1) * self.factor + 2 * self.half_length() + 1
     }
 
-    /// Filters and decimates. Output `j` is centred on input `half_length() + j * factor`; there
+    /// Filters and decimates. Output `j` is centred on input `half_length() + j * factor`. There
     /// are as many as the input has the neighbours for, none if it is shorter than
     /// `input_length(1)`.
     pub fn apply(&self, input: &[f64]) -> Vec<f64> {

@@ -18,10 +18,10 @@ pub struct Band {
     pub width: f64,
 }
 
-/// The envelope |c(t)| of a signal in a band, at every sample: c is the complex envelope, the
+/// The envelope |c(t)| of a signal in a band, at every sample. Here c is the complex envelope, the
 /// filtered analytic signal, so that A cos(2πf_c t) has the envelope A. `sample_rate` in Hz.
 ///
-/// The line from the first sample to the last is taken off before: the transform takes the
+/// The line from the first sample to the last is taken off before. The transform takes the
 /// record as one period, and a jump from its end to its start would ring like an impact. Within
 /// 2/B of its ends the envelope still mixes end and start.
 ///

@@ -14,7 +14,7 @@ const KEPT: usize = 16;
 /// The plans of one direction by length.
 ///
 /// Every length is planned from nothing. A shared planner would build a transform out of the
-/// shorter ones that it happens to hold, and then the last bits of a result would depend on what
+/// shorter ones that it happens to hold. Then the last bits of a result would depend on what
 /// the thread had computed before.
 struct Plans<T: ?Sized>(RefCell<BTreeMap<usize, Arc<T>>>);
 

@@ -2,7 +2,7 @@
 //!
 //! sin(πu)/(πu) under a Kaiser window, u in sample intervals of the slower side. Its gain is one
 //! half at the slower side's Nyquist frequency. Below 0.8 of that it is 1 within 1e-4, above 1.2
-//! of it under 1e-4 (−80 dB); what aliases or images lands above 0.8, outside the pass band. The
+//! of it under 1e-4 (−80 dB). What aliases or images lands above 0.8, outside the pass band. The
 //! measured figures are 4e-5 and −89 dB.
 //!
 //! Source: Kaiser 1974, "Nonrecursive digital filter design using the I0-sinh window function";

@@ -37,7 +37,7 @@ impl Nonsynchronous {
     ///
     /// Over R revolutions the discrete Fourier transform has R − 1 bins between two orders, where a
     /// signal that repeats every revolution has nothing. Their periodogram is fitted with
-    /// S(f) = a + b/f by Whittle's likelihood (1953), in which each bin is exponentially distributed
+    /// S(f) = a + b/f by Whittle's likelihood (1953). There each bin is exponentially distributed
     /// about S: iterated least squares with the weights 1/S².
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub struct OrderLines {
 /// Over R revolutions the discrete Fourier transform has R − 1 bins between two orders. A signal
 /// that repeats every revolution has nothing there. The mean power of the bins around an order,
 /// half-way to the next ones, is therefore that of the noise in it, of any colour. B bins have
-/// 2B degrees of freedom, and the ratio of a power to the mean of B others has the mean
+/// 2B degrees of freedom. The ratio of a power to the mean of B others has the mean
 /// 2B/(2B − 2) (an F distribution's), by which the variance is widened. With fewer than three
 /// revolutions there are no such bins, and the variance is 0.
 ///

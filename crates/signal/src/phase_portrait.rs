@@ -21,7 +21,7 @@ impl PhasePortrait {
     ///
     /// The velocity is the integral over time, v(θ) = ∫ (a − ā) (dt/dθ) dθ, taken in the
     /// frequency domain over all whole revolutions. A part that comes back to its place has no
-    /// mean velocity, and its acceleration no mean over time: both are removed, and with them
+    /// mean velocity, and its acceleration no mean over time. Both are removed, and with them
     /// everything slower than half the shaft's speed, where a sensor's drift would swamp the
     /// integral. Thus the velocity cannot drift.
     ///
@@ -67,7 +67,7 @@ impl PhasePortrait {
     }
 
     /// Area that a revolution encloses, m²/s³, averaged over the revolutions and positive the way
-    /// the motion goes: ½ ∮ (a dv − v da) = ∮ a dv = ∫ a² dt. The last is what is computed. It is exact
+    /// the motion goes. It is ½ ∮ (a dv − v da) = ∮ a dv = ∫ a² dt. The last is what is computed. It is exact
     /// where a polygon through the points falls short by its chords, 5e-4 where an impact is
     /// sampled coarsely. The area is thus the time of a revolution times the mean square of
     /// the acceleration.

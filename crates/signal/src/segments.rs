@@ -1,7 +1,7 @@
 //! How a record is cut into the segments over which a spectrum is averaged.
 
 /// Steps that a segment of one revolution is moved on by, per revolution. The square of a Hann window
-/// has waves of one and two periods; over four equal steps (three at least) they cancel, so that every
+/// has waves of one and two periods. Over four equal steps (three at least) they cancel, so that every
 /// crank angle counts alike.
 const STEPS_PER_SEGMENT: usize = 4;
 
@@ -27,7 +27,7 @@ impl Segments {
     /// Segments of one revolution, a quarter of a revolution apart, in whole revolutions of steps.
     ///
     /// The spectrum under a Hann window of a motion that repeats every revolution is then the same
-    /// wherever the record begins: the power at order k is |c_k|²/4 + (|c_(k−1)|² + |c_(k+1)|²)/16 of
+    /// wherever the record begins. The power at order k is |c_k|²/4 + (|c_(k−1)|² + |c_(k+1)|²)/16 of
     /// its Fourier coefficients, and every product of two coefficients cancels over the four steps. A
     /// record of less than two revolutions has as many segments as fit, and is without that property.
     pub fn revolutions(samples: usize, per_revolution: f64) -> Self {

@@ -74,7 +74,7 @@ impl SynchronousAverage {
         Ok(fourth / self.residual.len() as f64 / (mean_square * mean_square))
     }
 
-    /// The share of the mean square about the mean that the average holds, 1 − ⟨r²⟩/⟨(x − x̄)²⟩:
+    /// The share of the mean square about the mean that the average holds. It is 1 − ⟨r²⟩/⟨(x − x̄)²⟩:
     /// 1 for a motion that repeats itself, 1/R on average for noise over R revolutions.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 const ARMED: f64 = 0.25;
 const RISEN: f64 = 0.5;
 
-/// The crank angle at every sample, rad, from pulses that come once per revolution: 0 at the first
+/// The crank angle at every sample, rad, from pulses that come once per revolution. It is 0 at the first
 /// pulse, in a straight line from one to the next, and going on as fast at both ends.
 ///
 /// # Errors

@@ -45,7 +45,7 @@ pub fn welch(
 }
 
 /// The power spectral density (2/(f_s Σw²)) ⟨|Σ w_i (x_i − x̄) e^(−2πi ik/m)|²⟩, without the 2 at
-/// 0 Hz and at the Nyquist frequency: the mean over `segments` of m samples, each with its own mean
+/// 0 Hz and at the Nyquist frequency. It is the mean over `segments` of m samples, each with its own mean
 /// taken off. `sample_rate` in Hz.
 ///
 /// Source: Welch 1967, "The use of fast Fourier transform for the estimation of power spectra",

@@ -66,7 +66,7 @@ fn are_pressures_alone(runs: &[Run]) -> bool {
     columns.all(|column| column.contains("cylinder_pressure"))
 }
 
-/// What is fitted by default: the contact of the joints that are clear, and the zero of the crank angle, of which
+/// What is fitted by default. It is the contact of the joints that are clear, and the zero of the crank angle, of which
 /// an encoder's last digit already matters. If only pressures were recorded, it is the gas.
 /// A joint that no run mentions has the clearance that the machine file states.
 fn defaults(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Error> {

@@ -1,6 +1,6 @@
 //! An effect of the catalogue in the place of a force of no name.
 //!
-//! In a wrong machine neither the score of the true effect nor a descent with it need lead anywhere: the
+//! In a wrong machine neither the score of the true effect nor a descent with it need lead anywhere. The
 //! contacts change what a recording shows of a force. A force of no name that reduces the residual far leaves
 //! the joints near their true motion. There, an effect that acts on the crosshead can be compared with the
 //! force itself. Its parameters are fitted to the force, without any local minimum on the way.

@@ -22,7 +22,7 @@ pub struct MissingForce {
     pub run: String,
     /// The throw; empty where the machine has one that has no name.
     pub throw: String,
-    /// At [`ANGLES`] crank angles, toward the head, N.
+    /// Toward the head, N, at 72 equally spaced crank angles from top dead centre of the shaft's first throw on.
     pub force: Vec<f64>,
 }
 

@@ -42,7 +42,7 @@ fn fluctuation(problem: &Problem) -> Option<Vec<f64>> {
 }
 
 /// Frequency of the strongest ripple of the cylinders' pressures, Hz. It is the line above the orders of the
-/// indicator diagram that stands out the most; the kinks of the diagram fall off by the square of the order.
+/// indicator diagram that stands out the most. The kinks of the diagram fall off by the square of the order.
 fn ripple(problem: &Problem) -> Option<f64> {
     let of_channel = |(run, channel): (&Observation, &Observed)| {
         let orders = channel.orders.iter().copied().filter(|k| *k >= RIPPLE);

@@ -56,7 +56,7 @@ pub(crate) fn believed(
     })
 }
 
-/// Whether the size of an effect whose first item has this index is identifiable: one of its amplitudes,
+/// Whether the size of an effect whose first item has this index is identifiable. It is if one of its amplitudes,
 /// or of its parameters if it has no amplitudes.
 fn is_identifiable(estimates: &[Estimate], found: &Found, first: usize) -> bool {
     let candidate = found.candidate();

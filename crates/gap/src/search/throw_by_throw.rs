@@ -11,7 +11,7 @@ use calibrate::Problem;
 use calibrate::throw_alone::throws_alone;
 
 /// The model with the effects that each throw shows by itself, where throws can be taken apart and
-/// the full model is better with them; the unchanged model elsewhere.
+/// the full model is better with them. The unchanged model elsewhere.
 pub(crate) fn throw_by_throw(
     fitter: &Fitter,
     model: Model,

@@ -28,7 +28,7 @@ pub(crate) struct WithForce {
 }
 
 /// The model with an empirical force in place of the effects that were found beside the gas, or
-/// on top of them, where they leave too much and the force predicts what they do not.
+/// on top of them. It is tried only where they leave too much and the force predicts what they do not.
 pub(crate) fn with_force(
     fitter: &Fitter,
     problem: &Problem,

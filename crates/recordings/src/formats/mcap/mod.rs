@@ -1,7 +1,7 @@
 //! MCAP: one recording per file, for Foxglove, PlotJuggler and the tools of ROS 2.
 //!
 //! Every sample is one message of one topic, `/crosshead`. All channels are sampled together, and
-//! the plots of Foxglove draw a point per message (an array within a message is plotted against
+//! the plots of Foxglove draw a point per message. (An array within a message is plotted against
 //! its index, not against time). The message is a flat ROS 2 message in CDR. Its definition
 //! lies in the file with the units as comments: nothing has to be installed to read it. The labels
 //! are the metadata record `labels`, the sweep is the attachment `sweep.yaml`.

@@ -2,7 +2,7 @@
 //!
 //! Recordings are lists of float32. Their bytes are split into four streams (`BYTE_STREAM_SPLIT`)
 //! before zstd: the exponents of neighbouring samples are alike, the last digits are noise.
-//! Units and descriptions stand twice in a file: with each Arrow field (`unit`, `description`) and,
+//! Units and descriptions stand twice in a file. They stand with each Arrow field (`unit`, `description`) and,
 //! for readers that show the file's own keys only, as JSON objects under `units` and
 //! `descriptions`. pandas finds the units in `DataFrame.attrs`.
 
