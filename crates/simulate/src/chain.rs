@@ -1,6 +1,5 @@
 //! The measuring chain up to the recorder: filters at the inner rate, then decimation.
 
-use crate::delay::Delay;
 use crate::error::Error;
 use crate::instants::Instants;
 use crate::sensor::{Chain, Sensor};
@@ -9,6 +8,7 @@ use mechanism::Machine;
 use scalar::Scalar;
 use signal::biquad::Filter;
 use signal::decimate::Decimator;
+use signal::delay::Delay;
 use std::f64::consts::TAU;
 
 /// Fewest inner samples per recorded one.

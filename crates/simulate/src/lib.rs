@@ -10,7 +10,6 @@
 
 pub mod bifurcation;
 mod chain;
-mod delay;
 mod ensemble;
 pub mod error;
 pub mod flow;

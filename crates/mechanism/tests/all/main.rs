@@ -1,6 +1,7 @@
 //! The tests of mechanism, in one program.
 
 mod cited_sections;
+mod clearance_relation;
 mod common;
 mod contact_laws;
 mod derivative;
@@ -17,5 +18,6 @@ mod reversals;
 mod scalars;
 mod slap;
 mod statistics;
+mod stiffness;
 mod symmetry;
 mod trajectories;

@@ -8,6 +8,7 @@ mod ensemble;
 mod joint_models;
 mod known_flows;
 mod lyapunov;
+mod measure;
 mod poincare;
 mod record;
 mod sensitivity;

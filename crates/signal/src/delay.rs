@@ -9,7 +9,7 @@ const POINTS: usize = 4;
 /// 0.1 % of the amplitude up to a tenth of the sample rate. Before the first sample the signal is taken to
 /// have stood at its value.
 #[derive(Clone, Debug)]
-pub(crate) struct Delay {
+pub struct Delay {
     /// The latest samples, as many as the delay reaches back to, the newest last.
     past: VecDeque<f64>,
     reach: usize,
@@ -36,6 +36,7 @@ impl Delay {
     }
 
     /// Takes the next sample, and gives the late one.
+    #[inline]
     pub fn run(&mut self, x: f64) -> f64 {
         if self.reach == POINTS && self.weights[0] == 1.0 {
             return x;

@@ -1,0 +1,78 @@
+//! Range, resolution and noise of the recorder, on series with known values.
+
+use scalar::random::{Purpose, stream};
+use simulate::sensor::{Chain, Noise, NoiseLevel, Range, Sensor};
+use simulate::{Measured, Record, measure};
+use std::f64::consts::TAU;
+
+const ACCELERATION: Measured = Measured::CrossheadAcceleration { throw: 0 };
+
+/// What the recorder makes of `series`.
+fn read(measured: Measured, chain: Chain, series: Vec<f64>) -> Vec<f32> {
+    let record = Record {
+        sample_rate: 1e4,
+        start: 0.0,
+        series: vec![series],
+        trace: None,
+        transient: 0,
+        settled: false,
+        energy_residual: None,
+        mean_speed: 50.0,
+        penetrations: Vec::new(),
+        work: Default::default(),
+    };
+    let sensor = Sensor { measured, chain };
+    let mut random = stream(1, 2, Purpose::Noise);
+    measure(&record, &[sensor], &[""], &mut random)
+        .remove(0)
+        .samples
+}
+
+#[test]
+fn range_and_bits_limit_and_round() {
+    let chain = Chain {
+        range: Some(Range::Fixed(100.0)),
+        bits: Some(8),
+        ..Chain::default()
+    };
+    let step = 200.0 / 256.0;
+    assert_eq!(
+        read(ACCELERATION, chain, vec![1e3, -1e3, 0.3, 0.4]),
+        [100.0 - step, -100.0, 0.0, step]
+    );
+}
+
+#[test]
+fn an_encoder_never_reads_a_whole_revolution() {
+    let encoder = Chain {
+        bits: Some(16),
+        ..Chain::default()
+    };
+    assert_eq!(
+        read(Measured::CrankAngle, encoder, vec![TAU * 0.999_999_9]),
+        [0.0]
+    );
+    let plain = read(
+        Measured::CrankAngle,
+        Chain::default(),
+        vec![TAU - 1e-12, 6.0],
+    );
+    assert_eq!(plain, [0.0, 6.0]);
+}
+
+#[test]
+fn noise_has_the_level_asked_for() {
+    let clean: Vec<f64> = (0..40_000).map(|i| (f64::from(i) * 0.1).sin()).collect();
+    let chain = Chain {
+        noise: Some(Noise {
+            level: NoiseLevel::OfSignal(0.03),
+            pink_share: 0.3,
+        }),
+        ..Chain::default()
+    };
+    let noisy = read(ACCELERATION, chain, clean.clone());
+    let noise = noisy.iter().zip(&clean).map(|(a, b)| f64::from(*a) - b);
+    let square = noise.map(|x| x * x).sum::<f64>() / clean.len() as f64;
+    let expected = 0.03 / 2.0_f64.sqrt();
+    assert!((square.sqrt() / expected - 1.0).abs() < 0.05);
+}
