@@ -202,6 +202,17 @@ fn unit_of(quantity: Quantity) -> (Dimension, String) {
     (dimension, format!("{words}, e.g. {examples}"))
 }
 
+/// The SI unit of a column that the model has: that of its sensor; empty for any other column.
+pub fn unit_of_column(column: &str) -> &'static str {
+    let column = column.rsplit('.').next().unwrap_or(column);
+    let has_column = |sensor: &&Entry| {
+        let mut channels = sensor.declaration.channels.iter();
+        channels.any(|channel| channel.column == column)
+    };
+    let sensor = SENSORS.iter().find(has_column);
+    sensor.map_or("", |sensor| sensor.declaration.unit)
+}
+
 /// Lower case, words apart, without a unit in brackets or at the end of a column's name.
 fn words(text: &str) -> String {
     const ENDINGS: [&str; 13] = [

@@ -109,14 +109,6 @@ fn by_name(channel: &MeasuredChannel) -> Option<f64> {
     is_crank_angle(channel).then_some(0.0)
 }
 
-/// The SI unit of a column that the model has: an acceleration or a pressure.
-pub(super) fn unit_of(column: &str) -> &'static str {
-    match column.ends_with("_pa") {
-        true => "Pa",
-        false => "m/s^2",
-    }
-}
-
 /// `angle` and `deg` of `angle [deg]`.
 fn unit_beside(name: &str) -> Option<(&str, &str)> {
     let (name, unit) = name.strip_suffix(']')?.rsplit_once('[')?;

@@ -7,7 +7,7 @@ use super::units::{Role, Scaled, scaled};
 use super::warnings::clipped;
 use super::{Error, Said, Unit};
 use crate::{Cell, CrankAngles, Reason, column};
-use input::bundle_channel::Meaning;
+use input::bundle_channel::{Meaning, unit_of_column};
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
@@ -221,7 +221,7 @@ fn channels(
         let mut scaled = scaled(&channel, default_unit)?;
         if let Some((Meaning::Measured { column, to_si }, _)) = said {
             scaled.to_si = *to_si;
-            scaled.unit = shaft::unit_of(column).to_owned();
+            scaled.unit = unit_of_column(column).to_owned();
         }
         let taken = |name: &str| {
             let mut measured = channels
