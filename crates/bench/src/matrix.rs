@@ -4,7 +4,7 @@ use crate::outcome::{Gap, Outcome};
 use crate::plan::NOTHING;
 use calibrate::results::ByName;
 use gap::Verdict;
-use input::effects::{Proposal, entry};
+use input::effects::{Proposal, entry, proposed};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -138,7 +138,7 @@ impl<'a> Matrix<'a> {
                 .found
                 .as_ref()
                 .is_some_and(|found| found.verdict == Verdict::Explained);
-            sure && named(o).any(|name| !is_force_law(name))
+            sure && named(o).any(|name| entry(name) != proposed(Proposal::ForceLaw))
         })
     }
 
@@ -324,10 +324,6 @@ impl<'a> Matrix<'a> {
 
 fn gap(outcome: &Outcome) -> Option<Gap> {
     outcome.found.as_ref().map(|found| found.gap)
-}
-
-fn is_force_law(name: &str) -> bool {
-    entry(name).is_some_and(|entry| entry.proposal == Proposal::ForceLaw)
 }
 
 fn named(outcome: &Outcome) -> impl Iterator<Item = &str> {

@@ -257,7 +257,7 @@ fn in_samples(angles: &[f64], samples: &[f64]) -> Result<(Nonsynchronous, f64), 
     let grid = AngleGrid::new(&angle, angle.samples_per_revolution().round() as usize);
     let grid = grid.map_err(inseparable)?;
     let revolutions = grid.resample(samples).map_err(inseparable)?;
-    let found = Nonsynchronous::of(&revolutions, grid.highest_order()).map_err(inseparable)?;
+    let found = Nonsynchronous::new(&revolutions, grid.highest_order()).map_err(inseparable)?;
     let count = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / count;
     let squares = samples.iter().map(|x| (x - mean).powi(2));

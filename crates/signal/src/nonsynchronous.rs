@@ -42,7 +42,7 @@ impl Nonsynchronous {
     ///
     /// # Errors
     /// Fewer than three revolutions, or `highest` not below half the points per revolution.
-    pub fn of(x: &Revolutions, highest: usize) -> Result<Self, Error> {
+    pub fn new(x: &Revolutions, highest: usize) -> Result<Self, Error> {
         let (count, points) = (x.count(), x.points_per_revolution());
         if count < REVOLUTIONS {
             return Err(Error::TooFewRevolutions {
@@ -180,7 +180,7 @@ mod tests {
         let x: Vec<f64> = (0..n)
             .map(|i| 200.0 * angle[i].cos() + 30.0 * (31.0 * angle[i]).sin() + noise(i, angle[i]))
             .collect();
-        Nonsynchronous::of(&grid.resample(&x).unwrap(), grid.highest_order()).unwrap()
+        Nonsynchronous::new(&grid.resample(&x).unwrap(), grid.highest_order()).unwrap()
     }
 
     #[test]

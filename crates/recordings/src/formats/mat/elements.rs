@@ -1,49 +1,34 @@
-//! MAT files of version 5 to 7 (MathWorks, *MAT-File Format*, 2024): numeric variables, of either
-//! byte order, compressed or not.
-//!
-//! - Every vector is a channel called as its variable. A matrix has one channel per column (or row,
-//!   where those are the longer ones) called `name_1`, `name_2`, ...
-//! - A variable that is one number is the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and the speed
-//!   when its name ends in `rpm`.
-//! - Text, cells, structures, and complex and sparse arrays are left out.
+//! The elements of a MAT file: its numeric variables and the bytes of their numbers.
 
-use super::recording_format::{RecordingFormat, Seen, has};
-use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
-    one_rate, seconds_per_unit, selected,
-};
-use crate::{Column, Error, Kind, Value};
+use crate::Error;
 use flate2::read::ZlibDecoder;
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, ErrorKind, Read, Seek, SeekFrom, Take};
-use std::path::{Path, PathBuf};
-
-/// More channels than a variable of samples has.
-const MOST_CHANNELS: u64 = 256;
+use std::path::Path;
 
 /// Longest name of a variable; MATLAB's own limit is 63.
 const LONGEST_NAME: u32 = 1 << 10;
 
-/// Bytes of a channel that are decoded at a time.
-const BUFFER: usize = 1 << 16;
+/// Bytes of a channel that are read and decoded at a time.
+pub(super) const BUFFER: usize = 1 << 16;
 
 const COMPRESSED: u32 = 15;
 const MATRIX: u32 = 14;
 
 /// A variable that holds real numbers.
 #[derive(Clone, Debug)]
-struct Variable {
-    name: String,
-    rows: u64,
-    columns: u64,
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) rows: u64,
+    pub(super) columns: u64,
     /// Where its element stands in the file.
     offset: u64,
-    number: Number,
+    pub(super) number: Number,
 }
 
 /// How numbers are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Number {
+pub(super) enum Number {
     I8,
     U8,
     I16,
@@ -73,7 +58,7 @@ impl Number {
         })
     }
 
-    fn bytes(self) -> usize {
+    pub(super) fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -83,7 +68,7 @@ impl Number {
     }
 
     /// The number in these bytes, which are as many as it has.
-    fn decode(self, bytes: &[u8], big_endian: bool) -> f64 {
+    pub(super) fn decode(self, bytes: &[u8], big_endian: bool) -> f64 {
         let mut word = [0; 8];
         let n = bytes.len().min(8);
         word[..n].copy_from_slice(&bytes[..n]);
@@ -106,12 +91,12 @@ impl Number {
     }
 }
 
-fn damaged(path: &Path, reason: impl ToString) -> Error {
+pub(super) fn damaged(path: &Path, reason: impl ToString) -> Error {
     Error::damaged("MAT", path, reason)
 }
 
 /// An error of the operating system, or of the decoder that finds damage.
-fn failed(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
+pub(super) fn failed(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
     move |error| match error.kind() {
         ErrorKind::UnexpectedEof => damaged(path, "it is cut off"),
         ErrorKind::InvalidInput | ErrorKind::InvalidData => {
@@ -121,152 +106,8 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> Error + '_ {
     }
 }
 
-/// MAT as a format of recordings.
-pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
-    name: "MAT",
-    endings: &["mat"],
-    signature_at: Some(126),
-    recognise: |head| {
-        if has(head, 0, b"MATLAB 7.3") || has(head, 512, b"\x89HDF\r\n\x1a\n") {
-            let words = "a MAT file of version 7.3 (HDF5); save it with `-v7`";
-            return Some(Seen::Unreadable(words));
-        }
-        let is_mat = has(head, 126, b"IM") || has(head, 126, b"MI");
-        is_mat.then_some(Seen::Readable("a MAT file"))
-    },
-    open,
-};
-
-/// Opens a file.
-fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
-    let (big_endian, variables) = scan(path)?;
-    let (scalars, arrays): (Vec<_>, Vec<_>) =
-        variables.into_iter().partition(|v| v.rows * v.columns == 1);
-    let mut all = Vec::new();
-    let mut places = Vec::new();
-    for variable in &arrays {
-        for place in Place::all(path, variable)? {
-            let (name, unit) = name_and_unit(&place.name(variable));
-            let column = name.clone();
-            all.push(MeasuredChannel { column, name, unit });
-            places.push((variable, place));
-        }
-    }
-    let is_time = |i: &usize| seconds_per_unit(&all[*i].name, all[*i].unit.as_deref()).is_some();
-    let (times, rest): (Vec<usize>, Vec<usize>) = (0..all.len()).partition(is_time);
-    let candidates: Vec<MeasuredChannel> = rest.iter().map(|&i| all[i].clone()).collect();
-    if candidates.is_empty() {
-        return Err(damaged(path, "it has no vector or matrix of real numbers"));
-    }
-    let wanted = selected(&candidates, options)?;
-    let channels: Vec<_> = wanted.iter().map(|&i| candidates[i].clone()).collect();
-    let wanted: Vec<usize> = wanted.iter().map(|&i| rest[i]).collect();
-    let length = one_length(path, &channels, wanted.iter().map(|&i| places[i].1.samples))?;
-    let time = times
-        .iter()
-        .copied()
-        .find(|&i| places[i].1.samples == length);
-    let reader = |&i: &usize| {
-        let (variable, place) = &places[i];
-        Reader::open(path, big_endian, variable, place)
-    };
-    let samples = MatSamples {
-        path: path.to_owned(),
-        time: time.as_ref().map(reader).transpose()?,
-        channels: wanted.iter().map(reader).collect::<Result<_, _>>()?,
-        left: length,
-    };
-    let time = time.map(|i| TimeColumn {
-        name: all[i].name.clone(),
-        seconds_per_unit: seconds_per_unit(&all[i].name, all[i].unit.as_deref()).unwrap_or(1.0),
-        single_precision: places[i].0.number == Number::F32,
-    });
-    let scalar = |is: &dyn Fn(&str) -> bool| {
-        let found = scalars.iter().find(|v| is(&v.name.to_ascii_lowercase()));
-        found
-            .map(|variable| scalar(path, big_endian, variable))
-            .transpose()
-    };
-    let stated = scalar(&|name| ["fs", "sample_rate_hz"].contains(&name))?;
-    let rate = one_rate(path, stated, options)?;
-    let speed = scalar(&|name| name.ends_with("rpm"))?.filter(|s| s.is_finite() && *s > 0.0);
-    let speed = speed.map(|speed| {
-        let column = Column::new("speed_rpm", Kind::Real, "speed of the crank").unit("rpm");
-        (column.optional(), Value::from(speed))
-    });
-    let count = channels.len();
-    MeasuredFile::of_one(channels, speed.into_iter().collect(), |labels| {
-        Recording::new(path, labels, count, rate, time, samples)
-    })
-}
-
-fn one_length(
-    path: &Path,
-    channels: &[MeasuredChannel],
-    lengths: impl Iterator<Item = u64> + Clone,
-) -> Result<u64, Error> {
-    let first = lengths.clone().next().unwrap_or(0);
-    if lengths.clone().all(|length| length == first) {
-        return Ok(first);
-    }
-    let shown: Vec<String> = channels
-        .iter()
-        .zip(lengths)
-        .take(20)
-        .map(|(channel, length)| format!("{} ({length})", channel.name))
-        .collect();
-    let shown = shown.join(", ");
-    Err(damaged(
-        path,
-        format!("its variables differ in length, so that they cannot be read together: {shown}"),
-    ))
-}
-
-/// Where the samples of a channel stand within their variable, column by column.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// Which channel of its variable, from 0.
-    index: u64,
-    first: u64,
-    stride: u64,
-    samples: u64,
-}
-
-impl Place {
-    fn all(path: &Path, variable: &Variable) -> Result<Vec<Self>, Error> {
-        let (rows, columns) = (variable.rows, variable.columns);
-        let by_column = rows >= columns;
-        let channels = rows.min(columns);
-        if channels > MOST_CHANNELS {
-            return Err(damaged(
-                path,
-                format!(
-                    "variable `{}` is {rows} by {columns}, which are no channels",
-                    variable.name
-                ),
-            ));
-        }
-        Ok((0..channels)
-            .map(|index| Self {
-                index,
-                first: if by_column { index * rows } else { index },
-                stride: if by_column { 1 } else { rows },
-                samples: rows.max(columns),
-            })
-            .collect())
-    }
-
-    fn name(&self, variable: &Variable) -> String {
-        if variable.rows.min(variable.columns) == 1 {
-            variable.name.clone()
-        } else {
-            format!("{}_{}", variable.name, self.index + 1)
-        }
-    }
-}
-
 /// A stream of the bytes of one element.
-enum Bytes {
+pub(super) enum Bytes {
     Plain(Take<BufReader<File>>),
     /// Up to four bytes that stand in the tag itself.
     InTag(Cursor<Vec<u8>>),
@@ -284,7 +125,7 @@ impl Read for Bytes {
 }
 
 impl Bytes {
-    fn skip(&mut self, bytes: u64) -> io::Result<()> {
+    pub(super) fn skip(&mut self, bytes: u64) -> io::Result<()> {
         if let Self::Plain(file) = self {
             let limit = file.limit();
             if bytes > limit {
@@ -303,7 +144,7 @@ impl Bytes {
 }
 
 /// The byte order, and the numeric variables.
-fn scan(path: &Path) -> Result<(bool, Vec<Variable>), Error> {
+pub(super) fn scan(path: &Path) -> Result<(bool, Vec<Variable>), Error> {
     let mut file = files::open(path).map_err(Error::io("open", path))?;
     let length = file.metadata().map_err(Error::io("read", path))?.len();
     let mut head = [0; 128];
@@ -442,7 +283,7 @@ fn variable(
 }
 
 /// The bytes of the numbers of a variable.
-fn numbers(path: &Path, big_endian: bool, of: &Variable) -> Result<Bytes, Error> {
+pub(super) fn numbers(path: &Path, big_endian: bool, of: &Variable) -> Result<Bytes, Error> {
     let changed = || damaged(path, "it changes while it is read");
     let mut bytes = element(path, big_endian, of.offset)?.ok_or_else(changed)?;
     let found = variable(&mut bytes, big_endian, of.offset).map_err(failed(path))?;
@@ -451,84 +292,9 @@ fn numbers(path: &Path, big_endian: bool, of: &Variable) -> Result<Bytes, Error>
 }
 
 /// The value of a variable that is one number.
-fn scalar(path: &Path, big_endian: bool, variable: &Variable) -> Result<f64, Error> {
+pub(super) fn scalar(path: &Path, big_endian: bool, variable: &Variable) -> Result<f64, Error> {
     let mut word = vec![0; variable.number.bytes()];
     let mut bytes = numbers(path, big_endian, variable)?;
     bytes.read_exact(&mut word).map_err(failed(path))?;
     Ok(variable.number.decode(&word, big_endian))
-}
-
-/// The samples of one channel.
-struct Reader {
-    bytes: Bytes,
-    number: Number,
-    big_endian: bool,
-    /// Numbers per sample, and which of them is the channel's.
-    stride: usize,
-    pick: usize,
-    buffer: Vec<u8>,
-}
-
-impl Reader {
-    fn open(path: &Path, big_endian: bool, of: &Variable, place: &Place) -> Result<Self, Error> {
-        let mut bytes = numbers(path, big_endian, of)?;
-        let mut pick = place.first as usize;
-        if place.stride == 1 {
-            let before = place.first * of.number.bytes() as u64;
-            bytes.skip(before).map_err(failed(path))?;
-            pick = 0;
-        }
-        Ok(Self {
-            bytes,
-            number: of.number,
-            big_endian,
-            stride: place.stride as usize,
-            pick,
-            buffer: Vec::new(),
-        })
-    }
-
-    fn read(&mut self, mut samples: usize, mut put: impl FnMut(f64)) -> io::Result<()> {
-        let width = self.number.bytes();
-        let sample = width * self.stride;
-        let at = self.pick * width..(self.pick + 1) * width;
-        while samples > 0 {
-            let now = samples.min((BUFFER / sample).max(1));
-            self.buffer.resize(now * sample, 0);
-            self.bytes.read_exact(&mut self.buffer)?;
-            for bytes in self.buffer.chunks_exact(sample) {
-                put(self.number.decode(&bytes[at.clone()], self.big_endian));
-            }
-            samples -= now;
-        }
-        Ok(())
-    }
-}
-
-struct MatSamples {
-    path: PathBuf,
-    time: Option<Reader>,
-    channels: Vec<Reader>,
-    left: u64,
-}
-
-impl Samples for MatSamples {
-    fn read(
-        &mut self,
-        most: usize,
-        times: &mut Vec<f64>,
-        channels: &mut [Vec<f32>],
-    ) -> Result<usize, Error> {
-        let samples = most.min(usize::try_from(self.left).unwrap_or(usize::MAX));
-        self.left -= samples as u64;
-        if let Some(time) = &mut self.time {
-            time.read(samples, |t| times.push(t))
-                .map_err(failed(&self.path))?;
-        }
-        for (reader, channel) in self.channels.iter_mut().zip(channels) {
-            let put = |x| channel.push(x as f32);
-            reader.read(samples, put).map_err(failed(&self.path))?;
-        }
-        Ok(samples)
-    }
 }
