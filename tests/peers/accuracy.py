@@ -3,12 +3,13 @@ settings and by this project, from one signal each.
 
     python tests/peers/accuracy.py [--samples 10000] [--seeds 5] [--noise 0 0.01 0.05] [--systems ...]
 
-The table, printed as Markdown, holds the median over the seeds of |found/true - 1|. Automatic
-means: called with the signal alone, or with the embedding that the package itself chooses. The
+The table, printed as Markdown and written to data/results/exponents.csv, holds the median over the
+seeds of |found/true - 1|. Automatic means: called with the signal alone, or with the embedding that the package itself chooses. The
 sampling interval is put in afterwards.
 """
 
 import ours  # noqa: I001  (sets the number of threads)
+import results
 
 import argparse
 import time
@@ -76,6 +77,7 @@ def main():
     print("| signal | noise | " + " | ".join(methods) + " |")
     print("| --- | --- |" + " --- |" * len(methods))
     spent = dict.fromkeys(methods, 0.0)
+    rows = []
     for system in arguments.systems:
         for noise in arguments.noise:
             seeds = range(1, arguments.seeds + 1)
@@ -86,13 +88,16 @@ def main():
                 errors = [abs(value_of(method, x) / TRUE[system] - 1) for x in signals]
                 spent[name] += time.perf_counter() - start
                 cells.append(f"{100 * np.median(errors):.0f} %")
+                rows.append({"system": system, "noise": noise, "samples": arguments.samples,
+                             "seeds": arguments.seeds, "method": name, "error": f"{np.median(errors):.3g}"})
             print(f"| {system} | {100 * noise:.0f} % | " + " | ".join(cells) + " |", flush=True)
     runs = arguments.seeds * len(arguments.noise) * len(arguments.systems)
     print("\nSeconds for a signal: " + ", ".join(f"{name} {s / runs:.2f}" for name, s in spent.items()))
+    print(results.write("exponents.csv", rows))
 
 
 def value_of(method, x):
-    """Not a number where a package fails or abstains; the median then tells so."""
+    """Not a number where a package fails or abstains; then the median is none either."""
     try:
         return float(method(x))
     except Exception:

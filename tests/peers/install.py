@@ -87,7 +87,7 @@ def cvode():
 
 
 def crosshead():
-    command = ["cargo", "build", "--quiet", "--release", "--package", "simulate", "--example",
+    command = ["cargo", "build", "--quiet", "--release", "--package", "crosshead-simulate", "--example",
                "time_revolutions"]
     call(*command, cwd=ROOT, reason="time_revolutions")
     return [TARGET / "release" / "examples" / "time_revolutions"]

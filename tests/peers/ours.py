@@ -23,7 +23,7 @@ SIGNALS = TARGET / "peers-signals"
 @functools.cache
 def build(crate, example):
     """The path of a crate's example, built for release."""
-    command = ["cargo", "build", "--quiet", "--release", "--package", crate, "--example", example]
+    command = ["cargo", "build", "--quiet", "--release", "--package", f"crosshead-{crate}", "--example", example]
     subprocess.run(command, cwd=ROOT, check=True)
     return TARGET / "release" / "examples" / example
 

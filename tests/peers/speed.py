@@ -2,13 +2,14 @@
 
     python tests/peers/speed.py [SECTION...] [--systems ...]
 
-Sections: divergence, entropy, recurrence, analysis, classic, kurtogram; all unless told. The tables
-are printed as Markdown.
+Sections: divergence, entropy, recurrence, analysis, classic, kurtogram; the default is all. The tables
+are printed as Markdown and written to data/results/measures.csv.
 A peer's values are compared with ours where both compute the same thing; exit status 1 if they
 differ.
 """
 
 import ours  # noqa: I001  (sets the number of threads)
+import results
 
 import argparse
 import math
@@ -26,16 +27,28 @@ DIMENSION, STEPS = 4, 50
 VECTORS = 4000
 
 differences = []
+# What was printed, a figure each, and the table that is being printed.
+figures = []
+table = {}
+
+
+def line(*cells):
+    print("| " + " | ".join(str(c) for c in cells) + " |", flush=True)
 
 
 def row(*cells):
-    print("| " + " | ".join(str(c) for c in cells) + " |", flush=True)
+    line(*cells)
+    names = table["columns"].index("peer") + 1 if "peer" in table["columns"] else 1
+    for column, cell in zip(table["columns"][names:], cells[names:]):
+        figures.append({"table": table["title"], "row": ", ".join(cells[:names]), "column": column,
+                        "value": str(cell).strip("*")})
 
 
 def header(title, *cells):
     print(f"\n{title}\n")
-    row(*cells)
-    row(*("---" for _ in cells))
+    table.update(title=title, columns=cells)
+    line(*cells)
+    line(*("---" for _ in cells))
 
 
 def ms(seconds):
@@ -349,5 +362,6 @@ if __name__ == "__main__":
         sys.exit(f"speed.py: no section {', '.join(sorted(unknown))}; there are {', '.join(SECTIONS)}")
     for name in arguments.sections or SECTIONS:
         SECTIONS[name](arguments.systems)
+    print(results.write("measures.csv", figures))
     if differences:
         sys.exit("speed.py: " + "\n".join(differences))
