@@ -14,20 +14,20 @@ use nalgebra::{DMatrix, DVector};
 /// A bound is moved out by at most this factor. With a flatter likelihood the parameter is not identifiable.
 const FLATTEST: f64 = 10.0;
 /// A parameter is identifiable where its interval is shorter than this share of its search range.
-const TOLD: f64 = 0.5;
+const IDENTIFIABLE: f64 = 0.5;
 
 /// How closely a fit determines its parameters, in their coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Information {
     /// 95 % interval of each parameter.
     pub intervals: Vec<[f64; 2]>,
-    /// Correlation between each pair.
+    /// Correlation between each pair: a row and a column per parameter, in their order.
     pub correlations: DMatrix<f64>,
     /// The least identifiable parameter, if its interval is no narrower than half of its range.
     pub unidentifiable: Option<usize>,
 }
 
-/// The information at the best fit `x`; two evaluations of the model per parameter.
+/// The information at the best fit `x`, one coordinate per parameter; two evaluations of the model per parameter.
 pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
     let residuals = problem.residuals(x);
     // A model that leaves more than noise knows less than its linear form says.
@@ -83,11 +83,11 @@ fn unidentifiable(intervals: &[[f64; 2]], bounds: &[[f64; 2]]) -> Option<usize> 
     };
     (0..intervals.len())
         .max_by(|a, b| share(*a).total_cmp(&share(*b)))
-        .filter(|i| share(*i) >= TOLD)
+        .filter(|i| share(*i) >= IDENTIFIABLE)
 }
 
 impl Information {
-    /// The same with intervals about `x` that are wider by these factors.
+    /// The same with intervals about `x` that are wider by these factors, one per parameter.
     pub fn widened(mut self, factors: &[f64], x: &[f64]) -> Self {
         for ((interval, factor), x) in self.intervals.iter_mut().zip(factors).zip(x) {
             *interval = interval.map(|end| x + factor * (end - x));

@@ -131,7 +131,7 @@ impl Likelihood<'_> {
     }
 }
 
-/// Root mean square of residuals: 1 where noise is all that is left.
+/// Root mean square of residuals, which are in standard deviations of the noise: 1 where noise is all that is left.
 pub fn misfit(residuals: &[f64]) -> f64 {
     let squares: f64 = residuals.iter().map(|r| r * r).sum();
     (squares / residuals.len().max(1) as f64).sqrt()

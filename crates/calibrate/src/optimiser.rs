@@ -18,7 +18,7 @@ pub trait LeastSquares {
     fn count(&self) -> usize;
     /// The residuals at `x`.
     fn residuals(&self, x: &[f64]) -> Vec<f64>;
-    /// Their derivatives, one row per residual.
+    /// Their derivatives: a row per residual, a column per coordinate.
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64>;
 }
 

@@ -154,7 +154,8 @@ pub fn clearances(
     joints.iter().map(of).collect()
 }
 
-/// Whether some joint has several clearances in these runs, each as [`clearances`] gives it.
+/// Whether some joint has several clearances in these runs. Each run has a clearance per joint, m, as [`clearances`]
+/// gives them.
 pub fn several(runs: &[Vec<Option<f64>>]) -> bool {
     let joints = runs.first().map_or(0, Vec::len);
     (0..joints).any(|joint| {

@@ -35,7 +35,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// The machine at `x` as it stands; coordinates that `x` does not have are 0.
+    /// The machine at `x` as it stands. `x` has a coordinate per parameter, in their order; those that it does not
+    /// have are 0.
     ///
     /// # Errors
     /// A machine that cannot be simulated.

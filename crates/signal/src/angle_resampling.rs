@@ -96,7 +96,7 @@ impl AngleGrid {
         self.samples_per_revolution
     }
 
-    /// Resamples a channel of the recording, by windowed-sinc interpolation.
+    /// Resamples a channel of the recording, one value per sample in order of time, by windowed-sinc interpolation.
     ///
     /// # Errors
     /// A channel whose length is not that of the crank angle.

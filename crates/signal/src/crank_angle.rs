@@ -139,8 +139,8 @@ pub fn unwrap(wrapped: &[f64]) -> Result<Vec<f64>, Error> {
     Ok(unwrapped)
 }
 
-/// Whether readings in [0, 2π), rad, fall on the whole, each step taken the shorter way round: those of
-/// an encoder whose direction is reversed.
+/// Whether readings in [0, 2π), rad, one per sample, fall on the whole, each step taken the shorter way round.
+/// Those of an encoder whose direction is reversed do.
 pub fn runs_backwards(wrapped: &[f64]) -> bool {
     let step = |pair: &[f64]| {
         let change = pair[1] - pair[0];

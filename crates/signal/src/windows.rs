@@ -51,7 +51,7 @@ impl Window {
     }
 }
 
-/// Σw/n: what a window leaves of the amplitude of a line on a bin.
+/// Σw/n: the share of the amplitude of a line on a bin that a window of these n weights leaves.
 pub fn coherent_gain(weights: &[f64]) -> f64 {
     weights.iter().sum::<f64>() / weights.len() as f64
 }

@@ -10,7 +10,7 @@ pub(crate) struct Projector {
 }
 
 impl Projector {
-    /// Of calibrated parameters that have these derivatives.
+    /// Of calibrated parameters with these derivatives: a row per residual, a column per parameter.
     pub fn new(jacobian: &DMatrix<f64>) -> Self {
         let count = jacobian.ncols();
         let mut normal = jacobian.tr_mul(jacobian);

@@ -31,7 +31,7 @@ pub(crate) struct Regression {
 }
 
 impl Regression {
-    /// The groups that are chosen in most halves of the lines, in their order.
+    /// The groups that are chosen in most halves of the lines, in their order. A group is a list of columns of `terms`.
     pub fn stable(&self, groups: &[Vec<usize>]) -> Vec<usize> {
         let lines: Vec<usize> = (0..self.target.len() / 2).collect();
         let whole = self.normal(&lines);
