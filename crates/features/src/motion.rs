@@ -2,8 +2,8 @@
 //!
 //! One signal of the window is analysed: its first acceleration (m/s^2), else its first channel but the
 //! crank angle. Entropies, dimension and recurrence take it decimated, against aliasing, to at most
-//! [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period; what is still too long loses
-//! its end. Regime, exponent and 0-1 test come from the signal over crank angle, with [`PER_REVOLUTION`]
+//! [`POINTS`] samples, but not below [`PER_PERIOD`] in its mean period. A longer signal is cut at its
+//! end. Regime, exponent and 0-1 test come from the signal over crank angle, with [`PER_REVOLUTION`]
 //! samples a revolution, by its scatter from revolution to revolution (crate chaos, module forced). They
 //! come from the decimated samples where no shaft is known, or where the shaft repeats less than half of
 //! the signal.
@@ -38,9 +38,9 @@ const COORDINATES: usize = 8;
 /// Order of the permutation entropy, and scales of the multiscale entropy.
 const ORDER: usize = 5;
 const SCALES: usize = 5;
-/// Samples in a row at an end of the range from which the range cut them off, and the share of such
-/// samples from which a signal is not analysed.
+/// Samples in a row at an end of the range that count as cut off.
 const CUT_RUN: usize = 3;
+/// Share of such samples above which a signal is not analysed.
 const CUT_SHARE: f64 = 0.01;
 
 /// The motion of a window. Numbers are in the order of [`motion_definitions`].

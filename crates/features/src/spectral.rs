@@ -67,8 +67,8 @@ pub(crate) fn band(bands: &[f64], index: usize, sample_rate: f64) -> Result<f64,
     Err(Reason::BandAboveNyquist { low_hz, nyquist_hz })
 }
 
-/// The equally spaced crank angles at which a window is resampled: a power of two per
-/// revolution, not below its samples per revolution (but for the 1 % that the grid allows).
+/// The equally spaced crank angles at which a window is resampled. Their number per revolution is a power
+/// of two, and not below the samples per revolution (but for the 1 % that the grid allows).
 pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
     let angle = crank_angle(window)?;
     let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;
@@ -128,9 +128,9 @@ impl Orders {
     }
 }
 
-/// The shape of the Welch spectrum up to [`SHAPE_TO_HZ`], or to what the sample rate resolves if that
-/// is less: over segments of one revolution where the speed is known, of [`SEGMENT_S`] elsewhere. In
-/// samples their length would make of one motion another shape at another sample rate.
+/// The shape of the Welch spectrum up to [`SHAPE_TO_HZ`], or to what the sample rate resolves if that is
+/// less. Its segments are one revolution long where the speed is known, [`SEGMENT_S`] elsewhere. Segments
+/// of a number of samples would give one motion different shapes at different sample rates.
 pub(crate) fn shape(
     x: &[f64],
     sample_rate: f64,

@@ -176,8 +176,8 @@ impl Bundle {
         }
     }
 
-    /// What the channels of run `index` are, in their order; `machine` is the content of the machine file, or the
-    /// bundle's own section, whose throws give the channels their names.
+    /// What the channels of run `index` are, in their order. `machine` is the content of the machine file, or
+    /// the bundle's own section. Its throws give the channels their names.
     ///
     /// # Errors
     /// A channel whose unit or name is not understood.

@@ -2,8 +2,8 @@
 //!
 //! Unknown are the angular acceleration (free crank) and the acceleration of the shaft's centre
 //! (main bearing with clearance). With a rigid big end the throw's force on the crank pin depends
-//! on them; [`crate::throw::Response`] gives that dependence, so that any number of throws leads to
-//! at most three equations:
+//! on them, as [`crate::throw::Response`] gives it. Any number of throws leads to at most three
+//! equations:
 //!
 //! ```text
 //! J θ̈ + m ε turned(u)·Ö      = T + Σ moments + m ε turned(u)·g + moment at the main bearing

@@ -9,9 +9,9 @@ use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};
 
-/// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one and with the
-/// same bits. A record whose energy does not balance over the revolution after it is an error. Each record becomes what `keep` makes of it as soon as it is there, so that none waits
-/// for the others at its full size; `keep` receives its index in `asked`.
+/// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one, bit-identical.
+/// A record whose energy does not balance over the revolution after it is an error. `keep` receives each
+/// record as soon as it is made, with its index in `asked`, so that full records do not pile up.
 pub fn simulate_together<T>(
     asked: &[Asked],
     mut keep: impl FnMut(usize, Result<Record, Error>) -> T,
@@ -23,8 +23,7 @@ pub fn simulate_together<T>(
     kept.into_iter().flatten().collect()
 }
 
-/// Knows nothing of what is kept, so that the equations are compiled in this crate, as fast as its profile says,
-/// and not in each that calls it.
+/// Independent of what is kept, so that the equations are compiled once, in this crate, by its profile.
 fn run_groups(asked: &[Asked], file: &mut File) {
     for alike in of_one_build(asked) {
         in_lanes(Group {

@@ -2,14 +2,13 @@
 
 use crate::settings::Unrecordable;
 
-/// Largest deviation of a free crank's mean speed from the machine's, as a share: 5 %, the slip at rated
-/// load that an induction motor of design B stays below (NEMA MG 1, 1.19). Beyond it a motor is off the
-/// straight part of its torque–speed line, and labels, windows and orders, which are by the stated speed,
-/// would be of another machine.
+/// Largest deviation of a free crank's mean speed from the machine's, as a share: 5 %. An induction motor
+/// of design B has less slip at rated load (NEMA MG 1, 1.19). Beyond it a motor is off the straight part
+/// of its torque–speed line. Labels, windows and orders go by the stated speed and would be wrong.
 pub const MOST_SLIP: f64 = 0.05;
 
-/// Largest share of the energy turned over that a ledger may miss: a hundred times what it misses at the
-/// default tolerance (2e-9 to 1e-8), and far below what shows in a signal.
+/// Largest share of the energy turned over that a ledger may miss. It is a hundred times what a ledger
+/// misses at the default tolerance (2e-9 to 1e-8), and far below what shows in a signal.
 pub const MOST_MISSING: f64 = 1e-6;
 
 /// Why a run failed.

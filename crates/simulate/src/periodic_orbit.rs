@@ -1,5 +1,5 @@
 //! Periodic motions, found by shooting: Newton's method on the map from a state to the one a period
-//! later, whose derivative (the monodromy matrix) comes from tangents in every direction. Its
+//! later. The derivative of the map, the monodromy matrix, comes from tangents in every direction. Its
 //! eigenvalues are the Floquet multipliers: what a small disturbance is multiplied by in a period
 //! (Nayfeh and Balachandran 1995, sections 3.2 and 6.5).
 //!

@@ -141,9 +141,11 @@ fn judge<F: Flow, const N: usize>(
     })
 }
 
-/// The stable periodic orbit that the trajectory has come to. It has come to it when it repeats
-/// from period to period, Newton's method started from its end finds an orbit there and not
-/// elsewhere, and that orbit draws its neighbourhood in.
+/// The stable periodic orbit that the trajectory has reached. Three things must hold:
+///
+/// 1. the trajectory repeats from period to period;
+/// 2. Newton's method from its end finds an orbit there, not elsewhere;
+/// 3. that orbit is attractive.
 fn settled_orbit<F: Flow, const N: usize>(
     followed: &mut Followed<F, N>,
 ) -> Result<Option<PeriodicOrbit>, Error> {

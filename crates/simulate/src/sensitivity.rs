@@ -1,11 +1,10 @@
 //! How a record changes with the machine's parameters: exact derivatives by dual numbers.
 //!
-//! The motion is integrated once more over dual numbers, whose tangents carry the derivative of
-//! every coordinate with respect to every parameter; switches count, because the integrator carries
-//! the derivative of their times. After a given number of revolutions they are those of the motion
-//! from its start; of a motion that has settled, those of the periodic [`orbit`](crate::orbit). On a
-//! chaotic one the derivative grows without bound, and statistics have to be compared by differences
-//! instead.
+//! The motion is integrated once more over dual numbers, whose tangents carry the derivative of every
+//! coordinate with respect to every parameter. Switches count, because the integrator carries the
+//! derivative of their times. With a transient of a given number of revolutions, the derivatives are
+//! those of the motion from its start. For a motion that has settled they are those of the periodic
+//! [`orbit`](crate::orbit). On a chaotic one they grow without bound: compare statistics by differences.
 
 pub use crate::moved::Moved;
 pub use crate::recorder::Sensitivities;

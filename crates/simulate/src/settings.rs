@@ -37,8 +37,8 @@ pub enum Transient {
 /// Fewest samples in a revolution: the crank's own frequency must lie in the pass band of the recorder, which
 /// reaches to 0.8 of half the sample rate ([`signal::decimate`]).
 pub const LEAST_PER_REVOLUTION: f64 = 2.5;
-/// Most samples that a channel of a record may have, 2²⁶: half a GiB of numbers, of which each channel of
-/// each case that is simulated at the time takes as many.
+/// Most samples that a channel of a record may have: 2²⁶, half a GiB of numbers for each channel of each
+/// case that is simulated at the same time.
 pub const MOST_SAMPLES: f64 = 67_108_864.0;
 
 /// A sample rate that gives no record of a machine.

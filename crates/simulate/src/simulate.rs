@@ -10,8 +10,9 @@ use mechanism::Machine;
 /// Runs `machine` and records `sensors`; with `traced` also the motion itself.
 ///
 /// # Errors
-/// Where the integration cannot meet its tolerance, a sensor's filter does not fit the rate, a free crank
-/// does not keep its speed, or the energy ledger of a traced run does not close.
+/// Where the integration cannot meet its tolerance, or the settings or a sensor's filter do not fit the
+/// sample rate. Where a free crank does not keep its speed, or the energy ledger of a traced run does not
+/// close.
 pub fn simulate(
     machine: &Machine,
     sensors: &[Sensor],
@@ -21,8 +22,8 @@ pub fn simulate(
     simulate_later(machine, sensors, settings, 0.0, traced)
 }
 
-/// The same, the record beginning `delay` seconds (0 or more) after the transient: at a crank angle
-/// of choice, where without a delay a crank of given speed stands at angle 0.
+/// As [`simulate`], with a record that begins `delay` seconds (0 or more) after the transient. Without a
+/// delay a crank of given speed starts the record at angle 0.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -1,8 +1,7 @@
 //! A trajectory with tangents: directions in which it is disturbed, carried along by dual numbers.
 //!
-//! The tangents are the dual parts of the one right-hand side; where the mode switches, the
-//! integrator carries the derivative of the switch's time, so that jumps of force and state count
-//! in full. Many tangents go in chunks of `N`: each chunk follows the trajectory on its own, bit
+//! The tangents are the dual parts of the one right-hand side. Where the mode switches, the integrator
+//! carries the derivative of the switch's time, so that jumps of force and state count in full. Many tangents go in chunks of `N`: each chunk follows the trajectory on its own, bit
 //! for bit the same. Everything here is in the integration's own scales (clearances for offsets).
 
 use crate::error::Error;
@@ -12,8 +11,8 @@ use integrate::{Integrator, Real, Step, System};
 use nalgebra::{DMatrix, DVector};
 use scalar::Dual;
 
-/// A tangent shorter than this share of its length, once its parts along the others are taken
-/// away, is rounding: a rigid impact swallowed its direction, or the contact is too stiff to resolve.
+/// A tangent is rounding where less than this share of its length is left without its parts along the
+/// others. A rigid impact swallowed its direction, or the contact is too stiff to resolve.
 const LOST: f64 = 1e-12;
 
 /// A trajectory and its tangents.
@@ -189,8 +188,8 @@ impl<F: Flow, const N: usize> Tangents<F, N> {
         }
     }
 
-    /// Makes the tangents perpendicular and of length 1 (QR decomposition); the logarithm of what
-    /// each had grown by. −∞ for a direction that a rigid impact swallowed: it stays swallowed.
+    /// Makes the tangents perpendicular and of length 1 (QR decomposition). Returns the logarithm of the
+    /// growth of each, −∞ for a direction that a rigid impact swallowed: it stays swallowed.
     pub fn orthonormalise(&mut self) -> Result<Vec<f64>, Error> {
         let grown = self.matrix();
         if !grown.iter().all(|x| x.is_finite()) {

@@ -10,8 +10,8 @@ const MANY: usize = 8;
 /// come to rest before they turn.
 const STEEP: f64 = 0.2;
 
-/// How many samples stand at the highest or lowest value as those of a clipped signal do: several
-/// in a row, reached at a speed at which the signal does not turn. None where they are few.
+/// How many samples look clipped: several in a row at the highest or lowest value, reached at a speed at
+/// which the signal does not turn. None where they are few.
 pub(super) fn clipped(samples: &[f32]) -> Option<usize> {
     let low = samples.iter().copied().fold(f32::INFINITY, f32::min);
     let high = samples.iter().copied().fold(f32::NEG_INFINITY, f32::max);

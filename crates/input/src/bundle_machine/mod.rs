@@ -88,9 +88,10 @@ static KEYS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
     })
 });
 
-/// The tree of a machine file with what the machine section `machine` of a bundle says: for
-/// [`MachineFile::from_tree`](crate::MachineFile::from_tree), once the speed, the pressures and the
-/// clearances of a run are set in it ([`run_settings`](crate::run_settings())).
+/// The tree of a machine file with what the machine section `machine` of a bundle says.
+///
+/// [`MachineFile::from_tree`](crate::MachineFile::from_tree) reads it once the speed, the pressures and
+/// the clearances of a run are set in it ([`run_settings`](crate::run_settings())).
 ///
 /// Its sensors are those of a bundle, without noise: acceleration of each crosshead, pressure at
 /// each head end, crank angle.

@@ -95,8 +95,8 @@ impl MachineFile {
     }
 }
 
-/// `error` where the file has it: with its line, in a section shared by the throws if it stands
-/// there, and with what belongs in the place of a missing key.
+/// `error` with its line in the file, and with what belongs in the place of a missing key. A key of a
+/// throw may stand in the section that the throws share.
 fn locate(document: &Document, error: Error) -> Error {
     let key = shared::written_key(&document.tree, error.key()).to_owned();
     let error = error.with_key(key.clone());

@@ -118,9 +118,9 @@ messages! {
     misspelt_effect: "valve_loss" => "valve_los",
         "m.yaml:26:5: effects.0: found 'valve_los', expected one of EFFECTS; did you mean 'valve_loss'?";
     misspelt_sensor: "crosshead_acceleration" => "crosshead_aceleration",
-        "m.yaml:24:15: sensors.0.measure: found 'crosshead_aceleration', expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle; did you mean 'crosshead_acceleration'?";
+        "m.yaml:24:15: sensors.0.measure: found 'crosshead_aceleration', expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle, crank_speed; did you mean 'crosshead_acceleration'?";
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
-        "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle";
+        "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle, crank_speed";
     key_of_another_law: "law: impact" => "law: hertz",
         "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance";
     misspelt_relation: "depth: 10 um" => "depth: 10 um, relation: conformel, at_clearance: 0.1 mm",

@@ -97,8 +97,8 @@ impl<S: Scalar> Dynamics<S> {
 }
 
 impl Dynamics<f64> {
-    /// What gas and back pressure hold for the pistons at the last evaluation, J, to an unknown constant:
-    /// with ideal valves they never do more work than this falls by. None where effects act on the
+    /// What gas and back pressure hold for the pistons at the last evaluation, J, to an unknown constant.
+    /// With ideal valves they never do more work than this falls by. None where effects act on the
     /// machine, or where compression and expansion have different exponents (heat does work there).
     pub fn gas_energy(&self) -> Option<f64> {
         if !self.machine.effects.is_empty() {

@@ -5,9 +5,9 @@
 //! c(γ) = c + c2 cos 2(γ − γ0)
 //! ```
 //!
-//! γ counts from the rod's axis in the bearings of big and small end and from the frame's x in the
-//! main bearing; in the journals from the crank pin's direction and from the crosshead's x. The force
-//! stands on the oval surface. Form of the worn shell to second order (Dufrane, Kannel and McCloskey
+//! In the bearings γ counts from the rod's axis (big and small end) or the frame's x (main bearing). In
+//! the journals it counts from the crank pin's direction or the crosshead's x. The force is normal to
+//! the oval surface. Form of the worn shell to second order (Dufrane, Kannel and McCloskey
 //! 1983). Signature: reversals along the long axis are hard, across it soft; twice the angle.
 
 use super::acts::{Acts, Shape};

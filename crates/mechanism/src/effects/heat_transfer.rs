@@ -1,6 +1,6 @@
-//! Heat between the gas and the walls of the cylinder: Newton's law of cooling, with the film
-//! coefficient by the Reynolds analogy, h = St ρ cp w (Reynolds 1874; it is Woschni's 1967 with
-//! exponents of 1 in place of 0.8; Adair, Qvale and Pearson 1972 for compressors).
+//! Heat between the gas and the walls of the cylinder: Newton's law of cooling. The film coefficient
+//! follows the Reynolds analogy, h = St ρ cp w (Reynolds 1874). It is Woschni's of 1967 with exponents
+//! of 1 in place of 0.8. For compressors see Adair, Qvale and Pearson 1972.
 //!
 //! ```text
 //! d ln p / dt = m St w (A/V) (Tw/T − 1)     while both valves are closed

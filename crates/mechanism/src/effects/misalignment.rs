@@ -1,6 +1,6 @@
-//! Misalignment of crosshead, piston rod and cylinder, or of the coupling: forces on the crosshead
-//! with once and twice the speed, of one size at every speed and load (Sekhar and Prabhu 1995 find
-//! 1× and 2×; Piotrowski 2006).
+//! Misalignment of crosshead, piston rod and cylinder, or of the coupling. It exerts forces on the
+//! crosshead with once and twice the speed, of one size at every speed and load. Sources: Sekhar and
+//! Prabhu 1995 find 1× and 2×; Piotrowski 2006.
 //!
 //! ```text
 //! F = F1 cos(α + φ1) + F2 cos(2 α + φ2)

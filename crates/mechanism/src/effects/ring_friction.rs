@@ -1,6 +1,6 @@
-//! Friction of piston rings and packing on the crosshead body: a constant part from the rings'
-//! tension and a part that the gas pressure behind the rings adds (Rezeka and Henein 1984 keep
-//! the same two).
+//! Friction of piston rings and packing on the crosshead body. It has a constant part from the rings'
+//! tension, and a part that the gas pressure behind the rings adds (the same two as Rezeka and Henein
+//! 1984).
 //!
 //! ```text
 //! F = −(F0 + b p) v / √(v² + vs²)

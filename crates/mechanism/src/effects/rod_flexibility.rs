@@ -1,12 +1,12 @@
-//! A connecting rod that gives along its axis: it stretches evenly by η, a degree of freedom of its
-//! own, as a spring of stiffness k = E A / L between its eyes (the assumed mode of Rayleigh 1877).
+//! A connecting rod that is elastic along its axis. It stretches evenly by η, a degree of freedom of its
+//! own: a spring of stiffness k = E A / L between its eyes (the assumed mode of Rayleigh 1877).
 //!
 //! ```text
 //! I (η̈ − (1 + η) φ̇²) = (L − a) u·F_small − a u·F_big − L² (k η + c η̇)
 //! ```
 //!
-//! u is the direction of the rod, I its moment of inertia about the centre of mass at a from the big
-//! end, F the forces on the rod at its ends; see [`crate::throw`] for the rest. Between fixed big end
+//! u is the direction of the rod, a the distance of its centre of mass from the big end, and I its moment
+//! of inertia about that. F are the forces on the rod at its ends. Between a fixed big end
 //! and crosshead of mass m it swings with ω² = k L² / (I + M a² + m L²). Signature: ringing of a few
 //! hundred Hz after every reversal, of one frequency at every speed.
 

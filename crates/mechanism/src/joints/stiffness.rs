@@ -24,9 +24,9 @@ impl<S: Scalar> Material<S> {
 
 /// Eq. (5) of both papers: R = R₁R₂/(R₁ + R₂), N/m^1.5.
 ///
-/// This is the radius of two convex bodies; the papers use it for a pin in an eye, where it gives
-/// a stiffness some 30 times too small and almost independent of the clearance. It is here because
-/// they used it.
+/// This is the radius of two convex bodies. The papers use it for a pin in an eye. There it gives a
+/// stiffness some 30 times too small and almost independent of the clearance. It is here to reproduce
+/// the papers.
 pub fn equation_5<S: Scalar>(bodies: [Material<S>; 2], radii: [S; 2]) -> S {
     point_contact(bodies, effective_radius_eq5(radii))
 }

@@ -48,9 +48,8 @@ impl<S: Scalar> Motion<S> {
         }
     }
 
-    /// Finds the pose with the shaft's centre at `shaft` (position and velocity), the crank at
-    /// `angle` turning at `speed`, the given joint offsets and rates, and the rod's stretch η and its
-    /// rate.
+    /// Finds the pose from the shaft's centre `shaft` (position and velocity), the crank's `angle` and
+    /// `speed`, the joints' offsets and rates, and the rod's stretch η and its rate.
     #[allow(clippy::too_many_arguments)]
     #[inline(always)]
     pub(crate) fn find(

@@ -70,9 +70,9 @@ impl Run<f64> {
     }
 
     /// Checks that the gas has done no more work since `before`, at least a revolution ago, than it held.
-    /// The work is the integral of force times piston speed, and what the gas holds follows from pressure
-    /// and volume alone, so that neither can hide what the other has wrong. Within a stroke clearances
-    /// blur this, as the dead centres set the gas by where the ideal piston is.
+    /// The work is the integral of force times piston speed. What the gas holds follows from pressure and
+    /// volume alone. So neither can hide an error of the other. Within a stroke clearances blur this, as
+    /// the dead centres set the gas by the place of the ideal piston.
     ///
     /// # Errors
     /// Where it has.

@@ -93,6 +93,7 @@ sensors! {
     frame_acceleration::FrameAcceleration { axis: Axis },
     cylinder_pressure::CylinderPressure { throw: usize, end: ChamberEnd },
     crank_angle::CrankAngle,
+    crank_speed::CrankSpeed,
 }
 
 /// A sensor of the list.

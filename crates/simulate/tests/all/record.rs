@@ -1,6 +1,7 @@
 //! Records of the single-stage machine: sampling, transient, ledger, repetition.
 
 use input::{MachineFile, Resolved};
+use mechanism::drive::{Drive, Fluctuation, GivenSpeed};
 use simulate::{Measured, Record, Settings, Transient, simulate};
 use std::f64::consts::TAU;
 
@@ -238,5 +239,25 @@ fn a_machine_without_a_state_is_recorded() {
         .zip(traced.series.iter().flatten())
     {
         assert!((plain - traced).abs() <= 1e-9 * traced.abs().max(1.0));
+    }
+}
+
+/// θ̇ = ω (1 + d cos(ω t + ψ)).
+#[test]
+fn the_crank_speed_is_that_of_the_drive() {
+    let mut machine = machine("ideal");
+    let speed = 500.0 * TAU / 60.0;
+    let (amplitude, phase) = (0.01, 0.4);
+    machine.machine.drive = Drive::Given(GivenSpeed {
+        speed,
+        fluctuation: vec![Fluctuation { amplitude, phase }],
+    });
+    machine.sensors = vec![machine.perfect_sensor(Measured::CrankSpeed)];
+    let record = record(&machine, &settings());
+    let speeds = series(&machine, &record, Measured::CrankSpeed);
+    for (i, seen) in speeds.iter().enumerate() {
+        let time = record.start + i as f64 / record.sample_rate;
+        let expected = speed * (1.0 + amplitude * (speed * time + phase).cos());
+        assert!((seen / expected - 1.0).abs() < 1e-6, "sample {i}: {seen}");
     }
 }

@@ -1,8 +1,8 @@
 //! More clearance in a joint than the file says.
 //!
-//! The clearance is added before the contact is worked out, so that contact parameters
-//! that follow the clearance (see `relation`) follow it here too; an ideal joint becomes clear with the contact that stands in
-//! its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
+//! The clearance is added before the contact is worked out, so that contact parameters that follow the
+//! clearance (see `relation`) follow it here too. An ideal joint becomes clear, with the contact that
+//! stands in its section. Signature: later and harder blows, by c^(1/3) and c^(2/3) (smooth reversals).
 
 use super::act::{Act, Draft, Place};
 use crate::error::Error;

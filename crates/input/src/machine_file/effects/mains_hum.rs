@@ -1,8 +1,8 @@
 //! Mains hum on the cable of an accelerometer.
 //!
-//! A sine of the line's frequency, which is independent of the crank: its phase counts from the
-//! start of the machine, and in the mean over revolutions it fades as they become many, unless it
-//! meets an order (50 Hz is order 6 at 500 rpm).
+//! A sine of the line's frequency, which is independent of the crank. Its phase counts from the start of
+//! the machine. The mean over many revolutions averages it out, unless it meets an order (50 Hz is order
+//! 6 at 500 rpm).
 
 use super::act::{Act, Measure, Place};
 use simulate::{Hum, Sensor};

@@ -1,9 +1,8 @@
 //! Clearance that changes as the bearing warms up.
 //!
-//! Journal and bearing of different warmth or material change the clearance in proportion to the
-//! rise of temperature, c = c0 + (α_B R_B − α_J R_J) ΔT; friction heats the bearing with a power of
-//! the speed: the first at a load that stays (Coulomb), the second in oil (Petroff 1883). With the
-//! change stated at a speed,
+//! Journal and bearing of different temperature or material change the clearance in proportion to the
+//! rise of temperature, c = c0 + (α_B R_B − α_J R_J) ΔT. Friction heats the bearing with a power of the
+//! speed: 1 at a constant load (Coulomb), 2 in oil (Petroff 1883). With the change stated at a speed,
 //!
 //! ```text
 //! c = c0 + change (speed / at_speed)^exponent

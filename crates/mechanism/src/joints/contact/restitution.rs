@@ -1,8 +1,8 @@
 //! The family `F = K δⁿ (1 + χ δ̇/v₀)`: laws that differ in how χ follows from the coefficient of
 //! restitution e.
 //!
-//! For any χ of this family the restitution e' that a free impact delivers solves
-//! `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, for any n, K, mass and v₀.
+//! The restitution e' of a free impact solves `χ (1 + e') = ln((1 + χ)/(1 − χ e'))`, for any n, K, mass
+//! and v₀.
 
 use super::factors::Factors;
 use super::normal::{Normal, NormalForce, power};
