@@ -8,7 +8,7 @@ seeds of |found/true - 1|. Automatic means: called with the signal alone, or wit
 sampling interval is put in afterwards.
 """
 
-import ours  # noqa: I001  (sets the number of threads)
+import ours  # noqa: I001  (sets the number of threads, finds results)
 import results
 
 import argparse

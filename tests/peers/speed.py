@@ -8,7 +8,7 @@ A peer's values are compared with ours where both compute the same thing; exit s
 differ.
 """
 
-import ours  # noqa: I001  (sets the number of threads)
+import ours  # noqa: I001  (sets the number of threads, finds results)
 import results
 
 import argparse

@@ -9,7 +9,7 @@ import shlex
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "data" / "results"
 
 
@@ -32,9 +32,10 @@ def command():
     return shlex.join([str(program), *sys.argv[1:]])
 
 
-def write(name, rows):
-    """Writes `rows`, dictionaries with the same keys, and returns the path of the file."""
-    made = {"command": command(), "date": datetime.date.today().isoformat(), "version": version(),
+def write(name, rows, by=None):
+    """Writes `rows`, dictionaries with the same keys, and returns the path of the file. They were made by the command `by`, or
+    else by this program."""
+    made = {"command": by or command(), "date": datetime.date.today().isoformat(), "version": version(),
             "machine": machine()}
     FOLDER.mkdir(parents=True, exist_ok=True)
     path = FOLDER / name
