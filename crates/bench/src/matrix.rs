@@ -53,7 +53,7 @@ impl Share {
     }
 }
 
-/// What all cases come to: the content of `matrix.json`.
+/// The counts over all cases: the content of `matrix.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Counts {
     /// How many cases there are.

@@ -52,10 +52,9 @@ impl Case {
     }
 }
 
-/// All cases. In each round every effect is hidden once, then nothing, then pairs,
-/// then what is in no catalogue. From one case of a
-/// round to the next, and from one round to the next, the combination of machine, noise and size is
-/// another one, so that each round has all of them about equally often.
+/// All cases. In each round every effect is hidden once, then nothing, then pairs, then what is in
+/// no catalogue. The combination of machine, noise and size changes from case to case and from
+/// round to round, so each round has all combinations about equally often.
 pub fn cases(settings: &HiddenEffects) -> Vec<Case> {
     let effects = settings.entries();
     let seed = u64::from(settings.seed.map_or(0, |seed| seed.get()));

@@ -9,8 +9,8 @@
 //! pairs: 3
 //! ```
 //!
-//! Cases come in rounds. A round hides every effect once, and then nothing and pairs as often as the
-//! file says; from round to round each meets another of the combinations of machine, noise and size.
+//! Cases come in rounds. A round hides every effect once, and then nothing and pairs as often as
+//! the file says. From round to round each gets another combination of machine, noise and size.
 
 use input::Error;
 use input::choice::Count;
@@ -26,42 +26,41 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HiddenEffects {
-    /// What all random numbers follow from; 0 where it is left out.
+    /// Seed of all random numbers; default 0.
     #[serde(default)]
     pub seed: Option<Count<0, { u32::MAX }>>,
     /// The machines and their runs, at least one.
     pub machines: Vec<BenchMachine>,
-    /// The effects that are hidden; all of the catalogue where it is left out.
+    /// The effects that are hidden; default all of the catalogue.
     #[serde(default)]
     pub effects: Option<Vec<String>>,
     /// Sizes of the effects: their amplitudes over the usual ones.
     pub sizes: Vec<Number<AboveZero>>,
     /// Noise of the accelerations, of their RMS; pressures have a quarter of it.
     pub noises: Vec<Quantity<Ratio, FromZero>>,
-    /// Cases of a round in which nothing is hidden; 1 where it is left out.
+    /// Cases of a round in which nothing is hidden; default 1.
     #[serde(default)]
     pub nothing: Option<Count<0, 1000>>,
-    /// Cases of a round in which two effects are hidden, drawn among the effects; 0 where it is left
-    /// out.
+    /// Cases of a round in which two effects are hidden, drawn among the effects; default 0.
     #[serde(default)]
     pub pairs: Option<Count<0, 1000>>,
-    /// Cases of a round in which something is hidden that no catalogue has, of each kind in turn: the
-    /// contacts of another law, an acceleration behind a capacitor, and one that comes late; 0 where it
-    /// is left out.
+    /// Cases of a round in which a defect is hidden that is in no catalogue, of each kind in turn:
+    /// contacts of another law, an acceleration behind a capacitor, a delayed acceleration; default
+    /// 0.
     #[serde(default)]
     pub outside: Option<Count<0, 1000>>,
-    /// Rounds; where it is left out as many as there are combinations of machine, noise and size, so
-    /// that every effect meets each of them.
+    /// Rounds; default the number of combinations of machine, noise and size, so that every effect
+    /// meets each of them.
     #[serde(default)]
     pub rounds: Option<Count<1, 1_000_000>>,
-    /// Revolutions of a recording; 30 where it is left out.
+    /// Revolutions of a recording; default 30.
     #[serde(default)]
     pub revolutions: Option<Count<4, 10_000>>,
-    /// Sample rate of a recording; 20 kHz where it is left out.
+    /// Sample rate of a recording; default 20 kHz.
     #[serde(default)]
     pub sample_rate: Option<Positive<Frequency>>,
     /// Share of the cases in which the joints of the recorded machine follow another contact law
-    /// (Flores 2011) than those of the machine that is calibrated; none where it is left out.
+    /// (Flores 2011) than those of the calibrated machine; default 0.
     #[serde(default)]
     pub other_contact_law: Option<Quantity<Ratio, FromZero>>,
 }
@@ -70,7 +69,7 @@ pub struct HiddenEffects {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BenchMachine {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// A folder with recordings.yaml, from the folder of this file. Its machine section and the
     /// conditions of its runs are used, its recordings are not.
@@ -78,16 +77,16 @@ pub struct BenchMachine {
     /// Values of the machine section in place of the bundle's.
     #[serde(default)]
     pub machine: Map<String, Value>,
-    /// The runs of the bundle; all of them where it is left out.
+    /// The runs of the bundle; default all of them.
     #[serde(default)]
     pub runs: Option<Vec<String>>,
-    /// What the speeds of the runs are multiplied with; 1 where it is left out.
+    /// Factor on the speeds of the runs; default 1.
     #[serde(default)]
     pub speed_factor: Option<Number<AboveZero>>,
-    /// What the clearances of the runs are multiplied with; 1 where it is left out.
+    /// Factor on the clearances of the runs; default 1.
     #[serde(default)]
     pub clearance_factor: Option<Number<AboveZero>>,
-    /// Whether the pressures are recorded; yes where it is left out.
+    /// Whether the pressures are recorded; default true.
     #[serde(default)]
     pub pressure: Option<bool>,
 }

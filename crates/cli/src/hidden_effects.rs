@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-/// Names of the files with what all cases come to.
+/// Names of the files with the counts over all cases.
 pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
 
 /// Arguments of `crosshead hidden-effects`.
@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let ledger = Ledger::in_folder(out);
     if ledger.exists() && !arguments.resume {
         return Err(Failure::input(format!(
-            "{} is already there; --resume goes on with it, --out DIR writes elsewhere",
+            "{} is already there; --resume continues it, --out DIR writes elsewhere",
             out.join(CASES).display()
         )));
     }
@@ -219,7 +219,7 @@ fn line(case: &Case, outcome: &Outcome) -> String {
     format!("case {}, {}: {what}{seconds}", case.number, case.label())
 }
 
-/// Writes what the cases come to.
+/// Writes the counts over all cases.
 fn write(matrix: &Matrix, out: &Path) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(&matrix.counts()).map_err(Failure::work)?;
     write_file(&out.join(MATRIX[0]), text.as_bytes())?;

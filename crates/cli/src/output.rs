@@ -58,9 +58,9 @@ fn write(out: &mut impl Write, text: Arguments) -> io::Result<()> {
     out.write_all(without_passwords(&harmless).as_bytes())
 }
 
-/// Text in which nothing speaks to the terminal: control characters but the line break, and characters that turn the
-/// direction of writing (Unicode Standard Annex 9), are written out as
-/// `\u001b`, which within JSON is the same character.
+/// Text without control of the terminal. Control characters other than the line break, and
+/// characters that change the direction of writing (Unicode Standard Annex 9), are written as
+/// `\u001b`. In JSON this is the same character.
 struct Harmless<'a>(&'a mut String);
 
 impl std::fmt::Write for Harmless<'_> {

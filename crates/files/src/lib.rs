@@ -1,9 +1,10 @@
 //! Opens the files that people and strangers hand in.
 //!
-//! A path of a shared folder may lead to a pipe, which nobody ever writes to, or to a device, which never ends. Only
-//! regular files are opened here, and every reader of the workspace opens its files here. That holds for pipes
-//! that a user gives on purpose as well (`/dev/stdin`, `<(...)`): formats with an index at the end, and those that are
-//! read twice, cannot be read from a pipe, and one rule for all is easier to remember than one for each.
+//! A path of a shared folder may lead to a pipe, which nobody ever writes to, or to a device, which
+//! never ends. Only regular files are opened here, and every reader of the workspace opens its
+//! files here. This includes pipes that a user gives on purpose (`/dev/stdin`, `<(...)`). Formats
+//! with an index at the end, and formats that are read twice, cannot be read from a pipe. One rule
+//! for all formats is easier to remember.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Error, ErrorKind, Read};

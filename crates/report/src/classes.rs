@@ -14,8 +14,9 @@ pub fn name(label: &str) -> String {
     }
 }
 
-/// The colour of a label: grey for the healthy machine, for a joint its place among the machine's
-/// `joints`, and for any other of the `labels` (several joints, effects) the next that is free.
+/// The colour of a label: grey for the healthy machine, and for a joint the colour of its place
+/// among the machine's `joints`. Other `labels` (several joints, effects) get the next free
+/// colours.
 pub(crate) fn colour<'a>(
     label: &str,
     joints: &[String],
@@ -33,6 +34,12 @@ pub(crate) fn colour<'a>(
     others.dedup();
     let place = others.iter().position(|other| *other == label);
     place.map_or(Colour::Ink, |place| Colour::Class(joints.len() + place))
+}
+
+/// Whether the label `many` names all joints of the label `few`, and more.
+pub(crate) fn has_more_joints(many: &str, few: &str) -> bool {
+    let [many, few] = [many, few].map(|label| label.split('+').collect::<Vec<_>>());
+    few.len() < many.len() && few.iter().all(|joint| many.contains(joint))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The HTML page that documents the features of a dataset.
 
 use crate::plate::Rendered;
-use crate::{Error, text};
+use crate::{Column, Error, text};
 use askama::Template;
 
 /// All columns of the table of features, and what each is.
@@ -14,7 +14,7 @@ pub struct FeaturesPage {
     /// The features, in groups.
     pub groups: Vec<FeatureGroup>,
     /// The other columns: names, labels, operating point, parameters, what is known of the case.
-    pub columns: Vec<LabelColumn>,
+    pub columns: Vec<Column>,
 }
 
 /// Features that belong together.
@@ -41,19 +41,6 @@ pub struct FeatureEntry {
     pub formula: String,
     /// Where it is defined.
     pub source: String,
-}
-
-/// A column that is no feature.
-#[derive(Clone, Debug)]
-pub struct LabelColumn {
-    /// Its name.
-    pub name: String,
-    /// Its type, for instance `double`.
-    pub kind: String,
-    /// Its unit; empty for none.
-    pub unit: String,
-    /// What it is.
-    pub meaning: String,
 }
 
 #[derive(Template)]

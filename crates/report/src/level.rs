@@ -1,11 +1,12 @@
 //! A level of a signal, with what another recording of the same machine may differ by.
 
+use crate::statistics::mean_and_deviation;
 use std::cmp::Ordering;
 
 /// Two levels differ if they are more than this many standard deviations of their difference apart:
 /// chance alone does that in one of twenty comparisons.
 const SURE: f64 = 2.0;
-/// Levels within this share of one another are equal whatever their spread: the amplitude linearity
+/// Levels within this share of one another are equal for any spread: the amplitude linearity
 /// that data sheets of industrial accelerometers state is 1 %.
 const LINEARITY: f64 = 0.01;
 
@@ -24,7 +25,7 @@ impl Level {
     pub fn largest(peaks: &[f64]) -> Self {
         Self {
             value: peaks.iter().copied().fold(0.0, f64::max),
-            spread: deviation(peaks),
+            spread: mean_and_deviation(peaks).1,
         }
     }
 
@@ -32,7 +33,7 @@ impl Level {
     pub fn root_mean(squares: &[f64]) -> Self {
         let count = squares.len().max(1) as f64;
         let value = (squares.iter().sum::<f64>() / count).sqrt();
-        let spread = deviation(squares) / count.sqrt() / (2.0 * value);
+        let spread = mean_and_deviation(squares).1 / count.sqrt() / (2.0 * value);
         Self {
             value,
             spread: if spread.is_finite() { spread } else { 0.0 },
@@ -55,14 +56,6 @@ impl Level {
     pub fn exceeds(self, other: Self) -> bool {
         self.against(other) == Ordering::Greater
     }
-}
-
-/// Standard deviation of a sample; 0 for a single value.
-fn deviation(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (squares / (count - 1.0).max(1.0)).sqrt()
 }
 
 #[cfg(test)]

@@ -9,17 +9,18 @@
 //! - [`gap_page`]: the HTML page of an explanation;
 //! - [`text`]: numbers with units, words, escaping.
 //!
-//! A page is a plain struct that renders itself: the same struct always gives the same bytes, and pages
-//! load nothing from anywhere. Those of a dataset are filled from a [`sweep::reader::Dataset`].
+//! A page is a plain struct that renders itself. The same struct gives the same bytes, and a page
+//! loads nothing from other places. Pages of a dataset are filled from a [`sweep::reader::Dataset`].
 //!
-//! The figures are drawn by a module of our own. Of the plotting crates, kuva 0.6 was tried: its
-//! grids hide the tick labels of panels that then do not have the common range, equal axes come
-//! out lopsided, angles get ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
+//! The figures are drawn by a module of this crate. The plotting crate kuva 0.6 has four defects: its
+//! grids hide tick labels of panels without the common range, equal axes are not equal, angles get
+//! ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
 
 pub mod calibration_page;
 pub mod case_picture;
 pub mod chaos_page;
 pub mod classes;
+mod column;
 mod dataset;
 pub mod dataset_page;
 pub mod features_page;
@@ -32,6 +33,7 @@ mod revolutions;
 mod statistics;
 pub mod text;
 
+pub use column::Column;
 pub use files::{write_page, write_pages};
 pub use level::Level;
 pub use plate::{FigureFile, Rendered};

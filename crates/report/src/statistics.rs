@@ -1,4 +1,4 @@
-//! Medians, quartiles and ranks.
+//! Means, medians, quartiles and ranks.
 
 /// Half of the interval that holds 95 % of a normal distribution, in standard deviations.
 pub(crate) const HALF: f64 = 1.96;
@@ -11,6 +11,14 @@ pub(crate) fn quantile(values: &[f64], part: f64) -> Option<f64> {
     let place = part * values.len().checked_sub(1)? as f64;
     let (below, above) = (place.floor() as usize, place.ceil() as usize);
     Some(values[below] + (values[above] - values[below]) * (place - place.floor()))
+}
+
+/// Mean and standard deviation of a sample; the latter 0 for a single value.
+pub(crate) fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (count - 1.0).max(1.0)).sqrt())
 }
 
 /// Spearman's rank correlation of the pairs, equal values sharing their mean rank; none where
@@ -51,6 +59,13 @@ mod tests {
         assert_eq!(quantile(&[4.0, 1.0, f64::NAN, 3.0, 2.0], 0.5), Some(2.5));
         assert_eq!(quantile(&[4.0, 1.0, 3.0, 2.0], 0.25), Some(1.75));
         assert_eq!(quantile(&[f64::NAN], 0.5), None);
+    }
+
+    #[test]
+    fn the_deviation_is_that_of_a_sample() {
+        assert_eq!(mean_and_deviation(&[1.0, 2.0, 3.0]), (2.0, 1.0));
+        assert_eq!(mean_and_deviation(&[4.0]), (4.0, 0.0));
+        assert!(mean_and_deviation(&[]).0.is_nan());
     }
 
     /// By hand: ranks 1, 2.5, 2.5, 4 and 1, 3, 2, 4 about 2.5 have the products 2.25, 0, 0 and 2.25

@@ -4,7 +4,7 @@
 //! the values found, and the uncertainty as `vary_together` and `vary`. The plan is that of this
 //! tree, and the dataset's `sweep.yaml` holds it: it no longer names the recordings.
 
-mod found;
+mod results;
 
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,10 @@
 //! The effects that a sweep varies: each is a label, like a worn joint, with its amplitudes as
 //! columns.
 //!
-//! An effect that stands in the machine file and keeps its amplitudes is part of the machine, and so
-//! is one that the machine has in every case and whose size is drawn as an unknown (`vary`). Any
-//! other effect whose amplitudes differ among the cases is a label. A case has it where one of its
-//! amplitudes is not the one at which the effect vanishes.
+//! An effect of the machine file with constant amplitudes is part of the machine. So is an effect
+//! that every case has and whose size `vary` draws as an unknown. Any other effect whose amplitudes
+//! differ among the cases is a label. A case has it where one of its amplitudes is not the one at
+//! which the effect vanishes.
 
 use std::collections::BTreeMap;
 

@@ -26,7 +26,7 @@ pub enum Error {
     },
     /// The output folder has something in it.
     #[error(
-        "`{}` is not empty: --resume goes on with it, --overwrite replaces it", .0.display()
+        "`{}` is not empty: --resume continues it, --overwrite replaces it", .0.display()
     )]
     Exists(PathBuf),
     /// The output folder holds something that this program did not write.

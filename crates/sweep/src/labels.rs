@@ -11,8 +11,8 @@ use crate::sweep_file::Amount;
 /// The label of a case without any fault.
 pub const NONE: &str = "none";
 
-/// By how much of itself a clearance may exceed the normal one and still be equal to it: one length
-/// written in two units, 30 um and 0.03 mm, differs by rounding, 1e-16.
+/// Relative tolerance within which a clearance equals the normal one. One length in two units, 30
+/// um and 0.03 mm, differs by rounding, 1e-16.
 const ROUNDING: f64 = 1e-9;
 
 /// A joint of the machine, by the name that labels and sweeps give it.
@@ -103,8 +103,8 @@ impl Joint {
         value.and_then(Amount::of).map_or(0.0, |amount| amount.si)
     }
 
-    /// Whether it is faulty in the case with the machine file `tree`, which is `resolved`; `own` is
-    /// the sweep's machine file, with what is drawn about its values as a calibration leaves them.
+    /// Whether it is faulty in the case with the machine file `tree`, which is `resolved`. `own` is
+    /// the sweep's machine file with the values that are drawn from a calibration.
     ///
     /// Where no normal clearance is stated, the one of `own` is normal. Both are
     /// then compared as the files state them: what an effect adds to a clearance (warmth, say) is

@@ -5,8 +5,8 @@ use std::time::Instant;
 use crate::dataset::sample_diagram;
 use crate::{Error, Plan, simulate_cases};
 
-/// Cases that are simulated to measure the time: enough for the lanes to be full for most of it, and few
-/// where the motion of each is judged, which takes much longer.
+/// Cases that are simulated to measure the time: enough to keep the lanes full for most of it.
+/// There are few if the motion of each is judged, which takes much longer.
 const SAMPLE_CASES: u64 = 32;
 const JUDGED_CASES: u64 = 3;
 

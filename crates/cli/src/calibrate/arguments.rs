@@ -97,8 +97,8 @@ enum Law {
     Fitted,
 }
 
-/// The settings that bundles or one settings file state, with this machine file in the place of
-/// theirs; the folder from which their paths start, and their file where there is one.
+/// The settings of bundles or of one settings file, with this machine file instead of theirs. Also
+/// returns the folder from which their paths start, and the settings file, if there is one.
 ///
 /// # Errors
 /// An invalid settings file, or a settings file beside other inputs.

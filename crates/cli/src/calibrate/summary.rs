@@ -71,7 +71,7 @@ fn corrections(corrections: &[Correction], tried: &[Tried]) {
     for correction in corrections {
         let stated = match correction.nominal {
             Some(nominal) => format!("in place of the stated {nominal:.5e}"),
-            None => "which nobody has stated".to_owned(),
+            None => "without a stated value".to_owned(),
         };
         let end = match correction.applied {
             true => "; machine.yaml has it",

@@ -10,8 +10,8 @@ use sweep::calibration::Sweep;
 use sweep::dataset::{CALIBRATION, Claim};
 use sweep::{Existing, Plan};
 
-/// The plan of `sweep` with the machine calibrated into the locked folder of its dataset; a
-/// calibration that is there and follows from the same recordings, machine and settings is used.
+/// The plan of `sweep` with the machine calibrated into the locked folder of its dataset. An
+/// existing calibration is used if it has the same recordings, machine and settings.
 ///
 /// # Errors
 /// Settings or recordings that cannot be used (nothing was written then), or a search that failed

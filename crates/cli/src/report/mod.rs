@@ -36,8 +36,8 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// Writes the pages, in place of any files of their names, and prints where the first is; with a
-/// grid of clearances also its levels, and the claims of the study that the sweep names.
+/// Writes the pages, replaces files with their names, and prints the path of the first. For a grid
+/// of clearances it also prints the levels, and the claims of the study that the sweep names.
 ///
 /// # Errors
 /// A folder that is no whole dataset, or a page that cannot be made or written.

@@ -1,8 +1,8 @@
 //! The HTML page of a calibration: what it found, how far that can be trusted, and pictures of it.
 //!
-//! The caller reads what a calibration has written into a [`CalibrationPage`];
+//! [`CalibrationPage::read`] reads the files of a calibration.
 //! [`CalibrationPage::render`] is one file with its styles and figures inside. Its size is bounded
-//! whatever the calibration.
+//! for any calibration.
 
 mod corrections;
 pub(crate) mod folder;

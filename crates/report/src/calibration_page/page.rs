@@ -188,12 +188,6 @@ impl View<'_> {
     }
 
     fn left_out(&self) -> String {
-        match waveforms::left_out(&self.page.runs) {
-            0 => String::new(),
-            n => format!(
-                "{} without a figure here; waveforms.parquet has all runs.",
-                text::counted(n, "run")
-            ),
-        }
+        waveforms::left_out(&self.page.runs)
     }
 }

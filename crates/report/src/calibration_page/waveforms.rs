@@ -17,9 +17,15 @@ const LOWEST: f64 = 0.1;
 /// The recording.
 const MEASURED: Colour = Colour::Ink;
 
-/// How many runs have no picture.
-pub(crate) fn left_out(runs: &[Run]) -> usize {
-    runs.len().saturating_sub(MOST_RUNS)
+/// A remark on the runs without a figure; empty if all have one.
+pub(crate) fn left_out(runs: &[Run]) -> String {
+    match runs.len().saturating_sub(MOST_RUNS) {
+        0 => String::new(),
+        n => format!(
+            "{} without a figure here; waveforms.parquet has all runs.",
+            text::counted(n, "run")
+        ),
+    }
 }
 
 /// A picture per run; `names` are what the simulation before and after is called.

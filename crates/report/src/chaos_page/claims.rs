@@ -5,15 +5,15 @@
 //! "more possible", and the number of joints with clearance affects it.
 
 use super::{CaseChaos, Regime};
-use crate::text;
+use crate::{classes, text};
 use std::collections::BTreeMap;
 
 /// An exponent is above another if it exceeds it by more than this many standard errors of their
 /// difference.
 const HIGHER: f64 = 2.0;
 
-/// How many cases are chaotic, and before it, of a sweep that repeats the study, what the exponents
-/// from the equations say about each claim; empty where there is nothing to compare.
+/// The number of chaotic cases. For a sweep that repeats the study, the comparison of the exponents
+/// from the equations with each claim comes first. Empty if there is nothing to compare.
 pub(super) fn claims(cases: &[CaseChaos], study: bool) -> Vec<String> {
     let clear: Vec<&CaseChaos> = cases.iter().filter(|case| case.clearance_m > 0.0).collect();
     let steps = study.then(|| {
@@ -65,18 +65,11 @@ fn more<'a>(cases: &[&'a CaseChaos]) -> Vec<Step<'a>> {
         for few in group.values() {
             let many = group
                 .values()
-                .filter(|many| within(&few.joints, &many.joints));
+                .filter(|many| classes::has_more_joints(&many.joints, &few.joints));
             steps.extend(many.map(|many| (*few, *many)));
         }
     }
     steps
-}
-
-/// Whether `many` names all of the `few` joints, and more.
-fn within(few: &str, many: &str) -> bool {
-    let many: Vec<&str> = many.split('+').collect();
-    let few: Vec<&str> = few.split('+').collect();
-    few.len() < many.len() && few.iter().all(|joint| many.contains(joint))
 }
 
 fn compared(steps: &[Step], words: &str) -> Option<String> {

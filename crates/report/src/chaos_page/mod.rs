@@ -1,9 +1,8 @@
 //! The HTML page of what a sweep says about chaos.
 //!
-//! The caller reads the tables of the dataset, simulates the few cases whose motion is shown
-//! again, and fills a [`ChaosPage`]; [`ChaosPage::render`] is one file with its styles and figures
-//! inside. A section whose data the dataset lacks says what to add to the sweep file. The size is
-//! bounded whatever the dataset.
+//! [`ChaosPage::from_dataset`] reads the tables of the dataset and simulates the few cases whose
+//! motion is shown again. [`ChaosPage::render`] is one file with its styles and figures inside. A
+//! section without data says what to add to the sweep file. The size is bounded for any dataset.
 
 mod agreement;
 mod bifurcations;
@@ -144,7 +143,7 @@ pub struct CaseChaos {
 pub struct WindowChaos {
     /// Largest Lyapunov exponent with the ends of its 95 % interval, 1/s: value, low, high.
     pub exponent: Option<[f64; 3]>,
-    /// Why there is none; empty where there is one, or where none was asked for.
+    /// Why there is no exponent; empty if there is one, or if it was not computed.
     pub reason: String,
     /// Regime from the signal.
     pub regime: Option<Regime>,

@@ -1,7 +1,6 @@
 //! The columns of the tables, features named once for all channels and orders.
 
-use crate::dataset_page::Column;
-use crate::{Error, text};
+use crate::{Column, Error, text};
 use sweep::reader::{Dataset, Subset};
 
 /// The columns of a file of either table. Of features there are hundreds: those of the first
@@ -34,7 +33,11 @@ fn is_feature(dataset: &Dataset, column: &str) -> bool {
         .any(|definition| definition.name == column)
 }
 
-fn of_table(dataset: &Dataset, table: Subset) -> Result<Vec<Column>, Error> {
+/// The columns of the first file of a table.
+///
+/// # Errors
+/// A table that cannot be read.
+pub(super) fn of_table(dataset: &Dataset, table: Subset) -> Result<Vec<Column>, Error> {
     let columns = dataset.columns(table)?.into_iter();
     Ok(columns
         .map(|column| Column {

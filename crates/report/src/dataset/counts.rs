@@ -1,8 +1,9 @@
 //! How many cases and windows there are, what varies over them, and which failed.
 
 use super::words;
-use crate::dataset_page::{CaseWarning, FailedCase, FaultCount, ParameterRange};
+use crate::dataset_page::{FaultCount, ParameterRange};
 use crate::text;
+use recordings::FailedCase;
 use std::collections::BTreeMap;
 use std::path::Path;
 use sweep::reader::{Dataset, Meaning};
@@ -48,25 +49,14 @@ pub(super) fn ranges(dataset: &Dataset) -> Vec<ParameterRange> {
     ranges.collect()
 }
 
+/// The failed cases, with commands that are made from their names.
 pub(super) fn failed(dataset: &Dataset) -> Vec<FailedCase> {
     let failed = dataset.manifest().failed.iter().cloned();
-    failed
-        .map(|case| FailedCase {
-            command: recordings::FailedCase::command_of(Path::new("sweep.yaml"), &case.case_id),
-            case_id: case.case_id,
-            reason: case.reason,
-        })
-        .collect()
-}
-
-pub(super) fn warnings(dataset: &Dataset) -> Vec<CaseWarning> {
-    let warnings = dataset.manifest().warnings.iter().cloned();
-    warnings
-        .map(|case| CaseWarning {
-            case_id: case.case_id,
-            warning: case.warning,
-        })
-        .collect()
+    let with_command = failed.map(|case| FailedCase {
+        command: FailedCase::command_of(Path::new("sweep.yaml"), &case.case_id),
+        ..case
+    });
+    with_command.collect()
 }
 
 /// Fewest and most samples that the revolutions of a window take, at the highest and the lowest

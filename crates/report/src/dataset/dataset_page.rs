@@ -2,7 +2,7 @@
 
 use super::{about, columns, counts, examples, features, grid, random};
 use crate::Error;
-use crate::dataset_page::{ClearanceGrids, DatasetPage, Design};
+use crate::dataset_page::{DatasetPage, Design};
 use sweep::reader::Dataset;
 
 impl DatasetPage {
@@ -18,11 +18,7 @@ impl DatasetPage {
             None => None,
         };
         let design = match grid::grids(dataset, motions.as_ref())? {
-            Some(grids) => Design::Grid(ClearanceGrids {
-                grids: grids.shown,
-                left_out: grids.left_out,
-                claims: dataset.plan.study.is_some(),
-            }),
+            Some(grids) => Design::Grid(grids),
             None => Design::Random(random::sweep(dataset, &faults)),
         };
         let (features, feature_rows) = features::by_fault(dataset, &faults);
@@ -41,7 +37,7 @@ impl DatasetPage {
             faults,
             ranges: counts::ranges(dataset),
             failed: counts::failed(dataset),
-            warnings: counts::warnings(dataset),
+            warnings: dataset.manifest().warnings.clone(),
             no_examples: about::no_recordings(dataset).to_owned(),
             examples,
             design,

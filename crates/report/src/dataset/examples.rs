@@ -7,8 +7,9 @@ use crate::dataset_page::{ClassExample, FaultCount};
 use crate::{Error, text};
 use sweep::reader::{Dataset, Meaning, Side};
 
-/// The first window of the case of each fault whose largest clearance is nearest to the median of
-/// its class, once for each sensor that judges the fault; of the healthy as the first sensor reads it.
+/// An example of each fault, for each sensor that judges it: the first window of the case whose
+/// largest clearance is nearest to the median of its class. For the healthy machine only the first
+/// sensor.
 ///
 /// # Errors
 /// A table that cannot be read.

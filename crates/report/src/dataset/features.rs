@@ -1,6 +1,7 @@
 //! The features that the page shows: how large the acceleration is, how peaked, how violent.
 
 use crate::dataset_page::{FaultCount, Feature, FeatureRow};
+use crate::statistics::mean_and_deviation;
 use sweep::reader::{ChannelFeatures, Dataset};
 
 /// Lower edge of the bands that count as violence: the motion without clearance hardly reaches
@@ -52,7 +53,8 @@ pub(super) fn by_fault(
         let of_fault = |(_, values): &(Feature, Vec<f64>)| {
             let own = values.iter().zip(&dataset.windows.fault);
             let own = own.filter(|(_, fault)| **fault == count.fault);
-            mean_and_spread(own.map(|(value, _)| *value))
+            let finite = own.map(|(value, _)| *value).filter(|v| v.is_finite());
+            mean_and_deviation(&finite.collect::<Vec<_>>())
         };
         FeatureRow {
             fault: count.fault.clone(),
@@ -66,26 +68,4 @@ pub(super) fn by_fault(
         judging.map(|sensor| row(count, sensor)).collect::<Vec<_>>()
     });
     (features.collect(), rows.collect())
-}
-
-/// Mean and standard deviation of the finite values; the latter 0 for a single value.
-fn mean_and_spread(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (mean, (squares / (count - 1.0).max(1.0)).sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::mean_and_spread;
-
-    #[test]
-    fn the_spread_is_that_of_a_sample() {
-        let (mean, spread) = mean_and_spread([1.0, 2.0, f64::NAN, 3.0].into_iter());
-        assert_eq!((mean, spread), (2.0, 1.0));
-        assert_eq!(mean_and_spread([4.0].into_iter()), (4.0, 0.0));
-        assert!(mean_and_spread(std::iter::empty()).0.is_nan());
-    }
 }

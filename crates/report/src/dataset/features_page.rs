@@ -1,7 +1,8 @@
 //! The page that documents the features, from their one table and the columns of the files.
 
-use crate::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
-use crate::{Error, text};
+use super::columns::of_table;
+use crate::features_page::{FeatureEntry, FeatureGroup, FeaturesPage};
+use crate::{Column, Error, text};
 use features::{Definition, Group};
 use sweep::reader::{Dataset, Subset};
 
@@ -47,7 +48,7 @@ impl FeaturesPage {
     }
 }
 
-/// An entry for each feature, whatever the channels, and for each run of names that differ in
+/// An entry for each feature, over all channels, and for each run of names that differ in
 /// digits alone.
 fn entries<'a>(definitions: impl Iterator<Item = &'a Definition>) -> Vec<FeatureEntry> {
     let mut features: Vec<(&str, FeatureEntry)> = Vec::new();
@@ -94,20 +95,10 @@ fn entries<'a>(definitions: impl Iterator<Item = &'a Definition>) -> Vec<Feature
 }
 
 /// The columns of the table of features that are no features.
-fn labels(dataset: &Dataset, definitions: &[Definition]) -> Result<Vec<LabelColumn>, Error> {
-    let columns = dataset.columns(Subset::Features)?.into_iter();
-    let others = columns.filter(|column| {
-        definitions
-            .iter()
-            .all(|definition| definition.name != column.name)
-    });
-    let labels = others.map(|column| LabelColumn {
-        name: column.name,
-        kind: column.kind.to_string(),
-        unit: text::unit(column.unit.as_deref().unwrap_or_default()),
-        meaning: column.description,
-    });
-    Ok(labels.collect())
+fn labels(dataset: &Dataset, definitions: &[Definition]) -> Result<Vec<Column>, Error> {
+    let mut columns = of_table(dataset, Subset::Features)?;
+    columns.retain(|column| definitions.iter().all(|d| d.name != column.name));
+    Ok(columns)
 }
 
 #[cfg(test)]

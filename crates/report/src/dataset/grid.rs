@@ -6,7 +6,7 @@ use super::features::HIGH_FROM_HZ;
 use super::operating_points::Settings;
 use super::recording::Recording;
 use super::words;
-use crate::dataset_page::{CaseLevel, ClearanceGrid, JointSet, Response};
+use crate::dataset_page::{CaseLevel, ClearanceGrid, ClearanceGrids, JointSet, Response};
 use crate::{Error, Level};
 use std::collections::{BTreeMap, BTreeSet};
 use sweep::reader::{Case, Dataset, Motions};
@@ -25,18 +25,15 @@ struct Point<'a> {
     cases: Vec<&'a Case>,
 }
 
-/// The grids of a sweep and how many there are beside these.
-pub(super) struct Grids {
-    pub(super) shown: Vec<ClearanceGrid>,
-    pub(super) left_out: usize,
-}
-
 /// A grid for each sensor and each operating point at which several sets of joints have the same
 /// several clearances; none where there is no such point.
 ///
 /// # Errors
 /// A table that cannot be read.
-pub(super) fn grids(dataset: &Dataset, motions: Option<&Motions>) -> Result<Option<Grids>, Error> {
+pub(super) fn grids(
+    dataset: &Dataset,
+    motions: Option<&Motions>,
+) -> Result<Option<ClearanceGrids>, Error> {
     let operating_points = operating_points(dataset);
     let firsts = operating_points
         .iter()
@@ -66,9 +63,10 @@ pub(super) fn grids(dataset: &Dataset, motions: Option<&Motions>) -> Result<Opti
         grid.operating_point = settings.described(&grid.operating_point, at);
         shown.push(grid);
     }
-    Ok(Some(Grids {
+    Ok(Some(ClearanceGrids {
         left_out: all.len() - shown.len(),
-        shown,
+        grids: shown,
+        claims: dataset.plan.study.is_some(),
     }))
 }
 

@@ -7,7 +7,7 @@
 //! as the rms above a frequency that the ideal motion hardly reaches, and chaos from the equations.
 
 use super::{CaseLevel, ClearanceGrid};
-use crate::{Level, text};
+use crate::{Level, classes, text};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -121,14 +121,10 @@ fn larger_clearance(levels: &[CaseLevel]) -> Vec<Pair<'_>> {
 /// Cases of one clearance: one with clearance in some joints, the other in these and more.
 fn more_joints(levels: &[CaseLevel]) -> Vec<Pair<'_>> {
     let clear = || levels.iter().filter(|level| level.joints != "none");
-    let within = |few: &CaseLevel, many: &CaseLevel| {
-        let many: Vec<&str> = many.joints.split('+').collect();
-        let few: Vec<&str> = few.joints.split('+').collect();
-        few.len() < many.len() && few.iter().all(|joint| many.contains(joint))
-    };
     clear()
         .flat_map(|few| clear().map(move |many| (few, many)))
-        .filter(|(few, many)| few.clearance_m == many.clearance_m && within(few, many))
+        .filter(|(few, many)| few.clearance_m == many.clearance_m)
+        .filter(|(few, many)| classes::has_more_joints(&many.joints, &few.joints))
         .collect()
 }
 

@@ -1,8 +1,8 @@
 //! The HTML page of a dataset.
 //!
-//! The caller reads the tables of the dataset and fills a [`DatasetPage`]; [`DatasetPage::render`]
-//! is one file with its styles and figures inside, for a browser or a printer. Its size is bounded
-//! whatever the dataset: figures thin their lines, long tables end with a count of what is left
+//! [`DatasetPage::from_dataset`] reads the tables of the dataset. [`DatasetPage::render`] is one
+//! file with its styles and figures inside, for a browser or a printer. Its size is bounded for any
+//! dataset: figures thin their lines, and long tables end with a count of the rows that are left
 //! out.
 
 mod captions;
@@ -14,13 +14,12 @@ mod levels;
 mod page;
 mod portrait;
 mod settings;
-mod warnings;
 
 pub(crate) use examples::MOST_EXAMPLES;
-pub use warnings::CaseWarning;
 
 use crate::figure::Colour;
-use crate::{Level, classes};
+use crate::{Column, Level, classes};
+use recordings::{CaseWarning, FailedCase};
 
 /// The content of the page. Numbers are SI; labels and names are as in the data.
 #[derive(Clone, Debug)]
@@ -91,17 +90,6 @@ pub struct ParameterRange {
     pub high: f64,
     /// How many values differ from one another.
     pub distinct: usize,
-}
-
-/// A case that ended without data.
-#[derive(Clone, Debug)]
-pub struct FailedCase {
-    /// Its number in the sweep.
-    pub case_id: String,
-    /// Why.
-    pub reason: String,
-    /// What to run to see it again.
-    pub command: String,
 }
 
 /// A part of one case's recording.
@@ -265,21 +253,6 @@ pub struct FeatureRow {
     pub windows: usize,
     /// Mean and standard deviation of each feature, in the order of [`DatasetPage::features`].
     pub values: Vec<(f64, f64)>,
-}
-
-/// A column of a table of the dataset.
-#[derive(Clone, Debug)]
-pub struct Column {
-    /// The table: `signals` or `features`.
-    pub table: String,
-    /// Its name.
-    pub name: String,
-    /// Its type, for instance `list<float32>`.
-    pub kind: String,
-    /// Its unit; empty for none.
-    pub unit: String,
-    /// What it is.
-    pub meaning: String,
 }
 
 impl DatasetPage {

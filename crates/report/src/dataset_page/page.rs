@@ -4,16 +4,18 @@ use super::claims::{self, Claim};
 use super::examples::{self, MOST_EXAMPLES};
 use super::levels;
 use super::{
-    CaseLevel, CaseWarning, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design, FailedCase,
-    FaultCount, FeatureRow, ParameterRange, comparison, distributions,
+    CaseLevel, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount, FeatureRow,
+    ParameterRange, comparison, distributions,
 };
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
-use crate::{Error, classes, text};
+use crate::{Column, Error, classes, text};
 use askama::Template;
+use recordings::{CaseWarning, FailedCase};
 
 /// Longest tables on the page, in rows.
 const MOST_FAULTS: usize = 200;
 const MOST_FAILED: usize = 100;
+const MOST_WARNINGS: usize = 20;
 const MOST_COLUMNS: usize = 500;
 /// Figures of further grids are left out where all would take more bytes than this: a page of five
 /// million bytes opens at once on a telephone.
@@ -223,7 +225,7 @@ impl View<'_> {
     }
 
     fn warnings(&self) -> &[CaseWarning] {
-        super::warnings::shown(&self.page.warnings)
+        &self.page.warnings[..self.page.warnings.len().min(MOST_WARNINGS)]
     }
 
     fn columns(&self) -> &[Column] {

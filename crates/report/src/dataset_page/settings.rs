@@ -25,7 +25,7 @@ impl Range {
     }
 }
 
-/// What the claims come to in one grid.
+/// The verdicts on the claims in one grid.
 pub(super) struct Row {
     /// What sets the grid apart.
     pub(super) settings: Vec<String>,
@@ -110,7 +110,7 @@ impl ClearanceGrids {
             .collect()
     }
 
-    /// What the claims come to in each grid.
+    /// The verdicts on the claims in each grid.
     pub(super) fn rows(&self) -> Vec<Row> {
         let row = |grid: &ClearanceGrid| {
             let settings = grid.settings.iter().map(|(_, value)| value.clone());

@@ -51,9 +51,9 @@ pub fn share_ranges<'a>(panels: impl IntoIterator<Item = &'a mut Panel>) {
     }
 }
 
-/// The range that shows all data of the panels: the given range of the first panel that has one,
-/// otherwise that of the values, with a margin unless lines run straight across. None where there
-/// is nothing to show.
+/// The range that shows all data of the panels. It is the given range of the first panel that has
+/// one, otherwise that of the values, with a margin unless lines run straight across. None where
+/// there is nothing to show.
 pub(super) fn range(panels: &[&Panel], direction: Direction) -> Option<(f64, f64)> {
     let scale = direction.axis(panels.first()?).scale;
     if let Some(given) = panels.iter().find_map(|panel| direction.axis(panel).range) {
@@ -250,8 +250,8 @@ impl Ruler {
     }
 }
 
-/// A round step that cuts the range into at most `count` parts, or into a few more where that is
-/// too rough: 250 in place of 500, but not 2.5 in place of 5, which would be odd for counts.
+/// A round step that cuts the range into at most `count` parts, or a few more if that is too
+/// coarse. It is then 250 instead of 500, but not 2.5 instead of 5, which is odd for counts.
 fn linear_step(range: f64, count: f64) -> f64 {
     let step = round_step(range / count);
     let is_five = round_step(0.4 * step) < 0.5 * step;

@@ -1,9 +1,9 @@
 //! Line, point and area plots in a stack of rows, as one SVG image.
 //!
 //! A [`Figure`] holds rows of [`Panel`]s, a panel holds [`Series`] on two axes. Nothing here knows
-//! what is plotted. The image is meant for a white page, on a screen or printed: the palette is safe for
-//! colour-blind readers, text is text, and no line has more vertices than the pixels can show.
-//! A figure carries no identifiers, styles or scripts, so many can stand in one HTML page.
+//! what is plotted. The image is for a white page, on a screen or printed. The palette is safe for
+//! colour-blind readers, text is text, and no line has more vertices than the pixels can show. A
+//! figure carries no identifiers, styles or scripts, so many can stand in one HTML page.
 
 mod axis;
 mod colour;

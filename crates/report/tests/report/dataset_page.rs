@@ -1,7 +1,8 @@
 //! The page of a dataset stands alone, is bounded and takes nothing from the data for markup.
 
 use crate::synthetic::{self, datasets};
-use report::dataset_page::{DatasetPage, Design, FailedCase, JointSet, Response, Spectrum};
+use recordings::FailedCase;
+use report::dataset_page::{DatasetPage, Design, JointSet, Response, Spectrum};
 
 /// The largest page there may be.
 const LARGEST: usize = 5_000_000;
@@ -261,7 +262,8 @@ fn the_largest_dataset_has_a_page_of_bounded_size() {
         FailedCase {
             case_id: "1".to_owned(),
             reason: "r".repeat(200),
-            command: "c".repeat(100)
+            command: "c".repeat(100),
+            died: false
         };
         100_000
     ];

@@ -1,6 +1,7 @@
 //! The page that documents the features.
 
-use report::features_page::{FeatureEntry, FeatureGroup, FeaturesPage, LabelColumn};
+use report::Column;
+use report::features_page::{FeatureEntry, FeatureGroup, FeaturesPage};
 
 #[test]
 fn every_entry_has_its_definition_formula_unit_and_source() {
@@ -18,7 +19,8 @@ fn every_entry_has_its_definition_formula_unit_and_source() {
                 source: "Lei & He 2008".to_owned(),
             }],
         }],
-        columns: vec![LabelColumn {
+        columns: vec![Column {
+            table: "features".to_owned(),
             name: "fault".to_owned(),
             kind: "string".to_owned(),
             unit: String::new(),

@@ -1,5 +1,5 @@
-//! A finished dataset that came without `_sweep`, as published ones do: the records of its shards
-//! follow from its plan and its manifest, so that whole files need not be made again.
+//! A finished dataset without `_sweep`, as published datasets are. The records of its shards follow
+//! from its plan and its manifest, so undamaged files are not made again.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -200,7 +200,7 @@ fn is_at_work(
             let Some(renewed) = output.store.modified(path)? else {
                 return Ok(None);
             };
-            // Who may only read learns no time, and blames nobody.
+            // Without permission to write there is no time, and the process counts as at work.
             let now = clock.get_or_init(|| output.store.now().ok());
             let age = now.and_then(|now| now.duration_since(renewed).ok());
             Ok(Some(age.is_none_or(|age| age < LEASE)))

@@ -31,9 +31,10 @@ impl Claim {
     /// Locks the folder `root`.
     ///
     /// # Errors
-    /// [`Error::Exists`], [`Error::NotOurs`] or [`Error::NoOverwrite`] if the content of the folder does not
-    /// agree with `existing`, [`Error::InUse`] if another process writes to it, [`Error::Unwritable`] if it
-    /// cannot be written to.
+    /// - [`Error::Exists`], [`Error::NotOurs`] or [`Error::NoOverwrite`] if its content does not agree with
+    ///   `existing`;
+    /// - [`Error::InUse`] if another process writes to it;
+    /// - [`Error::Unwritable`] if it cannot be written to, and other errors of the storage.
     pub fn new(root: &Path, existing: Existing) -> Result<Self, Error> {
         let store = Store::at(root)?;
         if store.folder().is_none() {
@@ -56,7 +57,7 @@ impl Claim {
             root: root.to_owned(),
             warnings: Mutex::default(),
         };
-        // What an interrupted process left: nobody else writes here now.
+        // Files of an interrupted process: no other process writes here now.
         remove(&output.path("_sweep/tmp"), |path| fs::remove_dir_all(path))?;
         make(&output.path("_sweep/tmp"))?;
         Ok(Self {

@@ -88,7 +88,7 @@ impl Output {
         remove(&self.path(CALIBRATION), |path| fs::remove_dir_all(path))
     }
 
-    /// Removes the figures of a report; whatever else is in their folder stays.
+    /// Removes the figures of a report; other files in their folder stay.
     fn clear_figures(&self) -> Result<(), Error> {
         let folder = self.path("figures");
         for name in self.store.names("figures")? {

@@ -105,7 +105,7 @@ impl Commit {
         })
     }
 
-    /// Writes the record unless one stands there for this shard, which is then handed back.
+    /// Writes the record unless the shard has one, which is then returned.
     pub(super) fn create(&self, output: &Output, plan: &Plan) -> Result<Option<Self>, Error> {
         let name = name(self.shard);
         let Some(before) = output.store.create_only(&name, &text(self)?)? else {

@@ -149,7 +149,7 @@ impl DiagramTable {
         })
     }
 
-    /// The rows of a chunk, as far as nobody stops it.
+    /// The rows of a chunk, up to a cancellation.
     fn rows(
         &self,
         plan: &Plan,

@@ -20,10 +20,13 @@ use crate::{Error, Plan};
 /// The bytes depend on the plan alone: not on the threads, nor on interruptions.
 ///
 /// # Errors
-/// [`Error::TooManyCases`] for a sweep that is too large, errors of [`Claim::new`] and [`Claim::open`] for a
-/// folder that cannot be used, [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it is stopped,
-/// [`Error::NotDeterministic`] if a shard has other bytes than before, and errors of files. Failed cases are
-/// no error: they are in the manifest.
+/// - [`Error::TooManyCases`] for a sweep that is too large;
+/// - those of [`Claim::new`] and [`Claim::open`] for a folder that cannot be used;
+/// - [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it is stopped;
+/// - [`Error::NotDeterministic`] if a shard has other bytes than before;
+/// - errors of files that cannot be read or written.
+///
+/// Failed cases are no error: they are in the manifest.
 pub fn generate(
     plan: &Plan,
     root: &Path,

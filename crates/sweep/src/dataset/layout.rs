@@ -1,14 +1,19 @@
 //! Files and folders of a dataset.
 //!
-//! Beside what readers see (`signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`,
-//! `sweep.yaml`, `SHA256SUMS`, `manifest.json`) it has `_sweep/`: `plan.json` says which sweep this is, `commits/K.json` that
-//! shard K is finished, `attempts/` who is at work on which shard, `logs/` what each process did and
-//! when, `tmp/` holds files that are being written, and `lock` is locked by the process at work: by one alone that makes the whole dataset,
-//! or by any number that make a shard each. The operating system unlocks it when a process ends,
-//! however it ends.
+//! Readers see `signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`, `sweep.yaml`,
+//! `SHA256SUMS` and `manifest.json`. Beside these there is `_sweep/`:
 //!
-//! A sweep that calibrates its machine first keeps what it found in `calibration/`; its resolved
-//! sweep names that folder, and whoever runs it gets a copy.
+//! | path | what |
+//! |---|---|
+//! | `plan.json` | the identity of the sweep |
+//! | `commits/K.json` | shard K is finished |
+//! | `attempts/` | the processes at work on each shard |
+//! | `logs/` | what each process did, and when |
+//! | `tmp/` | files that are being written |
+//! | `lock`, `commit.lock` | see [`super::lock`] |
+//!
+//! A sweep that calibrates its machine keeps the calibration in `calibration/`. Its resolved sweep
+//! names that folder, and every dataset that is made from it gets a copy.
 
 use super::store::Store;
 use crate::Error;

@@ -1,7 +1,7 @@
-//! Locks of a dataset in a folder: `_sweep/lock`, held by the process at work, by one alone that
-//! makes the whole dataset, or by any number that make a shard each; and `_sweep/commit.lock`, held
-//! while the files of a shard get their names. The operating system unlocks them when a process ends,
-//! however it ends. Buckets know no locks.
+//! Locks of a dataset in a folder. One process that makes the whole dataset holds `_sweep/lock`
+//! alone; processes that make a shard each share it. `_sweep/commit.lock` is held while the files
+//! of a shard get their names. The operating system releases the locks when a process ends, in any
+//! way. Buckets have no locks.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -19,7 +19,7 @@ const MOMENT: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct Lock {
     file: File,
-    /// Whether nobody else holds it.
+    /// Whether no other process holds it.
     pub(super) alone: bool,
 }
 
@@ -94,8 +94,8 @@ fn in_use(root: &Path, mut lock: File) -> Error {
     }
 }
 
-/// Does `work` while no other process holds the lock of the dataset at `root`, of which this process
-/// holds `own`; nothing where another one does, or where there are no locks.
+/// Does `work` if no other process holds the lock of the dataset at `root`; this process holds
+/// `own` of it. Does nothing if another process holds it, or without locks.
 pub(super) fn alone(
     root: &Path,
     own: &Mutex<Option<Lock>>,

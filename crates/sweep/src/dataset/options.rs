@@ -29,7 +29,7 @@ pub struct Options<'a> {
     pub existing: Existing,
     /// Threads that simulate; at least one.
     pub threads: usize,
-    /// Once true, nothing new is started and [`Error::Cancelled`] is handed back.
+    /// Once true, no new work starts and [`Error::Cancelled`] is returned.
     pub cancel: &'a AtomicBool,
     /// Whether finished shards with failed cases are made again, for any reason of failure.
     pub retry_failed: bool,

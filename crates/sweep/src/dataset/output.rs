@@ -109,14 +109,14 @@ impl Output {
         self.log.say(&self.store, what);
     }
 
-    /// Whether nobody else writes to this dataset.
+    /// Whether no other process writes to this dataset.
     pub(super) fn is_alone(&self) -> bool {
         let lock = self.lock.lock().unwrap_or_else(PoisonError::into_inner);
         lock.as_ref().is_some_and(|lock| lock.alone)
     }
 
-    /// Waits until nobody commits a shard, or until nobody does so `alone`; none where one process
-    /// makes the whole dataset, or where there are no locks.
+    /// Waits until no other process commits a shard, or until none does so `alone`. No lock is needed
+    /// if one process makes the whole dataset, or if there are no locks.
     pub(super) fn committing(&self, alone: bool) -> Result<Option<File>, Error> {
         match self.store.folder().filter(|_| !self.is_alone()) {
             Some(root) => lock_commits(root, alone),

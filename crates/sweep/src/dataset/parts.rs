@@ -101,9 +101,10 @@ pub(super) fn scan(
 /// Makes part `index` of a sweep. Returns false if the part was finished before; it then stays as it is.
 ///
 /// # Errors
-/// [`Error::NoShard`] if there is no such part, [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it
-/// is stopped, [`Error::NotDeterministic`] if another process made the part with other bytes, and errors of
-/// files that cannot be read or written.
+/// - [`Error::NoShard`] if there is no such part;
+/// - [`Error::Cancelled`] or [`Error::DiagramsCancelled`] if it is stopped;
+/// - [`Error::NotDeterministic`] if another process made the part with other bytes;
+/// - errors of files that cannot be read or written.
 pub fn run_part(
     plan: &Plan,
     output: &Output,

@@ -22,7 +22,7 @@ use crate::{Error, Plan};
 /// for where a sweep is stopped.
 const TOGETHER: u64 = 32;
 
-/// Runs the shards `pending` of a sweep, in ascending order. Suspect ones come first, each by itself:
+/// Runs the shards `pending` of a sweep, in ascending order. Suspect shards come first, one at a time:
 /// their cases are tried before they are run.
 ///
 /// # Errors
@@ -112,7 +112,7 @@ impl Shards<'_> {
     }
 
     /// Tries `cases` of a shard one by one, and then runs all of them that do not end their processes,
-    /// each by itself, so that they take the least memory.
+    /// one at a time, so that they take the least memory.
     fn with_care(&mut self, shard: u64, cases: &[u64]) -> Result<(), Error> {
         let (plan, output) = (self.plan, self.output);
         self.attempts.begin(shard)?;

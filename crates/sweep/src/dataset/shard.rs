@@ -16,9 +16,9 @@ use crate::split::Split;
 use crate::sweep_file::Format;
 use crate::{Error, Plan};
 
-/// Bytes of a row group before compression: 4 MiB. A file of each table and split has one under way,
-/// and a group of a table of some hundred numbers then has some hundred rows, so that what is said
-/// of each column and group (some 150 bytes) weighs little.
+/// Bytes of a row group before compression: 4 MiB. Each table and split has one group in memory. A
+/// group of a table with some hundred numbers then has some hundred rows, so the metadata of a
+/// column and group (some 150 bytes) is small.
 const BYTES_PER_GROUP: f64 = 4.0 * 1024.0 * 1024.0;
 
 /// Most rows of a group: as many as the writer collects anyway.

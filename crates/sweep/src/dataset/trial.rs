@@ -132,7 +132,7 @@ fn try_case(
             End::Passed => return Ok(None),
             End::Died(reason) => return Ok(Some(reason)),
             End::Unknown(why) => {
-                output.say(format_args!("the trial of {id} told nothing: {why}"));
+                output.say(format_args!("the trial of {id} was inconclusive: {why}"));
                 return Ok(None);
             }
             End::Killed => output.say(format_args!(

@@ -29,9 +29,9 @@ pub struct Verified {
 }
 
 /// Compares every file of the finished dataset at `root` with its manifest, and the manifest with
-/// `SHA256SUMS`; reads the rows of tables from their footers; and names files of data that the
-/// manifest does not have. Nothing is written. `progress` gets the bytes of all files and,
-/// after each file, the bytes that are compared.
+/// `SHA256SUMS`. Reads the number of rows of tables from their footers. Lists files of data that
+/// are not in the manifest. Nothing is written. `progress` gets the bytes of all files and, after
+/// each file, the bytes that are compared.
 ///
 /// # Errors
 /// [`Error::NoManifest`] without a manifest, [`Error::File`] if it cannot be parsed or a file cannot be read.

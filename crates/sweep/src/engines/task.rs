@@ -1,4 +1,4 @@
-//! The number of a shard where nobody gives one: the engines that run arrays of tasks say it in a
+//! The number of a shard without an argument: engines that run arrays of tasks set it in a
 //! variable.
 
 use super::Error;

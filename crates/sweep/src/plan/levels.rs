@@ -83,7 +83,7 @@ impl Levels {
         }
     }
 
-    /// The key of value `level` below that of its axis: nothing where no value stands by itself.
+    /// The key of value `level` below that of its axis; empty if the values are not listed.
     pub(super) fn key(&self, axis: &str, level: usize) -> String {
         match self {
             Levels::List(values) if values.len() > 1 => format!("{axis}.{level}"),

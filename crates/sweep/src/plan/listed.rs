@@ -22,8 +22,8 @@ pub(super) struct Listed {
 /// Which values come together.
 #[derive(Clone, Debug)]
 enum Arrangement {
-    /// Every combination: one grid per set of joints, with so many levels of each axis, because
-    /// what says nothing about a set (a clearance where no joint has one) counts once there.
+    /// Every combination: one grid per set of joints, with the number of levels of each axis. An
+    /// axis without meaning for a set, such as a clearance without joints, has one level.
     Grid { sizes: Vec<Vec<u64>> },
     /// The first values, the second values, ...; an axis of one value keeps it.
     Zip { count: u64 },

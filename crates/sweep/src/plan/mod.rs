@@ -355,7 +355,7 @@ impl Plan {
         Ok(Case { split, ..case })
     }
 
-    /// Case `index` with the split that its group has by itself.
+    /// Case `index` with the unstratified split of its group.
     fn case_before_splits(&self, index: u64) -> Result<Case, Error> {
         let (point, repeat) = (index / self.repeats, index % self.repeats);
         let (block, inside) = self.block_of(point);

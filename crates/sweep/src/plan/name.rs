@@ -5,7 +5,7 @@ use input::Error;
 /// Longest name, in characters: file systems allow 255 bytes, and a character takes up to four.
 const LONGEST: usize = 60;
 
-/// Checks the name of a dataset: of a folder within `datasets/`, whatever the system.
+/// Checks the name of a dataset: it is a folder in `datasets/` on any system.
 pub(super) fn check_dataset(name: &str) -> Result<(), Error> {
     let inner = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ');
     let is_sound = name.starts_with(char::is_alphanumeric)

@@ -33,7 +33,7 @@ impl Plan {
         known.unwrap_or_else(by_itself)
     }
 
-    /// Whether the splits are stratified by label, and not drawn for each group by itself.
+    /// Whether the splits are stratified by label, and not drawn for each group independently.
     pub fn is_stratified(&self) -> bool {
         self.points() <= MOST_STRATIFIED
     }

@@ -46,8 +46,8 @@ impl Plan {
     }
 }
 
-/// How `path` stands in the file and in the first case that says what it is: a number only if no case has
-/// anything else there, such as a stiffness by a formula.
+/// The parameter at `path`, by the machine file or else by the first case. It is a number only if
+/// no case has another kind of value there, such as a stiffness by a formula.
 fn parameter(plan: &Plan, path: &str, role: Role) -> Parameter {
     let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
     let first = || value(&plan.case_before_splits(0).ok()?.tree);

@@ -1,4 +1,4 @@
-//! An unknown that varies by itself, at one place of the machine file or several.
+//! An unknown that varies independently, at one or several places of the machine file.
 
 use input::{Error, paths};
 use serde_json::Value;
@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::sampler::Sampler;
 use crate::sweep_file::Draw;
 
-/// An unknown that varies by itself.
+/// An unknown that varies independently.
 #[derive(Clone, Debug)]
 pub(super) struct Varied {
     /// Its path as the sweep file has it.

@@ -3,8 +3,8 @@
 use crate::Plan;
 use simulate::sensor::Measured;
 
-/// The accelerometers that the faults of a dataset are judged by: a joint by the one on its own
-/// throw's crosshead, where there is one; else by the first on the frame; else by that of another
+/// The accelerometers that judge the faults of a dataset. A joint is judged by the first of these
+/// that exists: the one on the crosshead of its own throw, the first on the frame, that of another
 /// crosshead. What belongs to no throw, as the main bearing does, is judged by all of them.
 pub struct Sensors {
     channels: Vec<String>,
@@ -50,8 +50,8 @@ impl Sensors {
         &self.channels
     }
 
-    /// The places of the sensors that judge the fault: those of its throws, in their order; all of
-    /// them for a machine without a fault and for joints of no throw.
+    /// The indices of the sensors that judge the fault: those of its throws, in their order. For a
+    /// machine without a fault and for joints of no throw, all sensors.
     pub fn of_fault(&self, fault: &str) -> Vec<usize> {
         let places = |joint: &str| -> Vec<usize> {
             let own = joint.split_once('.').map_or("", |(throw, _)| throw);

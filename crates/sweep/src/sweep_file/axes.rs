@@ -24,7 +24,7 @@ pub enum Block {
 #[derive(Clone, Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Random {
-    /// How the draws of one case go with those of the others; sobol where it is left out.
+    /// The design of experiments; default sobol.
     #[serde(default)]
     pub design: Design,
     /// Number of cases.

@@ -7,8 +7,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 
-/// A bifurcation diagram: one number of the machine changes step by step, and the motion goes on
-/// from value to value. What the sweep varies at random stays as the machine file has it.
+/// A bifurcation diagram: one number of the machine changes step by step, and the state is carried
+/// over from value to value. What the sweep varies at random keeps its value of the machine file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bifurcation {
@@ -26,31 +26,31 @@ pub struct Bifurcation {
     /// Equal differences or equal ratios between the values.
     #[serde(default)]
     pub spacing: Spacing,
-    /// Revolutions at each value before the recording; 40 where it is left out.
+    /// Revolutions at each value before the recording; default 40.
     #[serde(default)]
     pub transient: Option<Count<1, 1_000_000>>,
     /// Revolutions that are recorded at each value.
     pub revolutions: Count<1, 1_000_000>,
-    /// Which way the values are gone through.
+    /// Direction in which the values are visited.
     #[serde(default)]
     pub directions: Directions,
-    /// Crank angle of the section; 0 deg where it is left out.
+    /// Crank angle of the section; default 0 deg.
     #[serde(default)]
     pub at: Option<Quantity<Angle>>,
-    /// Which joints are clear, as in the axes of `cases`: their clearance is told by `path` or
-    /// `set`. Where it is left out, those that the machine file, `path` and `set` make clear.
+    /// The joints with clearance, as in the axes of `cases`; `path` or `set` gives their clearance.
+    /// By default the joints to which the machine file, `path` and `set` give a clearance.
     #[serde(default)]
     pub joints: Option<Vec<String>>,
     /// Other values of the machine: `clearance`, `load`, or paths.
     #[serde(default)]
     pub set: Axes<Value>,
-    /// Values that are gone through without a break; 24 where it is left out. Longer pieces follow
-    /// wider hystereses and leave less to do side by side.
+    /// Values that are visited without a break; default 24. Longer pieces follow wider hystereses
+    /// and are less parallel.
     #[serde(default)]
     pub chunk: Option<Count<1, 1_000_000>>,
 }
 
-/// Which way the values of a diagram are gone through.
+/// Direction in which the values of a diagram are visited.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Directions {
@@ -58,7 +58,7 @@ pub enum Directions {
     Up,
     /// Downward.
     Down,
-    /// Both, each by itself.
+    /// Both, independently.
     #[default]
     Both,
 }

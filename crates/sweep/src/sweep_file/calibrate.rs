@@ -8,19 +8,19 @@ use serde::de::{DeserializeSeed, Deserializer, Error, IntoDeserializer, MapAcces
 use std::borrow::Cow;
 use std::fmt;
 
-/// The machine is calibrated before the first case: the keys of a calibration file, and what the
-/// sweep makes of what the recordings leave open.
+/// The machine is calibrated before the first case: the keys of a calibration file, and how the
+/// sweep uses the uncertainty of the estimates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibrate {
     /// What is fitted to which recordings, and how.
     pub settings: Calibration,
-    /// What the sweep makes of the uncertainty of what was found.
+    /// How the sweep uses the uncertainty of the estimates.
     pub uncertainty: Uncertainty,
-    /// What becomes of parameters that the recordings do not determine.
+    /// Treatment of parameters that are not identifiable.
     pub undetermined: Undetermined,
 }
 
-/// What a sweep makes of the uncertainty of calibrated parameters.
+/// How a sweep uses the uncertainty of the estimates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Uncertainty {
@@ -28,21 +28,22 @@ pub enum Uncertainty {
     #[default]
     Ignored,
     /// Every case draws its values from their joint distribution: normal in the logarithms of
-    /// positive values, with the intervals and correlations of the calibration, within the bounds;
-    /// and of the relations to the clearance one that the recordings do not exclude, the same for all
-    /// joints. A calibration whose model is not adequate has no intervals, and is an error.
+    /// positive values, with the intervals and correlations of the calibration, within the bounds.
+    /// It also draws one relation to the clearance, the same for all joints, from those that the
+    /// recordings do not exclude. A calibration whose model is not adequate has no intervals, and
+    /// is an error.
     Sampled,
 }
 
-/// What becomes of parameters that the recordings do not determine.
+/// Treatment of parameters that are not identifiable.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Undetermined {
     /// They keep their nominal values.
     #[default]
     Nominal,
-    /// Every case draws its values between the bounds of the search, each by itself: every ratio
-    /// of positive values equally likely.
+    /// Every case draws each value independently between the bounds of the search; positive values
+    /// are uniform in the logarithm.
     Prior,
 }
 

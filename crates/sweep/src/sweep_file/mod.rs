@@ -32,20 +32,19 @@ pub use calibrate::{Calibrate, Uncertainty, Undetermined};
 pub use together::{Gaussian, Together};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 
-/// A sweep: cases, how each is run, and how the dataset is divided.
+/// A sweep: its cases, the settings of each run, and the splits of the dataset.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SweepFile {
-    /// Name of the dataset, and of its folder where `--out` names none: a letter or digit, then
-    /// letters, digits, `-`, `_`, `.` and spaces.
+    /// Name of the dataset, and of its folder without `--out`: a letter or digit, then letters,
+    /// digits, `-`, `_`, `.` and spaces.
     pub name: String,
-    /// The published study that the cases repeat: the pages hold its claims against them. None
-    /// where it is left out, and no page then speaks of any study.
+    /// The published study that the cases repeat; the pages test its claims. By default none.
     #[serde(default)]
     pub study: Option<Study>,
     /// The machine: path of its file, from the folder of this one, or the machine itself. With
-    /// `calibrate` it may be left out: it is then the machine section of the bundle, at the
-    /// conditions of its first run.
+    /// `calibrate` the default is the machine section of the bundle, at the conditions of its first
+    /// run.
     #[serde(default)]
     pub machine: Option<Or<String, Map<String, Value>>>,
     /// The machine is calibrated to recordings of it before the first case.
@@ -55,37 +54,37 @@ pub struct SweepFile {
     /// is copied into the dataset. A dataset's own sweep.yaml has it.
     #[serde(default)]
     pub calibrated: Option<String>,
-    /// What all random numbers follow from; 0 where it is left out.
+    /// Seed of all random numbers; default 0.
     #[serde(default)]
     pub seed: Option<Count<0, { u32::MAX }>>,
-    /// How each case is run.
+    /// Settings of the run of each case.
     pub run: Run,
-    /// How often each case is recorded, with other noise each time; once where it is left out.
+    /// Recordings of each case, each with other noise; default 1.
     #[serde(default)]
     pub repeats: Option<Count<1, 1_000_000>>,
-    /// How each recording is cut; one window, all of it, where it is left out.
+    /// How each recording is cut; by default one window, the whole recording.
     #[serde(default)]
     pub windows: Option<Windows>,
     /// The cases: blocks, one after the other.
     pub cases: Vec<Block>,
-    /// Unknowns that vary at random from case to case, by path in the machine file, in which `*`
-    /// stands for any key: one value for all places. What a case sets itself is not varied.
+    /// Unknowns that vary at random from case to case, by path in the machine file. In a path `*`
+    /// stands for any key, with one value for all places. A value that a case sets is not varied.
     #[serde(default)]
     pub vary: Axes<Draw>,
-    /// Unknowns that vary together, and not each by itself.
+    /// Unknowns that vary together.
     #[serde(default)]
     pub vary_together: Vec<Together>,
     /// Bifurcation diagrams, computed after the cases.
     #[serde(default)]
     pub bifurcations: Vec<Bifurcation>,
-    /// Shares of the splits; 70 %, 15 % and 15 % where they are left out.
+    /// Shares of the splits; default 70 %, 15 % and 15 %.
     #[serde(default)]
     pub splits: Splits,
     /// Format of the recordings.
     #[serde(default)]
     pub format: Format,
-    /// Cases in one shard: what is finished together and not simulated again after an
-    /// interruption. 256 where it is left out.
+    /// Cases in one shard, which is finished as a whole and not simulated again after an
+    /// interruption; default 256.
     #[serde(default)]
     pub shard_size: Option<Count<1, MOST_CASES_A_SHARD>>,
 }
@@ -100,32 +99,32 @@ pub fn schema() -> Value {
     schema
 }
 
-/// How each case is run.
+/// Settings of the run of each case.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Run {
     /// Revolutions that are recorded.
     pub revolutions: Count<1, 1_000_000>,
-    /// What is run before and thrown away: a number of revolutions, or until the motion has
-    /// settled; 10 revolutions where it is left out.
+    /// Transient before the recording: a number of revolutions, or until the motion has settled;
+    /// default 10 revolutions.
     #[serde(default)]
     pub transient: Option<Or<Count<0, 1_000_000>, Settled>>,
-    /// Sample rate of the recordings; where it is left out, the machine file's, or 10 kHz.
+    /// Sample rate of the recordings; default that of the machine file, or 10 kHz.
     #[serde(default)]
     pub sample_rate: Option<Positive<Frequency>>,
-    /// Relative local error of the integration, 1e-13 to 1e-3; 1e-9 where it is left out.
+    /// Relative local error of the integration, 1e-13 to 1e-3; default 1e-9.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
     /// The motion of each case judged from the equations: the largest Lyapunov exponent, its
     /// standard error, and the regime (columns `lyapunov_true_per_s`,
     /// `lyapunov_true_standard_error_per_s`, `lyapunov_true_per_revolution`, `regime_true`,
-    /// `period_true_revolutions`, `floquet_multiplier_true`). Not computed where this is left out;
-    /// it takes about twice as long per revolution as the recording.
+    /// `period_true_revolutions`, `floquet_multiplier_true`). Not computed by default; it takes
+    /// about twice as long per revolution as the recording.
     #[serde(default)]
     pub lyapunov: Option<Lyapunov>,
-    /// Whether the features tell what kind of motion each window shows, from the signal: `regime`,
-    /// `lyapunov_per_s` and what goes with them, entropies, dimension, recurrence. True where it is
-    /// left out; it can take as long as the simulation, so a large sweep may switch it off.
+    /// Whether the features classify the motion of each window from the signal: `regime`,
+    /// `lyapunov_per_s` and related columns, entropies, dimension, recurrence. Default true. It can
+    /// take as long as the simulation, so a large sweep may switch it off.
     #[serde(default)]
     pub chaos: Option<bool>,
 }
@@ -136,7 +135,7 @@ pub struct Run {
 pub struct Lyapunov {
     /// Revolutions that are averaged over; a chaotic motion needs some hundred.
     pub revolutions: Count<20, 1_000_000>,
-    /// Revolutions before; 50 where it is left out.
+    /// Revolutions before; default 50.
     #[serde(default)]
     pub transient: Option<Count<0, 1_000_000>>,
     /// true for all exponents, in column `lyapunov_spectrum_true_per_s`; it takes about four times
@@ -174,13 +173,13 @@ pub struct Windows {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Splits {
-    /// To learn from; 0 % where it is left out.
+    /// To learn from; default 0 %.
     #[serde(default)]
     pub train: Option<Quantity<Ratio, Part>>,
-    /// To choose between models; 0 % where it is left out.
+    /// To choose between models; default 0 %.
     #[serde(default)]
     pub validation: Option<Quantity<Ratio, Part>>,
-    /// To judge the chosen one; 0 % where it is left out.
+    /// To judge the chosen one; default 0 %.
     #[serde(default)]
     pub test: Option<Quantity<Ratio, Part>>,
 }

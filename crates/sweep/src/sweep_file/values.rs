@@ -18,14 +18,14 @@ pub type Levels = Values<Range>;
 /// A value that is drawn: always the same, one of a list (each equally likely), or a distribution.
 pub type Draw = Values<Spread>;
 
-/// One value, a list, or a section `S` that says how to make them.
+/// One value, a list, or a section `S` with a rule.
 #[derive(Clone, Debug)]
 pub enum Values<S> {
     /// One value.
     One(Value),
     /// Several.
     List(Vec<Value>),
-    /// Told by a rule.
+    /// Given by a rule.
     Rule(S),
 }
 
@@ -75,7 +75,7 @@ pub enum Spread {
 #[derive(Clone, Copy, Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Normal {
-    /// Mean; the machine file's value where it is left out.
+    /// Mean; default the machine file's value.
     #[serde(default)]
     pub mean: Option<Amount>,
     /// Standard deviation.
@@ -89,7 +89,7 @@ pub struct Normal {
 #[derive(Clone, Copy, Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lognormal {
-    /// Median; the machine file's value where it is left out.
+    /// Median; default the machine file's value.
     #[serde(default)]
     pub median: Option<Amount>,
     /// 68 % of the values lie between median / factor and median × factor.

@@ -45,7 +45,7 @@ fn true_regime(motions: &Motions, window: usize) -> Option<Regime> {
     Regime::from_label(label, period)
 }
 
-/// Whether the case of the window is chaotic by the equations; none where nobody asked them.
+/// Whether the case of the window is chaotic by the equations; none if they were not computed.
 pub(in crate::dataset) fn is_chaotic(motions: &Motions, window: usize) -> Option<bool> {
     Some(true_regime(motions, window)? == Regime::Chaotic)
 }

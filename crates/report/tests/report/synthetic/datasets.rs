@@ -1,12 +1,13 @@
 //! Made-up datasets: one on a grid of clearances, one drawn at random.
 
 use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
-use report::Level;
+use recordings::FailedCase;
 use report::dataset_page::{
-    CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, Column, DatasetPage, Design,
-    FailedCase, FaultCount, Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep,
-    Response, Scatter, Spectrum,
+    CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount,
+    Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep, Response, Scatter,
+    Spectrum,
 };
+use report::{Column, Level};
 
 const FAULTS: [(&str, &[&str]); 4] = [
     ("none", &[]),
@@ -127,6 +128,7 @@ pub fn random() -> DatasetPage {
             reason: "the step fell below 1e-14 s at t = 0.4321 s in the big end's contact"
                 .to_owned(),
             command: "gen-dataset sweep.yaml --case 1733".to_owned(),
+            died: false,
         }],
         ranges: vec![
             range("speed", "rpm", 350.1, 899.9, 2999),

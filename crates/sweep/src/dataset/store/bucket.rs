@@ -183,7 +183,7 @@ impl Bucket {
     }
 }
 
-/// An object under way, which nobody sees before [`ObjectFile::commit`]. Large ones are sent in
+/// An object under way, which is not visible before [`ObjectFile::commit`]. Large ones are sent in
 /// parts while they are written.
 pub(in crate::dataset) struct ObjectFile {
     out: BufWriter,

@@ -66,7 +66,7 @@ impl Folder {
         }
     }
 
-    /// The lock is taken before the file has its name, so that nobody sees it without one. There
+    /// The lock is taken before the file has its name, so it is never visible without one. There
     /// is no lock if the file system has none.
     pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
         let (temporary, path) = (self.path(&temporary(path)), self.path(path));

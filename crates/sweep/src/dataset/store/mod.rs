@@ -1,5 +1,5 @@
-//! Where a dataset is kept, with the few things that its commits ask of such a place: a file
-//! appears whole or not at all, and of several processes that create a record one succeeds.
+//! The storage of a dataset, with two guarantees for its commits: a file appears when it is
+//! complete, and of several processes that create a record exactly one succeeds.
 
 #[cfg(feature = "s3")]
 mod bucket;
@@ -93,7 +93,7 @@ impl Store {
         file.commit()
     }
 
-    /// Writes `content` to `path` unless something stands there already, which is then handed back.
+    /// Writes `content` to `path` unless a file is there already, whose content is then returned.
     /// Of several processes that try at once one succeeds.
     pub(super) fn create_only(&self, path: &str, content: &str) -> Result<Option<Vec<u8>>, Error> {
         match self {

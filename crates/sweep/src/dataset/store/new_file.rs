@@ -8,7 +8,7 @@ use recordings::{FileRecord, WholeFile};
 use super::bucket::ObjectFile;
 use crate::Error;
 
-/// A file that nobody sees before [`NewFile::commit`], with its checksum.
+/// A file that is not visible before [`NewFile::commit`], with its checksum.
 pub(in crate::dataset) enum NewFile {
     /// In a folder.
     File(WholeFile),

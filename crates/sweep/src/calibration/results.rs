@@ -106,9 +106,9 @@ impl Calibration {
 }
 
 impl Relations {
-    /// The relations to the clearance that the recordings do not exclude: those that the comparison
-    /// leaves, weighted by Schwarz's criterion; where every run has the same clearances, all that have a
-    /// name, each as likely. Exponents that were fitted are estimates like others.
+    /// The relations to the clearance that the recordings do not exclude, weighted by Schwarz's
+    /// criterion. If every run has the same clearances, these are all relations with a name,
+    /// equally weighted. Fitted exponents are estimates like others.
     fn not_excluded(results: &Results, machine: &Value) -> Result<Self, Error> {
         let mut joints = Vec::new();
         for (joint, stated) in results.relation.iter() {
