@@ -486,10 +486,7 @@ mod tests {
         );
         let page = Matrix::new(&outcomes).markdown();
         assert!(page.contains("| 3 to 10 | 1 of 2 (50 %) | 0 of 2 (0 %) | 2 of 2 (100 %) |"));
-        assert!(
-            page.contains("| x + y | y 2 | 9.00 | 2.00 | 9.00 | 2.00 |"),
-            "{page}"
-        );
+        assert!(page.contains("| x + y | y 2 | 9.00 | 2.00 | 9.00 | 2.00 |"));
     }
 
     #[test]

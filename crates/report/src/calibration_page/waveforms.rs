@@ -44,7 +44,7 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
     Plate {
         heading: format!("{}, {kind}", run.id),
         caption: format!(
-            "The misfit is {} times the noise before and {} after calibration. Left: the mean over the revolutions, with the \
+            "The misfit is {} times the noise before and {} after. Left: the mean over the revolutions, with the \
              band that holds 95 % of them. Middle: simulation less recording, with the band of the noise. Right: the same by \
              order, divided by its noise; noise alone is about 1.",
             size(run.misfit.before),

@@ -21,49 +21,44 @@ const KEY_GAP: f64 = 18.0;
 impl Figure {
     /// The image as an `<svg>` element that stands alone or inside an HTML page.
     pub fn svg(&self) -> String {
-        figure(self)
+        let mut body = String::new();
+        let mut top = 10.0;
+        if !self.title.is_empty() {
+            top += 18.0;
+            let title = fitted(&self.title, self.width - 24.0, TITLE_SIZE);
+            write_text(
+                &mut body,
+                [12.0, top],
+                &title,
+                TITLE_SIZE,
+                "font-weight=\"600\"",
+            );
+            top += 10.0;
+        }
+        top = legend(&mut body, self, top);
+        let layout = layout::place(self, top);
+        for (baseline, heading) in &layout.headings {
+            let heading = fitted(heading, self.width - 24.0, HEADING_SIZE);
+            write_text(
+                &mut body,
+                [12.0, *baseline],
+                &heading,
+                HEADING_SIZE,
+                "font-weight=\"600\"",
+            );
+        }
+        for cell in &layout.cells {
+            panel(&mut body, cell);
+        }
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
+             height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{FACES}\" fill=\"{TEXT}\" \
+             stroke-linejoin=\"round\" stroke-linecap=\"round\"><path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>{body}</svg>",
+            escape(name(self)),
+            width = px(self.width),
+            height = px(layout.height),
+        )
     }
-}
-
-/// The figure as an `<svg>` element.
-fn figure(figure: &Figure) -> String {
-    let mut body = String::new();
-    let mut top = 10.0;
-    if !figure.title.is_empty() {
-        top += 18.0;
-        let title = fitted(&figure.title, figure.width - 24.0, TITLE_SIZE);
-        write_text(
-            &mut body,
-            [12.0, top],
-            &title,
-            TITLE_SIZE,
-            "font-weight=\"600\"",
-        );
-        top += 10.0;
-    }
-    top = legend(&mut body, figure, top);
-    let layout = layout::place(figure, top);
-    for (baseline, heading) in &layout.headings {
-        let heading = fitted(heading, figure.width - 24.0, HEADING_SIZE);
-        write_text(
-            &mut body,
-            [12.0, *baseline],
-            &heading,
-            HEADING_SIZE,
-            "font-weight=\"600\"",
-        );
-    }
-    for cell in &layout.cells {
-        panel(&mut body, cell);
-    }
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
-         height=\"{height}\" viewBox=\"0 0 {width} {height}\" font-family=\"{FACES}\" fill=\"{TEXT}\" \
-         stroke-linejoin=\"round\" stroke-linecap=\"round\"><path fill=\"#fff\" d=\"M0 0h{width}v{height}H0z\"/>{body}</svg>",
-        escape(name(figure)),
-        width = px(figure.width),
-        height = px(layout.height),
-    )
 }
 
 /// The description for readers who cannot see the image: the title, or that of the first panel.
