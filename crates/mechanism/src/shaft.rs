@@ -2,7 +2,7 @@
 //!
 //! Unknown are the angular acceleration (free crank) and the acceleration of the shaft's centre
 //! (main bearing with clearance). With a rigid big end the throw's force on the crank pin depends
-//! on them, as [`crate::throw::Response`] gives it. Any number of throws leads to at most three
+//! on them, as `throw::Response` gives it. Any number of throws leads to at most three
 //! equations:
 //!
 //! ```text

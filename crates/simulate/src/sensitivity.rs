@@ -4,7 +4,7 @@
 //! coordinate with respect to every parameter. Switches count, because the integrator carries the
 //! derivative of their times. With a transient of a given number of revolutions, the derivatives are
 //! those of the motion from its start. For a motion that has settled they are those of the periodic
-//! [`orbit`](crate::orbit). On a chaotic one they grow without bound: compare statistics by differences.
+//! `orbit`. On a chaotic one they grow without bound: compare statistics by differences.
 
 pub use crate::moved::Moved;
 pub use crate::recorder::Sensitivities;

@@ -1,6 +1,6 @@
 //! What can be measured, a sensor a file.
 //!
-//! A new sensor is a file here and a line in [`sensors!`]: a [`Declaration`], and a function `read`
+//! A new sensor is a file here and a line in `sensors!`: a [`Declaration`], and a function `read`
 //! that takes its value from an evaluation of the equations of motion. Section of the machine file,
 //! schema, channels of bundles and tables follow from these.
 

@@ -4,8 +4,8 @@
 //! touch (only the laws with a coefficient of restitution use it). The force that the equations of
 //! motion use is `max(0, raw)`: surfaces do not pull.
 //!
-//! A new law is a file here and a line in [`contact_laws!`]: a struct of parameters, its
-//! [`contact_law!`], and the methods of [`Normal`]. Section of the machine file, schema and tables
+//! A new law is a file here and a line in `contact_laws!`: a struct of parameters, its
+//! `contact_law!`, and the methods of `Normal`. Section of the machine file, schema and tables
 //! follow from these.
 
 mod declaration;
