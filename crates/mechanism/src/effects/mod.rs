@@ -2,7 +2,7 @@
 //!
 //! An effect is a line in the machine file; where the list is empty the model is the one of
 //! MODEL.md. A new effect that acts in the equations is a file here and a line in `catalogue!`: a
-//! struct of parameters, its [`declaration!`](crate::declaration), and those methods of `Acts` that
+//! struct of parameters, its [`declaration!`](macro@crate::declaration), and those methods of `Acts` that
 //! say where it acts. Section of the machine file, schema and tables follow from these. Effects that
 //! only change the machine's data (a clearance, the frame) or what sensors make of it need nothing
 //! here.
