@@ -3,6 +3,9 @@
 //! The footer says how long the pages of a column are together, but not how much each becomes. The decoder takes memory
 //! for what a header says. The headers are structs in Thrift's compact protocol (Apache Parquet, *parquet.thrift*,
 //! `PageHeader`; Apache Thrift, *Thrift Compact protocol encoding*).
+//!
+//! The decoder takes a field by its number, whatever type stands beside it. A field of another type than the definition's
+//! would be one number here and another there, so it is damage.
 
 use parquet::basic::Type;
 use parquet::file::metadata::ParquetMetaData;
@@ -75,14 +78,14 @@ impl Headers<'_> {
     /// The next header; the file then stands behind its page.
     fn page(&mut self) -> io::Result<Page> {
         let mut page = Page::default();
-        self.fields(&mut |headers, field, kind| {
-            match (field, kind) {
-                (2, I32) => page.uncompressed = headers.size()?,
-                (3, I32) => page.compressed = headers.size()?,
-                // Of a page of data, of a dictionary, of a page of data of version 2.
-                (5 | 7 | 8, STRUCT) => {
-                    headers.fields(&mut |headers, field, kind| match (field, kind) {
-                        (1, I32) => {
+        self.fields(PAGE, &mut |headers, field, kind| {
+            match field {
+                2 => page.uncompressed = headers.size()?,
+                3 => page.compressed = headers.size()?,
+                5..=8 => {
+                    let types = OF_PAGE[field as usize - 5];
+                    headers.fields(types, &mut |headers, field, kind| match field {
+                        1 => {
                             page.values = headers.size()?;
                             Ok(())
                         }
@@ -99,9 +102,11 @@ impl Headers<'_> {
         Ok(page)
     }
 
-    /// Hands every field of a struct to `each`, which reads its value: number and type.
+    /// Hands every field of a struct to `each`, which reads its value: number and type. The types are those of `types`, from
+    /// field 1 on.
     fn fields(
         &mut self,
+        types: &[u8],
         each: &mut dyn FnMut(&mut Self, i64, u8) -> io::Result<()>,
     ) -> io::Result<()> {
         let mut field = 0;
@@ -114,7 +119,15 @@ impl Headers<'_> {
                 0 => self.signed()?,
                 step => field + i64::from(step),
             };
-            each(self, field, head & 0xf)?;
+            let kind = match head & 0xf {
+                TRUE => FALSE,
+                kind => kind,
+            };
+            let expected = usize::try_from(field - 1).ok().and_then(|i| types.get(i));
+            if expected.is_none_or(|expected| ![kind, ANY].contains(expected)) {
+                return Err(damaged());
+            }
+            each(self, field, kind)?;
         }
     }
 
@@ -124,26 +137,15 @@ impl Headers<'_> {
         }
         match kind {
             // The truth of a field stands in its type.
-            1 | 2 => Ok(()),
-            3 => self.over(1),
-            4..=6 => self.signed().map(drop),
-            7 => self.over(8),
-            8 => {
+            FALSE => Ok(()),
+            I32 | I64 => self.signed().map(drop),
+            BINARY => {
                 let length = self.unsigned()?;
                 self.over(length)
             }
-            9 | 10 => {
-                let head = self.byte()?;
-                let count = match head >> 4 {
-                    15 => self.unsigned()?,
-                    count => u64::from(count),
-                };
-                (0..count).try_for_each(|_| match head & 0xf {
-                    1 | 2 => self.over(1),
-                    kind => self.skip(kind, depth + 1),
-                })
-            }
-            STRUCT => self.fields(&mut |headers, _, kind| headers.skip(kind, depth + 1)),
+            STRUCT => self.fields(STATISTICS, &mut |headers, _, kind| {
+                headers.skip(kind, depth + 1)
+            }),
             _ => Err(damaged()),
         }
     }
@@ -188,8 +190,27 @@ impl Headers<'_> {
     }
 }
 
+const TRUE: u8 = 1;
+const FALSE: u8 = 2;
 const I32: u8 = 5;
+const I64: u8 = 6;
+const BINARY: u8 = 8;
 const STRUCT: u8 = 12;
+/// In a list of types: whatever stands there is skipped by its own type, here as in the decoder.
+const ANY: u8 = 0;
+
+/// The types of `PageHeader`: type, two sizes, sum, then the header of one kind of page.
+const PAGE: &[u8] = &[I32, I32, I32, I32, STRUCT, STRUCT, STRUCT, STRUCT];
+/// Those of the header of a page of data, of an index, of a dictionary, of a page of data of version 2. Where there are
+/// values, their number comes first.
+const OF_PAGE: [&[u8]; 4] = [
+    &[I32, I32, I32, I32, STRUCT],
+    &[],
+    &[I32, I32, FALSE],
+    &[I32, I32, I32, I32, I32, I32, FALSE, STRUCT],
+];
+/// Those of `Statistics`, which the decoder skips, with what a later version may add.
+const STATISTICS: &[u8] = &[ANY; 16];
 
 fn damaged() -> io::Error {
     io::Error::new(ErrorKind::InvalidData, "it is damaged")
