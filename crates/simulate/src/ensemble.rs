@@ -152,6 +152,10 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &
             file(index, task.finish(&mut |_| ()));
         }
     }
+    // Where there is one lane, so is everybody who still waits.
+    while let Some(passenger) = next(file) {
+        file(passenger.index, passenger.task.finish(&mut |_| ()));
+    }
 }
 
 /// Files a record or a failure; who still travels is given back.
