@@ -20,7 +20,7 @@ def row(case):
     gap, first = found["gap"], next(iter(found["named"]), {})
     return {
         "case": case["case"],
-        "machine": case["machine"],
+        "compressor": case["machine"],
         "noise": case["noise"],
         "size": case["size"],
         "hidden": " + ".join(h["effect"] for h in case["hidden"]) or case.get("outside") or "nothing",
