@@ -87,8 +87,8 @@ def cvode():
 
 
 def crosshead():
-    command = ["cargo", "build", "--quiet", "--release", "--package", "crosshead-simulate", "--example",
-               "time_revolutions"]
+    command = ["cargo", "build", "--quiet", "--release", "--package", "crosshead-simulate", "--features",
+               "bench", "--example", "time_revolutions"]
     call(*command, cwd=ROOT, reason="time_revolutions")
     return [TARGET / "release" / "examples" / "time_revolutions"]
 

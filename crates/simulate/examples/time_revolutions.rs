@@ -2,7 +2,7 @@
 //! `tests/peers/run` compares it with other programs.
 //!
 //! ```sh
-//! cargo run --release -p crosshead-simulate --example time_revolutions -- \
+//! cargo run --release -p crosshead-simulate --features bench --example time_revolutions -- \
 //!     --tolerance 1e-6 --revolutions 20 --out acceleration.f64
 //! ```
 //!
