@@ -180,6 +180,7 @@ fn a_wrong_mass_is_found_where_the_first_descent_ends() {
 
 /// Two values are wrong: none of them by itself explains the recordings, and descents claim nothing.
 #[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
 fn descents_that_leave_more_than_noise_correct_nothing() {
     let mut tree = machine();
     tree["crosshead"]["mass"] = json!("18.54 kg");

@@ -20,18 +20,27 @@ fn problem() -> Problem {
     own_recordings::problem(tree, &TRUTH, &[380.0, 480.0], 60, 1e-4)
 }
 
-#[test]
-fn it_ends_where_it_would_have_ended() {
+/// Interrupts a search of `evaluations`: its user stops it after each of `stops` evaluations, and it is killed where
+/// each of these shares of its checkpoint is written.
+fn ends_where_it_would_have_ended(
+    optimiser: Optimiser,
+    evaluations: u64,
+    stops: &[u64],
+    kills: &[f64],
+) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("checkpoint.bin");
-    let fitted = |optimiser, most: Option<u64>| {
-        let mut problem = problem();
+    let problem = problem();
+    let fitted = |most: Option<u64>| {
         let checkpoint = Checkpoint::open(&path, "of this", false).unwrap();
-        problem.meter = Meter::with_checkpoint(checkpoint);
+        let problem = Problem {
+            meter: Meter::with_checkpoint(checkpoint),
+            ..problem.clone()
+        };
         let settings = FitSettings {
             optimiser,
             seed: 3,
-            evaluations: 40,
+            evaluations,
             held_out: Vec::new(),
             start: None,
         };
@@ -41,6 +50,37 @@ fn it_ends_where_it_would_have_ended() {
         };
         calibrate(&problem, &settings, watch).unwrap()
     };
+    let whole = format!("{:?}", fitted(None));
+    let evaluated = fs::read(&path).unwrap();
+    for most in stops {
+        fs::remove_file(&path).unwrap();
+        let stopped = fitted(Some(*most));
+        assert!(!stopped.complete, "{optimiser:?}");
+        assert_eq!(format!("{:?}", fitted(None)), whole);
+    }
+    for share in kills {
+        let kept = (share * evaluated.len() as f64) as usize;
+        fs::write(&path, &evaluated[..kept]).unwrap();
+        assert_eq!(format!("{:?}", fitted(None)), whole);
+    }
+}
+
+/// The default search is killed and stopped in `cli/tests/all/calibrate/ends.rs`.
+#[test]
+fn a_random_search_ends_where_it_would_have_ended() {
+    // The first half of the checkpoint ends after the first generation.
+    let few = Genetic {
+        population: 6,
+        ..Genetic::default()
+    };
+    for optimiser in [Optimiser::CmaEs, Optimiser::Genetic(few)] {
+        ends_where_it_would_have_ended(optimiser, 16, &[], &[0.5]);
+    }
+}
+
+#[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
+fn it_ends_where_it_would_have_ended() {
     for optimiser in [
         Optimiser::Default,
         Optimiser::FirstDescent,
@@ -48,19 +88,6 @@ fn it_ends_where_it_would_have_ended() {
         Optimiser::Genetic(Genetic::default()),
         Optimiser::LevenbergMarquardt,
     ] {
-        let whole = format!("{:?}", fitted(optimiser, None));
-        let evaluated = fs::read(&path).unwrap();
-        // Stopped by its user.
-        fs::remove_file(&path).unwrap();
-        let stopped = fitted(optimiser, Some(6));
-        assert!(!stopped.complete, "{optimiser:?}");
-        assert_eq!(format!("{:?}", fitted(optimiser, None)), whole);
-        // Killed at any byte.
-        for share in [0.1, 0.5, 0.9] {
-            let kept = (share * evaluated.len() as f64) as usize;
-            fs::write(&path, &evaluated[..kept]).unwrap();
-            assert_eq!(format!("{:?}", fitted(optimiser, None)), whole);
-        }
-        fs::remove_file(&path).unwrap();
+        ends_where_it_would_have_ended(optimiser, 40, &[6], &[0.1, 0.5, 0.9]);
     }
 }

@@ -31,6 +31,7 @@ fn problem() -> Problem {
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
 fn parts_of_the_runs_lead_to_where_all_agree() {
     let problem = problem();
     let fitted = |optimiser| {

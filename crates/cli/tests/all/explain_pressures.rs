@@ -84,6 +84,7 @@ fn late_suction_valves_are_found_and_most_of_the_gap_is_closed() {
 /// One end explained by itself predicts the other, of which only clearance volume and closing angle
 /// are fitted; the pressures of its lines are those that the bundle states.
 #[test]
+#[ignore = "minutes: tests/nightly/run pressures"]
 fn one_end_predicts_the_other() {
     let folder = tempfile::tempdir().unwrap();
     let ends = [
