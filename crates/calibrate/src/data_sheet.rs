@@ -38,7 +38,7 @@ const CUTOFF_FACTOR: f64 = 0.7;
 /// Its order: that of a sensor on its mount.
 const ORDER: u32 = 2;
 /// How many standard deviations of its prior a value may lie from the stated one.
-const REACH: f64 = 3.0;
+pub const REACH: f64 = 3.0;
 
 /// Values that stand in a data sheet by themselves, and the relative standard deviation of each.
 const VALUES: [(&str, f64); 8] = [
@@ -54,7 +54,7 @@ const VALUES: [(&str, f64); 8] = [
 
 /// A value that may be wrong.
 #[derive(Clone, Debug)]
-pub(crate) struct Doubt {
+pub struct Doubt {
     /// The machine file, with the value where it had none.
     pub tree: Value,
     /// The value.
@@ -68,6 +68,12 @@ pub(crate) struct Doubt {
 }
 
 impl Doubt {
+    /// Whether it is a mass or a length of the machine, and no clearance and nothing of a sensor.
+    pub fn is_of_machine(&self) -> bool {
+        let path = self.parameter.path.as_str();
+        VALUES.iter().any(|(key, _)| path == *key || path.ends_with(&format!(".{key}")))
+    }
+
     /// The problem with this value free as well, the last of the parameters.
     pub fn added(&self, problem: &Problem) -> Problem {
         let mut added = problem.clone();
@@ -81,7 +87,7 @@ impl Doubt {
 ///
 /// # Errors
 /// An invalid machine file.
-pub(crate) fn doubts(problem: &Problem) -> Result<Vec<Doubt>, Error> {
+pub fn doubts(problem: &Problem) -> Result<Vec<Doubt>, Error> {
     let mut doubts = of_machine(problem)?;
     doubts.extend(of_joints(problem)?);
     doubts.extend(of_sensors(problem)?);

@@ -46,6 +46,27 @@ impl<'a> Likelihood<'a> {
         Self { problem, timing }
     }
 
+    /// Twice the negative logarithm of the likelihood, but for a constant: what is left over its variance, and the
+    /// variance, which a greater allowance for timing makes greater.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub fn deviance(&self, x: &[f64]) -> Result<f64, Error> {
+        let predictions = self.predictions(x)?;
+        let runs = self.problem.runs.iter().zip(&predictions);
+        let of_run = |(run, prediction): (&Observation, &Prediction)| {
+            let channels = run.channels.iter().zip(&prediction.lines);
+            let spread = channels.flat_map(|(observed, predicted)| {
+                let parts = observed.orders.iter().map(|k| if *k == 0 { 1.0 } else { 2.0 });
+                let weights = weights(observed, predicted, self.timing);
+                parts.zip(weights).map(|(parts, weight)| -2.0 * parts * weight.ln())
+            });
+            let squares = residuals(run, prediction, self.timing);
+            spread.sum::<f64>() + squares.iter().map(|r| r * r).sum::<f64>()
+        };
+        Ok(runs.map(of_run).sum())
+    }
+
     fn prediction(
         &self,
         run: &Observation,

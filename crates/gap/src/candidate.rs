@@ -18,15 +18,19 @@ pub struct Candidate {
     pub place: Vec<(&'static str, String)>,
     /// The values that are not searched (an order), by their index among the effect's parameters.
     pub fixed: Vec<(usize, f64)>,
-    /// The ends of the cylinder that have the effect, each with values of its own; none where one
-    /// set of values holds at the place.
-    pub ends: &'static [&'static str],
+    /// The places of one kind that have the effect together, as the keys and words that distinguish them (both
+    /// bearings, both ends of a cylinder); none where it acts at `place` alone.
+    pub each: Vec<(&'static str, String)>,
+    /// Whether one set of values holds at each of them, or each has values of its own.
+    pub shared: bool,
 }
 
 /// A place that is not tried one by one. An effect on a sensor is tried on that of the crosshead's
 /// acceleration, the default, and on that of the pressure.
 const MEASURE: &str = "measure";
 const PRESSURE: &str = "cylinder_pressure";
+/// Share of an amplitude that is next to nothing.
+const FAINT: f64 = 0.03;
 /// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
 const EITHER: &str = "end";
 
@@ -57,15 +61,17 @@ impl Candidate {
                     && entry.proposal == Proposal::PerEnd
                     && place.iter().all(|(key, _)| *key != EITHER);
                 let ends = entry.places.iter().filter(|c| own && c.key == EITHER);
-                let ends = ends.map(|choice| choice.words).next().unwrap_or_default();
+                let each: Vec<(&str, String)> = ends.flat_map(words).collect();
                 for mut fixed in orders(entry) {
                     fixed.extend(included(entry, &place, problem));
+                    fixed.extend(shapes(entry));
                     let place = place.clone();
                     let candidate = Self {
                         entry,
                         place,
                         fixed,
-                        ends,
+                        each: each.clone(),
+                        shared: false,
                     };
                     let usual = candidate.usual();
                     let seen = known || !candidate.place.iter().any(|(_, word)| word == PRESSURE);
@@ -76,7 +82,28 @@ impl Candidate {
                 }
             }
         }
+        let together: Vec<Self> = all.iter().filter_map(|one| one.in_both_bearings(problem)).collect();
+        all.extend(together);
         all
+    }
+
+    /// The same in the bearings of both ends of the rod, where it is in the first of them and both are clear.
+    /// Oil and wear are alike there. A direction is each bearing's own.
+    fn in_both_bearings(&self, problem: &Problem) -> Option<Self> {
+        let [first, other] = BEARINGS;
+        let rest = |words: &[(&'static str, String)]| -> Vec<(&'static str, String)> {
+            words.iter().filter(|(key, _)| *key != "joint").cloned().collect()
+        };
+        if self.joint() != Some(first) || !is_clear(problem, &self.place, first) || !is_clear(problem, &self.place, other) {
+            return None;
+        }
+        let both = Self {
+            place: rest(&self.place),
+            each: BEARINGS.map(|joint| ("joint", joint.to_owned())).to_vec(),
+            shared: !self.entry.parameters.iter().any(|p| p.cyclic),
+            ..self.clone()
+        };
+        both.added(problem, &both.usual()).is_ok().then_some(both)
     }
 
     /// The first candidate of an effect.
@@ -99,6 +126,16 @@ impl Candidate {
         }
     }
 
+    /// The same with the form of its law free as well; none where its law has one form.
+    pub(crate) fn of_any_form(&self) -> Option<Self> {
+        let is_shape = |(i, _): &(usize, f64)| self.entry.parameters[*i].shape;
+        let fixed: Vec<(usize, f64)> = self.fixed.iter().filter(|fixed| !is_shape(fixed)).copied().collect();
+        (fixed.len() < self.fixed.len()).then(|| Self {
+            fixed,
+            ..self.clone()
+        })
+    }
+
     /// The parameters that are searched, by their indices.
     pub(crate) fn free(&self) -> impl Iterator<Item = usize> + '_ {
         let fixed = |i: &usize| self.fixed.iter().any(|(fixed, _)| fixed == i);
@@ -118,11 +155,21 @@ impl Candidate {
         self.is_of_gas() && recorded(problem, &self.place).is_some_and(|chambers| chambers > 0)
     }
 
+    /// Whether a run of pressures shows the end of the cylinder at which it acts.
+    pub(crate) fn acts_on(&self, run: &calibrate::Observation) -> bool {
+        let at = |column: &str| match column.contains("crank_end") {
+            true => "crank",
+            false => "head",
+        };
+        let mut columns = run.channels.iter().map(|channel| channel.column.as_str());
+        self.end().is_none_or(|end| columns.any(|column| at(column) == end))
+    }
+
     /// The same at the end of the cylinder alone whose pressure was recorded, where it acts at both and that
     /// of the other was not.
     pub(crate) fn at_recorded_end(&self, problem: &Problem) -> Option<Self> {
         let choice = self.entry.places.iter().find(|c| c.key == EITHER)?;
-        if self.end().is_some() || !self.ends.is_empty() || !has_crank_end(&problem.tree) {
+        if self.end().is_some() || !self.each.is_empty() || !has_crank_end(&problem.tree) {
             return None;
         }
         let at = |end: &&str| {
@@ -153,6 +200,12 @@ impl Candidate {
         place.map(|(_, end)| end.as_str())
     }
 
+    /// Everywhere that it acts, in words.
+    pub(crate) fn places(&self) -> Vec<String> {
+        let all = self.place.iter().chain(&self.each);
+        all.map(|(_, word)| word.clone()).collect()
+    }
+
     /// What it is called in words: effect, place and order.
     pub fn label(&self) -> String {
         let mut label = self.entry.name.to_owned();
@@ -160,8 +213,9 @@ impl Candidate {
             label.push(' ');
             label.push_str(word);
         }
-        if !self.ends.is_empty() {
-            label.push_str(&format!(" {}", self.ends.join(" and ")));
+        if !self.each.is_empty() {
+            let each: Vec<&str> = self.each.iter().map(|(_, word)| word.as_str()).collect();
+            label.push_str(&format!(" {}", each.join(" and ")));
         }
         for (index, value) in &self.fixed {
             let parameter = &self.entry.parameters[*index];
@@ -175,28 +229,52 @@ impl Candidate {
     /// It as the items of a machine file's list of effects that it consists of, with the index of
     /// each one's first value.
     pub fn items(&self) -> Vec<(Self, usize)> {
-        if self.ends.is_empty() {
+        if self.each.is_empty() {
             return vec![(self.clone(), 0)];
         }
-        let item = |(i, end): (usize, &&str)| {
-            let mut item = self.clone();
-            item.ends = &[];
-            item.place.push((EITHER, (*end).to_owned()));
-            (item, i * self.entry.parameters.len())
+        let own = match self.shared {
+            true => 0,
+            false => self.entry.parameters.len(),
         };
-        self.ends.iter().enumerate().map(item).collect()
+        let item = |(i, word): (usize, &(&'static str, String))| {
+            let mut item = self.clone();
+            item.each = Vec::new();
+            item.place.push(word.clone());
+            (item, i * own)
+        };
+        self.each.iter().enumerate().map(item).collect()
+    }
+
+    /// How many sets of values it has.
+    pub(crate) fn sets(&self) -> usize {
+        match self.shared {
+            true => 1,
+            false => self.each.len().max(1),
+        }
     }
 
     /// Usual values of the parameters, those of one item after those of another.
     pub(crate) fn usual(&self) -> Vec<f64> {
         let of_item = self.entry.parameters.iter().map(|p| p.start);
-        let items = self.ends.len().max(1);
-        of_item.collect::<Vec<f64>>().repeat(items)
+        of_item.collect::<Vec<f64>>().repeat(self.sets())
+    }
+
+    /// Values with next to nothing of its amplitudes.
+    pub(crate) fn faint(&self, values: &[f64]) -> Vec<f64> {
+        let parameters = self.entry.parameters.iter().cycle();
+        let faint = |(value, parameter): (&f64, &Parameter)| match parameter.absent {
+            Some(absent) => {
+                let [low, high] = parameter.bounds;
+                (absent + FAINT * (value - absent)).clamp(low.min(absent), high)
+            }
+            None => *value,
+        };
+        values.iter().zip(parameters).map(faint).collect()
     }
 
     /// Whether the machine does not have it yet.
     fn is_new(&self, problem: &Problem) -> bool {
-        if !self.ends.is_empty() {
+        if !self.each.is_empty() {
             return self.items().iter().all(|(item, _)| item.is_new(problem));
         }
         let there = problem.tree.get("effects").and_then(Value::as_array);
@@ -204,7 +282,9 @@ impl Candidate {
             item.get(self.entry.name).is_some_and(|section| {
                 let same = |(key, word): &(&str, String)| section[*key] == word.as_str();
                 let index = |i: usize| self.entry.parameters[i].key;
-                let fixed = |(i, value): &(usize, f64)| section[index(*i)].as_f64() == Some(*value);
+                let fixed = |(i, value): &(usize, f64)| {
+                    self.entry.parameters[*i].shape || section[index(*i)].as_f64() == Some(*value)
+                };
                 let sensor = self.place.iter().find(|(key, _)| *key == MEASURE);
                 let sensor = section[MEASURE].as_str() == sensor.map(|(_, word)| word.as_str());
                 sensor && self.place.iter().all(same) && self.fixed.iter().all(fixed)
@@ -218,9 +298,17 @@ impl Candidate {
     /// # Errors
     /// A machine that cannot have it.
     pub fn added(&self, problem: &Problem, values: &[f64]) -> Result<Problem, Error> {
+        let own = problem.parameters.len();
         let mut added = problem.clone();
         for (item, first) in self.items() {
+            let before = added.parameters.len();
             added = item.item_added(&added, &values[first..])?;
+            if self.shared && before > own {
+                let again = added.parameters.split_off(before);
+                for (first, again) in added.parameters[own..].iter_mut().zip(again) {
+                    first.places.extend(again.places);
+                }
+            }
         }
         Ok(added)
     }
@@ -240,14 +328,13 @@ impl Candidate {
         let items = effects.as_array_mut().ok_or(Error::Effects)?;
         let index = items.len();
         let mut item = self.entry.item(&place, &values);
-        if self.entry.proposal == Proposal::ForceLaw
-            && let Some(section) = item[self.entry.name].as_object_mut()
-        {
-            // Terms that are left out have no effect, and constants are as usual.
+        // Terms that are left out have no effect, and constants and forms are as usual.
+        let is_law = self.entry.proposal == Proposal::ForceLaw;
+        if let Some(section) = item[self.entry.name].as_object_mut() {
             section.retain(|key, _| {
                 !self.fixed.iter().any(|(i, _)| {
                     let parameter = &self.entry.parameters[*i];
-                    !parameter.whole && parameter.key == key
+                    (parameter.shape || (is_law && !parameter.whole)) && parameter.key == key
                 })
             });
         }
@@ -276,7 +363,7 @@ impl Candidate {
 
     /// Its parameters in a model in which its first item is the effect of this index, SI.
     pub(crate) fn values(&self, model: &Model, index: usize) -> Vec<f64> {
-        let items = self.items().into_iter().enumerate();
+        let items = self.items().into_iter().enumerate().take(self.sets());
         let values = items.flat_map(|(i, (item, _))| item.item_values(model, index + i));
         values.collect()
     }
@@ -295,6 +382,27 @@ impl Candidate {
         };
         self.entry.parameters.iter().enumerate().map(of).collect()
     }
+}
+
+/// The bearings of the rod.
+const BEARINGS: [&str; 2] = ["big_end", "small_end"];
+
+/// The words of a place, each with its key.
+fn words(choice: &input::effects::Choice) -> Vec<(&'static str, String)> {
+    let word = |word: &&'static str| (choice.key, (*word).to_owned());
+    choice.words.iter().map(word).collect()
+}
+
+/// Whether a joint has clearance in one of the runs.
+fn is_clear(problem: &Problem, place: &[(&'static str, String)], joint: &str) -> bool {
+    let throw = place.iter().find(|(key, _)| *key == "throw");
+    let path = match throw {
+        Some((_, throw)) => format!("throws.{throw}.joints.{joint}.clearance"),
+        None => format!("joints.{joint}.clearance"),
+    };
+    let in_run = |settings: &[(String, Value)]| settings.iter().any(|(at, value)| at.ends_with(&path) && value != "ideal");
+    let nominal = input::paths::get(&problem.tree, &path).ok().flatten().is_some_and(|value| value != "ideal");
+    nominal || problem.runs.iter().any(|run| in_run(&run.settings))
 }
 
 pub(crate) fn throws(tree: &Value) -> Vec<String> {
@@ -405,6 +513,12 @@ fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'stati
         places = everywhere.into_iter().chain(each).collect();
     }
     places
+}
+
+/// The parameters that are a form of the law, as they usually are.
+fn shapes(entry: &Entry) -> impl Iterator<Item = (usize, f64)> {
+    let parameters = entry.parameters.iter().enumerate();
+    parameters.filter(|(_, p)| p.shape).map(|(i, p)| (i, p.start))
 }
 
 /// The orders that an effect may have: whole numbers are tried one by one.

@@ -3,28 +3,20 @@
 pub use calibrate::likelihood::NOISE;
 
 use crate::model::Model;
-use crate::recorded::is_of_pressures;
+use calibrate::Problem;
 use serde::{Deserialize, Serialize};
 
-/// Pressures this near to the noise show no effect by themselves.
-pub(crate) const GAS_NOISE: f64 = 2.0;
 /// A model this near to the noise explains what was missing.
 pub const EXPLAINED: f64 = 1.5;
-/// Candidates whose misfit is within this factor of the best one's are its rivals.
-pub(crate) const RIVAL: f64 = 3.0;
-/// The same where the best one leaves more than noise: what is left is then other physics, which
-/// every candidate leaves.
-const RIVAL_ABOVE_NOISE: f64 = 1.5;
-/// An effect earns its place where it takes this share of the misfit, squared above the noise, of
-/// fitted and of held-out runs.
-pub(crate) const EARNED: f64 = 0.3;
-/// The same where only pressures were recorded. The gas alone can explain them. After one
-/// effect the contribution of others is still in the way of the next.
-pub(crate) const EARNED_OF_GAS: f64 = 0.2;
-/// Share of the distance to the noise that must be gone, of fitted and of held-out runs: for effects
-/// to explain a part, and for a single one to be sure by itself.
-pub(crate) const PARTLY: f64 = 0.5;
-const SURE: f64 = 0.8;
+/// An effect is named where it is more probable than not.
+pub(crate) const NAMED: f64 = 0.5;
+/// By what share of its own signature the law of the right effect is off, as a standard deviation: the laws that the
+/// literature has for one effect differ from each other by as much.
+const OFF: f64 = 0.35;
+/// Probability that a gap has an effect of the catalogue behind it, before it is looked at; of another effect beside
+/// those that were named: two faults at once are rare.
+const PRIOR: f64 = 0.5;
+const PRIOR_OF_ANOTHER: f64 = 0.25;
 
 /// What an explanation comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -55,121 +47,96 @@ impl Verdict {
 /// What speaks for an effect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Evidence {
-    /// Share of the residual that the score test lets it explain.
-    pub score: f64,
+    /// By how much likelier the recordings are with it than without, in nats.
+    pub log_odds: f64,
     /// Misfit of the fitted runs without and with it, in standard deviations of the noise.
     pub misfit: [f64; 2],
     /// The same of the held-out runs.
     pub heldout_misfit: Option<[f64; 2]>,
-    /// Bayesian information criterion with it less that without it, revolutions' lines counted as
-    /// one observation each: below −10 is strong evidence.
-    pub delta_bic: f64,
-}
-
-/// Whether this share of the distance to the noise is gone.
-fn closes(share: f64, [before, after]: [f64; 2]) -> bool {
-    after - 1.0 <= (1.0 - share) * (before - 1.0)
-}
-
-/// Whether most of the distance to the noise is gone, from the misfit before to that after.
-pub(crate) fn closes_most(misfit: [f64; 2]) -> bool {
-    closes(SURE, misfit)
-}
-
-impl Evidence {
-    /// Whether the effect by itself closes most of the gap that it was added for.
-    pub(crate) fn is_sure(&self) -> bool {
-        closes_most(self.misfit) && self.heldout_misfit.is_none_or(closes_most)
-    }
+    /// Size of the discrepancy that is left with it: the standard deviation of the crank angle at which features
+    /// stand, rad.
+    pub timing: f64,
 }
 
 /// What speaks for `after`, which has an effect that `before` has not.
-pub(crate) fn evidence(before: &Model, after: &Model, score: f64) -> Evidence {
+pub(crate) fn evidence(before: &Model, after: &Model) -> Evidence {
     let held_out = before.held_out.zip(after.held_out);
     Evidence {
-        score,
+        log_odds: nats(before) - nats(after),
         misfit: [before.fitted, after.fitted],
         heldout_misfit: held_out.map(|(before, after)| [before, after]),
-        delta_bic: before.bic_to(after),
+        timing: after.timing,
     }
 }
 
-/// The misfit up to which a candidate is a rival of the best one, which has `least`.
-pub(crate) fn rival(least: f64) -> f64 {
-    match least > EXPLAINED {
-        true => RIVAL_ABOVE_NOISE * least,
-        false => RIVAL * least,
-    }
+/// Lines of one channel, run and octave of orders that count as one complex number: what a wrong law leaves in them
+/// is no independent noise.
+fn octaves(problem: &Problem) -> f64 {
+    let channels = problem.runs.iter().flat_map(|run| &run.channels);
+    let octaves = channels.map(|channel| channel.orders.last().map_or(1, |last| (last + 1).ilog2() + 1));
+    f64::from(octaves.sum::<u32>())
 }
 
-/// Whether the effect that `after` has and `before` has not earns its place. It does not where, without it, the
-/// fitted runs fit within the noise and the held-out ones are explained.
-pub(crate) fn earns(before: &Model, after: &Model) -> bool {
-    let excess = |misfit: f64| (misfit * misfit - 1.0).max(0.0);
-    let share = match is_of_pressures(&after.problem) {
-        true => EARNED_OF_GAS,
-        false => EARNED,
+/// Residuals to one that is independent of the others.
+pub(crate) fn dependence(problem: &Problem) -> f64 {
+    let channels = problem.runs.iter().flat_map(|run| &run.channels);
+    let lines: usize = channels.map(|channel| channel.orders.len()).sum();
+    lines as f64 / octaves(problem).max(1.0)
+}
+
+/// Negative logarithm of the likelihood of all runs of a model, those held out included, as if each octave of each
+/// channel were one observation.
+pub(crate) fn nats(model: &Model) -> f64 {
+    0.5 * (model.deviance + model.heldout_deviance) / dependence(&model.problem)
+}
+
+/// What so many free parameters cost, in nats (Schwarz 1978).
+pub(crate) fn freedom(problem: &Problem, parameters: usize) -> f64 {
+    0.5 * parameters as f64 * (2.0 * octaves(problem)).ln()
+}
+
+/// Share of the distance to the noise that is left of fitted or held-out runs, whichever is more.
+pub(crate) fn left(before: &Model, after: &Model) -> f64 {
+    let above = |misfit: f64| (misfit * misfit - 1.0).max(0.0).sqrt();
+    let share = |before: f64, after: f64| match above(before) > 0.0 {
+        true => above(after) / above(before),
+        false => 1.0,
     };
-    let takes = |before: f64, after: f64| excess(after) <= (1.0 - share) * excess(before);
     let held_out = before.held_out.zip(after.held_out);
-    let is_left = before.fitted > NOISE || before.held_out.is_some_and(|held| held > EXPLAINED);
-    is_left
-        && takes(before.fitted, after.fitted)
-        && held_out.is_none_or(|(before, after)| after < NOISE || takes(before, after))
+    let fitted = share(before.fitted, after.fitted);
+    held_out.map_or(fitted, |(before, after)| fitted.max(share(before, after))).min(1.0)
+}
+
+/// Probability that an effect which leaves this share of the gap is of the right kind, `others` having been named
+/// before. The right kind leaves what its law is off by; a wrong one that does best leaves any share, a great one
+/// sooner.
+pub(crate) fn probability(left: f64, others: usize) -> f64 {
+    let prior = if others == 0 { PRIOR } else { PRIOR_OF_ANOTHER };
+    let right = (2.0 / std::f64::consts::PI).sqrt() / OFF * (-0.5 * (left / OFF).powi(2)).exp();
+    let wrong = 2.0 * left;
+    prior * right / (prior * right + (1.0 - prior) * wrong)
 }
 
 /// What a model with so many effects comes to.
 pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdict {
-    if effects == 0 && baseline.fitted <= NOISE {
-        return Verdict::NoGap;
-    }
-    let worst = model
-        .held_out
-        .map_or(model.fitted, |held| held.max(model.fitted));
-    let held_out = baseline.held_out.zip(model.held_out);
-    let closes = |before, after| closes(PARTLY, [before, after]);
-    let held_out = held_out.is_none_or(|(before, after)| closes(before, after));
-    if effects == 0 {
-        Verdict::Unexplained
-    } else if worst <= EXPLAINED {
-        Verdict::Explained
-    } else if held_out && closes(baseline.fitted, model.fitted) {
-        Verdict::PartlyExplained
-    } else {
-        Verdict::Unexplained
+    let worst = model.held_out.map_or(model.fitted, |held| held.max(model.fitted));
+    match effects {
+        0 if baseline.fitted <= NOISE => Verdict::NoGap,
+        0 => Verdict::Unexplained,
+        _ if worst <= EXPLAINED => Verdict::Explained,
+        _ => Verdict::PartlyExplained,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use calibrate::{CrankMotion, Problem};
-
-    fn model(fitted: f64, held_out: f64) -> Model {
-        let problem = Problem {
-            tree: serde_json::Value::Null,
-            parameters: Vec::new(),
-            runs: Vec::new(),
-            crank: CrankMotion::Driven,
-            meter: calibrate::meter::Meter::default(),
-        };
-        Model {
-            problem,
-            x: Vec::new(),
-            fitted,
-            held_out: Some(held_out),
-            by_run: Vec::new(),
-        }
-    }
 
     #[test]
-    fn an_effect_earns_its_place_where_something_is_left_without_it() {
-        let good = model(0.9, 0.9);
-        assert!(earns(&model(5.0, 6.0), &good));
-        assert!(earns(&model(1.0, 6.0), &good));
-        assert!(!earns(&model(0.95, 0.9), &good));
-        assert!(!earns(&model(1.0, 1.4), &good));
-        assert!(!earns(&model(5.0, 6.0), &model(4.8, 6.0)));
-        assert!(!earns(&model(5.0, 6.0), &model(2.0, 7.0)));
+    fn an_effect_is_named_where_it_leaves_what_its_law_may_be_off_by() {
+        assert!(probability(0.0, 0) > 0.99);
+        assert!((0.8..0.9).contains(&probability(0.2, 0)));
+        assert!(probability(0.5, 0) < NAMED && probability(0.9, 0) < 0.05);
+        assert!(probability(0.3, 1) < probability(0.3, 0));
     }
 }

@@ -6,18 +6,12 @@ use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 
 /// What an explanation may cost before nothing new is begun, in steps of the integrator for each
-/// throw. A step of two joints takes some 7 µs.
-const BUDGET: u64 = 24_000_000;
-/// By how much more it may cost for each effect that was found, so that what is left has its chance too.
-const FOR_ANOTHER: u64 = BUDGET * 3 / 4;
-/// By how much more where another effect is looked for beside wear.
-const BESIDE_WEAR: u64 = BUDGET / 2;
-/// And by how much more before the search of a force of no name goes into its second and third attempts.
-const FOR_FORCE: u64 = BUDGET / 2;
-/// The most for a search from the nominal machine.
-pub(crate) const FIRST_SEARCH: u64 = BUDGET / 2;
-/// The most for a search that continues from another.
-pub(crate) const SEARCH: u64 = BUDGET / 4;
+/// throw. A step of two joints takes some 4 µs.
+const BUDGET: u64 = 100_000_000;
+/// The most for a calibration.
+pub(crate) const FIRST_SEARCH: u64 = BUDGET / 16;
+/// The most for a descent.
+pub(crate) const MOST_OF_A_DESCENT: u64 = BUDGET / 16;
 
 /// Which runs a model is fitted to, and how long it may take.
 #[derive(Clone, Debug)]
@@ -30,8 +24,6 @@ pub struct Effort {
     pub chaotic: bool,
     /// What was found before.
     pub journal: Journal,
-    /// Effects that were found in this explanation.
-    pub found: usize,
 }
 
 impl Effort {
@@ -64,35 +56,12 @@ impl Effort {
             evaluations,
             chaotic,
             journal,
-            found: 0,
         })
-    }
-
-    /// The same where so many effects were found.
-    pub(crate) fn having(&self, found: usize) -> Self {
-        Self {
-            found,
-            ..self.clone()
-        }
     }
 
     /// Whether there is still something left of the budget.
     pub(crate) fn goes_on(&self) -> bool {
-        self.journal.spent() < self.budget()
-    }
-
-    /// The same for the search of another effect beside wear.
-    pub(crate) fn goes_on_beside_wear(&self) -> bool {
-        self.journal.spent() < self.budget() + BESIDE_WEAR
-    }
-
-    /// The same for the search of a force of no name.
-    pub(crate) fn goes_on_for_force(&self) -> bool {
-        self.journal.spent() < self.budget() + FOR_FORCE
-    }
-
-    fn budget(&self) -> u64 {
-        BUDGET + self.found as u64 * FOR_ANOTHER
+        self.journal.spent() < BUDGET
     }
 
     /// Whether a run is fitted to.

@@ -29,6 +29,9 @@ pub enum Error {
         /// What is wrong with it.
         source: std::io::Error,
     },
+    /// A machine that cannot be simulated with any parameters that were tried.
+    #[error("the machine cannot be simulated near its nominal parameters")]
+    Nothing,
     /// Stopped by the user.
     #[error("stopped before an explanation was found; the same command goes on from there")]
     Stopped,

@@ -1,29 +1,25 @@
-//! The workflow: effects are added one after another while they earn their place.
+//! The workflow: pressures first, which hardly depend on the joints, then everything.
 
-use crate::candidate::Candidate;
-use crate::criteria::{NOISE, Verdict, verdict};
+use crate::amendment::Amendment;
+use crate::criteria::{EXPLAINED, Verdict, evidence, verdict};
 use crate::effort::Effort;
 use crate::error::Error;
-use crate::finding::{Explained, Found, Tried, added};
+use crate::finding::{Correction, Found, Tried};
 use crate::fitter::{Fitter, Watch};
+use crate::force::empirical_force;
+use crate::gas::{has_joints, pressures};
+use crate::hypothesis::{Amended, Hypothesis, added};
+use crate::judgement::{Judgement, judged};
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
+use crate::missing_force::MissingForce;
 use crate::model::Model;
-use crate::moves::missing_force::MissingForce;
 use crate::next_recording::next_recording;
-use crate::search::belief::believed;
-use crate::search::gas::{OfGas, at_their_ends, of_gas, tell_gas};
-use crate::search::last_rivals::with_last_rivals;
-use crate::search::one_by_one::{MOST, pruned, while_they_earn};
-use crate::search::throw_by_throw::throw_by_throw;
-use crate::search::with_force::with_force;
+use crate::recorded::is_of_pressures;
 use crate::steps::{Step, steps};
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit};
 use nalgebra::DMatrix;
-
-/// Most evaluations of the calibration to begin with.
-const CALIBRATION: u64 = 400;
 
 /// What the workflow did and found.
 #[derive(Clone, Debug)]
@@ -34,11 +30,13 @@ pub struct Explanation {
     pub explained: Model,
     /// The effects, in the order in which they were added.
     pub found: Vec<Found>,
+    /// Values of the data sheet that turned out wrong.
+    pub corrections: Vec<Correction>,
     /// What is wrong with the measuring: it was taken off or fitted to begin with.
     pub chain: Vec<Found>,
     /// What this comes to.
     pub verdict: Verdict,
-    /// What was tried last and did not earn its place.
+    /// What was fitted to all runs and is not believed.
     pub refused: Vec<Tried>,
     /// The machine as it was given.
     pub nominal: Model,
@@ -63,12 +61,14 @@ pub struct Stage {
     pub misfit: f64,
 }
 
-/// Explains the gap between the problem's machine and its recordings, which `hum` has been taken off.
+/// Explains the gap between the problem's machine and its recordings, which `hum` has been taken off. `start` are the
+/// coordinates from which the calibration begins.
 ///
 /// # Errors
 /// A machine that cannot be simulated; [`Error::Stopped`].
 pub fn explain(
     problem: &Problem,
+    start: Option<&[f64]>,
     hum: &[Hum],
     effort: &Effort,
     report: &(dyn Fn(&Stage) + Sync),
@@ -85,25 +85,36 @@ pub fn explain(
         watch,
         say: &say,
     };
-    let (mut baseline, explained) = match of_gas(fitter, problem)? {
-        Some(gas) if gas.is_all(problem) => gas.with_joints(problem, effort)?,
-        gas => of_all(fitter, problem, gas)?,
-    };
-    let explained = pruned(fitter, problem, explained)?;
-    let with_force = with_force(fitter, problem, &baseline, explained)?;
-    let explained = believed(
-        fitter,
-        problem,
-        &baseline,
-        with_force.explained,
-        with_force.nearer,
-    )?;
-    let Explained {
-        model,
-        found,
+    let nominal = vec![0.0; problem.parameters.len()];
+    let Whole {
+        mut baseline,
+        mut model,
+        mut found,
         refused,
-    } = explained;
-    let found = with_last_rivals(fitter, problem, &model, found)?;
+        probabilities,
+    } = whole(fitter, problem, start.unwrap_or(&nominal))?;
+    let mut missing_force = Vec::new();
+    let effects = found.len();
+    if effects == 0
+        && verdict(&baseline, &model, 0) == Verdict::Unexplained
+        && !is_of_pressures(problem)
+        && !effort.chaotic
+        && let Some(force) = empirical_force(fitter, &model)?
+    {
+        missing_force = force.missing;
+        // A law that explains everything is one; what leaves more may be the form of something else.
+        if let Some((tried, after)) = force.law
+            && after.fitted <= EXPLAINED
+            && after.held_out.is_some_and(|held| held <= EXPLAINED)
+        {
+            found.push(Found {
+                gap: Some(after.gap()),
+                effect: tried,
+                rivals: Vec::new(),
+            });
+            model = after;
+        }
+    }
     say("finding bounds", model.fitted);
     let Fit {
         mut estimates,
@@ -116,30 +127,28 @@ pub fn explain(
             estimate.value = estimate.parameter.value(*x);
         }
     }
-    let set_right = || {
+    let corrections = corrections(problem, &estimates, &probabilities);
+    let set_right = || -> Result<Model, Error> {
         let mut problem = problem.clone();
         problem.parameters.retain(|p| !p.is_crank_angle_offset());
-        fitter.fit(problem, &[])
+        let start = vec![0.0; problem.parameters.len()];
+        let found = fitter.explored(&[(problem, start)])?;
+        found.map(|(model, _)| model).ok_or(Error::Nothing)
     };
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
-    let explains = |baseline: &Model, effects| verdict(baseline, &model, effects);
     let calibrated = baseline.gap();
-    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)?
-        && (offset.effect.evidence.is_sure() || explains(&without, 1) != Verdict::Unexplained)
-    {
+    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)? {
         chain.push(offset);
         baseline = without;
     }
-    // What is left of the effects where the whole stays unexplained is sure by itself.
-    let verdict = match explains(&baseline, found.len() + chain.len()) {
-        Verdict::Unexplained if !found.is_empty() => Verdict::PartlyExplained,
-        verdict => verdict,
-    };
-    let nominal = Model::at(problem.clone(), &[], effort)?;
+    let named = found.len() + chain.len() + corrections.len();
+    let verdict = verdict(&baseline, &model, named);
+    let nominal = Model::at(problem.clone(), &[], 0.0, effort)?;
     Ok(Explanation {
         steps: steps(&nominal, &baseline, &chain, calibrated, &found, &model),
         next_recording: next_recording(fitter, &found)?,
         nominal,
+        corrections,
         chain,
         estimates,
         correlations,
@@ -148,39 +157,132 @@ pub fn explain(
         found,
         verdict,
         refused,
-        missing_force: with_force.missing,
+        missing_force,
     })
 }
 
-/// The calibrated machine, and the same with the effects of the gas and what else is missing.
-fn of_all(
-    fitter: &Fitter,
-    problem: &Problem,
-    gas: Option<OfGas>,
-) -> Result<(Model, Explained), Error> {
-    let known = gas.as_ref().is_some_and(OfGas::is_decided);
-    let found = gas.map_or_else(Vec::new, |gas| gas.explained.found);
-    let mut found = at_their_ends(fitter, problem, found)?;
-    let with_gas = added(problem, found.iter().map(|found| &found.effect))?;
-    (fitter.say)("calibrating", f64::NAN);
-    let model = fitter.searched(&with_gas, None, CALIBRATION)?;
-    tell_gas(fitter, problem, &mut found, &model)?;
-    let baseline = match found.is_empty() {
-        true => model.clone(),
+/// What pressures and everything else come to together.
+struct Whole {
+    baseline: Model,
+    model: Model,
+    found: Vec<Found>,
+    refused: Vec<Tried>,
+    /// Corrections with their probabilities.
+    probabilities: Vec<(String, f64)>,
+}
+
+fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Error> {
+    let all = Amendment::all(problem)?;
+    let of_gas = |amendment: &Amendment| amendment.effect().is_some_and(|effect| effect.is_of_gas());
+    let mut known: Vec<Amended> = Vec::new();
+    let mut found: Vec<Found> = Vec::new();
+    let mut others = all.clone();
+    if let Some(pressures) = pressures(problem)? {
+        (fitter.say)("looking at the pressures", f64::NAN);
+        let gas: Vec<Amendment> = match has_joints(problem) {
+            true => all.iter().filter(|one| of_gas(one)).cloned().collect(),
+            false => all.clone(),
+        };
+        let own: Vec<f64> = own_start(problem, start, &pressures);
+        let judged = judged(fitter, &pressures, &own, &gas)?;
+        if !has_joints(problem) {
+            return with_joints(fitter, problem, judged, &pressures);
+        }
+        found = judged.found(&pressures);
+        let values = judged.believed.values(&pressures);
+        let set = judged.believed.set.iter().zip(values);
+        known = set
+            .map(|(one, values)| Amended {
+                amendment: one.amendment.clone(),
+                values,
+            })
+            .collect();
+        let shown = |one: &Amendment| one.effect().is_some_and(|effect| effect.is_shown_by_pressures(problem));
+        others.retain(|one| !shown(one));
+    }
+    let with_gas = added(problem, &known)?;
+    let mut start = start.to_vec();
+    start.resize(with_gas.parameters.len(), 0.0);
+    let judged = judged(fitter, &with_gas, &start, &others)?;
+    let baseline = match known.is_empty() {
+        true => judged.nothing.model.clone(),
         false => {
-            (fitter.say)("calibrating without an effect", model.fitted);
-            fitter.fit(problem.clone(), &[])?
+            (fitter.say)("calibrating without an effect", judged.nothing.model.fitted);
+            let own = start[..problem.parameters.len()].to_vec();
+            let without = fitter.explored(&[(problem.clone(), own)])?;
+            without.map(|(model, _)| model).ok_or(Error::Nothing)?
         }
     };
-    let candidates = |problem: &Problem| {
-        let mut all = Candidate::all(problem);
-        all.retain(|candidate| !known || !candidate.is_shown_by_pressures(problem));
-        all
+    if let Some(last) = found.last_mut() {
+        last.gap = Some(judged.nothing.model.gap());
+    }
+    found.extend(judged.found(&with_gas));
+    Ok(Whole {
+        baseline,
+        refused: judged.refused(&with_gas),
+        probabilities: corrected(&judged),
+        model: judged.believed.model,
+        found,
+    })
+}
+
+/// What the pressures alone come to, with the joints and the recordings of `problem`.
+fn with_joints(fitter: &Fitter, problem: &Problem, judged: Judgement, pressures: &Problem) -> Result<Whole, Error> {
+    let full = |hypothesis: &Hypothesis| {
+        let model = &hypothesis.model;
+        let mut full = problem.clone();
+        if let Some(effects) = model.problem.tree.get("effects") {
+            full.tree["effects"] = effects.clone();
+        }
+        full.parameters.clone_from(&model.problem.parameters);
+        Model::at(full, &model.x, model.timing, fitter.effort)
     };
-    let (model, of_throws) = throw_by_throw(fitter, model, &candidates)?;
-    let most = MOST.saturating_sub(of_throws.len());
-    let others = while_they_earn(fitter, model, NOISE, most, candidates)?;
-    found.extend(of_throws);
-    found.extend(others.found);
-    Ok((baseline, Explained { found, ..others }))
+    Ok(Whole {
+        baseline: full(&judged.nothing)?,
+        model: full(&judged.believed)?,
+        found: judged.found(pressures),
+        refused: judged.refused(pressures),
+        probabilities: corrected(&judged),
+    })
+}
+
+/// The corrections of a judgement, with their probabilities.
+fn corrected(judged: &Judgement) -> Vec<(String, f64)> {
+    let set = judged.believed.set.iter().zip(&judged.probabilities);
+    let corrections = set.filter(|(one, _)| one.amendment.effect().is_none());
+    corrections.map(|(one, probability)| (one.amendment.label(), *probability)).collect()
+}
+
+/// The coordinates of those parameters of `problem` that `part` has.
+fn own_start(problem: &Problem, start: &[f64], part: &Problem) -> Vec<f64> {
+    let of = |path: &str| problem.parameters.iter().position(|p| p.path == path);
+    let own = part.parameters.iter().map(|p| of(&p.path).map_or(0.0, |i| start[i]));
+    own.collect()
+}
+
+fn corrections(problem: &Problem, estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<Correction> {
+    let of = |(path, probability): &(String, f64)| {
+        let estimate = estimates.iter().find(|e| e.parameter.path == *path)?;
+        let _unfitted = problem;
+        Some(Correction {
+            path: path.clone(),
+            value: estimate.value,
+            low: estimate.interval.map(|[low, _]| low),
+            high: estimate.interval.map(|[_, high]| high),
+            nominal: estimate.parameter.nominal,
+            probability: *probability,
+        })
+    };
+    probabilities.iter().filter_map(of).collect()
+}
+
+/// A law of the force, as an effect that was tried.
+pub(crate) fn tried(candidate: crate::Candidate, before: &Model, after: &Model) -> Tried {
+    Tried {
+        values: candidate.values(after, crate::finding::effects(&before.problem)),
+        candidate,
+        evidence: evidence(before, after),
+        probability: 1.0,
+        model: Some(after.clone()),
+    }
 }

@@ -1,44 +1,40 @@
-//! Fits a machine to its recordings: descents from a start, and searches out of local minima.
+//! Fits a machine to its recordings, from what is slow in them to what is fast.
+//!
+//! The ringing of the contacts has many local minima, its low orders have few. A descent therefore allows features to
+//! stand elsewhere in the revolution at first, and less and less of that. No law of the catalogue is quite a machine's:
+//! where a descent allows less than the law is off by, the likelihood falls again. The allowance with which it is
+//! greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
 
 use crate::criteria::NOISE;
-use crate::effort::{Effort, FIRST_SEARCH, SEARCH};
-use crate::error::Error;
+use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
+use crate::error::{Error, possible};
 use crate::journal::Finished;
 use crate::model::Model;
-use crate::recorded::is_of_pressures;
-pub(crate) use calibrate::LOOSE;
+use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observation;
-use calibrate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
-use calibrate::{Problem, nearer_half};
+use calibrate::optimiser::Progress;
+use calibrate::secant::secant;
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Relative change of the sum of squares at which a rough and a full descent end.
-const ROUGH: f64 = 1e-2;
-const FULL: f64 = 1e-4;
-/// The same for pressures alone, whose descents have no minima on the way.
-const FULL_OF_GAS: f64 = 1e-3;
-/// A descent from where the nearer runs have led is worth another one if it leaves less than this share.
-const BETTER: f64 = 0.95;
-/// Most evaluations of a descent of which no more is asked than whether it leads near.
-pub(crate) const FEW_EVALUATIONS: u64 = 25;
-/// Runs that the first fits of candidates use.
+/// By how much features may stand elsewhere, rad, and the evaluations that a descent may take there: for every start,
+/// and for those that have led near.
+const ROUGH: [(f64, u64); 2] = [(0.03, 12), (0.01, 10)];
+const FINE: [(f64, u64); 4] = [(0.01, 25), (0.003, 25), (0.001, 25), (0.0, 40)];
+/// Relative change of the sum of squares at which a descent ends.
+const CHANGE: f64 = 1e-2;
+/// Runs that candidates are compared with.
 const FEW: usize = 3;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
 
-/// By how much features may stand elsewhere in a rough look at a problem, rad. Pressures do not ring:
-/// nothing in them is in the way of a descent, and where their valves work counts from the start.
-pub(crate) fn loose(problem: &Problem) -> f64 {
-    match is_of_pressures(problem) {
-        true => 0.0,
-        false => LOOSE,
-    }
-}
-
 /// Asked between evaluations whether to go on.
 pub type Watch<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
+
+/// A point from which a descent may start: a problem and coordinates of its parameters.
+pub(crate) type Start = (Problem, Vec<f64>);
 
 /// Fits models.
 #[derive(Clone, Copy)]
@@ -49,103 +45,92 @@ pub(crate) struct Fitter<'a> {
     pub say: &'a (dyn Fn(&str, f64) + Sync),
 }
 
-impl<'a> Fitter<'a> {
-    /// The same with another effort.
-    pub fn having(&self, effort: &'a Effort) -> Self {
-        Self { effort, ..*self }
-    }
-
-    /// The best fit that descents from `start` lead to: rough first, then full. A fit that leaves more than noise
-    /// restarts from the better-fitting runs alone, then continues with all. Pressures alone need the full one only.
-    /// `start` has a coordinate per parameter; those that it does not have start at 0.
+impl Fitter<'_> {
+    /// The best model that descents from these points lead to, and the index of its start; none where no machine
+    /// there can be simulated.
     ///
     /// # Errors
-    /// A machine that cannot be simulated; [`Error::Stopped`].
-    pub fn fit(&self, problem: Problem, start: &[f64]) -> Result<Model, Error> {
-        self.fit_within(problem, start, self.effort.evaluations)
+    /// [`Error::Stopped`].
+    pub fn explored(&self, starts: &[Start]) -> Result<Option<(Model, usize)>, Error> {
+        let Some(rough) = self.roughly(starts)? else {
+            return Ok(None);
+        };
+        let model = self.settled(&(starts[rough.start].0.clone(), rough.x))?;
+        Ok(model.map(|model| (model, rough.start)))
     }
 
-    /// A model that is fitted with few evaluations.
-    pub fn rough(&self, problem: Problem, start: &[f64]) -> Result<Model, Error> {
-        self.fit_within(problem, start, FEW_EVALUATIONS)
+    /// Where short descents from these points lead, the best of them.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub fn roughly(&self, starts: &[Start]) -> Result<Option<Rough>, Error> {
+        let led = starts.par_iter().map(|(problem, x)| self.descended(problem, x, &ROUGH));
+        let led = led.collect::<Result<Vec<_>, Error>>()?;
+        let led = led.into_iter().enumerate();
+        let led = led.filter_map(|(start, descent)| Some((start, descent?)));
+        let best = led.min_by(|(_, a), (_, b)| a.least.total_cmp(&b.least));
+        Ok(best.map(|(start, descent)| Rough {
+            start,
+            x: descent.x,
+            deviance: descent.least,
+        }))
     }
 
-    /// As [`Fitter::fit`], with at most so many evaluations of each descent.
-    pub fn fit_within(
-        &self,
-        problem: Problem,
-        start: &[f64],
-        evaluations: u64,
-    ) -> Result<Model, Error> {
-        let effort = self.effort;
-        if problem.parameters.is_empty() {
-            return Model::at(problem, &[], effort);
+    /// The model with all its fitted runs, continued from where a few of them have led.
+    pub fn settled(&self, start: &Start) -> Result<Option<Model>, Error> {
+        let (problem, x) = start;
+        let fine = self.descended(problem, x, &FINE)?;
+        match fine {
+            None => Ok(None),
+            Some(fine) => possible(Model::at(problem.clone(), &fine.x, fine.timing, self.effort)),
         }
-        let mut start = start.to_vec();
-        start.resize(problem.parameters.len(), 0.0);
-        let fitted = problem.with_runs(|run| effort.fits(&run.id)).metered();
-        let descents = || {
-            let mut x = start.clone();
-            let mut change = FULL_OF_GAS;
-            let within = || ((self.watch)(), fitted.meter.steps() < SEARCH);
-            let loose = loose(&fitted);
-            if loose > 0.0 {
-                let rough = Likelihood::coarse(&fitted, loose);
-                let rough = descend(&rough, &x, ROUGH, evaluations, &within)?;
-                (x, change) = (rough.x, FULL);
-            }
-            let full = |problem: &Problem, x: &[f64]| {
-                descend(&Likelihood::new(problem), x, change, evaluations, &within)
-            };
-            let mut best = full(&fitted, &x)?;
-            while loose > 0.0
-                && best.misfit() > NOISE
-                && let Some(half) = nearer_half(&fitted, &best.x)
-            {
-                let led = full(&half, &best.x).and_then(|near| full(&fitted, &near.x));
-                let after = match led {
-                    // A descent may end where the machine cannot be simulated.
+    }
+
+    /// A descent with one allowance after another; none where it ends at a machine that cannot be simulated.
+    fn descended(&self, problem: &Problem, x: &[f64], stages: &[(f64, u64)]) -> Result<Option<Descent>, Error> {
+        let fitted = problem.with_runs(|run| self.effort.fits(&run.id)).metered();
+        if fitted.parameters.is_empty() {
+            return Ok(Some(Descent::nowhere()));
+        }
+        let input = ("descent", &fitted, x, stages);
+        let numbers = self.effort.journal.once(&input, || {
+            let mut descent = Descent::nowhere();
+            descent.end = x.to_vec();
+            for (timing, evaluations) in stages {
+                let likelihood = Likelihood::coarse(&fitted, *timing);
+                let within = || ((self.watch)(), fitted.meter.steps() < MOST_OF_A_DESCENT);
+                match descend(&likelihood, &descent.end, *evaluations, &within) {
+                    Ok(progress) => descent.end = progress.x,
                     Err(Error::Fit(_)) => break,
-                    led => led?,
-                };
-                let better = after.misfit() < BETTER * best.misfit();
-                if after.cost < best.cost {
-                    best = after;
+                    Err(error) => return Err(error),
                 }
-                if !better {
+                let Ok(deviance) = likelihood.deviance(&descent.end) else {
+                    break;
+                };
+                // With less allowance than the law is off by, less fits.
+                if !descent.note(*timing, deviance) && *timing < ROUGH[1].0 {
                     break;
                 }
             }
             Ok(Finished {
-                numbers: best.x,
+                numbers: descent.numbers(),
                 cost: fitted.meter.steps(),
             })
-        };
-        let input = ("fit", &fitted, &start, evaluations);
-        let x = effort.journal.once(&input, descents)?;
-        Model::at(problem, &x, effort)
+        })?;
+        Ok(Descent::read(&numbers))
     }
 
     /// The problem's machine, calibrated as well as it can be with so many evaluations.
-    pub fn searched(
-        &self,
-        problem: &Problem,
-        start: Option<Vec<f64>>,
-        evaluations: u64,
-    ) -> Result<Model, Error> {
+    pub fn searched(&self, problem: &Problem, start: &[f64], evaluations: u64) -> Result<Vec<f64>, Error> {
         let settings = FitSettings {
             optimiser: Optimiser::Default,
             seed: 0,
             evaluations,
             held_out: self.effort.held_out.clone(),
-            start,
+            start: Some(start.to_vec()),
         };
         let metered = problem.metered();
-        let most = match settings.start {
-            None => FIRST_SEARCH,
-            Some(_) => SEARCH,
-        };
-        let watch = |_: &_| match metered.meter.steps() < most {
+        let watch = |_: &_| match metered.meter.steps() < FIRST_SEARCH {
             true => (self.watch)(),
             false => ControlFlow::Break(()),
         };
@@ -160,8 +145,7 @@ impl<'a> Fitter<'a> {
                 cost: metered.meter.steps(),
             })
         };
-        let x = self.effort.journal.once(&(problem, &settings), search)?;
-        Model::at(problem.clone(), &x, self.effort)
+        self.effort.journal.once(&("search", problem, &settings), search)
     }
 
     /// The parameters of a model with their bounds.
@@ -177,12 +161,9 @@ impl<'a> Fitter<'a> {
         Ok(fit)
     }
 
-    /// The model with a few of the runs that it is fitted to, of speeds as different as there are.
-    ///
-    /// # Errors
-    /// A machine that cannot be simulated.
-    pub fn few(&self, model: &Model) -> Result<Model, Error> {
-        let runs = model.problem.runs.iter();
+    /// The problem with a few of the runs that are fitted to, of speeds as different as there are.
+    pub fn few(&self, problem: &Problem) -> Problem {
+        let runs = problem.runs.iter();
         let mut runs: Vec<_> = runs.filter(|run| self.effort.fits(&run.id)).collect();
         runs.sort_by(|a, b| a.crank.speed.total_cmp(&b.crank.speed));
         let last = runs.len().saturating_sub(1);
@@ -192,7 +173,77 @@ impl<'a> Fitter<'a> {
             .map(|r| r.id.as_str())
             .collect();
         let chosen = |run: &Observation| chosen.contains(&run.id.as_str());
-        Model::at(model.problem.with_runs(chosen), &model.x, self.effort)
+        problem.with_runs(chosen)
+    }
+
+    /// Whether a model is at the noise, and needs no discrepancy.
+    pub fn is_at_noise(model: &Model) -> bool {
+        model.fitted <= NOISE
+    }
+}
+
+/// Where a short descent has led.
+pub(crate) struct Rough {
+    /// The index of its start.
+    pub start: usize,
+    /// Coordinates.
+    pub x: Vec<f64>,
+    /// Twice the negative logarithm of the likelihood there.
+    pub deviance: f64,
+}
+
+/// Where a descent has led.
+struct Descent {
+    /// Where it ended, and the deviance there with the last allowance.
+    end: Vec<f64>,
+    last: f64,
+    /// Where the likelihood was greatest, the allowance there, and the deviance.
+    x: Vec<f64>,
+    timing: f64,
+    least: f64,
+}
+
+impl Descent {
+    fn nowhere() -> Self {
+        Self {
+            end: Vec::new(),
+            last: f64::INFINITY,
+            x: Vec::new(),
+            timing: 0.0,
+            least: f64::INFINITY,
+        }
+    }
+
+    /// Takes note of where a descent with this allowance ended; whether the recordings are likelier so.
+    fn note(&mut self, timing: f64, deviance: f64) -> bool {
+        self.last = deviance;
+        let better = deviance < self.least;
+        if better {
+            self.x.clone_from(&self.end);
+            (self.timing, self.least) = (timing, deviance);
+        }
+        better
+    }
+
+    fn numbers(&self) -> Vec<f64> {
+        match self.least.is_finite() {
+            true => [&[self.last, self.timing, self.least], &self.end[..], &self.x[..]].concat(),
+            false => Vec::new(),
+        }
+    }
+
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let [last, timing, least, points @ ..] = numbers else {
+            return None;
+        };
+        let (end, x) = points.split_at(points.len() / 2);
+        Some(Self {
+            end: end.to_vec(),
+            last: *last,
+            x: x.to_vec(),
+            timing: *timing,
+            least: *least,
+        })
     }
 }
 
@@ -200,10 +251,10 @@ impl<'a> Fitter<'a> {
 fn descend(
     likelihood: &Likelihood,
     start: &[f64],
-    change: f64,
     evaluations: u64,
     watch: &dyn Fn() -> (ControlFlow<()>, bool),
 ) -> Result<Progress, Error> {
+    use calibrate::optimiser::LeastSquares;
     let mut stopped = false;
     let bounds = likelihood.bounds();
     // A descent within bounds does not leave one that it starts at.
@@ -212,14 +263,14 @@ fn descend(
         x.clamp(low + margin, high - margin)
     });
     let start: Vec<f64> = within.collect();
-    let found = levenberg_marquardt(likelihood, &start, change, evaluations, &mut |_| {
+    let found = secant(likelihood, &start, CHANGE, evaluations, &mut |_| {
         let (answer, affordable) = watch();
         stopped |= answer.is_break();
         match affordable {
             true => answer,
             false => ControlFlow::Break(()),
         }
-    })?;
+    });
     if stopped {
         Err(Error::Stopped)
     } else {

@@ -28,7 +28,6 @@ pub(crate) fn effort() -> Effort {
         evaluations: 40,
         chaotic: false,
         journal: Journal::default(),
-        found: 0,
     }
 }
 

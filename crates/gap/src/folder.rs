@@ -74,7 +74,8 @@ pub fn into_folder(
     let journal = Journal::open(&finished)?;
     let effort = Effort::new(&task.problem, held_out, EVALUATIONS, journal)?;
     let hum = remove_hum(&mut task.problem, &mut task.runs)?;
-    let explanation = explain(&task.problem, &hum, &effort, report, watch)?;
+    let start = task.settings.start.as_deref();
+    let explanation = explain(&task.problem, start, &hum, &effort, report, watch)?;
     let [before, after] = [&explanation.baseline, &explanation.explained];
     let baseline = before.problem.fitted(&before.x)?;
     // What was taken off the recordings is in no simulation that is compared with them.

@@ -8,6 +8,7 @@
 //!                              └────────────── until the noise is reached <────────────┘
 //! ```
 
+pub mod amendment;
 pub mod candidate;
 pub mod criteria;
 pub mod effort;
@@ -19,31 +20,42 @@ pub mod fitter;
 #[cfg(test)]
 mod fixture;
 pub mod folder;
+mod force;
+mod gas;
+mod hypothesis;
 pub mod journal;
+mod judgement;
+mod linearised;
 pub mod mains_hum;
 mod measuring_chain;
+mod missing_force;
 pub mod model;
-mod moves;
 mod next_recording;
 mod notes;
+mod probes;
+mod projector;
 mod recorded;
+mod recorded_values;
 pub mod residual_map;
 pub mod results;
 pub mod scaling;
+mod screen;
 mod search;
+mod stability_selection;
 pub mod steps;
 
+pub use amendment::Amendment;
 pub use candidate::Candidate;
 pub use criteria::{Evidence, Verdict};
 pub use effort::Effort;
 pub use error::Error;
 pub use explain::{Explanation, Stage, explain};
-pub use finding::{Found, Likeness, Tried, first_item};
+pub use finding::{Correction, Found, Tried, first_item};
 pub use folder::{Asked, into_folder};
 pub use journal::Journal;
 pub use mains_hum::{Hum, remove_hum};
 pub use model::{Gap, Model};
-pub use moves::missing_force::MissingForce;
+pub use missing_force::MissingForce;
 pub use residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 pub use results::Results;
 pub use scaling::{Scaling, scaling};

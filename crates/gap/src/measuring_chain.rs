@@ -32,8 +32,7 @@ pub(crate) fn crank_angle_offset(
         return Ok(None);
     }
     let before = before()?;
-    let score = 1.0 - (after.fitted / before.fitted).powi(2);
-    let evidence = evidence(&before, after, score);
+    let evidence = evidence(&before, after);
     Ok(Some((
         finding(entry, Vec::new(), vec![estimate.value], evidence),
         before,
@@ -52,10 +51,10 @@ pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
     let throw = hum.channel.split_once('.').map(|(throw, _)| throw);
     let place = throw.map(|throw| ("throw", throw.to_owned())).into_iter();
     let evidence = Evidence {
-        score: 1.0 - 1.0 / hum.over_noise,
+        log_odds: hum.over_noise.ln(),
         misfit: [model.fitted; 2],
         heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
-        delta_bic: 0.0,
+        timing: model.timing,
     };
     Some(finding(entry, place.collect(), values.collect(), evidence))
 }
@@ -70,14 +69,15 @@ fn finding(
         entry,
         place,
         fixed: Vec::new(),
-        ends: &[],
+        each: Vec::new(),
+            shared: false,
     };
     Found {
         effect: Tried {
             candidate,
             values,
             evidence,
-            likeness: None,
+            probability: 1.0,
             model: None,
         },
         gap: None,

@@ -25,6 +25,12 @@ pub struct Model {
     pub problem: Problem,
     /// Coordinates of the parameters.
     pub x: Vec<f64>,
+    /// Standard deviation of the crank angle at which its features may stand, rad: the size of its discrepancy.
+    pub timing: f64,
+    /// Twice the negative logarithm of the likelihood with this discrepancy, of the runs that are fitted to.
+    pub deviance: f64,
+    /// The same of those held out; 0 without one.
+    pub heldout_deviance: f64,
     /// Misfit of the runs that are fitted to, and of those that are held out, in standard
     /// deviations of the noise; none without a run.
     pub fitted: f64,
@@ -35,12 +41,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// The machine at `x` as it stands. `x` has a coordinate per parameter, in their order; those that it does not
-    /// have are 0.
+    /// The machine at `x` as it stands, with a discrepancy of this size. `x` has a coordinate per parameter, in their
+    /// order; those that it does not have are 0.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    pub fn at(problem: Problem, x: &[f64], effort: &Effort) -> Result<Self, Error> {
+    pub fn at(problem: Problem, x: &[f64], timing: f64, effort: &Effort) -> Result<Self, Error> {
         let mut x = x.to_vec();
         x.resize(problem.parameters.len(), 0.0);
         let by_run = Likelihood::new(&problem).by_run(&x)?;
@@ -50,12 +56,19 @@ impl Model {
             let residuals: Vec<f64> = of.flat_map(|(_, r)| r.iter().copied()).collect();
             (!residuals.is_empty()).then(|| misfit(&residuals))
         };
+        let deviance = |fitted: bool| -> Result<f64, Error> {
+            let part = problem.with_runs(|run| effort.fits(&run.id) == fitted);
+            Ok(Likelihood::coarse(&part, timing).deviance(&x)?)
+        };
         Ok(Self {
+            deviance: deviance(true)?,
+            heldout_deviance: deviance(false)?,
             fitted: part(true).unwrap_or(f64::NAN),
             held_out: part(false),
             by_run: by_run.iter().map(|residuals| misfit(residuals)).collect(),
             problem,
             x,
+            timing,
         })
     }
 
@@ -66,13 +79,6 @@ impl Model {
             held_out: self.held_out,
         }
     }
-
-    /// The misfit of each run, by its name.
-    pub(crate) fn misfits(&self) -> Vec<(String, f64)> {
-        let runs = self.problem.runs.iter().map(|run| run.id.clone());
-        runs.zip(self.by_run.iter().copied()).collect()
-    }
-
     /// Root mean square over the revolution of simulated less recorded pressure in each run that has
     /// pressures, Pa, as far as their orders are compared.
     ///
@@ -98,41 +104,5 @@ impl Model {
             (!squares.is_empty()).then(|| (run.id.clone(), mean.sqrt()))
         };
         Ok(runs.filter_map(of_run).collect())
-    }
-
-    /// Schwarz's criterion of `after`, which has the same runs, less that of this model.
-    pub(crate) fn bic_to(&self, after: &Self) -> f64 {
-        self.bic_with(after.fitted, after.x.len() as f64 - self.x.len() as f64)
-    }
-
-    /// The same of a model with so many more parameters, which leaves the misfit `fitted`.
-    pub(crate) fn bic_with(&self, fitted: f64, extra: f64) -> f64 {
-        let count = self.observations();
-        count * (fitted.powi(2) - self.fitted.powi(2)) + extra * count.ln()
-    }
-
-    /// Schwarz's criterion with the variance estimated from the residuals themselves,
-    /// n ln σ² + k ln n, per observation. Of models that leave more than noise the one that leaves less
-    /// is better, unless its misfit is smaller only because it has more parameters. A line counts once
-    /// here: what a wrong model leaves is no independent noise.
-    pub(crate) fn criterion(&self) -> f64 {
-        let count = 0.5 * self.observations();
-        2.0 * self.fitted.ln() + self.x.len() as f64 * count.ln() / count
-    }
-
-    /// Each line of an order counts as two observations.
-    fn observations(&self) -> f64 {
-        let channels = self.problem.runs.iter().flat_map(|run| &run.channels);
-        channels.map(|c| 2 * c.orders.len()).sum::<usize>() as f64
-    }
-
-    /// The better of two; the first where they are as good.
-    #[must_use]
-    pub fn better(self, other: Self) -> Self {
-        if other.fitted < self.fitted {
-            other
-        } else {
-            self
-        }
     }
 }

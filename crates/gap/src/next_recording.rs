@@ -64,7 +64,7 @@ pub(crate) fn next_recording(fitter: &Fitter, found: &[Found]) -> Result<Option<
             Some((effect, rival, models))
         })
     });
-    let nearest = pairs.min_by(|a, b| a.1.leaves().total_cmp(&b.1.leaves()));
+    let nearest = pairs.max_by(|a, b| a.1.probability.total_cmp(&b.1.probability));
     let Some((effect, rival, (ours, theirs))) = nearest else {
         return Ok(None);
     };

@@ -9,9 +9,9 @@ use crate::effort::Effort;
 use crate::error::Error;
 use crate::explain::Explanation;
 use crate::expression::expression;
-use crate::finding::{Found, Tried, first_item};
+use crate::finding::{Correction, Found, Tried, first_item};
 use crate::model::Model;
-use crate::moves::missing_force::MissingForce;
+use crate::missing_force::MissingForce;
 use crate::notes::{closing, notes};
 use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 use crate::scaling::{Scaling, scaling};
@@ -37,6 +37,8 @@ pub struct Results {
     pub verdict: Verdict,
     /// The effects, in the order in which they were added, then those of the measuring chain.
     pub effects: Vec<Effect>,
+    /// Values of the data sheet that turned out wrong.
+    pub corrections: Vec<Correction>,
     /// The misfits over the runs.
     pub gap: Misfits,
     /// The gap as it shrank, the nominal machine first.
@@ -90,6 +92,12 @@ pub struct Effect {
     pub parameters: ByName<Bounded>,
     /// Its law as a formula, where it has no name in the catalogue.
     pub expression: Option<String>,
+    /// Probability that it is what is there, 0 to 1.
+    pub probability: f64,
+    /// Everywhere that it acts: joints, ends, throws, sensors.
+    pub places: Vec<String>,
+    /// What is known of the shape of its law; none where that is not identifiable.
+    pub form: Option<String>,
     /// On what it was decided.
     pub evidence: Evidence,
     /// Root mean square of simulated less recorded pressure that it leaves in each run, Pa.
@@ -124,15 +132,10 @@ pub struct Other {
     pub label: String,
     /// How well it did.
     pub evidence: Evidence,
-    /// Correlation of its signature with that of the effect that was added, 0 to 1; none where they were
-    /// not compared.
-    pub correlation: Option<f64>,
+    /// Probability that it is what is there, 0 to 1.
+    pub probability: f64,
     /// Misfit that it leaves.
     pub leaves: f64,
-    /// Share of what the effect explains that it explains; none where it is no rival of one.
-    pub explains_of_effect: Option<f64>,
-    /// Whether it was fitted; its signature alone was looked at elsewhere.
-    pub fitted: bool,
 }
 
 /// Misfits: of the nominal machine, and without (`before`) and with (`after`) the effects.
@@ -223,6 +226,7 @@ impl Results {
         Ok(Self {
             verdict: explanation.verdict,
             effects: effects(explanation)?,
+            corrections: explanation.corrections.clone(),
             gap: Misfits {
                 unit: "standard deviations of the noise".to_owned(),
                 noise_floor: 1.0,
@@ -247,7 +251,7 @@ impl Results {
             refused: explanation
                 .refused
                 .iter()
-                .map(|tried| Other::from_tried(tried, None))
+                .map(Other::from_tried)
                 .collect(),
             noise,
             cost: effort.journal.spent(),
@@ -296,8 +300,7 @@ impl Bounded {
 }
 
 impl Other {
-    /// A candidate, a rival of the effect `found` where it is one.
-    fn from_tried(tried: &Tried, found: Option<&Found>) -> Self {
+    fn from_tried(tried: &Tried) -> Self {
         let candidate = &tried.candidate;
         let place = |place: Option<&str>| place.map(str::to_owned);
         Self {
@@ -307,10 +310,8 @@ impl Other {
             end: place(candidate.end()),
             label: candidate.label(),
             evidence: tried.evidence.clone(),
-            correlation: tried.likeness.map(|likeness| likeness.correlation),
-            leaves: tried.leaves(),
-            explains_of_effect: found.map(|found| tried.explains(&found.effect.evidence)),
-            fitted: tried.model.is_some(),
+            probability: tried.probability,
+            leaves: tried.evidence.misfit[1],
         }
     }
 }
@@ -340,7 +341,8 @@ fn of_items(
     let pressures = pressures.transpose()?.unwrap_or_default();
     let items = found.candidate().items().into_iter().enumerate();
     let effect = |(i, (item, value)): (usize, (Candidate, usize))| {
-        let index = first.map(|first| first + i);
+        let own = if found.candidate().shared { 0 } else { i };
+        let index = first.map(|first| first + own);
         let values = &found.effect.values[value..];
         let parameters = parameters(&item, index, values, estimates);
         let closes = parameters
@@ -360,10 +362,13 @@ fn of_items(
                 .chain(closes)
                 .collect(),
             expression: is_law.then(|| expression(terms())),
+            probability: found.effect.probability,
+            places: found.candidate().places(),
+            form: None,
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
             rivals: rivals
-                .map(|tried| Other::from_tried(tried, Some(found)))
+                .map(Other::from_tried)
                 .collect(),
             parameters: parameters
                 .iter()

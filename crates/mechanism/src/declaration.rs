@@ -91,6 +91,8 @@ pub struct Parameter {
     pub absent: Option<f64>,
     /// True for an angle whose bounds are a whole turn, or half a one, apart: it has no ends.
     pub cyclic: bool,
+    /// True where it is a form of the law and no size: the laws that the literature has for the effect differ in it.
+    pub shape: bool,
 }
 
 impl Parameter {
@@ -201,6 +203,7 @@ pub enum PlaceKey {
 ///         key: Quantity(Range), low to high, start value, absent value;      // an amplitude
 ///         key: Quantity(Range), low to high, start value;
 ///         key: Angle(Any), turn, start value;                                // a phase
+///         @shape key: Quantity(Range), low to high, start value;             // a form of the law
 ///     }
 /// }
 /// ```
@@ -216,7 +219,7 @@ macro_rules! declaration {
         law $law:literal after $source:literal {
             $(
                 $(#[doc = $words:literal])+
-                $key:ident: $quantity:ident($range:expr), $($cyclic:ident)? $($low:literal to $high:literal)?,
+                $(@$shape:ident)? $key:ident: $quantity:ident($range:expr), $($cyclic:ident)? $($low:literal to $high:literal)?,
                     start $start:literal $(, absent $absent:literal)?;
             )+
         } $(as $type:ident)?
@@ -243,6 +246,7 @@ macro_rules! declaration {
                     start: $start,
                     absent: $crate::declaration!(@absent $($absent)?),
                     cyclic: $crate::declaration!(@cyclic $($cyclic)?),
+                    shape: $crate::declaration!(@shape $($shape)?),
                 } ),+],
                 places: &[$( PlaceKey::$place ),*],
             }
@@ -280,6 +284,8 @@ macro_rules! declaration {
     (@bounds half_turn) => { [0.0, std::f64::consts::PI] };
     (@cyclic) => { false };
     (@cyclic $cyclic:ident) => { true };
+    (@shape) => { false };
+    (@shape $shape:ident) => { true };
     (@absent) => { None };
     (@absent $absent:literal) => { Some($absent) };
 }

@@ -8,7 +8,7 @@ use gap::results::Other;
 pub(super) fn print(results: &Results) {
     println!("{}", results.verdict.name());
     for effect in &results.effects {
-        println!("{}: {}", effect.label, effect.sentence);
+        println!("{} ({:.2}): {}", effect.label, effect.probability, effect.sentence);
         if let Some(expression) = &effect.expression {
             println!("  F = {expression}");
         }
@@ -18,6 +18,12 @@ pub(super) fn print(results: &Results) {
         for other in &effect.rivals {
             println!("  rival: {}, {}", other.label, rival(other));
         }
+    }
+    for wrong in &results.corrections {
+        println!(
+            "{} ({:.2}): {:.4e} in place of {:.4e}",
+            wrong.path, wrong.probability, wrong.value, wrong.nominal
+        );
     }
     let gap = &results.gap;
     let held_out = gap.heldout_after.map_or(String::new(), |after| {
@@ -46,13 +52,7 @@ pub(super) fn print(results: &Results) {
     sensors(&results.noise);
 }
 
-/// What a rival leaves, and how like the effect it is.
+/// How probable a rival is, and what it leaves.
 fn rival(other: &Other) -> String {
-    let mut words = format!("which would leave {:.2}", other.leaves);
-    if let Some(correlation) = other.correlation {
-        words.push_str(&format!(
-            " (correlation of what they change {correlation:.2})"
-        ));
-    }
-    words
+    format!("{:.2}, leaves {:.2}", other.probability, other.leaves)
 }

@@ -2,7 +2,7 @@
 //! one that is oval,
 //!
 //! ```text
-//! c(γ) = c + c2 cos 2(γ − γ0)
+//! c(γ) = c + c2 cos 2(γ − γ0) + c3 cos 3(γ − γ3)
 //! ```
 //!
 //! In the bearings γ counts from the rod's axis (big and small end) or the frame's x (main bearing). In
@@ -25,6 +25,10 @@ parameters! {
         pub amplitude: S,
         /// Direction γ0 of the widest place, rad.
         pub direction: S,
+        /// Amplitude c3 of three lobes, m.
+        pub lobes: S,
+        /// Direction γ3 of the first of them, rad.
+        pub lobes_direction: S,
         fixed {
             /// What is oval.
             pub oval: Oval,
@@ -44,6 +48,10 @@ declaration! {
         /// main bearing from the cylinder's), in the journal from the crank's direction (at the small
         /// end from the cylinder's).
         direction: Angle(Any), half_turn, start 0.0;
+        /// By how much it is wider in each of three directions, a worn arc's next part; 0 mm where it is left out.
+        @shape lobes: Length(FromZero), 0.0 to 1e-4, start 0.0;
+        /// Direction of the first of the three, 0 deg where it is left out.
+        @shape lobes_direction: Angle(Any), turn, start 0.0;
     }
 }
 
@@ -52,10 +60,14 @@ pub fn law(values: &[f64], alternatives: Alternatives) -> BearingOvality {
     let Values {
         amplitude,
         direction,
+        lobes,
+        lobes_direction,
     } = Values::new(values);
     BearingOvality {
         amplitude,
         direction,
+        lobes,
+        lobes_direction,
         oval: alternatives.part.unwrap_or(Oval::Bearing),
     }
 }
@@ -63,7 +75,7 @@ pub fn law(values: &[f64], alternatives: Alternatives) -> BearingOvality {
 impl BearingOvality {
     /// Refuses a joint of this clearance, m, in which the surfaces would meet all around.
     pub(super) fn check(&self, clearance: f64) -> Result<(), Clash> {
-        match self.amplitude >= clearance {
+        match self.amplitude + self.lobes >= clearance {
             false => Ok(()),
             true => Err(Clash {
                 key: "amplitude",
@@ -85,9 +97,14 @@ impl<S: Scalar> Acts<S> for BearingOvality<S> {
         let (turn_sine, turn_cosine) = (self.direction * 2.0).sin_cos();
         let along = cosine * turn_cosine + sine * turn_sine;
         let across = sine * turn_cosine - cosine * turn_sine;
-        let change = -(self.amplitude * across * 2.0);
+        // cos 3γ and sin 3γ from those of 2γ and γ.
+        let [third_cosine, third_sine] = [cosine * x - sine * y, sine * x + cosine * y];
+        let (turn_sine, turn_cosine) = (self.lobes_direction * 3.0).sin_cos();
+        let third_along = third_cosine * turn_cosine + third_sine * turn_sine;
+        let third_across = third_sine * turn_cosine - third_cosine * turn_sine;
+        let change = -(self.amplitude * across * 2.0 + self.lobes * third_across * 3.0);
         Some(Shape {
-            wider: self.amplitude * along,
+            wider: self.amplitude * along + self.lobes * third_along,
             change: match self.oval {
                 Oval::Bearing => [change, S::zero()],
                 Oval::Journal => [S::zero(), change],

@@ -5,7 +5,8 @@
 //! F = −π μ R l³/c³ · (1 + 2 ε²) / (1 − ε²)^(5/2) · ė         ε = |e|/c
 //! ```
 //!
-//! ė is the rate at which the journal approaches the bearing. The film ends at the height of the
+//! ė is the rate at which the journal approaches the bearing. While it leaves, a share s of that force is left:
+//! a film that cannot pull has none (Gümbel 1914), one that is fed with oil all around has all of it. The film ends at the height of the
 //! roughness: 1 − ε² is rounded to √((1 − ε²)² + h²). The wedge that rotation makes is left out. A
 //! film that fills a whole bearing is so stiff that nothing touches; `length` is what is wet.
 //! Signature: impacts rounded and late, less ringing, more so the smaller the clearance.
@@ -25,6 +26,8 @@ parameters! {
         pub length: S,
         /// Least value h of 1 − ε².
         pub roughness: S,
+        /// Share s of the force that is left while the journal leaves the bearing.
+        pub separation: S,
     }
 }
 
@@ -40,6 +43,8 @@ declaration! {
         length: Length(AboveZero), 0.0005 to 0.05, start 0.002;
         /// Share of the clearance that the roughness keeps open; 0.1 where it is left out.
         roughness: Number(AboveZero), 0.05 to 0.5, start 0.1;
+        /// Share of the force that is left while the journal leaves the bearing, 0 to 1; 1 where it is left out.
+        @shape separation: Number(FromZero), 0.0 to 1.0, start 1.0;
     } as SqueezeFilm
 }
 
@@ -54,6 +59,8 @@ impl<S: Scalar> Acts<S> for SqueezeFilm<S> {
         let c = at.clearance;
         let oil = self.viscosity * at.journal_radius * self.length * self.length * self.length;
         let still = oil * PI / (c * c * c);
-        -(still * (e * e * 2.0 + 1.0) / thin * at.rate)
+        let nearer = (at.rate + at.rate.abs()) * 0.5;
+        let rate = nearer + (at.rate - nearer) * self.separation;
+        -(still * (e * e * 2.0 + 1.0) / thin * rate)
     }
 }

@@ -182,14 +182,8 @@ impl View<'_> {
         format!("{channel}: {}", powers.join(", "))
     }
 
-    fn explains(rival: &Other) -> String {
-        let share = rival.explains_of_effect.unwrap_or(f64::NAN);
-        format!("{} %", text::decimal(100.0 * share, 0))
-    }
-
-    fn correlation(rival: &Other) -> String {
-        let correlation = rival.correlation;
-        correlation.map_or_else(|| "–".to_owned(), |rho| text::decimal(rho, 2))
+    fn probability(probability: f64) -> String {
+        text::decimal(probability, 2)
     }
 
     fn has_rivals(effect: &Effect) -> bool {

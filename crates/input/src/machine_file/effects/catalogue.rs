@@ -84,6 +84,8 @@ pub struct Parameter {
     pub on_the_stroke: bool,
     /// True for an angle whose bounds are a whole turn, or half a one, apart: it has no ends.
     pub cyclic: bool,
+    /// True where it is a form of the law and no size.
+    pub shape: bool,
 }
 
 /// A key that says where an effect acts.
@@ -112,6 +114,7 @@ impl Parameter {
             whole: matches!(declared.range, Range::Whole(..)),
             on_the_stroke: declared.range == Range::OnTheStroke,
             cyclic: declared.cyclic,
+            shape: declared.shape,
         }
     }
 

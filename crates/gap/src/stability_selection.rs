@@ -6,11 +6,13 @@
 //! terms D. Both have priors of 1, so that neither goes further than it may. All selections work on
 //! the normal matrix of the lines that are drawn.
 
-use crate::criteria::{EARNED, NOISE};
+use crate::criteria::NOISE;
 use nalgebra::{DMatrix, DVector};
 use rand::seq::SliceRandom;
 use scalar::random::{Purpose, stream};
 
+/// Share of the squared misfit above the noise that a law has to take.
+const EARNED: f64 = 0.3;
 /// Most groups of terms: what needs more is no law.
 const MOST_GROUPS: usize = 3;
 /// Pairs of halves that are drawn.

@@ -2,8 +2,8 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
-use crate::fitter::LOOSE;
-use crate::moves::stability_selection::Regression;
+use calibrate::LOOSE;
+use crate::stability_selection::Regression;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
@@ -148,7 +148,8 @@ mod tests {
             entry,
             place: Vec::new(),
             fixed: Vec::new(),
-            ends: &[],
+            each: Vec::new(),
+            shared: false,
         }
         .restricted(&groups.concat());
         let key = |i: usize| entry.parameters[i].key;

@@ -1,7 +1,7 @@
 //! Values at which a candidate is tried before it is fitted.
 
 use crate::candidate::Candidate;
-use crate::moves::recorded_values::recorded_values;
+use crate::recorded_values::recorded_values;
 use calibrate::Problem;
 
 /// Amplitudes at which an effect is tried, over its usual one.
@@ -20,7 +20,7 @@ impl Candidate {
     /// Values at which it is tried: amplitudes, phases, what else may lie anywhere, and what the
     /// recordings show by themselves.
     pub fn probes(&self, problem: &Problem) -> Vec<Vec<f64>> {
-        let items = self.ends.len().max(1);
+        let items = self.sets();
         let mut probes = self.item_probes();
         probes.extend(recorded_values(self.entry, problem));
         let probes = probes.into_iter();

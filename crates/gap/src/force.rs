@@ -11,20 +11,16 @@
 //!    same terms come out.
 
 use crate::candidate::{Candidate, throws};
-use crate::criteria::NOISE;
 use crate::error::Error;
+use crate::explain::tried;
 use crate::finding::{Tried, effects};
 use crate::fitter::Fitter;
 use crate::model::Model;
-use crate::moves::linearised::{Linearised, groups};
-use crate::moves::missing_force::{MissingForce, missing_force};
+use crate::linearised::{Linearised, groups};
+use crate::missing_force::{MissingForce, missing_force};
 use calibrate::Problem;
 use input::effects::{Proposal, proposed};
 
-/// Most evaluations of the fit with all terms.
-const DENSE: u64 = 400;
-/// The same of a search out of the local minimum in which that has ended.
-const FURTHER: u64 = 1000;
 /// Rounds in which terms may still be exchanged.
 const EXCHANGES: usize = 4;
 
@@ -32,8 +28,6 @@ const EXCHANGES: usize = 4;
 pub(crate) struct Force {
     /// As a fit with all terms has it, in every run.
     pub missing: Vec<MissingForce>,
-    /// That fit, to a few runs.
-    pub all: Model,
     /// Its law: the effect at its throw, with the terms that it has free, and the model with it.
     pub law: Option<(Tried, Model)>,
 }
@@ -55,7 +49,8 @@ fn libraries(problem: &Problem) -> Vec<Candidate> {
             entry,
             place,
             fixed,
-            ends: &[],
+            each: Vec::new(),
+            shared: false,
         }
         .restricted(&groups(entry).concat())
     };
@@ -73,13 +68,14 @@ fn libraries(problem: &Problem) -> Vec<Candidate> {
 pub(crate) fn empirical_force(fitter: &Fitter, model: &Model) -> Result<Option<Force>, Error> {
     let mut best: Option<(Candidate, Dense)> = None;
     for library in libraries(&model.problem) {
-        if best.is_some() && !fitter.effort.goes_on_for_force() {
+        if best.is_some() && !fitter.effort.goes_on() {
             break;
         }
-        let Some(dense) = estimated(fitter, &fitter.few(model)?, &library)? else {
+        let few = Model::at(fitter.few(&model.problem), &model.x, model.timing, fitter.effort)?;
+        let Some(dense) = estimated(fitter, &few, &library)? else {
             continue;
         };
-        let better = |(_, best): &(Candidate, Dense)| dense.model.fitted < best.model.fitted;
+        let better = |(_, best): &(Candidate, Dense)| dense.model.deviance < best.model.deviance;
         if best.as_ref().is_none_or(better) {
             best = Some((library, dense));
         }
@@ -88,9 +84,8 @@ pub(crate) fn empirical_force(fitter: &Fitter, model: &Model) -> Result<Option<F
         return Ok(None);
     };
     let missing = missing_force(&dense.model.problem, &dense.model.x, &model.problem.runs)?;
-    let all = dense.model.clone();
     let law = law(fitter, model, &library, dense)?;
-    Ok(Some(Force { missing, all, law }))
+    Ok(Some(Force { missing, law }))
 }
 
 /// A few runs, fitted with all terms that they show.
@@ -122,16 +117,16 @@ fn law(
             return Ok(None);
         }
         if let Some((_, after)) = chosen.take_if(|(before, _)| *before == candidate) {
-            let score = 1.0 - (after.fitted / model.fitted).powi(2);
-            return Ok(Some((
-                Tried::fitted(candidate, model, &after, score),
-                after,
-            )));
+            return Ok(Some((tried(candidate, model, &after), after)));
         }
         let start = linear.fitted(&candidate);
         let added = candidate.added(&model.problem, &start)?;
         (fitter.say)("fitting a law of the force", dense.model.fitted);
-        let after = fitter.fit(added, &x)?;
+        let mut start = x.clone();
+        start.resize(added.parameters.len(), 0.0);
+        let Some((after, _)) = fitter.explored(&[(added, start)])? else {
+            return Ok(None);
+        };
         x = after.x[..model.x.len()].to_vec();
         values = candidate.values(&after, index);
         chosen = Some((candidate, after));
@@ -151,18 +146,15 @@ fn estimated(fitter: &Fitter, few: &Model, library: &Candidate) -> Result<Option
     }
     let library = library.restricted(&seen);
     let added = library.added(&few.problem, &linear.values)?;
-    let from = |x: &[f64]| fitter.fit_within(added.clone(), x, DENSE);
-    let mut model = from(&nominal)?;
+    let from = |x: &[f64]| {
+        let mut start = x.to_vec();
+        start.resize(added.parameters.len(), 0.0);
+        (added.clone(), start)
+    };
     // Without the force the calibration may have gone far astray, and often has.
-    if model.fitted > NOISE {
-        model = model.better(from(&few.x)?);
-    }
-    if model.fitted > NOISE && fitter.effort.goes_on_for_force() {
-        (fitter.say)("estimating the force further", model.fitted);
-        let start = Some(model.x.clone());
-        let further = fitter.searched(&model.problem, start, FURTHER)?;
-        model = model.better(further);
-    }
+    let Some((model, _)) = fitter.explored(&[from(&nominal), from(&few.x)])? else {
+        return Ok(None);
+    };
     let values = library.values(&model, effects(&few.problem));
     Ok(Some(Dense { model, values }))
 }

@@ -1,0 +1,139 @@
+//! What may be amended in a machine: an effect that it lacks, or a value of its data sheet that is wrong.
+
+use crate::candidate::Candidate;
+use crate::error::Error;
+use crate::model::Model;
+use calibrate::data_sheet::{Doubt, doubts};
+use calibrate::{Parameter, Problem};
+
+/// Values at which a doubtful value is tried, in standard deviations of its prior.
+const DOUBTED: [f64; 4] = [-2.0, -0.7, 0.7, 2.0];
+
+/// A change of the machine that may explain what its calibration leaves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Amendment {
+    /// An effect at a place, or at every place of its kind.
+    Effect(Candidate),
+    /// The value at this path of the machine file.
+    Correction(String),
+}
+
+impl Amendment {
+    /// Every amendment of the machine of `problem`.
+    ///
+    /// # Errors
+    /// An invalid machine file.
+    pub(crate) fn all(problem: &Problem) -> Result<Vec<Self>, Error> {
+        let effects = Candidate::all(problem).into_iter().map(Self::Effect);
+        let doubts = doubts(problem)?;
+        let of_machine = doubts.into_iter().filter(Doubt::is_of_machine);
+        let corrections = of_machine.map(|doubt| Self::Correction(doubt.parameter.path));
+        Ok(effects.chain(corrections).collect())
+    }
+
+    /// It in words.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Effect(candidate) => candidate.label(),
+            Self::Correction(path) => path.clone(),
+        }
+    }
+
+    /// What kind of change it is: amendments of one kind differ by place and order.
+    pub fn kind(&self) -> &str {
+        match self {
+            Self::Effect(candidate) => candidate.entry.name,
+            Self::Correction(path) => path,
+        }
+    }
+
+    /// The effect; none where it is a correction.
+    pub fn effect(&self) -> Option<&Candidate> {
+        match self {
+            Self::Effect(candidate) => Some(candidate),
+            Self::Correction(_) => None,
+        }
+    }
+
+    /// The problem with it, its parameters free after those that were. Their coordinates are 0 at `values`, SI.
+    ///
+    /// # Errors
+    /// A machine that cannot have it.
+    pub(crate) fn added(&self, problem: &Problem, values: &[f64]) -> Result<Problem, Error> {
+        match self {
+            Self::Effect(candidate) => candidate.added(problem, values),
+            Self::Correction(path) => Ok(doubt(problem, path)?.added(problem)),
+        }
+    }
+
+    /// Coordinates of its parameters, in the problem that has it at `values`, from which they count as `probe`.
+    pub(crate) fn start(&self, added: &Problem, own: usize, probe: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Effect(_) => vec![0.0; added.parameters.len() - own],
+            Self::Correction(_) => probe.to_vec(),
+        }
+    }
+
+    /// The same with the form of its law free as well; none where it has one form.
+    pub(crate) fn of_any_form(&self) -> Option<Self> {
+        self.effect()?.of_any_form().map(Self::Effect)
+    }
+
+    /// Where it is tried: values of an effect's parameters (SI), or the coordinate of a correction.
+    pub(crate) fn probes(&self, problem: &Problem) -> Result<Vec<Vec<f64>>, Error> {
+        match self {
+            Self::Effect(candidate) => Ok(candidate.probes(problem)),
+            Self::Correction(path) => {
+                let deviation = doubt(problem, path)?.deviation;
+                Ok(DOUBTED.iter().map(|by| vec![by * deviation]).collect())
+            }
+        }
+    }
+
+    /// A probe at which hardly anything of it is left, so that a descent can leave it out.
+    pub(crate) fn faint(&self, probe: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Effect(candidate) => candidate.faint(probe),
+            Self::Correction(_) => vec![0.0],
+        }
+    }
+
+    /// Its values in a model in which its parameters begin at `first` and whose first effect it is at `index`, SI.
+    pub(crate) fn values(&self, model: &Model, first: usize, index: usize) -> Vec<f64> {
+        match self {
+            Self::Effect(candidate) => candidate.values(model, index),
+            Self::Correction(_) => {
+                let parameter: &Parameter = &model.problem.parameters[first];
+                vec![parameter.value(model.x[first])]
+            }
+        }
+    }
+
+    /// How many parameters it has.
+    pub(crate) fn free(&self) -> usize {
+        self.effect().map_or(1, |candidate| candidate.free().count() * candidate.sets())
+    }
+
+    /// How many items of a machine file's list of effects it is.
+    pub(crate) fn items(&self) -> usize {
+        self.effect().map_or(0, |candidate| candidate.items().len())
+    }
+
+    /// What its values cost by their prior, in nats: half the square of a correction over its deviation.
+    pub(crate) fn improbability(&self, problem: &Problem, x: f64) -> f64 {
+        match self {
+            Self::Effect(_) => 0.0,
+            Self::Correction(path) => {
+                let parameter = problem.parameters.iter().find(|p| p.path == *path);
+                let deviation = parameter.map_or(1.0, |p| p.box_bounds()[1] / calibrate::data_sheet::REACH);
+                0.5 * (x / deviation).powi(2)
+            }
+        }
+    }
+}
+
+fn doubt(problem: &Problem, path: &str) -> Result<Doubt, Error> {
+    let mut doubts = doubts(problem)?.into_iter();
+    let found = doubts.find(|doubt| doubt.parameter.path == path);
+    found.ok_or_else(|| Error::Fit(calibrate::Error::Refused(format!("{path} is fitted already"))))
+}

@@ -1,0 +1,161 @@
+//! A set of amendments, and the machine that was fitted with them.
+
+use crate::amendment::Amendment;
+use crate::criteria::{freedom, nats};
+use crate::error::Error;
+use crate::finding::effects;
+use crate::fitter::{Fitter, Start};
+use crate::model::Model;
+use calibrate::Problem;
+
+/// Nats that an amendment costs for being one of many that were tried.
+const CHOSEN: f64 = 4.0;
+
+/// An amendment, and the values (SI) at which its coordinates are 0; nothing for a correction.
+#[derive(Clone, Debug)]
+pub(crate) struct Amended {
+    pub amendment: Amendment,
+    pub values: Vec<f64>,
+}
+
+/// A set of amendments of a machine.
+#[derive(Clone, Debug)]
+pub(crate) struct Hypothesis {
+    pub set: Vec<Amended>,
+    pub model: Model,
+    /// How unlikely it is with its prior, in nats.
+    pub cost: f64,
+}
+
+impl Hypothesis {
+    /// `own` is how many parameters the machine has without the set.
+    pub fn new(set: Vec<Amended>, model: Model, own: usize) -> Self {
+        let parameters = model.x.len() - own;
+        let mut prior = freedom(&model.problem, parameters) + CHOSEN * set.len() as f64;
+        for (one, first) in set.iter().zip(firsts(&model.problem, &set, own)) {
+            prior += one.amendment.improbability(&model.problem, model.x[first]);
+        }
+        Self {
+            cost: nats(&model) + prior,
+            set,
+            model,
+        }
+    }
+
+    /// Whether it has this amendment, of whichever form.
+    pub fn has(&self, amendment: &Amendment) -> bool {
+        let label = amendment.label();
+        self.set.iter().any(|one| one.amendment.label() == label)
+    }
+
+    /// Its amendments in words, in their alphabetical order: the same for the same set.
+    pub fn labels(&self) -> Vec<String> {
+        let mut labels: Vec<String> = self.set.iter().map(|one| one.amendment.label()).collect();
+        labels.sort_unstable();
+        labels
+    }
+
+    /// The kinds of its amendments, in their alphabetical order.
+    pub fn kinds(&self) -> Vec<&str> {
+        let mut kinds: Vec<&str> = self.set.iter().map(|one| one.amendment.kind()).collect();
+        kinds.sort_unstable();
+        kinds
+    }
+
+    /// How many of its amendments are effects, and no corrections.
+    pub fn effects(&self) -> usize {
+        self.set.iter().filter(|one| one.amendment.effect().is_some()).count()
+    }
+
+    /// It fitted to all runs of `problem`, from where a few have led.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub fn settled(&self, fitter: &Fitter, problem: &Problem) -> Result<Option<Self>, Error> {
+        let with = added(problem, &self.set)?;
+        let model = fitter.settled(&(with, self.model.x.clone()))?;
+        Ok(model.map(|model| Self::new(self.set.clone(), model, problem.parameters.len())))
+    }
+
+    /// The same with the forms of its laws free as well, where the recordings are likelier so by more than that
+    /// freedom costs.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub fn of_any_form(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
+        let formed = |one: &Amended| one.amendment.of_any_form();
+        if self.set.iter().all(|one| formed(one).is_none()) {
+            return Ok(self);
+        }
+        let values = self.values(problem);
+        let set = self.set.iter().zip(values).map(|(one, values)| Amended {
+            amendment: formed(one).unwrap_or_else(|| one.amendment.clone()),
+            values: match one.amendment.effect() {
+                Some(_) => values,
+                None => Vec::new(),
+            },
+        });
+        let set: Vec<Amended> = set.collect();
+        let own = problem.parameters.len();
+        let mut with = problem.clone();
+        let mut x = self.model.x[..own].to_vec();
+        for (one, first) in set.iter().zip(firsts(&self.model.problem, &self.set, own)) {
+            let coordinate = &self.model.x[first.min(self.model.x.len() - 1)..];
+            let (added, own) = match one.amendment.effect() {
+                Some(_) => (one.amendment.added(&with, &one.values)?, vec![0.0; one.amendment.free()]),
+                None => (one.amendment.added(&with, &[])?, coordinate[..1].to_vec()),
+            };
+            with = added;
+            x.extend(own);
+        }
+        let free = fitter.settled(&(with, x))?;
+        let free = free.map(|model| Self::new(set, model, own));
+        Ok(free.filter(|free| free.cost < self.cost).unwrap_or(self))
+    }
+
+    /// The values of its amendments as they were fitted, SI.
+    pub fn values(&self, problem: &Problem) -> Vec<Vec<f64>> {
+        let own = problem.parameters.len();
+        let mut index = effects(problem);
+        let firsts = firsts(&self.model.problem, &self.set, own);
+        let values = self.set.iter().zip(firsts).map(|(one, first)| {
+            let values = one.amendment.values(&self.model, first, index);
+            index += one.amendment.items();
+            values
+        });
+        values.collect()
+    }
+}
+
+/// The problem with these amendments.
+///
+/// # Errors
+/// A machine that cannot have them.
+pub(crate) fn added(problem: &Problem, set: &[Amended]) -> Result<Problem, Error> {
+    let with = |problem: Problem, one: &Amended| one.amendment.added(&problem, &one.values);
+    set.iter().try_fold(problem.clone(), with)
+}
+
+/// The machine of `problem`, amended as `set` and by `amendment` at `probe`, from the coordinates `x` of the machine with
+/// `set`. None where it cannot be so.
+pub(crate) fn start(
+    problem: &Problem,
+    x: &[f64],
+    amendment: &Amendment,
+    probe: &[f64],
+) -> Option<Start> {
+    let with = amendment.added(problem, probe).ok()?;
+    let own = amendment.start(&with, x.len(), probe);
+    Some((with, [x, &own].concat()))
+}
+
+/// Index of the first parameter of each amendment of a set.
+fn firsts(problem: &Problem, set: &[Amended], own: usize) -> Vec<usize> {
+    let mut first = own;
+    let all = set.iter().map(|one| {
+        let start = first.min(problem.parameters.len().saturating_sub(1));
+        first += one.amendment.free();
+        start
+    });
+    all.collect()
+}

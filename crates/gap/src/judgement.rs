@@ -1,0 +1,236 @@
+//! What a search comes to: which of its sets is believed, how probable each of its amendments is, and what else
+//! might have been.
+
+use crate::criteria::{NAMED, evidence, left, probability};
+use crate::error::Error;
+use crate::finding::{Found, Tried};
+use crate::fitter::Fitter;
+use crate::hypothesis::{Amended, Hypothesis};
+use crate::recorded::is_of_pressures;
+use crate::search::{MOST, Search};
+use crate::amendment::Amendment;
+use calibrate::Problem;
+use calibrate::likelihood::Likelihood;
+use rayon::prelude::*;
+
+/// Sets of each size that are fitted to all runs.
+const FITTED: usize = 4;
+/// Rivals less probable than this are left out.
+const NEGLIGIBLE: f64 = 0.01;
+/// Most evaluations of the calibration where a first descent leaves more than noise.
+const CALIBRATION: u64 = 400;
+
+/// What was found in a problem.
+pub(crate) struct Judgement {
+    /// The machine without amendments, fitted to all runs.
+    pub nothing: Hypothesis,
+    /// The one that is believed.
+    pub believed: Hypothesis,
+    /// Probability of each of its amendments.
+    pub probabilities: Vec<f64>,
+    /// Sets fitted to all runs, the least costly first.
+    pub others: Vec<Hypothesis>,
+}
+
+/// What is missing in the machine of `problem` of these amendments.
+///
+/// # Errors
+/// A machine that cannot be simulated; [`Error::Stopped`].
+pub(crate) fn judged(
+    fitter: &Fitter,
+    problem: &Problem,
+    start: &[f64],
+    amendments: &[Amendment],
+) -> Result<Judgement, Error> {
+    let nothing = calibrated(fitter, problem, start)?;
+    if Fitter::is_at_noise(&nothing.model) {
+        return Ok(Judgement {
+            believed: nothing.clone(),
+            nothing,
+            probabilities: Vec::new(),
+            others: Vec::new(),
+        });
+    }
+    let few = fitter.few(problem);
+    let own = problem.parameters.len();
+    let first = match fitter.settled(&(few.clone(), nothing.model.x.clone()))? {
+        Some(model) => Hypothesis::new(Vec::new(), model, own),
+        None => nothing.clone(),
+    };
+    let search = Search { fitter, few: &few, amendments };
+    let sets = search.sets(first)?;
+    let chosen = (1..=MOST).flat_map(|count| {
+        let of_size = sets.iter().filter(move |set| set.set.len() == count);
+        of_kinds(of_size).into_iter().take(FITTED)
+    });
+    let chosen: Vec<&Hypothesis> = chosen.collect();
+    (fitter.say)("fitting to all runs", nothing.model.fitted);
+    let settled = chosen.into_par_iter().map(|set| match set.settled(fitter, problem)? {
+        Some(set) => Ok(Some(set.of_any_form(fitter, problem)?)),
+        None => Ok(None),
+    });
+    let settled = settled.collect::<Result<Vec<_>, Error>>()?;
+    let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
+    others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    if std::env::var("LAB").is_ok() {
+        for set in sets.iter().take(25) {
+            eprintln!("  few {:?} cost {:.1} tau {} fitted {:.2}", set.labels(), set.cost, set.model.timing, set.model.fitted);
+        }
+        eprintln!("nothing cost {:.1} tau {} fitted {:.2} held {:?}", nothing.cost, nothing.model.timing, nothing.model.fitted, nothing.model.held_out);
+        for set in &others {
+            eprintln!("  all {:?} cost {:.1} tau {} fitted {:.2} held {:?} left {:.2}", set.labels(), set.cost, set.model.timing, set.model.fitted, set.model.held_out, left(&nothing.model, &set.model));
+        }
+    }
+    let mut believed = &nothing;
+    let mut sure = 1.0;
+    for count in 1..=MOST {
+        let Some(best) = others.iter().find(|set| set.set.len() == count) else {
+            continue;
+        };
+        let probable = probability(left(&believed.model, &best.model), count - 1);
+        if probable > NAMED && best.cost < believed.cost && shows_in_each(&believed, best)? {
+            believed = best;
+            sure = probable;
+        }
+    }
+    let believed = believed.clone();
+    let probabilities = (0..believed.set.len()).map(|i| {
+        let rivals = rivals(&believed, i, &others).map(|rival| (believed.cost - rival.cost).exp());
+        sure / (1.0 + rivals.sum::<f64>())
+    });
+    Ok(Judgement {
+        probabilities: probabilities.collect(),
+        nothing,
+        believed,
+        others,
+    })
+}
+
+/// The machine without amendments, calibrated to all runs.
+fn calibrated(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Hypothesis, Error> {
+    let own = problem.parameters.len();
+    (fitter.say)("calibrating", f64::NAN);
+    let at = |x: &[f64]| fitter.explored(&[(problem.clone(), x.to_vec())]);
+    let first = at(start)?.map(|(model, _)| model);
+    let model = match first {
+        Some(model) if Fitter::is_at_noise(&model) || is_of_pressures(problem) => model,
+        first => {
+            let x = fitter.searched(problem, start, CALIBRATION)?;
+            let further = fitter.settled(&(problem.clone(), x))?;
+            let all = first.into_iter().chain(further);
+            let best = all.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+            best.ok_or(Error::Nothing)?
+        }
+    };
+    Ok(Hypothesis::new(Vec::new(), model, own))
+}
+
+/// The least costly set of each combination of kinds.
+fn of_kinds<'a>(sets: impl Iterator<Item = &'a Hypothesis>) -> Vec<&'a Hypothesis> {
+    let mut best: Vec<&Hypothesis> = Vec::new();
+    for set in sets {
+        if best.iter().all(|other| other.kinds() != set.kinds()) {
+            best.push(set);
+        }
+    }
+    best
+}
+
+/// The sets that have an amendment of another kind in the place of `believed.set[which]`.
+fn rivals<'a>(
+    believed: &'a Hypothesis,
+    which: usize,
+    others: &'a [Hypothesis],
+) -> impl Iterator<Item = &'a Hypothesis> {
+    let kept: Vec<&Amended> = believed.set.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, one)| one).collect();
+    let own = believed.set[which].amendment.kind();
+    others.iter().filter(move |other| {
+        other.set.len() == believed.set.len()
+            && kept.iter().all(|one| other.has(&one.amendment))
+            && other.set.iter().all(|one| one.amendment.kind() != own)
+    })
+}
+
+impl Judgement {
+    /// The effects that are believed, with their rivals. `problem` is the machine without them.
+    pub fn found(&self, problem: &Problem) -> Vec<Found> {
+        let values = self.believed.values(problem);
+        let all = self.believed.set.iter().enumerate().zip(values).zip(&self.probabilities);
+        let found = all.filter_map(|(((i, one), values), probability)| {
+            let candidate = one.amendment.effect()?.clone();
+            Some(Found {
+                effect: Tried {
+                    candidate,
+                    values,
+                    evidence: evidence(&self.nothing.model, &self.believed.model),
+                    probability: *probability,
+                    model: Some(self.believed.model.clone()),
+                },
+                gap: None,
+                rivals: self.rivals(problem, i),
+            })
+        });
+        let mut found: Vec<Found> = found.collect();
+        if let Some(last) = found.last_mut() {
+            last.gap = Some(self.believed.model.gap());
+        }
+        found
+    }
+
+    /// What else might stand in the place of an amendment.
+    fn rivals(&self, problem: &Problem, which: usize) -> Vec<Tried> {
+        let tried = rivals(&self.believed, which, &self.others).filter_map(|rival| {
+            let probability = self.probabilities[which] * (self.believed.cost - rival.cost).exp();
+            let values = rival.values(problem);
+            let new = rival.set.iter().zip(values).find(|(one, _)| !self.believed.has(&one.amendment));
+            let (one, values) = new?;
+            Some(Tried {
+                candidate: one.amendment.effect()?.clone(),
+                values,
+                evidence: evidence(&self.nothing.model, &rival.model),
+                probability,
+                model: Some(rival.model.clone()),
+            })
+        });
+        tried.filter(|tried| tried.probability > NEGLIGIBLE).collect()
+    }
+
+    /// Effects that were fitted to all runs by themselves, and are not believed.
+    pub fn refused(&self, problem: &Problem) -> Vec<Tried> {
+        let singles = self.others.iter().filter(|set| set.set.len() == 1);
+        let singles = singles.filter(|set| !self.believed.has(&set.set[0].amendment));
+        let tried = singles.filter_map(|set| {
+            let values = set.values(problem).pop()?;
+            let share = (self.believed.cost - set.cost).exp().min(1.0);
+            Some(Tried {
+                candidate: set.set[0].amendment.effect()?.clone(),
+                values,
+                evidence: evidence(&self.nothing.model, &set.model),
+                probability: probability(left(&self.nothing.model, &set.model), 0) * share,
+                model: Some(set.model.clone()),
+            })
+        });
+        tried.collect()
+    }
+}
+
+/// Whether a set reduces the residual of every recording of pressures, where none of them could be held out. Of a few
+/// recordings one may be off by itself: what is true of the machine has to show in each.
+fn shows_in_each(before: &Hypothesis, after: &Hypothesis) -> Result<bool, Error> {
+    let problem = &after.model.problem;
+    if after.model.held_out.is_some() || !is_of_pressures(problem) {
+        return Ok(true);
+    }
+    let deviances = |hypothesis: &Hypothesis| -> Result<Vec<f64>, Error> {
+        let model = &hypothesis.model;
+        let of_run = |run: &calibrate::Observation| {
+            let alone = model.problem.with_runs(|other| other.id == run.id);
+            Ok(Likelihood::coarse(&alone, model.timing).deviance(&model.x)?)
+        };
+        model.problem.runs.iter().map(of_run).collect()
+    };
+    let (before, after_each) = (deviances(before)?, deviances(after)?);
+    let added = after.set.last().and_then(|one| one.amendment.effect());
+    let mut each = before.iter().zip(after_each).zip(&problem.runs);
+    Ok(each.all(|((before, now), run)| now < *before || added.is_some_and(|effect| !effect.acts_on(run))))
+}

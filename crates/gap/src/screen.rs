@@ -1,0 +1,172 @@
+//! Which candidates are worth a fit: a score test at finite amplitudes.
+//!
+//! An amendment changes the predicted features by Δ. What the calibrated parameters could imitate of
+//! it, and of the residual r, is projected out (P, with a prior of one unit of their coordinates).
+//! The score is the share of the residual that the rest explains at its best amplitude:
+//!
+//! ```text
+//! 1 − min_a |P (r + a Δ)|² / |P r|²
+//! ```
+//!
+//! (Rao 1948; finite amplitudes because the linear test misses effects that saturate.)
+
+use crate::amendment::Amendment;
+use crate::error::Error;
+use crate::fitter::Fitter;
+use crate::hypothesis::start;
+use crate::journal::Finished;
+use crate::model::Model;
+use crate::projector::Projector;
+use calibrate::likelihood::Likelihood;
+use calibrate::optimiser::LeastSquares;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// A probe is not scaled by more than this: further away the change is another one.
+const SCALED: f64 = 2.0;
+/// By how much features may stand elsewhere, rad.
+const TIMING: f64 = 0.03;
+
+/// An amendment that may explain a part of the residual.
+#[derive(Clone, Debug)]
+pub(crate) struct Screened {
+    /// The amendment.
+    pub amendment: Amendment,
+    /// Where a fit may start.
+    pub starts: Vec<Point>,
+}
+
+/// A point to start from: the machine as it was fitted with an amendment, or the nominal one.
+#[derive(Clone, Debug)]
+pub(crate) struct Point {
+    /// Coordinates of the machine without the amendment.
+    pub x: Vec<f64>,
+    /// Where the amendment is tried.
+    pub values: Vec<f64>,
+}
+
+/// A point at which candidates are looked at, and what is left there.
+struct Base {
+    x: Vec<f64>,
+    residual: DVector<f64>,
+    projector: Projector,
+    left: DVector<f64>,
+}
+
+impl Base {
+    fn at(likelihood: &Likelihood, x: &[f64]) -> Self {
+        let residual = DVector::from_vec(likelihood.residuals(x));
+        let projector = Projector::new(&likelihood.jacobian(x));
+        Self {
+            x: x.to_vec(),
+            left: projector.apply(&residual),
+            residual,
+            projector,
+        }
+    }
+
+    /// The score of a probe that has these residuals.
+    fn score(&self, there: Vec<f64>) -> Option<f64> {
+        let change = (self.projector).apply(&(DVector::from_vec(there) - &self.residual));
+        let size = change.norm_squared();
+        (size > 0.0).then(|| {
+            let share = (-self.left.dot(&change) / size).clamp(0.0, SCALED);
+            let left = (&self.left + share * &change).norm_squared();
+            1.0 - left / self.left.norm_squared()
+        })
+    }
+}
+
+/// The amendments, the most promising first. Those that cannot be simulated are left out. They are
+/// looked at where the machine is fitted, and where it is nominal: without what is missing a
+/// fit may have gone far astray.
+///
+/// # Errors
+/// [`Error::Stopped`].
+pub(crate) fn screen(
+    fitter: &Fitter,
+    model: &Model,
+    amendments: Vec<Amendment>,
+) -> Result<Vec<Screened>, Error> {
+    let likelihood = Likelihood::coarse(&model.problem, TIMING);
+    let nominal = vec![0.0; model.x.len()];
+    let mut bases = vec![Base::at(&likelihood, &model.x)];
+    if nominal != model.x {
+        bases.push(Base::at(&likelihood, &nominal));
+    }
+    // The score and the probe there; nothing for what cannot be simulated.
+    let best = |amendment: &Amendment, base: &Base| -> Result<Finished, Error> {
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        let metered = model.problem.metered();
+        for probe in amendment.probes(&model.problem)? {
+            if (fitter.watch)().is_break() {
+                return Err(Error::Stopped);
+            }
+            let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
+                continue;
+            };
+            let there = Likelihood::coarse(&with, TIMING).residuals(&x);
+            let score = base.score(there);
+            let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
+            if let Some(score) = score.filter(better) {
+                best = Some((score, probe));
+            }
+        }
+        let found = best.into_iter();
+        let numbers = found.flat_map(|(score, probe)| [vec![score], probe].concat());
+        Ok(Finished {
+            numbers: numbers.collect(),
+            cost: metered.meter.steps(),
+        })
+    };
+    let screened = amendments.into_par_iter().map(|amendment| {
+        let (mut scores, mut starts) = (vec![f64::NEG_INFINITY; bases.len()], Vec::new());
+        for (base, score) in bases.iter().zip(&mut scores) {
+            let input = ("screen", &model.problem, &base.x, amendment.label());
+            let work = || best(&amendment, base);
+            if let Some((best, values)) = fitter.effort.journal.once(&input, work)?.split_first() {
+                *score = *best;
+                starts.push(Point {
+                    x: base.x.clone(),
+                    values: values.to_vec(),
+                });
+            }
+        }
+        let screened = Screened { amendment, starts };
+        Ok((!screened.starts.is_empty()).then_some((screened, scores)))
+    });
+    let screened = screened.collect::<Result<Vec<_>, Error>>()?;
+    Ok(ordered(screened.into_iter().flatten().collect()))
+}
+
+/// The most promising first: by the place that each has at the point where it has the best one. Shares at different
+/// points cannot be compared.
+fn ordered<T>(scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
+    let place = |scores: &[f64]| {
+        let at = |(point, score): (usize, &f64)| {
+            scored.iter().filter(|(_, other)| other[point] > *score).count()
+        };
+        scores.iter().enumerate().map(at).min().unwrap_or(usize::MAX)
+    };
+    let places: Vec<usize> = scored.iter().map(|(_, scores)| place(scores)).collect();
+    let mut order: Vec<(usize, T)> = places.into_iter().zip(scored.into_iter().map(|(it, _)| it)).collect();
+    order.sort_by_key(|(place, _)| *place);
+    order.into_iter().map(|(_, it)| it).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_of_each_point_come_first() {
+        let scored = vec![
+            ("only where it is calibrated", vec![0.09, 0.1]),
+            ("worth nothing there", vec![0.0, 0.5]),
+            ("a little", vec![0.01, 0.3]),
+            ("nowhere", vec![f64::NEG_INFINITY, 0.2]),
+        ];
+        let expected = ["only where it is calibrated", "worth nothing there", "a little", "nowhere"];
+        assert_eq!(ordered(scored), expected);
+    }
+}

@@ -1,0 +1,165 @@
+//! The search for what is missing: best first, over sets of amendments.
+//!
+//! A set is a node. From the best node that was not looked at further, every amendment is tried beside those that it has:
+//! an effect that shows only in a worn joint is found beside the wear, although wear by itself leaves much. A set of which
+//! one amendment is exchanged for another is reached from the set without it.
+
+use crate::amendment::Amendment;
+use crate::error::Error;
+use crate::criteria::{dependence, freedom};
+use crate::fitter::{Fitter, Start};
+use crate::hypothesis::{Amended, Hypothesis, start};
+use crate::screen::{Screened, screen};
+use calibrate::Problem;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Most amendments of a set.
+pub(crate) const MOST: usize = 3;
+/// Amendments of one kind (its places and orders) that are fitted beside an empty set, the most promising first.
+const OF_A_KIND: usize = 3;
+/// Amendments that are fitted beside others.
+const BESIDE: usize = 8;
+/// How many of those that were fitted roughly are fitted further, beside an empty set and beside others (successive
+/// halving, Jamieson and Talwalkar 2016).
+const REFINED: usize = 8;
+const REFINED_BESIDE: usize = 4;
+/// Nodes that are looked at further.
+const EXPANDED: usize = 3;
+
+/// What a search looks for, and in what.
+pub(crate) struct Search<'a> {
+    pub fitter: &'a Fitter<'a>,
+    /// The machine without amendments, in a few of its runs.
+    pub few: &'a Problem,
+    /// What may be amended.
+    pub amendments: &'a [Amendment],
+}
+
+impl Search<'_> {
+    /// All sets that were fitted, the least costly first; `nothing` is the empty one. The search ends where one of them is
+    /// at the noise.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub fn sets(&self, nothing: Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+        let mut nodes = vec![nothing];
+        let mut expanded: Vec<Vec<String>> = Vec::new();
+        while expanded.len() < EXPANDED && self.fitter.effort.goes_on() {
+            let open = |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
+            let Some(node) = nodes.iter().find(open).cloned() else {
+                break;
+            };
+            if nodes.iter().any(|node| Fitter::is_at_noise(&node.model)) {
+                break;
+            }
+            expanded.push(node.labels());
+            let beside = self.beside(&node)?;
+            for set in beside {
+                let labels = set.labels();
+                match nodes.iter_mut().find(|node| node.labels() == labels) {
+                    Some(same) if set.cost < same.cost => *same = set,
+                    Some(_) => {}
+                    None => nodes.push(set),
+                }
+            }
+            nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        }
+        Ok(nodes)
+    }
+
+    /// The set of a node with each of the most promising other amendments.
+    fn beside(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+        (self.fitter.say)(&words(node, "screening"), node.model.fitted);
+        let others = self.amendments.iter().filter(|amendment| !node.has(amendment));
+        let screened = screen(self.fitter, &node.model, others.cloned().collect())?;
+        let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
+        let of_a_kind = |screened: &Screened| {
+            let count = kinds.entry(screened.amendment.kind().to_owned()).or_default();
+            *count += 1;
+            *count <= if node.set.is_empty() { OF_A_KIND } else { 1 }
+        };
+        let mut chosen: Vec<Screened> = screened;
+        let mut of_a_kind = of_a_kind;
+        chosen.retain(|screened| of_a_kind(screened));
+        if !node.set.is_empty() {
+            chosen.truncate(BESIDE);
+        }
+        let clock = std::time::Instant::now();
+        let spent = self.fitter.effort.journal.spent();
+        let count = chosen.len();
+        let rough = chosen.into_par_iter().map(|screened| self.roughly(node, &screened));
+        let rough = rough.collect::<Result<Vec<_>, Error>>()?;
+        let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
+        rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        rough.truncate(if node.set.is_empty() { REFINED } else { REFINED_BESIDE });
+        if std::env::var("LAB").is_ok() {
+            eprintln!("  rough {count} in {:.1} s, {} M", clock.elapsed().as_secs_f64(), (self.fitter.effort.journal.spent() - spent) / 1000000);
+            for t in &rough { eprintln!("  rough {} {:.1}", t.label(), t.cost); }
+        }
+        let fitted = rough.into_par_iter().map(|trial| {
+            (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
+            let model = self.fitter.settled(&trial.start)?;
+            Ok(model.map(|model| Hypothesis::new(trial.set, model, self.few.parameters.len())))
+        });
+        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+        Ok(fitted.into_iter().flatten().collect())
+    }
+
+    /// A node with one amendment more, fitted roughly.
+    fn roughly(&self, node: &Hypothesis, screened: &Screened) -> Result<Option<Trial>, Error> {
+        let amendment = &screened.amendment;
+        let problem = &node.model.problem;
+        let mut probes: Vec<(&[f64], Vec<f64>)> = Vec::new();
+        for point in &screened.starts {
+            probes.push((&point.x, point.values.clone()));
+        }
+        // A descent that can leave it out does no worse than the node.
+        if let Some(first) = screened.starts.first() {
+            probes.push((&node.model.x, amendment.faint(&first.values)));
+        }
+        let mut starts = Vec::new();
+        let mut values = Vec::new();
+        for (x, probe) in probes {
+            if let Some(start) = start(problem, x, amendment, &probe) {
+                starts.push(start);
+                values.push(probe);
+            }
+        }
+        let Some(rough) = self.fitter.roughly(&starts)? else {
+            return Ok(None);
+        };
+        let mut set = node.set.clone();
+        set.push(Amended {
+            amendment: amendment.clone(),
+            values: values.swap_remove(rough.start),
+        });
+        let with = starts.swap_remove(rough.start).0;
+        let parameters = with.parameters.len() - self.few.parameters.len();
+        Ok(Some(Trial {
+            cost: 0.5 * rough.deviance / dependence(&with) + freedom(&with, parameters),
+            set,
+            start: (with, rough.x),
+        }))
+    }
+}
+
+/// A set that was fitted roughly.
+struct Trial {
+    set: Vec<Amended>,
+    start: Start,
+    cost: f64,
+}
+
+impl Trial {
+    fn label(&self) -> String {
+        self.set.last().map_or_else(String::new, |one| one.amendment.label())
+    }
+}
+
+fn words(node: &Hypothesis, what: &str) -> String {
+    match node.set.is_empty() {
+        true => what.to_owned(),
+        false => format!("{what} beside {}", node.labels().join(" and ")),
+    }
+}
