@@ -53,11 +53,12 @@ impl Bench<'_> {
         let machine = &self.machines[case.machine];
         let runs: Vec<&[(String, Value)]> = machine.runs.iter().map(|r| &r.settings[..]).collect();
         let content = format!(
-            "{} {} {:?} {:?} {} {runs:?} {} {} {}",
+            "{} {} {:?} {:?} {:?} {} {runs:?} {} {} {}",
             env!("CARGO_PKG_VERSION"),
             case.id(),
             self.recorder,
             self.settings.other_contact_law,
+            self.settings.other_forms,
             machine.section,
             machine.pressure,
             case.noise,
@@ -144,7 +145,11 @@ impl Bench<'_> {
         let share = self.settings.other_contact_law.as_ref();
         let other_contact_law = random.random::<f64>() < share.map_or(0.0, |share| share.si())
             || case.outside == Some(Outside::ContactLaw);
-        let truth = truth::contacts(machine, other_contact_law, &mut random)?;
+        let mut truth = truth::contacts(machine, other_contact_law, &mut random)?;
+        if case.outside == Some(Outside::DataSheet) {
+            truth::wrong_data_sheet(&mut truth, &mut random)?;
+        }
+        let other_forms = self.settings.other_forms.unwrap_or_default();
         let with = |effects: &[Value]| {
             let mut tree = truth.clone();
             tree["effects"] = effects.to_vec().into();
@@ -160,16 +165,17 @@ impl Bench<'_> {
         let mut reason = String::new();
         for _ in 0..DRAWS {
             let drawn = case.hidden.iter();
-            let items: Vec<Value> = drawn
-                .map(|entry| truth::effect(entry, machine, case.size, &mut random))
+            let effects: Vec<Vec<Value>> = drawn
+                .map(|entry| truth::effect(entry, machine, case.size, other_forms, &mut random))
                 .collect();
-            let seen = |item: &Value| -> Result<(), String> {
-                match alone(std::slice::from_ref(item))?.differs(&bare) > THERE {
+            let items = effects.concat();
+            let seen = |effect: &Vec<Value>| -> Result<(), String> {
+                match alone(effect)?.differs(&bare) > THERE {
                     true => Ok(()),
                     false => Err("it changes nothing".to_owned()),
                 }
             };
-            let clean = items
+            let clean = effects
                 .iter()
                 .try_for_each(seen)
                 .and_then(|()| self.recorder.runs(machine, &with(&items)));
@@ -180,10 +186,14 @@ impl Bench<'_> {
                             .iter_mut()
                             .for_each(|run| self.recorder.change(run, outside));
                     }
-                    let hidden = case.hidden.iter().zip(&items).map(|(entry, item)| Hidden {
-                        effect: entry.name.to_owned(),
-                        section: item[entry.name].clone(),
-                    });
+                    let hidden = case
+                        .hidden
+                        .iter()
+                        .zip(&effects)
+                        .map(|(entry, items)| Hidden {
+                            effect: entry.name.to_owned(),
+                            section: items[0][entry.name].clone(),
+                        });
                     return Ok(Ok(Made {
                         hidden: hidden.collect(),
                         truth: with(&items),

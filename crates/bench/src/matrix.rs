@@ -68,6 +68,9 @@ pub struct Counts {
     pub pairs_found: Share,
     /// What is in no catalogue taken for an effect, with confidence.
     pub mistaken: Share,
+    /// Mean square of the probability of what was named first less 1 where it is right and 0 where it is not (Brier
+    /// 1950); none where nothing was named with a probability.
+    pub brier: Option<f64>,
     /// How far the gap on held-out runs was closed where the hidden effect was named first.
     pub held_out_gap_closed: Closed,
     /// For each thing hidden how often what was named first.
@@ -150,6 +153,17 @@ impl<'a> Matrix<'a> {
         Share::count(self.ended(2), all)
     }
 
+    fn brier(&self) -> Option<f64> {
+        let ended = self.outcomes.iter().filter(|o| o.found.is_some());
+        let squares = ended.filter_map(|o| {
+            let first = o.found.as_ref()?.named.first()?;
+            let right = o.hidden.iter().any(|hidden| hidden.effect == first.effect);
+            Some((first.probability? - f64::from(u8::from(right))).powi(2))
+        });
+        let squares: Vec<f64> = squares.collect();
+        (!squares.is_empty()).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
+    }
+
     /// How far the gap on held-out runs was closed where what is hidden was named first: the shares,
     /// sorted.
     fn closed(&self) -> Vec<f64> {
@@ -193,6 +207,7 @@ impl<'a> Matrix<'a> {
             recall: recall.collect(),
             false_discoveries: self.false_discoveries(),
             pairs_found: self.pairs_found(),
+            brier: self.brier(),
             mistaken: self.mistaken(),
             held_out_gap_closed: Closed {
                 median: median(&closed),
@@ -247,6 +262,10 @@ impl<'a> Matrix<'a> {
         line(format!(
             "| both of two effects named | {} |",
             self.pairs_found().text()
+        ));
+        line(format!(
+            "| Brier score of the probabilities | {} |",
+            number(self.brier())
         ));
         let enough = enough(&self.closed()).text();
         line(format!(
@@ -394,6 +413,7 @@ mod tests {
                 effect: name.into(),
                 joint: Some("big_end".into()),
                 throw: None,
+                probability: Some(0.9),
                 rivals: vec![rival.into()],
             }
         });

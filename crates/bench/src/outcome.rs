@@ -85,6 +85,9 @@ pub struct Named {
     pub joint: Option<String>,
     /// Its throw, where it has one.
     pub throw: Option<String>,
+    /// Probability that it is what is there, 0 to 1; none in a file of an earlier version.
+    #[serde(default)]
+    pub probability: Option<f64>,
     /// The names of its rivals.
     pub rivals: Vec<String>,
 }
@@ -111,6 +114,7 @@ impl Explained {
             effect: effect.effect.clone(),
             joint: effect.joint.clone(),
             throw: effect.throw.clone(),
+            probability: Some(effect.probability),
             rivals: effect
                 .rivals
                 .iter()

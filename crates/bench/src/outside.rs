@@ -19,11 +19,18 @@ pub enum Outside {
     AcCoupling,
     /// Accelerations that come later than the crank angle that is recorded with them.
     TimeLag,
+    /// A mass, a length or an inertia that the data sheet has wrong: a correction, and no effect.
+    DataSheet,
 }
 
 impl Outside {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::ContactLaw, Self::AcCoupling, Self::TimeLag];
+    pub const ALL: [Self; 4] = [
+        Self::ContactLaw,
+        Self::AcCoupling,
+        Self::TimeLag,
+        Self::DataSheet,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -31,6 +38,7 @@ impl Outside {
             Self::ContactLaw => "contact_law",
             Self::AcCoupling => "ac_coupling",
             Self::TimeLag => "time_lag",
+            Self::DataSheet => "data_sheet",
         }
     }
 
@@ -42,7 +50,7 @@ impl Outside {
         });
         for (_, samples) in accelerations {
             match self {
-                Self::ContactLaw => {}
+                Self::ContactLaw | Self::DataSheet => {}
                 Self::AcCoupling => high_pass(samples, CORNER * speed / rate),
                 Self::TimeLag => lag(samples, LAG * rate),
             }

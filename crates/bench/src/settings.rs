@@ -45,8 +45,8 @@ pub struct HiddenEffects {
     #[serde(default)]
     pub pairs: Option<Count<0, 1000>>,
     /// Cases of a round in which a defect is hidden that is in no catalogue, of each kind in turn:
-    /// contacts of another law, an acceleration behind a capacitor, a delayed acceleration; default
-    /// 0.
+    /// contacts of another law, an acceleration behind a capacitor, a delayed acceleration, a wrong value of the data
+    /// sheet; default 0.
     #[serde(default)]
     pub outside: Option<Count<0, 1000>>,
     /// Rounds; default the number of combinations of machine, noise and size, so that every effect
@@ -63,6 +63,10 @@ pub struct HiddenEffects {
     /// (Flores 2011) than those of the calibrated machine; default 0.
     #[serde(default)]
     pub other_contact_law: Option<Quantity<Ratio, FromZero>>,
+    /// Whether hidden effects have other forms of their laws than the usual ones, and those of a bearing act in both
+    /// bearings of the rod in half of the cases; default false.
+    #[serde(default)]
+    pub other_forms: Option<bool>,
 }
 
 /// A machine and the runs that are recorded of it.

@@ -20,6 +20,14 @@ const RESTITUTION: [f64; 2] = [0.3, 0.7];
 /// Frequencies of mains, Hz, and the share by which a grid is off at most.
 const MAINS: [f64; 2] = [50.0, 60.0];
 const GRID: f64 = 0.002;
+/// Values that a data sheet may have wrong, with their usual error (a share), and by how many of these they are off.
+const SHEET: [(&str, f64); 4] = [
+    ("rod.length", 0.01),
+    ("rod.mass", 0.05),
+    ("rod.inertia", 0.1),
+    ("crosshead.mass", 0.05),
+];
+const WRONG: [f64; 2] = [0.7, 1.5];
 /// Terms of a law: a force of many has none.
 const TERMS: usize = 2;
 /// Terms that named effects make: misalignment, and friction of the rings.
@@ -81,9 +89,15 @@ pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Resu
     Ok(tree)
 }
 
-/// An effect at a place, with values and signs drawn: the item of a machine file's list. Whether the
-/// machine can have it there is not looked at.
-pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) -> Value {
+/// An effect, with place, values and signs drawn, as items of a machine file's list: one, or with `other_forms` two in
+/// both bearings of the rod. Whether the machine can have it there is not looked at.
+pub fn effect(
+    entry: &Entry,
+    machine: &Machine,
+    size: f64,
+    other_forms: bool,
+    random: &mut Stream,
+) -> Vec<Value> {
     let throws = machine.throws();
     let mut place: Vec<(&str, &str)> = Vec::new();
     for choice in entry.places {
@@ -103,13 +117,52 @@ pub fn effect(entry: &Entry, machine: &Machine, size: f64, random: &mut Stream) 
             let mains = MAINS[usize::from(random.random::<bool>())];
             mains * random.random_range(1.0 - GRID..1.0 + GRID)
         }
+        _ if parameter.shape && other_forms => {
+            random.random_range(parameter.bounds[0]..parameter.bounds[1])
+        }
         _ => value(parameter, size, random),
     };
     let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
     if entry.proposal == Proposal::ForceLaw {
         as_law(entry, &mut values, random);
     }
-    entry.item(&place, &values)
+    let in_both =
+        other_forms && place.iter().any(|(key, _)| *key == "joint") && random.random::<bool>();
+    let bearings: &[&str] = if in_both {
+        &["big_end", "small_end"]
+    } else {
+        &[]
+    };
+    let in_bearing = |bearing: &&str| {
+        let moved = place.iter().map(|(key, word)| match *key {
+            "joint" => (*key, *bearing),
+            _ => (*key, *word),
+        });
+        entry.item(&moved.collect::<Vec<_>>(), &values)
+    };
+    match bearings {
+        [] => vec![entry.item(&place, &values)],
+        both => both.iter().map(in_bearing).collect(),
+    }
+}
+
+/// Gives a machine file one value that the data sheet of `machine` does not have: a mass, a length or an inertia.
+///
+/// # Errors
+/// A machine without such values.
+pub fn wrong_data_sheet(tree: &mut Value, random: &mut Stream) -> Result<(), Error> {
+    let prefix = match tree["throws"].as_array() {
+        Some(_) => "throws.0.",
+        None => "",
+    };
+    let Some((key, width)) = SHEET.choose(random) else {
+        return Ok(());
+    };
+    let path = format!("{prefix}{key}");
+    let parameter = Parameter::of(tree, &path).map_err(Error::Contact)?;
+    let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
+    let factor = 1.0 + sign * width * random.random_range(WRONG[0]..WRONG[1]);
+    Ok(parameter.write(tree, parameter.nominal * factor)?)
 }
 
 /// Leaves the amplitudes of a few terms that no effect with a name makes, and takes the others away.
@@ -129,6 +182,9 @@ fn as_law(entry: &Entry, values: &mut [f64], random: &mut Stream) {
 /// A value of a parameter: anywhere for a phase or an order, around the usual one for the others.
 fn value(parameter: &effects::Parameter, size: f64, random: &mut Stream) -> f64 {
     let [low, high] = parameter.bounds;
+    if parameter.shape {
+        return parameter.start;
+    }
     if parameter.cyclic {
         return random.random_range(low..high);
     }

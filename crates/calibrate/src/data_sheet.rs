@@ -71,7 +71,9 @@ impl Doubt {
     /// Whether it is a mass or a length of the machine, and no clearance and nothing of a sensor.
     pub fn is_of_machine(&self) -> bool {
         let path = self.parameter.path.as_str();
-        VALUES.iter().any(|(key, _)| path == *key || path.ends_with(&format!(".{key}")))
+        VALUES
+            .iter()
+            .any(|(key, _)| path == *key || path.ends_with(&format!(".{key}")))
     }
 
     /// The problem with this value free as well, the last of the parameters.

@@ -57,9 +57,14 @@ impl<'a> Likelihood<'a> {
         let of_run = |(run, prediction): (&Observation, &Prediction)| {
             let channels = run.channels.iter().zip(&prediction.lines);
             let spread = channels.flat_map(|(observed, predicted)| {
-                let parts = observed.orders.iter().map(|k| if *k == 0 { 1.0 } else { 2.0 });
+                let parts = observed
+                    .orders
+                    .iter()
+                    .map(|k| if *k == 0 { 1.0 } else { 2.0 });
                 let weights = weights(observed, predicted, self.timing);
-                parts.zip(weights).map(|(parts, weight)| -2.0 * parts * weight.ln())
+                parts
+                    .zip(weights)
+                    .map(|(parts, weight)| -2.0 * parts * weight.ln())
             });
             let squares = residuals(run, prediction, self.timing);
             spread.sum::<f64>() + squares.iter().map(|r| r * r).sum::<f64>()

@@ -16,7 +16,13 @@ const FAILURES: usize = 2;
 
 /// The best point within bounds that a descent from `start` leads to. Ends where a step no longer changes the sum of
 /// squares by the share `change`, or after `most` evaluations; one with derivatives counts as [`derivatives`] says.
-pub fn secant(problem: &impl LeastSquares, start: &[f64], change: f64, most: u64, watch: Watch) -> Progress {
+pub fn secant(
+    problem: &impl LeastSquares,
+    start: &[f64],
+    change: f64,
+    most: u64,
+    watch: Watch,
+) -> Progress {
     let bounds = problem.bounds();
     let mut descent = Descent {
         x: DVector::from_column_slice(start),
@@ -184,6 +190,9 @@ mod tests {
         }
         let go = &mut |_: &Progress| ControlFlow::Continue(());
         let found = secant(&Beyond, &[0.5, 0.5], 1e-9, 200, go);
-        assert!((found.x[0] - 1.0).abs() < 1e-12 && (found.x[1] - 3.0).abs() < 1e-6, "{found:?}");
+        assert!(
+            (found.x[0] - 1.0).abs() < 1e-12 && (found.x[1] - 3.0).abs() < 1e-6,
+            "{found:?}"
+        );
     }
 }

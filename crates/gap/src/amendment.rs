@@ -111,7 +111,8 @@ impl Amendment {
 
     /// How many parameters it has.
     pub(crate) fn free(&self) -> usize {
-        self.effect().map_or(1, |candidate| candidate.free().count() * candidate.sets())
+        self.effect()
+            .map_or(1, |candidate| candidate.free().count() * candidate.sets())
     }
 
     /// How many items of a machine file's list of effects it is.
@@ -125,7 +126,8 @@ impl Amendment {
             Self::Effect(_) => 0.0,
             Self::Correction(path) => {
                 let parameter = problem.parameters.iter().find(|p| p.path == *path);
-                let deviation = parameter.map_or(1.0, |p| p.box_bounds()[1] / calibrate::data_sheet::REACH);
+                let deviation =
+                    parameter.map_or(1.0, |p| p.box_bounds()[1] / calibrate::data_sheet::REACH);
                 0.5 * (x / deviation).powi(2)
             }
         }
@@ -135,5 +137,62 @@ impl Amendment {
 fn doubt(problem: &Problem, path: &str) -> Result<Doubt, Error> {
     let mut doubts = doubts(problem)?.into_iter();
     let found = doubts.find(|doubt| doubt.parameter.path == path);
-    found.ok_or_else(|| Error::Fit(calibrate::Error::Refused(format!("{path} is fitted already"))))
+    found.ok_or_else(|| {
+        Error::Fit(calibrate::Error::Refused(format!(
+            "{path} is fitted already"
+        )))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::problem;
+    use serde_json::json;
+
+    #[test]
+    fn what_is_alike_in_both_bearings_has_one_set_of_values() {
+        let mut problem = problem();
+        let both = |problem: &Problem, kind: &str| {
+            let all = Amendment::all(problem).unwrap();
+            let mut both = all
+                .into_iter()
+                .filter(|one| one.label().ends_with("big_end and small_end"));
+            both.find(|one| one.kind() == kind)
+        };
+        // Oil in an ideal joint is nothing.
+        assert_eq!(both(&problem, "squeeze_film"), None);
+        problem.tree["joints"]["big_end"]["clearance"] = json!("0.1 mm");
+        let film = both(&problem, "squeeze_film").unwrap();
+        let own = problem.parameters.len();
+        let values = film.effect().unwrap().usual();
+        let added = film.added(&problem, &values).unwrap();
+        assert_eq!((film.items(), film.free()), (2, 3));
+        assert_eq!(added.parameters.len(), own + 3);
+        assert!(added.parameters[own..].iter().all(|p| p.places.len() == 2));
+        // Each bearing has been worn in its own direction.
+        let oval = both(&problem, "bearing_ovality").unwrap();
+        assert_eq!((oval.items(), oval.free()), (2, 4));
+    }
+
+    #[test]
+    fn a_value_of_the_data_sheet_may_be_off_by_its_usual_error() {
+        let problem = problem();
+        let all = Amendment::all(&problem).unwrap();
+        let mass = Amendment::Correction("crosshead.mass".to_owned());
+        assert!(all.contains(&mass));
+        // A clearance is the business of effects.
+        assert!(
+            !all.iter()
+                .any(|one| one.effect().is_none() && one.label().contains("clearance"))
+        );
+        let added = mass.added(&problem, &[]).unwrap();
+        assert_eq!(
+            added.parameters.last().map(|p| p.path.as_str()),
+            Some("crosshead.mass")
+        );
+        let one = 0.05;
+        assert!((mass.improbability(&added, one) - 0.5).abs() < 0.1);
+        assert_eq!(mass.probes(&problem).unwrap().len(), DOUBTED.len());
+    }
 }

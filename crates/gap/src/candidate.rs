@@ -23,6 +23,8 @@ pub struct Candidate {
     pub each: Vec<(&'static str, String)>,
     /// Whether one set of values holds at each of them, or each has values of its own.
     pub shared: bool,
+    /// Whether the form of its law is searched, and not only its size.
+    pub formed: bool,
 }
 
 /// A place that is not tried one by one. An effect on a sensor is tried on that of the crosshead's
@@ -64,7 +66,6 @@ impl Candidate {
                 let each: Vec<(&str, String)> = ends.flat_map(words).collect();
                 for mut fixed in orders(entry) {
                     fixed.extend(included(entry, &place, problem));
-                    fixed.extend(shapes(entry));
                     let place = place.clone();
                     let candidate = Self {
                         entry,
@@ -72,6 +73,7 @@ impl Candidate {
                         fixed,
                         each: each.clone(),
                         shared: false,
+                        formed: false,
                     };
                     let usual = candidate.usual();
                     let seen = known || !candidate.place.iter().any(|(_, word)| word == PRESSURE);
@@ -82,7 +84,10 @@ impl Candidate {
                 }
             }
         }
-        let together: Vec<Self> = all.iter().filter_map(|one| one.in_both_bearings(problem)).collect();
+        let together: Vec<Self> = all
+            .iter()
+            .filter_map(|one| one.in_both_bearings(problem))
+            .collect();
         all.extend(together);
         all
     }
@@ -92,9 +97,16 @@ impl Candidate {
     fn in_both_bearings(&self, problem: &Problem) -> Option<Self> {
         let [first, other] = BEARINGS;
         let rest = |words: &[(&'static str, String)]| -> Vec<(&'static str, String)> {
-            words.iter().filter(|(key, _)| *key != "joint").cloned().collect()
+            words
+                .iter()
+                .filter(|(key, _)| *key != "joint")
+                .cloned()
+                .collect()
         };
-        if self.joint() != Some(first) || !is_clear(problem, &self.place, first) || !is_clear(problem, &self.place, other) {
+        if self.joint() != Some(first)
+            || !is_clear(problem, &self.place, first)
+            || !is_clear(problem, &self.place, other)
+        {
             return None;
         }
         let both = Self {
@@ -104,13 +116,6 @@ impl Candidate {
             ..self.clone()
         };
         both.added(problem, &both.usual()).is_ok().then_some(both)
-    }
-
-    /// The first candidate of an effect.
-    #[cfg(test)]
-    pub(crate) fn first(problem: &Problem, name: &str) -> Self {
-        let mut all = Self::all(problem).into_iter();
-        all.find(|candidate| candidate.entry.name == name).unwrap()
     }
 
     /// The same with only the parameters of these indices free, and the others without effect or as
@@ -128,18 +133,21 @@ impl Candidate {
 
     /// The same with the form of its law free as well; none where its law has one form.
     pub(crate) fn of_any_form(&self) -> Option<Self> {
-        let is_shape = |(i, _): &(usize, f64)| self.entry.parameters[*i].shape;
-        let fixed: Vec<(usize, f64)> = self.fixed.iter().filter(|fixed| !is_shape(fixed)).copied().collect();
-        (fixed.len() < self.fixed.len()).then(|| Self {
-            fixed,
+        let forms = self.entry.parameters.iter().any(|p| p.shape);
+        (forms && !self.formed).then(|| Self {
+            formed: true,
             ..self.clone()
         })
     }
 
     /// The parameters that are searched, by their indices.
     pub(crate) fn free(&self) -> impl Iterator<Item = usize> + '_ {
-        let fixed = |i: &usize| self.fixed.iter().any(|(fixed, _)| fixed == i);
-        (0..self.entry.parameters.len()).filter(move |i| !fixed(i))
+        (0..self.entry.parameters.len()).filter(|i| self.is_free(*i))
+    }
+
+    fn is_free(&self, index: usize) -> bool {
+        let is_form = self.entry.parameters[index].shape && !self.formed;
+        !is_form && !self.fixed.iter().any(|(fixed, _)| *fixed == index)
     }
 
     /// Whether it acts on the gas or on what measures it, so that the pressures show it.
@@ -162,7 +170,8 @@ impl Candidate {
             false => "head",
         };
         let mut columns = run.channels.iter().map(|channel| channel.column.as_str());
-        self.end().is_none_or(|end| columns.any(|column| at(column) == end))
+        self.end()
+            .is_none_or(|end| columns.any(|column| at(column) == end))
     }
 
     /// The same at the end of the cylinder alone whose pressure was recorded, where it acts at both and that
@@ -282,9 +291,7 @@ impl Candidate {
             item.get(self.entry.name).is_some_and(|section| {
                 let same = |(key, word): &(&str, String)| section[*key] == word.as_str();
                 let index = |i: usize| self.entry.parameters[i].key;
-                let fixed = |(i, value): &(usize, f64)| {
-                    self.entry.parameters[*i].shape || section[index(*i)].as_f64() == Some(*value)
-                };
+                let fixed = |(i, value): &(usize, f64)| section[index(*i)].as_f64() == Some(*value);
                 let sensor = self.place.iter().find(|(key, _)| *key == MEASURE);
                 let sensor = section[MEASURE].as_str() == sensor.map(|(_, word)| word.as_str());
                 sensor && self.place.iter().all(same) && self.fixed.iter().all(fixed)
@@ -330,18 +337,25 @@ impl Candidate {
         let mut item = self.entry.item(&place, &values);
         // Terms that are left out have no effect, and constants and forms are as usual.
         let is_law = self.entry.proposal == Proposal::ForceLaw;
+        let is_usual = |(i, parameter): (usize, &Parameter)| {
+            let is_fixed = self.fixed.iter().any(|(fixed, _)| *fixed == i);
+            let form = parameter.shape && values[i] == parameter.start && !self.is_free(i);
+            (form || (is_law && is_fixed && !parameter.whole)).then_some(parameter.key)
+        };
+        let usual: Vec<&str> = self
+            .entry
+            .parameters
+            .iter()
+            .enumerate()
+            .filter_map(is_usual)
+            .collect();
         if let Some(section) = item[self.entry.name].as_object_mut() {
-            section.retain(|key, _| {
-                !self.fixed.iter().any(|(i, _)| {
-                    let parameter = &self.entry.parameters[*i];
-                    (parameter.shape || (is_law && !parameter.whole)) && parameter.key == key
-                })
-            });
+            section.retain(|key, _| !usual.contains(&key.as_str()));
         }
         items.push(item);
         MachineFile::from_tree(&added.tree)?.resolve()?;
         for (i, parameter) in self.entry.parameters.iter().enumerate() {
-            if self.fixed.iter().any(|(fixed, _)| *fixed == i) {
+            if !self.is_free(i) {
                 continue;
             }
             let path = format!("effects.{index}.{}.{}", self.entry.name, parameter.key);
@@ -377,7 +391,7 @@ impl Candidate {
             match (fixed, fitted) {
                 (Some((_, value)), _) => *value,
                 (None, Some((fitted, x))) => fitted.value(*x),
-                (None, None) => parameter.start,
+                (None, None) => written(&model.problem.tree, &path).unwrap_or(parameter.start),
             }
         };
         self.entry.parameters.iter().enumerate().map(of).collect()
@@ -400,8 +414,15 @@ fn is_clear(problem: &Problem, place: &[(&'static str, String)], joint: &str) ->
         Some((_, throw)) => format!("throws.{throw}.joints.{joint}.clearance"),
         None => format!("joints.{joint}.clearance"),
     };
-    let in_run = |settings: &[(String, Value)]| settings.iter().any(|(at, value)| at.ends_with(&path) && value != "ideal");
-    let nominal = input::paths::get(&problem.tree, &path).ok().flatten().is_some_and(|value| value != "ideal");
+    let in_run = |settings: &[(String, Value)]| {
+        settings
+            .iter()
+            .any(|(at, value)| at.ends_with(&path) && value != "ideal")
+    };
+    let nominal = input::paths::get(&problem.tree, &path)
+        .ok()
+        .flatten()
+        .is_some_and(|value| value != "ideal");
     nominal || problem.runs.iter().any(|run| in_run(&run.settings))
 }
 
@@ -515,10 +536,13 @@ fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'stati
     places
 }
 
-/// The parameters that are a form of the law, as they usually are.
-fn shapes(entry: &Entry) -> impl Iterator<Item = (usize, f64)> {
-    let parameters = entry.parameters.iter().enumerate();
-    parameters.filter(|(_, p)| p.shape).map(|(i, p)| (i, p.start))
+/// The value at a path of a machine file, SI; none where there is none.
+fn written(tree: &Value, path: &str) -> Option<f64> {
+    match input::paths::get(tree, path).ok()?? {
+        Value::Number(number) => number.as_f64(),
+        Value::String(text) => input::unit::parse(text).ok().map(|measure| measure.si),
+        _ => None,
+    }
 }
 
 /// The orders that an effect may have: whole numbers are tried one by one.

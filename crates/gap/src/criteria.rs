@@ -13,10 +13,10 @@ pub(crate) const NAMED: f64 = 0.5;
 /// By what share of its own signature the law of the right effect is off, as a standard deviation: the laws that the
 /// literature has for one effect differ from each other by as much.
 const OFF: f64 = 0.35;
-/// Probability that a gap has an effect of the catalogue behind it, before it is looked at; of another effect beside
-/// those that were named: two faults at once are rare.
-const PRIOR: f64 = 0.5;
-const PRIOR_OF_ANOTHER: f64 = 0.25;
+/// Odds that a gap has an effect of the catalogue behind it, before it is looked at; and another one beside those that
+/// are believed: two faults at once are rare.
+const FIRST: f64 = 1.0;
+const ANOTHER: f64 = 1.0 / 3.0;
 
 /// What an explanation comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,7 +73,12 @@ pub(crate) fn evidence(before: &Model, after: &Model) -> Evidence {
 /// is no independent noise.
 fn octaves(problem: &Problem) -> f64 {
     let channels = problem.runs.iter().flat_map(|run| &run.channels);
-    let octaves = channels.map(|channel| channel.orders.last().map_or(1, |last| (last + 1).ilog2() + 1));
+    let octaves = channels.map(|channel| {
+        channel
+            .orders
+            .last()
+            .map_or(1, |last| (last + 1).ilog2() + 1)
+    });
     f64::from(octaves.sum::<u32>())
 }
 
@@ -104,22 +109,27 @@ pub(crate) fn left(before: &Model, after: &Model) -> f64 {
     };
     let held_out = before.held_out.zip(after.held_out);
     let fitted = share(before.fitted, after.fitted);
-    held_out.map_or(fitted, |(before, after)| fitted.max(share(before, after))).min(1.0)
+    held_out
+        .map_or(fitted, |(before, after)| fitted.max(share(before, after)))
+        .min(1.0)
 }
 
-/// Probability that an effect which leaves this share of the gap is of the right kind, `others` having been named
-/// before. The right kind leaves what its law is off by; a wrong one that does best leaves any share, a great one
-/// sooner.
-pub(crate) fn probability(left: f64, others: usize) -> f64 {
-    let prior = if others == 0 { PRIOR } else { PRIOR_OF_ANOTHER };
+/// Probability that amendments which leave this share of the gap are of the right kinds, where `others` were believed
+/// before and `more` have been added. The right kinds leave what their laws are off by; wrong ones that do best leave
+/// any share, a great one sooner.
+pub(crate) fn probability(left: f64, others: usize, more: usize) -> f64 {
+    let further = (others + more).saturating_sub(1).min(more);
+    let odds = FIRST.powi(i32::from(others == 0)) * ANOTHER.powi(further as i32);
     let right = (2.0 / std::f64::consts::PI).sqrt() / OFF * (-0.5 * (left / OFF).powi(2)).exp();
     let wrong = 2.0 * left;
-    prior * right / (prior * right + (1.0 - prior) * wrong)
+    odds * right / (odds * right + wrong)
 }
 
 /// What a model with so many effects comes to.
 pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdict {
-    let worst = model.held_out.map_or(model.fitted, |held| held.max(model.fitted));
+    let worst = model
+        .held_out
+        .map_or(model.fitted, |held| held.max(model.fitted));
     match effects {
         0 if baseline.fitted <= NOISE => Verdict::NoGap,
         0 => Verdict::Unexplained,
@@ -134,9 +144,11 @@ mod tests {
 
     #[test]
     fn an_effect_is_named_where_it_leaves_what_its_law_may_be_off_by() {
-        assert!(probability(0.0, 0) > 0.99);
-        assert!((0.8..0.9).contains(&probability(0.2, 0)));
-        assert!(probability(0.5, 0) < NAMED && probability(0.9, 0) < 0.05);
-        assert!(probability(0.3, 1) < probability(0.3, 0));
+        assert!(probability(0.0, 0, 1) > 0.99);
+        assert!((0.8..0.9).contains(&probability(0.2, 0, 1)));
+        assert!(probability(0.5, 0, 1) < NAMED && probability(0.9, 0, 1) < 0.05);
+        // A second one has to leave less, and two at once as little.
+        assert!(probability(0.3, 1, 1) < probability(0.3, 0, 1));
+        assert_eq!(probability(0.3, 0, 2), probability(0.3, 1, 1));
     }
 }

@@ -94,8 +94,7 @@ pub fn explain(
         probabilities,
     } = whole(fitter, problem, start.unwrap_or(&nominal))?;
     let mut missing_force = Vec::new();
-    let effects = found.len();
-    if effects == 0
+    if found.is_empty()
         && verdict(&baseline, &model, 0) == Verdict::Unexplained
         && !is_of_pressures(problem)
         && !effort.chaotic
@@ -127,7 +126,7 @@ pub fn explain(
             estimate.value = estimate.parameter.value(*x);
         }
     }
-    let corrections = corrections(problem, &estimates, &probabilities);
+    let corrections = corrections(&estimates, &probabilities);
     let set_right = || -> Result<Model, Error> {
         let mut problem = problem.clone();
         problem.parameters.retain(|p| !p.is_crank_angle_offset());
@@ -173,7 +172,8 @@ struct Whole {
 
 fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Error> {
     let all = Amendment::all(problem)?;
-    let of_gas = |amendment: &Amendment| amendment.effect().is_some_and(|effect| effect.is_of_gas());
+    let of_gas =
+        |amendment: &Amendment| amendment.effect().is_some_and(|effect| effect.is_of_gas());
     let mut known: Vec<Amended> = Vec::new();
     let mut found: Vec<Found> = Vec::new();
     let mut others = all.clone();
@@ -197,9 +197,13 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
                 values,
             })
             .collect();
-        let shown = |one: &Amendment| one.effect().is_some_and(|effect| effect.is_shown_by_pressures(problem));
+        let shown = |one: &Amendment| {
+            one.effect()
+                .is_some_and(|effect| effect.is_shown_by_pressures(problem))
+        };
         others.retain(|one| !shown(one));
     }
+    known = at_their_ends(fitter, problem, known)?;
     let with_gas = added(problem, &known)?;
     let mut start = start.to_vec();
     start.resize(with_gas.parameters.len(), 0.0);
@@ -216,6 +220,12 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     if let Some(last) = found.last_mut() {
         last.gap = Some(judged.nothing.model.gap());
     }
+    for (found, known) in found
+        .iter_mut()
+        .zip(known.iter().filter_map(|one| one.amendment.effect()))
+    {
+        found.effect.candidate = known.clone();
+    }
     found.extend(judged.found(&with_gas));
     Ok(Whole {
         baseline,
@@ -226,8 +236,45 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     })
 }
 
+/// The effects of the gas. Each acts at the one end of its cylinder whose pressure was recorded, where everything that
+/// was recorded is likelier so.
+fn at_their_ends(
+    fitter: &Fitter,
+    problem: &Problem,
+    mut known: Vec<Amended>,
+) -> Result<Vec<Amended>, Error> {
+    let few = fitter.few(problem);
+    let deviance = |known: &[Amended]| -> Result<f64, Error> {
+        let with = added(&few, known)?;
+        let start = vec![0.0; with.parameters.len()];
+        let rough = fitter.roughly(&[(with, start)])?;
+        Ok(rough.map_or(f64::INFINITY, |rough| rough.deviance))
+    };
+    for i in 0..known.len() {
+        let alone = known[i]
+            .amendment
+            .effect()
+            .and_then(|effect| effect.at_recorded_end(problem));
+        let Some(alone) = alone.map(Amendment::Effect) else {
+            continue;
+        };
+        (fitter.say)("looking at one end of the cylinder", f64::NAN);
+        let before = deviance(&known)?;
+        let both = std::mem::replace(&mut known[i].amendment, alone);
+        if deviance(&known)? >= before {
+            known[i].amendment = both;
+        }
+    }
+    Ok(known)
+}
+
 /// What the pressures alone come to, with the joints and the recordings of `problem`.
-fn with_joints(fitter: &Fitter, problem: &Problem, judged: Judgement, pressures: &Problem) -> Result<Whole, Error> {
+fn with_joints(
+    fitter: &Fitter,
+    problem: &Problem,
+    judged: Judgement,
+    pressures: &Problem,
+) -> Result<Whole, Error> {
     let full = |hypothesis: &Hypothesis| {
         let model = &hypothesis.model;
         let mut full = problem.clone();
@@ -250,20 +297,24 @@ fn with_joints(fitter: &Fitter, problem: &Problem, judged: Judgement, pressures:
 fn corrected(judged: &Judgement) -> Vec<(String, f64)> {
     let set = judged.believed.set.iter().zip(&judged.probabilities);
     let corrections = set.filter(|(one, _)| one.amendment.effect().is_none());
-    corrections.map(|(one, probability)| (one.amendment.label(), *probability)).collect()
+    corrections
+        .map(|(one, probability)| (one.amendment.label(), *probability))
+        .collect()
 }
 
 /// The coordinates of those parameters of `problem` that `part` has.
 fn own_start(problem: &Problem, start: &[f64], part: &Problem) -> Vec<f64> {
     let of = |path: &str| problem.parameters.iter().position(|p| p.path == path);
-    let own = part.parameters.iter().map(|p| of(&p.path).map_or(0.0, |i| start[i]));
+    let own = part
+        .parameters
+        .iter()
+        .map(|p| of(&p.path).map_or(0.0, |i| start[i]));
     own.collect()
 }
 
-fn corrections(problem: &Problem, estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<Correction> {
+fn corrections(estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<Correction> {
     let of = |(path, probability): &(String, f64)| {
         let estimate = estimates.iter().find(|e| e.parameter.path == *path)?;
-        let _unfitted = problem;
         Some(Correction {
             path: path.clone(),
             value: estimate.value,

@@ -21,7 +21,7 @@ use std::ops::ControlFlow;
 
 /// By how much features may stand elsewhere, rad, and the evaluations that a descent may take there: for every start,
 /// and for those that have led near.
-const ROUGH: [(f64, u64); 2] = [(0.03, 12), (0.01, 10)];
+const ROUGH: [(f64, u64); 3] = [(0.03, 10), (0.01, 8), (0.003, 10)];
 const FINE: [(f64, u64); 4] = [(0.01, 25), (0.003, 25), (0.001, 25), (0.0, 40)];
 /// Relative change of the sum of squares at which a descent ends.
 const CHANGE: f64 = 1e-2;
@@ -59,21 +59,32 @@ impl Fitter<'_> {
         Ok(model.map(|model| (model, rough.start)))
     }
 
-    /// Where short descents from these points lead, the best of them.
+    /// Where short descents from these points lead, the best of them. With each allowance that is smaller one of them
+    /// less goes on.
     ///
     /// # Errors
     /// [`Error::Stopped`].
     pub fn roughly(&self, starts: &[Start]) -> Result<Option<Rough>, Error> {
-        let led = starts.par_iter().map(|(problem, x)| self.descended(problem, x, &ROUGH));
-        let led = led.collect::<Result<Vec<_>, Error>>()?;
-        let led = led.into_iter().enumerate();
-        let led = led.filter_map(|(start, descent)| Some((start, descent?)));
-        let best = led.min_by(|(_, a), (_, b)| a.least.total_cmp(&b.least));
-        Ok(best.map(|(start, descent)| Rough {
-            start,
-            x: descent.x,
-            deviance: descent.least,
-        }))
+        let mut led: Vec<Rough> = starts
+            .iter()
+            .enumerate()
+            .map(|(start, (_, x))| Rough::at(start, x))
+            .collect();
+        for stage in ROUGH {
+            let next = led.into_par_iter().map(|mut rough| {
+                let problem = &starts[rough.start].0;
+                let descent = self.descended(problem, &rough.end, &[stage])?;
+                Ok(descent.map(|descent| {
+                    rough.take(descent);
+                    rough
+                }))
+            });
+            let next = next.collect::<Result<Vec<_>, Error>>()?;
+            led = next.into_iter().flatten().collect();
+            led.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+            led.truncate(led.len().saturating_sub(1).max(1));
+        }
+        Ok(led.into_iter().next())
     }
 
     /// The model with all its fitted runs, continued from where a few of them have led.
@@ -82,12 +93,22 @@ impl Fitter<'_> {
         let fine = self.descended(problem, x, &FINE)?;
         match fine {
             None => Ok(None),
-            Some(fine) => possible(Model::at(problem.clone(), &fine.x, fine.timing, self.effort)),
+            Some(fine) => possible(Model::at(
+                problem.clone(),
+                &fine.x,
+                fine.timing,
+                self.effort,
+            )),
         }
     }
 
     /// A descent with one allowance after another; none where it ends at a machine that cannot be simulated.
-    fn descended(&self, problem: &Problem, x: &[f64], stages: &[(f64, u64)]) -> Result<Option<Descent>, Error> {
+    fn descended(
+        &self,
+        problem: &Problem,
+        x: &[f64],
+        stages: &[(f64, u64)],
+    ) -> Result<Option<Descent>, Error> {
         let fitted = problem.with_runs(|run| self.effort.fits(&run.id)).metered();
         if fitted.parameters.is_empty() {
             return Ok(Some(Descent::nowhere()));
@@ -108,7 +129,7 @@ impl Fitter<'_> {
                     break;
                 };
                 // With less allowance than the law is off by, less fits.
-                if !descent.note(*timing, deviance) && *timing < ROUGH[1].0 {
+                if !descent.note(*timing, deviance) && *timing < ROUGH[0].0 {
                     break;
                 }
             }
@@ -121,7 +142,12 @@ impl Fitter<'_> {
     }
 
     /// The problem's machine, calibrated as well as it can be with so many evaluations.
-    pub fn searched(&self, problem: &Problem, start: &[f64], evaluations: u64) -> Result<Vec<f64>, Error> {
+    pub fn searched(
+        &self,
+        problem: &Problem,
+        start: &[f64],
+        evaluations: u64,
+    ) -> Result<Vec<f64>, Error> {
         let settings = FitSettings {
             optimiser: Optimiser::Default,
             seed: 0,
@@ -145,7 +171,9 @@ impl Fitter<'_> {
                 cost: metered.meter.steps(),
             })
         };
-        self.effort.journal.once(&("search", problem, &settings), search)
+        self.effort
+            .journal
+            .once(&("search", problem, &settings), search)
     }
 
     /// The parameters of a model with their bounds.
@@ -190,6 +218,27 @@ pub(crate) struct Rough {
     pub x: Vec<f64>,
     /// Twice the negative logarithm of the likelihood there.
     pub deviance: f64,
+    /// Where the last descent ended.
+    end: Vec<f64>,
+}
+
+impl Rough {
+    fn at(start: usize, x: &[f64]) -> Self {
+        Self {
+            start,
+            x: x.to_vec(),
+            deviance: f64::INFINITY,
+            end: x.to_vec(),
+        }
+    }
+
+    /// Goes on to where a descent has ended.
+    fn take(&mut self, descent: Descent) {
+        if descent.least < self.deviance {
+            (self.x, self.deviance) = (descent.x, descent.least);
+        }
+        self.end = descent.end;
+    }
 }
 
 /// Where a descent has led.
@@ -227,7 +276,12 @@ impl Descent {
 
     fn numbers(&self) -> Vec<f64> {
         match self.least.is_finite() {
-            true => [&[self.last, self.timing, self.least], &self.end[..], &self.x[..]].concat(),
+            true => [
+                &[self.last, self.timing, self.least],
+                &self.end[..],
+                &self.x[..],
+            ]
+            .concat(),
             false => Vec::new(),
         }
     }

@@ -15,9 +15,9 @@ use crate::error::Error;
 use crate::explain::tried;
 use crate::finding::{Tried, effects};
 use crate::fitter::Fitter;
-use crate::model::Model;
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
+use crate::model::Model;
 use calibrate::Problem;
 use input::effects::{Proposal, proposed};
 
@@ -51,6 +51,7 @@ fn libraries(problem: &Problem) -> Vec<Candidate> {
             fixed,
             each: Vec::new(),
             shared: false,
+            formed: false,
         }
         .restricted(&groups(entry).concat())
     };
@@ -71,7 +72,12 @@ pub(crate) fn empirical_force(fitter: &Fitter, model: &Model) -> Result<Option<F
         if best.is_some() && !fitter.effort.goes_on() {
             break;
         }
-        let few = Model::at(fitter.few(&model.problem), &model.x, model.timing, fitter.effort)?;
+        let few = Model::at(
+            fitter.few(&model.problem),
+            &model.x,
+            model.timing,
+            fitter.effort,
+        )?;
         let Some(dense) = estimated(fitter, &few, &library)? else {
             continue;
         };

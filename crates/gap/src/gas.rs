@@ -46,7 +46,8 @@ pub(crate) fn pressures(problem: &Problem) -> Result<Option<Problem>, Error> {
 
 /// Whether a problem has more than its pressures and what they show.
 pub(crate) fn has_joints(problem: &Problem) -> bool {
-    let of_gas = |p: &calibrate::Parameter| p.is_crank_angle_offset() || p.path.contains("cylinder.");
+    let of_gas =
+        |p: &calibrate::Parameter| p.is_crank_angle_offset() || p.path.contains("cylinder.");
     !is_of_pressures(problem) || !problem.parameters.iter().all(of_gas)
 }
 

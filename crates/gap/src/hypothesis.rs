@@ -62,11 +62,6 @@ impl Hypothesis {
         kinds
     }
 
-    /// How many of its amendments are effects, and no corrections.
-    pub fn effects(&self) -> usize {
-        self.set.iter().filter(|one| one.amendment.effect().is_some()).count()
-    }
-
     /// It fitted to all runs of `problem`, from where a few have led.
     ///
     /// # Errors
@@ -102,7 +97,10 @@ impl Hypothesis {
         for (one, first) in set.iter().zip(firsts(&self.model.problem, &self.set, own)) {
             let coordinate = &self.model.x[first.min(self.model.x.len() - 1)..];
             let (added, own) = match one.amendment.effect() {
-                Some(_) => (one.amendment.added(&with, &one.values)?, vec![0.0; one.amendment.free()]),
+                Some(_) => (
+                    one.amendment.added(&with, &one.values)?,
+                    vec![0.0; one.amendment.free()],
+                ),
                 None => (one.amendment.added(&with, &[])?, coordinate[..1].to_vec()),
             };
             with = added;

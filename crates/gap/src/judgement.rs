@@ -1,6 +1,7 @@
 //! What a search comes to: which of its sets is believed, how probable each of its amendments is, and what else
 //! might have been.
 
+use crate::amendment::Amendment;
 use crate::criteria::{NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
@@ -8,13 +9,13 @@ use crate::fitter::Fitter;
 use crate::hypothesis::{Amended, Hypothesis};
 use crate::recorded::is_of_pressures;
 use crate::search::{MOST, Search};
-use crate::amendment::Amendment;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 use rayon::prelude::*;
 
-/// Sets of each size that are fitted to all runs.
-const FITTED: usize = 4;
+/// Sets of one amendment, and of more, that are fitted to all runs.
+const SINGLES: usize = 4;
+const LARGER: usize = 2;
 /// Rivals less probable than this are left out.
 const NEGLIGIBLE: f64 = 0.01;
 /// Most evaluations of the calibration where a first descent leaves more than noise.
@@ -57,28 +58,53 @@ pub(crate) fn judged(
         Some(model) => Hypothesis::new(Vec::new(), model, own),
         None => nothing.clone(),
     };
-    let search = Search { fitter, few: &few, amendments };
+    let search = Search {
+        fitter,
+        few: &few,
+        amendments,
+    };
     let sets = search.sets(first)?;
     let chosen = (1..=MOST).flat_map(|count| {
         let of_size = sets.iter().filter(move |set| set.set.len() == count);
-        of_kinds(of_size).into_iter().take(FITTED)
+        of_kinds(of_size)
+            .into_iter()
+            .take(if count == 1 { SINGLES } else { LARGER })
     });
     let chosen: Vec<&Hypothesis> = chosen.collect();
     (fitter.say)("fitting to all runs", nothing.model.fitted);
-    let settled = chosen.into_par_iter().map(|set| match set.settled(fitter, problem)? {
-        Some(set) => Ok(Some(set.of_any_form(fitter, problem)?)),
-        None => Ok(None),
-    });
+    let settled = chosen
+        .into_par_iter()
+        .map(|set| match set.settled(fitter, problem)? {
+            Some(set) => Ok(Some(set.of_any_form(fitter, problem)?)),
+            None => Ok(None),
+        });
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
     let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
     others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     if std::env::var("LAB").is_ok() {
         for set in sets.iter().take(25) {
-            eprintln!("  few {:?} cost {:.1} tau {} fitted {:.2}", set.labels(), set.cost, set.model.timing, set.model.fitted);
+            eprintln!(
+                "  few {:?} cost {:.1} tau {} fitted {:.2}",
+                set.labels(),
+                set.cost,
+                set.model.timing,
+                set.model.fitted
+            );
         }
-        eprintln!("nothing cost {:.1} tau {} fitted {:.2} held {:?}", nothing.cost, nothing.model.timing, nothing.model.fitted, nothing.model.held_out);
+        eprintln!(
+            "nothing cost {:.1} tau {} fitted {:.2} held {:?}",
+            nothing.cost, nothing.model.timing, nothing.model.fitted, nothing.model.held_out
+        );
         for set in &others {
-            eprintln!("  all {:?} cost {:.1} tau {} fitted {:.2} held {:?} left {:.2}", set.labels(), set.cost, set.model.timing, set.model.fitted, set.model.held_out, left(&nothing.model, &set.model));
+            eprintln!(
+                "  all {:?} cost {:.1} tau {} fitted {:.2} held {:?} left {:.2}",
+                set.labels(),
+                set.cost,
+                set.model.timing,
+                set.model.fitted,
+                set.model.held_out,
+                left(&nothing.model, &set.model)
+            );
         }
     }
     let mut believed = &nothing;
@@ -87,7 +113,8 @@ pub(crate) fn judged(
         let Some(best) = others.iter().find(|set| set.set.len() == count) else {
             continue;
         };
-        let probable = probability(left(&believed.model, &best.model), count - 1);
+        let others = believed.set.len();
+        let probable = probability(left(&believed.model, &best.model), others, count - others);
         if probable > NAMED && best.cost < believed.cost && shows_in_each(&believed, best)? {
             believed = best;
             sure = probable;
@@ -142,7 +169,13 @@ fn rivals<'a>(
     which: usize,
     others: &'a [Hypothesis],
 ) -> impl Iterator<Item = &'a Hypothesis> {
-    let kept: Vec<&Amended> = believed.set.iter().enumerate().filter(|(i, _)| *i != which).map(|(_, one)| one).collect();
+    let kept: Vec<&Amended> = believed
+        .set
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| *i != which)
+        .map(|(_, one)| one)
+        .collect();
     let own = believed.set[which].amendment.kind();
     others.iter().filter(move |other| {
         other.set.len() == believed.set.len()
@@ -155,7 +188,13 @@ impl Judgement {
     /// The effects that are believed, with their rivals. `problem` is the machine without them.
     pub fn found(&self, problem: &Problem) -> Vec<Found> {
         let values = self.believed.values(problem);
-        let all = self.believed.set.iter().enumerate().zip(values).zip(&self.probabilities);
+        let all = self
+            .believed
+            .set
+            .iter()
+            .enumerate()
+            .zip(values)
+            .zip(&self.probabilities);
         let found = all.filter_map(|(((i, one), values), probability)| {
             let candidate = one.amendment.effect()?.clone();
             Some(Found {
@@ -182,7 +221,11 @@ impl Judgement {
         let tried = rivals(&self.believed, which, &self.others).filter_map(|rival| {
             let probability = self.probabilities[which] * (self.believed.cost - rival.cost).exp();
             let values = rival.values(problem);
-            let new = rival.set.iter().zip(values).find(|(one, _)| !self.believed.has(&one.amendment));
+            let new = rival
+                .set
+                .iter()
+                .zip(values)
+                .find(|(one, _)| !self.believed.has(&one.amendment));
             let (one, values) = new?;
             Some(Tried {
                 candidate: one.amendment.effect()?.clone(),
@@ -192,7 +235,9 @@ impl Judgement {
                 model: Some(rival.model.clone()),
             })
         });
-        tried.filter(|tried| tried.probability > NEGLIGIBLE).collect()
+        tried
+            .filter(|tried| tried.probability > NEGLIGIBLE)
+            .collect()
     }
 
     /// Effects that were fitted to all runs by themselves, and are not believed.
@@ -206,7 +251,7 @@ impl Judgement {
                 candidate: set.set[0].amendment.effect()?.clone(),
                 values,
                 evidence: evidence(&self.nothing.model, &set.model),
-                probability: probability(left(&self.nothing.model, &set.model), 0) * share,
+                probability: probability(left(&self.nothing.model, &set.model), 0, 1) * share,
                 model: Some(set.model.clone()),
             })
         });
@@ -232,5 +277,55 @@ fn shows_in_each(before: &Hypothesis, after: &Hypothesis) -> Result<bool, Error>
     let (before, after_each) = (deviances(before)?, deviances(after)?);
     let added = after.set.last().and_then(|one| one.amendment.effect());
     let mut each = before.iter().zip(after_each).zip(&problem.runs);
-    Ok(each.all(|((before, now), run)| now < *before || added.is_some_and(|effect| !effect.acts_on(run))))
+    Ok(each.all(|((before, now), run)| {
+        now < *before || added.is_some_and(|effect| !effect.acts_on(run))
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::Candidate;
+    use crate::fixture::{effort, fitter, problem, problem_of};
+    use serde_json::json;
+
+    fn of_kinds_named(problem: &Problem, names: &[&str]) -> Vec<Amendment> {
+        let all = Candidate::all(problem).into_iter();
+        let named = all.filter(|candidate| names.contains(&candidate.entry.name));
+        named.map(Amendment::Effect).collect()
+    }
+
+    #[test]
+    fn the_right_kind_is_believed_among_others() {
+        let problem = problem();
+        let effort = effort();
+        let fitter = fitter(&effort);
+        let amendments =
+            of_kinds_named(&problem, &["ring_friction", "misalignment", "sensor_gain"]);
+        let judged = judged(&fitter, &problem, &[0.0], &amendments).unwrap();
+        let labels = judged.believed.labels();
+        assert_eq!(labels, ["ring_friction"]);
+        assert!(judged.probabilities[0] > 0.9, "{:?}", judged.probabilities);
+        let found = judged.found(&problem);
+        let force = found[0].effect.values[0];
+        assert!((force / 150.0 - 1.0).abs() < 0.02, "{force}");
+        // It needs no allowance for a law that is off.
+        assert!(judged.believed.model.timing < 1e-3);
+    }
+
+    #[test]
+    fn what_is_in_none_of_the_candidates_is_not_named() {
+        let effect = json!([{"squeeze_film": {"joint": "small_end", "viscosity": "0.05 Pa s"}}]);
+        let problem = problem_of(effect);
+        let effort = effort();
+        let fitter = fitter(&effort);
+        let amendments = of_kinds_named(&problem, &["sensor_gain"]);
+        let judged = judged(&fitter, &problem, &[0.0], &amendments).unwrap();
+        assert!(
+            judged.believed.set.is_empty(),
+            "{:?}",
+            judged.believed.labels()
+        );
+        assert!(judged.nothing.model.fitted > 2.0);
+    }
 }

@@ -2,8 +2,8 @@
 
 use crate::candidate::Candidate;
 use crate::error::Error;
-use calibrate::LOOSE;
 use crate::stability_selection::Regression;
+use calibrate::LOOSE;
 use calibrate::Problem;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
@@ -150,6 +150,7 @@ mod tests {
             fixed: Vec::new(),
             each: Vec::new(),
             shared: false,
+            formed: false,
         }
         .restricted(&groups.concat());
         let key = |i: usize| entry.parameters[i].key;

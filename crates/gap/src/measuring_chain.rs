@@ -70,7 +70,8 @@ fn finding(
         place,
         fixed: Vec::new(),
         each: Vec::new(),
-            shared: false,
+        shared: false,
+        formed: false,
     };
     Found {
         effect: Tried {

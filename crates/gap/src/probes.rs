@@ -36,6 +36,31 @@ impl Candidate {
             && !parameters.iter().any(|p| p.cyclic)
     }
 
+    /// The usual effect with each part of the form of its law at its other end, and with all of them.
+    fn other_forms(&self, usual: &[f64]) -> Vec<Vec<f64>> {
+        let parameters = self.entry.parameters;
+        let shapes: Vec<usize> = (0..parameters.len())
+            .filter(|i| parameters[*i].shape && !parameters[*i].cyclic)
+            .collect();
+        let with = |changed: &[usize]| {
+            let mut probe = usual.to_vec();
+            for i in changed {
+                let [low, high] = parameters[*i].bounds;
+                probe[*i] = if parameters[*i].start == low {
+                    high
+                } else {
+                    low
+                };
+            }
+            probe
+        };
+        let mut forms: Vec<Vec<f64>> = shapes.iter().map(|i| with(&[*i])).collect();
+        if shapes.len() > 1 {
+            forms.push(with(&shapes));
+        }
+        forms
+    }
+
     fn item_probes(&self) -> Vec<Vec<f64>> {
         let parameters = self.entry.parameters;
         let usual: Vec<f64> = parameters.iter().map(|p| p.start).collect();
@@ -65,6 +90,7 @@ impl Candidate {
                 probes.extend(shares.iter().map(|share| amplitude(-share)));
             }
         }
+        probes.extend(self.other_forms(&usual));
         // What may lie anywhere is varied by itself.
         for (i, parameter) in parameters.iter().enumerate() {
             let [low, high] = parameter.bounds;

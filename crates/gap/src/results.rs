@@ -10,8 +10,8 @@ use crate::error::Error;
 use crate::explain::Explanation;
 use crate::expression::expression;
 use crate::finding::{Correction, Found, Tried, first_item};
-use crate::model::Model;
 use crate::missing_force::MissingForce;
+use crate::model::Model;
 use crate::notes::{closing, notes};
 use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 use crate::scaling::{Scaling, scaling};
@@ -248,11 +248,7 @@ impl Results {
             heldout_runs: effort.held_out.clone(),
             next_recording: explanation.next_recording.clone(),
             missing_force: explanation.missing_force.clone(),
-            refused: explanation
-                .refused
-                .iter()
-                .map(Other::from_tried)
-                .collect(),
+            refused: explanation.refused.iter().map(Other::from_tried).collect(),
             noise,
             cost: effort.journal.spent(),
             seconds: None,
@@ -367,9 +363,7 @@ fn of_items(
             form: None,
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
-            rivals: rivals
-                .map(Other::from_tried)
-                .collect(),
+            rivals: rivals.map(Other::from_tried).collect(),
             parameters: parameters
                 .iter()
                 .map(|(key, p)| ((*key).to_owned(), *p))

@@ -144,12 +144,23 @@ pub(crate) fn screen(
 fn ordered<T>(scored: Vec<(T, Vec<f64>)>) -> Vec<T> {
     let place = |scores: &[f64]| {
         let at = |(point, score): (usize, &f64)| {
-            scored.iter().filter(|(_, other)| other[point] > *score).count()
+            scored
+                .iter()
+                .filter(|(_, other)| other[point] > *score)
+                .count()
         };
-        scores.iter().enumerate().map(at).min().unwrap_or(usize::MAX)
+        scores
+            .iter()
+            .enumerate()
+            .map(at)
+            .min()
+            .unwrap_or(usize::MAX)
     };
     let places: Vec<usize> = scored.iter().map(|(_, scores)| place(scores)).collect();
-    let mut order: Vec<(usize, T)> = places.into_iter().zip(scored.into_iter().map(|(it, _)| it)).collect();
+    let mut order: Vec<(usize, T)> = places
+        .into_iter()
+        .zip(scored.into_iter().map(|(it, _)| it))
+        .collect();
     order.sort_by_key(|(place, _)| *place);
     order.into_iter().map(|(_, it)| it).collect()
 }
@@ -166,7 +177,12 @@ mod tests {
             ("a little", vec![0.01, 0.3]),
             ("nowhere", vec![f64::NEG_INFINITY, 0.2]),
         ];
-        let expected = ["only where it is calibrated", "worth nothing there", "a little", "nowhere"];
+        let expected = [
+            "only where it is calibrated",
+            "worth nothing there",
+            "a little",
+            "nowhere",
+        ];
         assert_eq!(ordered(scored), expected);
     }
 }

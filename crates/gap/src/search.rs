@@ -5,8 +5,8 @@
 //! one amendment is exchanged for another is reached from the set without it.
 
 use crate::amendment::Amendment;
+use crate::criteria::{dependence, freedom, left};
 use crate::error::Error;
-use crate::criteria::{dependence, freedom};
 use crate::fitter::{Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, start};
 use crate::screen::{Screened, screen};
@@ -24,6 +24,8 @@ const BESIDE: usize = 8;
 /// halving, Jamieson and Talwalkar 2016).
 const REFINED: usize = 8;
 const REFINED_BESIDE: usize = 4;
+/// Share of the gap with which no more is looked for: less than the law of an effect is usually off by.
+const LITTLE: f64 = 0.15;
 /// Nodes that are looked at further.
 const EXPANDED: usize = 3;
 
@@ -37,20 +39,22 @@ pub(crate) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// All sets that were fitted, the least costly first; `nothing` is the empty one. The search ends where one of them is
-    /// at the noise.
+    /// All sets that were fitted, the least costly first; `nothing` is the empty one. The search ends where the best of
+    /// them leaves little.
     ///
     /// # Errors
     /// [`Error::Stopped`].
     pub fn sets(&self, nothing: Hypothesis) -> Result<Vec<Hypothesis>, Error> {
-        let mut nodes = vec![nothing];
+        let mut nodes = vec![nothing.clone()];
         let mut expanded: Vec<Vec<String>> = Vec::new();
         while expanded.len() < EXPANDED && self.fitter.effort.goes_on() {
-            let open = |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
+            let open =
+                |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
             let Some(node) = nodes.iter().find(open).cloned() else {
                 break;
             };
-            if nodes.iter().any(|node| Fitter::is_at_noise(&node.model)) {
+            // What little the best leaves may be the form of its law.
+            if left(&nothing.model, &nodes[0].model) < LITTLE {
                 break;
             }
             expanded.push(node.labels());
@@ -71,11 +75,16 @@ impl Search<'_> {
     /// The set of a node with each of the most promising other amendments.
     fn beside(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         (self.fitter.say)(&words(node, "screening"), node.model.fitted);
-        let others = self.amendments.iter().filter(|amendment| !node.has(amendment));
+        let others = self
+            .amendments
+            .iter()
+            .filter(|amendment| !node.has(amendment));
         let screened = screen(self.fitter, &node.model, others.cloned().collect())?;
         let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
         let of_a_kind = |screened: &Screened| {
-            let count = kinds.entry(screened.amendment.kind().to_owned()).or_default();
+            let count = kinds
+                .entry(screened.amendment.kind().to_owned())
+                .or_default();
             *count += 1;
             *count <= if node.set.is_empty() { OF_A_KIND } else { 1 }
         };
@@ -88,14 +97,26 @@ impl Search<'_> {
         let clock = std::time::Instant::now();
         let spent = self.fitter.effort.journal.spent();
         let count = chosen.len();
-        let rough = chosen.into_par_iter().map(|screened| self.roughly(node, &screened));
+        let rough = chosen
+            .into_par_iter()
+            .map(|screened| self.roughly(node, &screened));
         let rough = rough.collect::<Result<Vec<_>, Error>>()?;
         let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
         rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        rough.truncate(if node.set.is_empty() { REFINED } else { REFINED_BESIDE });
+        rough.truncate(if node.set.is_empty() {
+            REFINED
+        } else {
+            REFINED_BESIDE
+        });
         if std::env::var("LAB").is_ok() {
-            eprintln!("  rough {count} in {:.1} s, {} M", clock.elapsed().as_secs_f64(), (self.fitter.effort.journal.spent() - spent) / 1000000);
-            for t in &rough { eprintln!("  rough {} {:.1}", t.label(), t.cost); }
+            eprintln!(
+                "  rough {count} in {:.1} s, {} M",
+                clock.elapsed().as_secs_f64(),
+                (self.fitter.effort.journal.spent() - spent) / 1000000
+            );
+            for t in &rough {
+                eprintln!("  rough {} {:.1}", t.label(), t.cost);
+            }
         }
         let fitted = rough.into_par_iter().map(|trial| {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
@@ -153,7 +174,9 @@ struct Trial {
 
 impl Trial {
     fn label(&self) -> String {
-        self.set.last().map_or_else(String::new, |one| one.amendment.label())
+        self.set
+            .last()
+            .map_or_else(String::new, |one| one.amendment.label())
     }
 }
 

@@ -89,10 +89,9 @@ fn explained(effects: &Value) -> gap::Explanation {
         evaluations: 120,
         chaotic: false,
         journal: gap::Journal::default(),
-        found: 0,
     };
     let problem = problem(machine(), runs.to_vec());
-    explain(&problem, &[], &effort, &|_| (), &|| {
+    explain(&problem, None, &[], &effort, &|_| (), &|| {
         ControlFlow::Continue(())
     })
     .unwrap()

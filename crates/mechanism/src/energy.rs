@@ -77,7 +77,7 @@ pub(crate) fn energy<S: Scalar>(machine: &Machine<S>, at: &Evaluation<S>) -> Ene
         energy.elastic += stored(&throw.small_end, &part.joints.small_end);
         if let Some(spring) = Acting::on_throw(&machine.effects, i).rod() {
             let longer = motion.stretch * throw.rod.length;
-            energy.elastic += spring.stiffness * longer * longer * 0.5;
+            energy.elastic += spring.energy(longer, motion.stretch);
         }
         if let Guide::Clear(clear) = &throw.guide {
             for corner in &guide.corners {

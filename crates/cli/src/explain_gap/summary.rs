@@ -8,7 +8,10 @@ use gap::results::Other;
 pub(super) fn print(results: &Results) {
     println!("{}", results.verdict.name());
     for effect in &results.effects {
-        println!("{} ({:.2}): {}", effect.label, effect.probability, effect.sentence);
+        println!(
+            "{} ({:.2}): {}",
+            effect.label, effect.probability, effect.sentence
+        );
         if let Some(expression) = &effect.expression {
             println!("  F = {expression}");
         }

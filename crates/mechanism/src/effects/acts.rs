@@ -224,4 +224,9 @@ pub(crate) struct RodSpring<S> {
     pub stiffness: S,
     /// Damping as a share of the critical one of the free rod.
     pub damping_ratio: S,
+    /// By what share it is stiffer where the rod is [`HARDENED`] longer.
+    pub hardening: S,
 }
+
+/// Relative stretch of a rod at which its hardening is stated.
+pub(crate) const HARDENED: f64 = 1e-4;

@@ -14,7 +14,7 @@ mod check;
 mod place;
 
 pub(crate) use acting::{Acting, AtJoint};
-pub(crate) use acts::{Acts, ChamberAt, JointAt, PistonAt, RodSpring, Shape};
+pub(crate) use acts::{Acts, ChamberAt, HARDENED, JointAt, PistonAt, RodSpring, Shape};
 pub use alternatives::{Alternatives, Oval, Shaken};
 pub use place::{End, Joint, Place};
 

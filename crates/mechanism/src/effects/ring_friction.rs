@@ -42,7 +42,7 @@ declaration! {
         /// Piston speed over which the change of sign is spread; 0.05 m/s where it is left out.
         slip_speed: Velocity(AboveZero), 0.001 to 0.5, start 0.05;
         /// Friction per speed, of the oil; 0 N s/m where it is left out.
-        @shape viscous: Damping(FromZero), 0.0 to 200.0, start 0.0;
+        @shape viscous: Damping(FromZero), 0.0 to 60.0, start 0.0;
     } as RingFriction
 }
 

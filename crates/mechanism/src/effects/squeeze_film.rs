@@ -5,6 +5,9 @@
 //! F = −π μ R l³/c³ · (1 + 2 ε²) / (1 − ε²)^(5/2) · ė         ε = |e|/c
 //! ```
 //!
+//! A bearing that is long beside its radius has the film of Sommerfeld's, which grows as 1/(1 − ε²)^(3/2) (Booker 1965):
+//! a share m of the force at ε = 0 may be of that kind.
+//!
 //! ė is the rate at which the journal approaches the bearing. While it leaves, a share s of that force is left:
 //! a film that cannot pull has none (Gümbel 1914), one that is fed with oil all around has all of it. The film ends at the height of the
 //! roughness: 1 − ε² is rounded to √((1 − ε²)² + h²). The wedge that rotation makes is left out. A
@@ -28,6 +31,8 @@ parameters! {
         pub roughness: S,
         /// Share s of the force that is left while the journal leaves the bearing.
         pub separation: S,
+        /// Share m of the force at the centre that is a long bearing's.
+        pub long: S,
     }
 }
 
@@ -45,6 +50,9 @@ declaration! {
         roughness: Number(AboveZero), 0.05 to 0.5, start 0.1;
         /// Share of the force that is left while the journal leaves the bearing, 0 to 1; 1 where it is left out.
         @shape separation: Number(FromZero), 0.0 to 1.0, start 1.0;
+        /// Share of the force at the centre that is a long bearing's, which grows less toward contact, 0 to 1; 0 where it is
+        /// left out.
+        @shape long: Number(FromZero), 0.0 to 1.0, start 0.0;
     } as SqueezeFilm
 }
 
@@ -54,13 +62,17 @@ impl<S: Scalar> Acts<S> for SqueezeFilm<S> {
         let e = at.penetration / at.clearance + 1.0;
         let gap = S::one() - e * e;
         let square = gap * gap + self.roughness * self.roughness;
-        // ((1 − ε²)² + h²)^(5/4).
-        let thin = square * square.sqrt().sqrt();
+        // ((1 − ε²)² + h²)^(5/4) and, of a long bearing, ^(3/4).
+        let root = square.sqrt();
+        let thin = square * root.sqrt();
+        let thin_of_long = root * root.sqrt();
         let c = at.clearance;
         let oil = self.viscosity * at.journal_radius * self.length * self.length * self.length;
         let still = oil * PI / (c * c * c);
         let nearer = (at.rate + at.rate.abs()) * 0.5;
         let rate = nearer + (at.rate - nearer) * self.separation;
-        -(still * (e * e * 2.0 + 1.0) / thin * rate)
+        let short = still * (S::one() - self.long) * (e * e * 2.0 + 1.0) / thin;
+        let long = still * self.long / thin_of_long;
+        -((short + long) * rate)
     }
 }

@@ -40,9 +40,9 @@ declaration! {
         /// Loss coefficient of the discharge valve.
         discharge: Number(FromZero), 0.002 to 0.5, start 0.1, absent 0.0;
         /// The part of the suction valve's loss that grows with the speed itself; 0 where it is left out.
-        @shape suction_linear: Number(FromZero), 0.0 to 0.3, start 0.0;
+        @shape suction_linear: Number(FromZero), 0.0 to 0.15, start 0.0;
         /// The part of the discharge valve's loss that grows with the speed itself; 0 where it is left out.
-        @shape discharge_linear: Number(FromZero), 0.0 to 0.3, start 0.0;
+        @shape discharge_linear: Number(FromZero), 0.0 to 0.15, start 0.0;
     } as ValveLoss
 }
 

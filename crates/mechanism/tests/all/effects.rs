@@ -92,7 +92,12 @@ fn revolution(count: usize) -> Vec<f64> {
 #[test]
 fn valve_loss_lifts_the_plateaus_by_the_square_of_the_speed_and_costs_its_work() {
     let (suction, discharge) = (0.18, 0.15);
-    let machine = ideal(Law::ValveLoss(ValveLoss { suction, discharge }));
+    let machine = ideal(Law::ValveLoss(ValveLoss {
+        suction,
+        discharge,
+        suction_linear: 0.0,
+        discharge_linear: 0.0,
+    }));
     let found = at_angles(machine.clone(), &[100.0, 310.0], pressure);
     let u = [100.0, 310.0].map(|degrees: f64| speed(degrees.to_radians()));
     near(found[0], PS * (1.0 - suction * u[0] * u[0]), 1e-12);
@@ -424,6 +429,7 @@ fn ring_friction_is_a_square_wave_of_odd_orders() {
         coulomb_force: force,
         per_pressure: 0.0,
         slip_speed: 1e-3,
+        viscous: 0.0,
     }));
     let samples = at_angles(machine, &revolution(2000), |at| at.throws[0].gas.effects);
     for k in 1..=9 {
@@ -568,11 +574,49 @@ fn terms_of_an_empirical_force_are_what_they_say() {
 }
 
 #[test]
+fn oil_adds_a_friction_that_grows_with_the_speed() {
+    let degrees = [70.0, 250.0];
+    let force = |viscous: f64| {
+        let machine = ideal(Law::RingFriction(RingFriction {
+            coulomb_force: 120.0,
+            per_pressure: 0.0,
+            slip_speed: 1e-3,
+            viscous,
+        }));
+        at_angles(machine, &degrees, |at| at.throws[0].gas.effects)
+    };
+    let both = force(0.0).into_iter().zip(force(15.0)).zip(degrees);
+    for ((dry, oiled), degrees) in both {
+        // Toward the head, against a motion away from it.
+        let away = RADIUS * SPEED * speed(degrees.to_radians());
+        near(oiled - dry, 15.0 * away, 1e-6);
+    }
+}
+
+#[test]
+fn a_spring_loaded_plate_adds_a_loss_that_grows_with_the_speed() {
+    let losses = |suction_linear: f64, discharge_linear: f64| {
+        let machine = ideal(Law::ValveLoss(ValveLoss {
+            suction: 0.1,
+            discharge: 0.1,
+            suction_linear,
+            discharge_linear,
+        }));
+        at_angles(machine, &[100.0, 310.0], pressure)
+    };
+    let (square, both) = (losses(0.0, 0.0), losses(0.05, 0.04));
+    let u = [100.0, 310.0].map(|degrees: f64| speed(degrees.to_radians()));
+    near(square[0] - both[0], PS * 0.05 * u[0], 1e-6);
+    near(square[1] - both[1], PD * 0.04 * u[1], 1e-6);
+}
+
+#[test]
 fn ring_friction_is_a_special_empirical_force() {
     let rings = Law::RingFriction(RingFriction {
         coulomb_force: 120.0,
         per_pressure: 2e-4,
         slip_speed: 0.02,
+        viscous: 0.0,
     });
     let force = Law::EmpiricalForce(EmpiricalForce {
         friction: [-120.0, -20.0, 0.0],
@@ -648,6 +692,7 @@ fn an_elastic_rod_swings_with_the_crosshead_at_its_natural_frequency() {
     let mut machine = ideal(Law::RodFlexibility(RodFlexibility {
         compliance,
         damping_ratio: 0.0,
+        hardening: 0.0,
     }));
     // So slow and with so little gas that nothing but the spring counts.
     machine.throws[0].cylinder.piston_radius = 1e-5;
@@ -676,6 +721,7 @@ fn a_stiff_rod_is_a_rigid_one() {
     let elastic = ideal(Law::RodFlexibility(RodFlexibility {
         compliance: 1e-11,
         damping_ratio: 1.0,
+        hardening: 0.0,
     }));
     let crosshead = |at: &Evaluation<f64>| at.throws[0].accelerations.crosshead;
     let angles = [400.0, 500.0, 600.0];
@@ -706,6 +752,8 @@ fn a_film_pushes_back_as_ocvirk_s() {
             viscosity,
             length,
             roughness: 1e-6,
+            separation: 1.0,
+            long: 0.0,
         }),
         place: Place {
             joint: Some(joint),
@@ -719,17 +767,49 @@ fn a_film_pushes_back_as_ocvirk_s() {
         assert!(found.y.abs() < 1e-12);
     }
     assert_eq!(force(vec![film(Joint::BigEnd)], 0.1).norm(), 0.0);
+    // The film of a long bearing.
+    let mut long = film(Joint::SmallEnd);
+    if let Law::SqueezeFilm(film) = &mut long.law {
+        film.long = 1.0;
+    }
+    near(
+        force(vec![long], 0.1).x,
+        -still / 0.75_f64.powf(1.5) * 0.1,
+        1e-9,
+    );
+    // A film that cannot pull resists the approach alone; one that half can pulls half as much.
+    for (separation, share) in [(0.0, 0.0), (0.5, 0.5)] {
+        let mut weak = film(Joint::SmallEnd);
+        if let Law::SqueezeFilm(film) = &mut weak.law {
+            film.separation = separation;
+        }
+        let whole = |rate| force(vec![film(Joint::SmallEnd)], rate).x;
+        let (nearer, away) = (force(vec![weak.clone()], 0.1).x, force(vec![weak], -0.1).x);
+        let shares = [nearer / whole(0.1), away / whole(-0.1)];
+        let [pushes, pulls] = if shares[0] > shares[1] {
+            shares
+        } else {
+            [shares[1], shares[0]]
+        };
+        assert!(
+            (pushes - 1.0).abs() < 1e-9 && (pulls - share).abs() < 1e-9,
+            "{shares:?}"
+        );
+    }
 }
 
 #[test]
 fn an_oval_bearing_is_wider_along_its_long_axis() {
     let (clearance, amplitude, direction) = (2e-4, 5e-5, 0.4);
+    let (lobes, lobes_direction) = (1e-5, 1.1);
     let mut machine = with_clearance(0.0, clearance, 2e4);
     machine.effects = vec![Effect {
         law: Law::BearingOvality(BearingOvality {
             amplitude,
             direction,
             oval: Oval::Bearing,
+            lobes,
+            lobes_direction,
         }),
         place: Place {
             joint: Some(Joint::SmallEnd),
@@ -752,8 +832,9 @@ fn an_oval_bearing_is_wider_along_its_long_axis() {
     for (angle, wider) in [(0.0, 1.0), (PI / 2.0, -1.0), (PI, 1.0), (PI / 4.0, 0.0)] {
         let (found, rod) = penetration(direction + angle);
         let turned = amplitude * (2.0 * (angle - rod)).cos();
-        assert!((found + turned).abs() < 1e-15, "{angle}: {found:e}");
-        assert!((found + wider * amplitude).abs() < 1e-3 * amplitude);
+        let third = lobes * (3.0 * (direction + angle - rod - lobes_direction)).cos();
+        assert!((found + turned + third).abs() < 1e-15, "{angle}: {found:e}");
+        assert!((found + third + wider * amplitude).abs() < 1e-3 * amplitude);
     }
 }
 

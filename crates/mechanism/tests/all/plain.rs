@@ -14,6 +14,7 @@ fn not_plain(machine: &Machine) -> Machine {
         coulomb_force: 0.0,
         per_pressure: 0.0,
         slip_speed: 0.01,
+        viscous: 0.0,
     };
     Machine {
         effects: vec![Law::RingFriction(rings).everywhere()],

@@ -151,6 +151,7 @@ fn rescaled(machine: &Machine, length: f64, mass: f64, time: f64) -> Machine {
             rings.coulomb_force *= force;
             rings.per_pressure *= force / pressure;
             rings.slip_speed *= speed;
+            rings.viscous *= force / speed;
         }
     }
     for throw in &mut m.throws {

@@ -5,9 +5,9 @@ use crate::calibration_page::{verdict::size, waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
-use gap::results::{Bounded, Effect, Other};
+use gap::results::{Bounded, Effect};
 use gap::scaling::Exponent;
-use gap::{Results, Scaling, Verdict};
+use gap::{Correction, Results, Scaling, Verdict};
 use input::effects::entry;
 
 #[derive(Template)]
@@ -86,7 +86,7 @@ fn verdict(results: &Results) -> String {
         ),
         Verdict::PartlyExplained => format!(
             "The misfit of the calibrated model is {before} times the noise. {sentences} With {named} the misfit is {after} times \
-             the noise: a smaller effect is still missing."
+             the noise. What is left may be the form of the law, or something smaller."
         ),
         Verdict::Unexplained => format!(
             "The misfit of the calibrated model is {before} times the noise. No effect of the catalogue explains it."
@@ -182,8 +182,19 @@ impl View<'_> {
         format!("{channel}: {}", powers.join(", "))
     }
 
-    fn probability(probability: f64) -> String {
-        text::decimal(probability, 2)
+    fn probability(probability: &f64) -> String {
+        text::decimal(*probability, 2)
+    }
+
+    fn number(value: &f64) -> String {
+        text::number(*value, 4)
+    }
+
+    fn bounds(wrong: &Correction) -> String {
+        match wrong.low.zip(wrong.high) {
+            Some((low, high)) => format!("{} to {}", Self::number(&low), Self::number(&high)),
+            None => "not identifiable".to_owned(),
+        }
     }
 
     fn has_rivals(effect: &Effect) -> bool {

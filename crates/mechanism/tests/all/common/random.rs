@@ -163,10 +163,13 @@ fn effects() -> impl Strategy<Value = Vec<Effect>> {
         coulomb_force: 30.0,
         per_pressure: 2e-4,
         slip_speed: 0.02,
+        viscous: 0.0,
     });
     let valves = Law::ValveLoss(ValveLoss {
         suction: 0.1,
         discharge: 0.2,
+        suction_linear: 0.0,
+        discharge_linear: 0.0,
     });
     let all = [rings, valves].map(Law::everywhere).to_vec();
     proptest::sample::subsequence(all, 0..=2)
@@ -187,6 +190,8 @@ pub fn catalogue() -> Vec<Effect> {
             Law::ValveLoss(ValveLoss {
                 suction: 0.1,
                 discharge: 0.2,
+                suction_linear: 0.02,
+                discharge_linear: 0.03,
             }),
             None,
             None,
@@ -196,6 +201,7 @@ pub fn catalogue() -> Vec<Effect> {
                 coulomb_force: 30.0,
                 per_pressure: 2e-4,
                 slip_speed: 0.02,
+                viscous: 4.0,
             }),
             None,
             None,
@@ -277,6 +283,7 @@ pub fn catalogue() -> Vec<Effect> {
             Law::RodFlexibility(RodFlexibility {
                 compliance: 5e-9,
                 damping_ratio: 0.02,
+                hardening: 0.5,
             }),
             None,
             None,
@@ -286,6 +293,8 @@ pub fn catalogue() -> Vec<Effect> {
                 viscosity: 0.02,
                 length: 2e-3,
                 roughness: 0.1,
+                separation: 0.4,
+                long: 0.3,
             }),
             Some(Joint::SmallEnd),
             None,
@@ -295,6 +304,8 @@ pub fn catalogue() -> Vec<Effect> {
                 amplitude: 2e-5,
                 direction: 0.6,
                 oval: Oval::Bearing,
+                lobes: 4e-6,
+                lobes_direction: 0.5,
             }),
             Some(Joint::BigEnd),
             None,
@@ -304,6 +315,8 @@ pub fn catalogue() -> Vec<Effect> {
                 amplitude: 1e-5,
                 direction: 2.0,
                 oval: Oval::Journal,
+                lobes: 4e-6,
+                lobes_direction: 0.5,
             }),
             None,
             None,
