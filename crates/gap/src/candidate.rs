@@ -268,6 +268,15 @@ impl Candidate {
         of_item.collect::<Vec<f64>>().repeat(self.sets())
     }
 
+    /// Whether these values have the usual form of its law.
+    pub(crate) fn is_usual_form(&self, values: &[f64]) -> bool {
+        let parameters = self.entry.parameters.iter().cycle();
+        values
+            .iter()
+            .zip(parameters)
+            .all(|(value, p)| !p.shape || *value == p.start)
+    }
+
     /// Values with next to nothing of its amplitudes.
     pub(crate) fn faint(&self, values: &[f64]) -> Vec<f64> {
         let parameters = self.entry.parameters.iter().cycle();

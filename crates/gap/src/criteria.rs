@@ -83,7 +83,7 @@ fn octaves(problem: &Problem) -> f64 {
 }
 
 /// Residuals to one that is independent of the others.
-pub(crate) fn dependence(problem: &Problem) -> f64 {
+fn dependence(problem: &Problem) -> f64 {
     let channels = problem.runs.iter().flat_map(|run| &run.channels);
     let lines: usize = channels.map(|channel| channel.orders.len()).sum();
     lines as f64 / octaves(problem).max(1.0)

@@ -59,8 +59,8 @@ impl Fitter<'_> {
         Ok(model.map(|model| (model, rough.start)))
     }
 
-    /// Where short descents from these points lead, the best of them. With each allowance that is smaller one of them
-    /// less goes on.
+    /// Where short descents from these points lead, the best of them. With each allowance that is smaller half of them
+    /// go on.
     ///
     /// # Errors
     /// [`Error::Stopped`].
@@ -82,7 +82,7 @@ impl Fitter<'_> {
             let next = next.collect::<Result<Vec<_>, Error>>()?;
             led = next.into_iter().flatten().collect();
             led.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
-            led.truncate(led.len().saturating_sub(1).max(1));
+            led.truncate(led.len().div_ceil(2));
         }
         Ok(led.into_iter().next())
     }

@@ -95,10 +95,12 @@ pub(crate) fn screen(
         bases.push(Base::at(&likelihood, &nominal));
     }
     // The score and the probe there; nothing for what cannot be simulated.
-    let best = |amendment: &Amendment, base: &Base| -> Result<Finished, Error> {
+    let best = |amendment: &Amendment, base: &Base, usual: bool| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let metered = model.problem.metered();
-        for probe in amendment.probes(&model.problem)? {
+        let mut probes = amendment.probes(&model.problem)?;
+        probes.retain(|probe| amendment.is_usual_form(probe) == usual);
+        for probe in probes {
             if (fitter.watch)().is_break() {
                 return Err(Error::Stopped);
             }
@@ -122,14 +124,18 @@ pub(crate) fn screen(
     let screened = amendments.into_par_iter().map(|amendment| {
         let (mut scores, mut starts) = (vec![f64::NEG_INFINITY; bases.len()], Vec::new());
         for (base, score) in bases.iter().zip(&mut scores) {
-            let input = ("screen", &model.problem, &base.x, amendment.label());
-            let work = || best(&amendment, base);
-            if let Some((best, values)) = fitter.effort.journal.once(&input, work)?.split_first() {
-                *score = *best;
-                starts.push(Point {
-                    x: base.x.clone(),
-                    values: values.to_vec(),
-                });
+            // The usual form of its law, and the others.
+            for usual in [true, false] {
+                let input = ("screen", &model.problem, &base.x, amendment.label(), usual);
+                let work = || best(&amendment, base, usual);
+                let found = fitter.effort.journal.once(&input, work)?;
+                if let Some((best, values)) = found.split_first() {
+                    *score = score.max(*best);
+                    starts.push(Point {
+                        x: base.x.clone(),
+                        values: values.to_vec(),
+                    });
+                }
             }
         }
         let screened = Screened { amendment, starts };

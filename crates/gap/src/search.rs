@@ -5,7 +5,7 @@
 //! one amendment is exchanged for another is reached from the set without it.
 
 use crate::amendment::Amendment;
-use crate::criteria::{dependence, freedom, left};
+use crate::criteria::left;
 use crate::error::Error;
 use crate::fitter::{Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, start};
@@ -102,7 +102,8 @@ impl Search<'_> {
             .map(|screened| self.roughly(node, &screened));
         let rough = rough.collect::<Result<Vec<_>, Error>>()?;
         let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
-        rough.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        // What a freer law costs counts once it has been fitted.
+        rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
         rough.truncate(if node.set.is_empty() {
             REFINED
         } else {
@@ -115,7 +116,7 @@ impl Search<'_> {
                 (self.fitter.effort.journal.spent() - spent) / 1000000
             );
             for t in &rough {
-                eprintln!("  rough {} {:.1}", t.label(), t.cost);
+                eprintln!("  rough {} {:.1}", t.label(), t.deviance);
             }
         }
         let fitted = rough.into_par_iter().map(|trial| {
@@ -156,9 +157,8 @@ impl Search<'_> {
             values: values.swap_remove(rough.start),
         });
         let with = starts.swap_remove(rough.start).0;
-        let parameters = with.parameters.len() - self.few.parameters.len();
         Ok(Some(Trial {
-            cost: 0.5 * rough.deviance / dependence(&with) + freedom(&with, parameters),
+            deviance: rough.deviance,
             set,
             start: (with, rough.x),
         }))
@@ -169,7 +169,8 @@ impl Search<'_> {
 struct Trial {
     set: Vec<Amended>,
     start: Start,
-    cost: f64,
+    /// Twice the negative logarithm of the likelihood there.
+    deviance: f64,
 }
 
 impl Trial {
