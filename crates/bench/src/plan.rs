@@ -138,7 +138,7 @@ mod tests {
         let labels: Vec<String> = cases.iter().map(Case::label).collect();
         let expected = ["valve_loss", "nothing", "contact_law", "ac_coupling"];
         assert_eq!(labels[..4], expected);
-        assert_eq!(labels[6..], ["time_lag", "contact_law"]);
+        assert_eq!(labels[6..], ["time_lag", "data_sheet"]);
         assert!(cases[2].hides("contact_law") && !cases[2].hides(NOTHING));
     }
 

@@ -242,7 +242,9 @@ fn closest(last: f64, reach: f64, likeness: impl Fn(f64) -> f64) -> f64 {
         let steps = (reach / step) as i32;
         let middle = best;
         let tried = (-steps..=steps).map(|i| middle + f64::from(i) * step);
+        // What is less than a sample long is no cycle.
         best = tried
+            .filter(|length| *length >= 1.0)
             .map(|length| (likeness(length), length))
             .fold(
                 (f64::NEG_INFINITY, middle),

@@ -1,7 +1,7 @@
 //! The workflow: pressures first, which hardly depend on the joints, then everything.
 
 use crate::amendment::Amendment;
-use crate::criteria::{EXPLAINED, Verdict, evidence, verdict};
+use crate::criteria::{EXPLAINED, Verdict, verdict};
 use crate::effort::Effort;
 use crate::error::Error;
 use crate::finding::{Correction, Found, Tried};
@@ -325,15 +325,4 @@ fn corrections(estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<C
         })
     };
     probabilities.iter().filter_map(of).collect()
-}
-
-/// A law of the force, as an effect that was tried.
-pub(crate) fn tried(candidate: crate::Candidate, before: &Model, after: &Model) -> Tried {
-    Tried {
-        values: candidate.values(after, crate::finding::effects(&before.problem)),
-        candidate,
-        evidence: evidence(before, after),
-        probability: 1.0,
-        model: Some(after.clone()),
-    }
 }

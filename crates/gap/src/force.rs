@@ -11,8 +11,8 @@
 //!    same terms come out.
 
 use crate::candidate::{Candidate, throws};
+use crate::criteria::evidence;
 use crate::error::Error;
-use crate::explain::tried;
 use crate::finding::{Tried, effects};
 use crate::fitter::Fitter;
 use crate::linearised::{Linearised, groups};
@@ -163,4 +163,15 @@ fn estimated(fitter: &Fitter, few: &Model, library: &Candidate) -> Result<Option
     };
     let values = library.values(&model, effects(&few.problem));
     Ok(Some(Dense { model, values }))
+}
+
+/// A law of the force, as an effect that was tried.
+fn tried(candidate: Candidate, before: &Model, after: &Model) -> Tried {
+    Tried {
+        values: candidate.values(after, effects(&before.problem)),
+        candidate,
+        evidence: evidence(before, after),
+        probability: 1.0,
+        model: Some(after.clone()),
+    }
 }

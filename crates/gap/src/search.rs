@@ -94,9 +94,6 @@ impl Search<'_> {
         if !node.set.is_empty() {
             chosen.truncate(BESIDE);
         }
-        let clock = std::time::Instant::now();
-        let spent = self.fitter.effort.journal.spent();
-        let count = chosen.len();
         let rough = chosen
             .into_par_iter()
             .map(|screened| self.roughly(node, &screened));
@@ -109,20 +106,13 @@ impl Search<'_> {
         } else {
             REFINED_BESIDE
         });
-        if std::env::var("LAB").is_ok() {
-            eprintln!(
-                "  rough {count} in {:.1} s, {} M",
-                clock.elapsed().as_secs_f64(),
-                (self.fitter.effort.journal.spent() - spent) / 1000000
-            );
-            for t in &rough {
-                eprintln!("  rough {} {:.1}", t.label(), t.deviance);
-            }
-        }
         let fitted = rough.into_par_iter().map(|trial| {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
+            let own = self.few.parameters.len();
             let model = self.fitter.settled(&trial.start)?;
-            Ok(model.map(|model| Hypothesis::new(trial.set, model, self.few.parameters.len())))
+            let fitted = model.map(|model| Hypothesis::new(trial.set, model, own));
+            let formed = fitted.map(|fitted| fitted.of_any_form(self.fitter, self.few));
+            formed.transpose()
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
