@@ -47,29 +47,31 @@ impl<'a> Likelihood<'a> {
     }
 
     /// Twice the negative logarithm of the likelihood, but for a constant: what is left over its variance, and the
-    /// variance, which a greater allowance for timing makes greater.
+    /// variance, which a greater allowance for timing makes greater. Without such an allowance the noise is taken for
+    /// greater where more than noise is left, by a factor that makes the recordings likeliest.
     ///
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn deviance(&self, x: &[f64]) -> Result<f64, Error> {
         let predictions = self.predictions(x)?;
-        let runs = self.problem.runs.iter().zip(&predictions);
-        let of_run = |(run, prediction): (&Observation, &Prediction)| {
-            let channels = run.channels.iter().zip(&prediction.lines);
-            let spread = channels.flat_map(|(observed, predicted)| {
-                let parts = observed
-                    .orders
-                    .iter()
-                    .map(|k| if *k == 0 { 1.0 } else { 2.0 });
+        let (mut spread, mut squares, mut count) = (0.0, 0.0, 0.0);
+        for (run, prediction) in self.problem.runs.iter().zip(&predictions) {
+            for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
                 let weights = weights(observed, predicted, self.timing);
-                parts
-                    .zip(weights)
-                    .map(|(parts, weight)| -2.0 * parts * weight.ln())
-            });
-            let squares = residuals(run, prediction, self.timing);
-            spread.sum::<f64>() + squares.iter().map(|r| r * r).sum::<f64>()
-        };
-        Ok(runs.map(of_run).sum())
+                for (k, weight) in observed.orders.iter().zip(weights) {
+                    let parts = if *k == 0 { 1.0 } else { 2.0 };
+                    spread -= 2.0 * parts * weight.ln();
+                    count += parts;
+                }
+            }
+            let residuals = residuals(run, prediction, self.timing);
+            squares += residuals.iter().map(|r| r * r).sum::<f64>();
+        }
+        let mean = if count > 0.0 { squares / count } else { 0.0 };
+        match self.timing > 0.0 || mean <= 1.0 {
+            true => Ok(spread + squares),
+            false => Ok(spread + count * (mean.ln() + 1.0)),
+        }
     }
 
     fn prediction(

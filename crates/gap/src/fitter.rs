@@ -10,6 +10,7 @@ use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
 use crate::error::{Error, possible};
 use crate::journal::Finished;
 use crate::model::Model;
+use crate::recorded::is_of_pressures;
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
@@ -23,6 +24,10 @@ use std::ops::ControlFlow;
 /// and for those that have led near.
 const ROUGH: [(f64, u64); 3] = [(0.03, 10), (0.01, 8), (0.003, 10)];
 const FINE: [(f64, u64); 4] = [(0.01, 25), (0.003, 25), (0.001, 25), (0.0, 40)];
+/// The same for pressures alone, which do not ring: nothing in them is in the way of a descent, and where their valves work
+/// counts from the start.
+const ROUGH_OF_GAS: [(f64, u64); 1] = [(0.0, 12)];
+const FINE_OF_GAS: [(f64, u64); 1] = [(0.0, 30)];
 /// Relative change of the sum of squares at which a descent ends.
 const CHANGE: f64 = 1e-2;
 /// Runs that candidates are compared with.
@@ -70,10 +75,14 @@ impl Fitter<'_> {
             .enumerate()
             .map(|(start, (_, x))| Rough::at(start, x))
             .collect();
-        for stage in ROUGH {
+        let of_gas = starts
+            .first()
+            .is_some_and(|(problem, _)| is_of_pressures(problem));
+        let stages: &[(f64, u64)] = if of_gas { &ROUGH_OF_GAS } else { &ROUGH };
+        for stage in stages {
             let next = led.into_par_iter().map(|mut rough| {
                 let problem = &starts[rough.start].0;
-                let descent = self.descended(problem, &rough.end, &[stage])?;
+                let descent = self.descended(problem, &rough.end, &[*stage])?;
                 Ok(descent.map(|descent| {
                     rough.take(descent);
                     rough
@@ -90,7 +99,11 @@ impl Fitter<'_> {
     /// The model with all its fitted runs, continued from where a few of them have led.
     pub fn settled(&self, start: &Start) -> Result<Option<Model>, Error> {
         let (problem, x) = start;
-        let fine = self.descended(problem, x, &FINE)?;
+        let stages: &[(f64, u64)] = match is_of_pressures(problem) {
+            true => &FINE_OF_GAS,
+            false => &FINE,
+        };
+        let fine = self.descended(problem, x, stages)?;
         match fine {
             None => Ok(None),
             Some(fine) => possible(Model::at(

@@ -17,6 +17,7 @@ use crate::hypothesis::start;
 use crate::journal::Finished;
 use crate::model::Model;
 use crate::projector::Projector;
+use crate::recorded::is_of_pressures;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::DVector;
@@ -24,7 +25,7 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
-/// By how much features may stand elsewhere, rad.
+/// By how much features may stand elsewhere, rad; not in pressures alone.
 const TIMING: f64 = 0.03;
 
 /// An amendment that may explain a part of the residual.
@@ -88,7 +89,12 @@ pub(crate) fn screen(
     model: &Model,
     amendments: Vec<Amendment>,
 ) -> Result<Vec<Screened>, Error> {
-    let likelihood = Likelihood::coarse(&model.problem, TIMING);
+    let timing = if is_of_pressures(&model.problem) {
+        0.0
+    } else {
+        TIMING
+    };
+    let likelihood = Likelihood::coarse(&model.problem, timing);
     let nominal = vec![0.0; model.x.len()];
     let mut bases = vec![Base::at(&likelihood, &model.x)];
     if nominal != model.x {
@@ -107,7 +113,7 @@ pub(crate) fn screen(
             let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
                 continue;
             };
-            let there = Likelihood::coarse(&with, TIMING).residuals(&x);
+            let there = Likelihood::coarse(&with, timing).residuals(&x);
             let score = base.score(there);
             let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
             if let Some(score) = score.filter(better) {

@@ -25,9 +25,9 @@ const BESIDE: usize = 8;
 const REFINED: usize = 8;
 const REFINED_BESIDE: usize = 4;
 /// Share of the gap with which no more is looked for: less than the law of an effect is usually off by.
-const LITTLE: f64 = 0.15;
+const LITTLE: f64 = 0.2;
 /// Nodes that are looked at further.
-const EXPANDED: usize = 3;
+const EXPANDED: usize = 2;
 
 /// What a search looks for, and in what.
 pub(crate) struct Search<'a> {
