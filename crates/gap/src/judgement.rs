@@ -89,7 +89,7 @@ pub(crate) fn judged(
         };
         let others = believed.set.len();
         let probable = probability(left(&believed.model, &best.model), others, count - others);
-        if probable > NAMED && best.cost < believed.cost && shows_in_each(&believed, best)? {
+        if probable > NAMED && best.cost < believed.cost && shows_in_each(believed, best)? {
             believed = best;
             sure = probable;
         }
