@@ -165,6 +165,7 @@ fn every_parameter_can_be_reached_by_its_path() {
                 p.bounds[1]
             };
             let other = match (entry.name, p.key) {
+                _ if p.shape => 0.5 * (p.bounds[0] + p.bounds[1]),
                 // As far as the other values allow.
                 ("speed_fluctuation" | "bearing_ovality" | "thermal_clearance", _) => {
                     p.start * 1.1 + 0.01 * f64::from(u8::from(p.start == 0.0))

@@ -293,7 +293,7 @@ pub fn catalogue() -> Vec<Effect> {
                 viscosity: 0.02,
                 length: 2e-3,
                 roughness: 0.1,
-                separation: 0.4,
+                separation: 1.0,
                 long: 0.3,
             }),
             Some(Joint::SmallEnd),
