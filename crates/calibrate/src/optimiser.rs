@@ -279,11 +279,11 @@ pub fn genetic(
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod valley {
     use super::*;
 
     /// Rosenbrock's valley as a sum of squares.
-    struct Valley;
+    pub(crate) struct Valley;
 
     impl LeastSquares for Valley {
         fn bounds(&self) -> Vec<[f64; 2]> {
@@ -299,6 +299,12 @@ mod tests {
             DMatrix::from_row_slice(2, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0])
         }
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::valley::Valley;
+    use super::*;
 
     fn go(_: &Progress) -> ControlFlow<()> {
         ControlFlow::Continue(())

@@ -24,23 +24,13 @@ pub fn secant(
     watch: Watch,
 ) -> Progress {
     let bounds = problem.bounds();
-    let mut descent = Descent {
-        x: DVector::from_column_slice(start),
-        residuals: DVector::from_vec(problem.residuals(start)),
-        jacobian: problem.jacobian(start),
-    };
     let each = derivatives(start.len());
+    let mut descent = Descent::at(problem, start);
     let mut evaluations = 1 + each;
-    let mut cost = 0.5 * descent.residuals.norm_squared();
     let mut damping = DAMPING * descent.normal().diagonal().max();
     let (mut fresh, mut failures, mut growth) = (true, 0, 2.0);
     loop {
-        let progress = Progress {
-            x: descent.x.as_slice().to_vec(),
-            cost,
-            count: problem.count(),
-            evaluations,
-        };
+        let progress = descent.progress(problem.count(), evaluations);
         let stopped = watch(&progress).is_break();
         if stopped || evaluations >= most || !damping.is_finite() || damping > NO_STEP {
             return progress;
@@ -50,43 +40,34 @@ pub fn secant(
         };
         let residuals = DVector::from_vec(problem.residuals(x.as_slice()));
         evaluations += 1;
-        let after = 0.5 * residuals.norm_squared();
-        let gained = cost - after;
+        let cost = descent.cost();
+        let gained = cost - 0.5 * residuals.norm_squared();
         descent.correct(&x, &residuals);
+        let was_fresh = fresh;
         let mut ends = false;
         if gained > 0.0 {
             ends = gained < change * cost;
-            (descent.x, descent.residuals, cost) = (x, residuals, after);
+            (descent.x, descent.residuals) = (x, residuals);
             let quality = gained / predicted.max(f64::MIN_POSITIVE);
             damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
-            (growth, failures) = (2.0, 0);
-            fresh = false;
+            (growth, failures, fresh) = (2.0, 0, false);
         } else {
             damping *= growth;
             growth *= 2.0;
             failures += 1;
         }
-        let lost = failures >= FAILURES || ends;
-        if ends && fresh {
-            return progress_at(&descent, cost, problem.count(), evaluations);
+        // A step that changes little ends the descent where its derivatives were no corrected ones.
+        if ends && was_fresh {
+            return descent.progress(problem.count(), evaluations);
         }
-        if lost && !fresh {
+        if (ends || failures >= FAILURES) && !fresh {
             if evaluations + each >= most {
-                return progress_at(&descent, cost, problem.count(), evaluations);
+                return descent.progress(problem.count(), evaluations);
             }
             descent.jacobian = problem.jacobian(descent.x.as_slice());
             evaluations += each;
             (fresh, failures, growth) = (true, 0, 2.0);
         }
-    }
-}
-
-fn progress_at(descent: &Descent, cost: f64, count: usize, evaluations: u64) -> Progress {
-    Progress {
-        x: descent.x.as_slice().to_vec(),
-        cost,
-        count,
-        evaluations,
     }
 }
 
@@ -99,6 +80,28 @@ struct Descent {
 }
 
 impl Descent {
+    fn at(problem: &impl LeastSquares, x: &[f64]) -> Self {
+        Self {
+            x: DVector::from_column_slice(x),
+            residuals: DVector::from_vec(problem.residuals(x)),
+            jacobian: problem.jacobian(x),
+        }
+    }
+
+    /// Half the sum of squares.
+    fn cost(&self) -> f64 {
+        0.5 * self.residuals.norm_squared()
+    }
+
+    fn progress(&self, count: usize, evaluations: u64) -> Progress {
+        Progress {
+            x: self.x.as_slice().to_vec(),
+            cost: self.cost(),
+            count,
+            evaluations,
+        }
+    }
+
     fn normal(&self) -> DMatrix<f64> {
         self.jacobian.tr_mul(&self.jacobian)
     }
@@ -144,25 +147,8 @@ impl Descent {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optimiser::valley::Valley;
     use std::ops::ControlFlow;
-
-    /// Rosenbrock's valley as a sum of squares.
-    struct Valley;
-
-    impl LeastSquares for Valley {
-        fn bounds(&self) -> Vec<[f64; 2]> {
-            vec![[-2.0, 3.0]; 2]
-        }
-        fn count(&self) -> usize {
-            2
-        }
-        fn residuals(&self, x: &[f64]) -> Vec<f64> {
-            vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]
-        }
-        fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
-            DMatrix::from_row_slice(2, 2, &[-20.0 * x[0], 10.0, -1.0, 0.0])
-        }
-    }
 
     #[test]
     fn it_finds_the_bottom_of_the_valley() {

@@ -2,6 +2,10 @@
 
 use crate::error::Error;
 use crate::model::Model;
+use crate::places::{
+    BEARINGS, EITHER, MEASURE, PRESSURE, Place, distinguishes_ends, has_crank_end, is_clear,
+    places, recorded, throws, words,
+};
 use crate::recorded::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
 use input::MachineFile;
@@ -27,15 +31,8 @@ pub struct Candidate {
     pub formed: bool,
 }
 
-/// A place that is not tried one by one. An effect on a sensor is tried on that of the crosshead's
-/// acceleration, the default, and on that of the pressure.
-const MEASURE: &str = "measure";
-const PRESSURE: &str = "cylinder_pressure";
 /// Share of an amplitude that is next to nothing.
 const FAINT: f64 = 0.03;
-/// A place at which an effect is tried everywhere and at each alone, where a cylinder has several.
-const EITHER: &str = "end";
-
 impl Candidate {
     /// Every effect of the catalogue at every place that the machine of `problem` has.
     pub fn all(problem: &Problem) -> Vec<Self> {
@@ -96,7 +93,7 @@ impl Candidate {
     /// Oil and wear are alike there. A direction is each bearing's own.
     fn in_both_bearings(&self, problem: &Problem) -> Option<Self> {
         let [first, other] = BEARINGS;
-        let rest = |words: &[(&'static str, String)]| -> Vec<(&'static str, String)> {
+        let rest = |words: &[(&'static str, String)]| -> Place {
             words
                 .iter()
                 .filter(|(key, _)| *key != "joint")
@@ -407,84 +404,10 @@ impl Candidate {
     }
 }
 
-/// The bearings of the rod.
-const BEARINGS: [&str; 2] = ["big_end", "small_end"];
-
-/// The words of a place, each with its key.
-fn words(choice: &input::effects::Choice) -> Vec<(&'static str, String)> {
-    let word = |word: &&'static str| (choice.key, (*word).to_owned());
-    choice.words.iter().map(word).collect()
-}
-
-/// Whether a joint has clearance in one of the runs.
-fn is_clear(problem: &Problem, place: &[(&'static str, String)], joint: &str) -> bool {
-    let throw = place.iter().find(|(key, _)| *key == "throw");
-    let path = match throw {
-        Some((_, throw)) => format!("throws.{throw}.joints.{joint}.clearance"),
-        None => format!("joints.{joint}.clearance"),
-    };
-    let in_run = |settings: &[(String, Value)]| {
-        settings
-            .iter()
-            .any(|(at, value)| at.ends_with(&path) && value != "ideal")
-    };
-    let nominal = input::paths::get(&problem.tree, &path)
-        .ok()
-        .flatten()
-        .is_some_and(|value| value != "ideal");
-    nominal || problem.runs.iter().any(|run| in_run(&run.settings))
-}
-
-pub(crate) fn throws(tree: &Value) -> Vec<String> {
-    let throws = tree.get("throws").and_then(Value::as_array);
-    let names = throws
-        .into_iter()
-        .flatten()
-        .filter_map(|t| t["name"].as_str());
-    names.map(str::to_owned).collect()
-}
-
-/// Whether a cylinder of the machine has a second chamber.
-fn has_crank_end(tree: &Value) -> bool {
-    let has = |tree: &Value| tree["cylinder"]["crank_end"].is_object();
-    let throws = tree.get("throws").and_then(Value::as_array);
-    has(tree) || throws.into_iter().flatten().any(has)
-}
-
-/// Whether the recordings distinguish one end of a cylinder from the other. Accelerations do, and so do pressures at
-/// the ends where they were recorded.
-fn distinguishes_ends(problem: &Problem) -> bool {
-    if !is_of_pressures(problem) {
-        return true;
-    }
-    let columns = problem.runs.iter().flat_map(|run| &run.channels);
-    let mut pressures = columns.map(|channel| channel.column.as_str());
-    let Some(first) = pressures.next() else {
-        return true;
-    };
-    pressures.any(|other| other.contains("crank_end") != first.contains("crank_end"))
-}
-
 /// Whether it is a term of a Fourier series of the gas. In one recording of one chamber such a term fits
 /// anything while a valve is open, and says nothing.
 fn is_series(entry: &Entry) -> bool {
     entry.kind == Kind::Gas && entry.parameters.iter().any(|p| p.whole)
-}
-
-/// How many recordings of chambers at a place there are; none where no pressure was recorded.
-fn recorded(problem: &Problem, place: &[(&'static str, String)]) -> Option<usize> {
-    let columns = problem.runs.iter().flat_map(|run| &run.channels);
-    let columns = columns.map(|channel| channel.column.as_str());
-    let pressures = columns.filter(|column| column.contains("cylinder_pressure"));
-    let here = |column: &str| {
-        place.iter().all(|(key, word)| match *key {
-            EITHER => column.contains("crank_end") == (word == "crank"),
-            "throw" => column.starts_with(&format!("{word}.")),
-            _ => true,
-        })
-    };
-    let all: Vec<bool> = pressures.map(here).collect();
-    (!all.is_empty()).then(|| all.iter().filter(|here| **here).count())
 }
 
 /// The parameter that an effect of the machine at the same place includes already, at the value where it vanishes.
@@ -514,35 +437,6 @@ fn included(
     let asked = asked.map_or("", |(_, end)| end.as_str());
     let everywhere = ends.contains(&"") || ends == ["crank", "head"];
     (everywhere || (!asked.is_empty() && ends.contains(&asked))).then_some((index, absent))
-}
-
-/// The places where an effect can act. Without a throw of its own an effect acts at all of them;
-/// a joint must be one.
-fn places(entry: &Entry, throws: &[String], both_ends: bool) -> Vec<Vec<(&'static str, String)>> {
-    let mut places: Vec<Vec<(&'static str, String)>> = vec![Vec::new()];
-    for choice in entry.places.iter().filter(|c| c.key != EITHER || both_ends) {
-        let words: Vec<String> = match choice.key {
-            "throw" => throws.to_vec(),
-            MEASURE => vec![PRESSURE.to_owned()],
-            _ => choice.words.iter().map(|word| (*word).to_owned()).collect(),
-        };
-        if words.is_empty() {
-            continue;
-        }
-        let everywhere = match choice.key {
-            EITHER | MEASURE => places.clone(),
-            _ => Vec::new(),
-        };
-        let each = places.iter().flat_map(|place| {
-            words.iter().map(move |word| {
-                let mut place = place.clone();
-                place.push((choice.key, word.clone()));
-                place
-            })
-        });
-        places = everywhere.into_iter().chain(each).collect();
-    }
-    places
 }
 
 /// The value at a path of a machine file, SI; none where there is none.

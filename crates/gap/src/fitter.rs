@@ -217,7 +217,7 @@ impl Fitter<'_> {
         problem.with_runs(chosen)
     }
 
-    /// Whether a model is at the noise, and needs no discrepancy.
+    /// Whether a model fits the recordings within their noise.
     pub fn is_at_noise(model: &Model) -> bool {
         model.fitted <= NOISE
     }

@@ -10,7 +10,7 @@
 //! 3. The terms that are stable are fitted in full, and the library is regressed again at that fit, until the
 //!    same terms come out.
 
-use crate::candidate::{Candidate, throws};
+use crate::candidate::Candidate;
 use crate::criteria::evidence;
 use crate::error::Error;
 use crate::finding::{Tried, effects};
@@ -18,6 +18,7 @@ use crate::fitter::Fitter;
 use crate::linearised::{Linearised, groups};
 use crate::missing_force::{MissingForce, missing_force};
 use crate::model::Model;
+use crate::places::throws;
 use calibrate::Problem;
 use input::effects::{Proposal, proposed};
 

@@ -32,6 +32,7 @@ mod missing_force;
 pub mod model;
 mod next_recording;
 mod notes;
+mod places;
 mod probes;
 mod projector;
 mod recorded;
