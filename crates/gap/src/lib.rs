@@ -3,9 +3,9 @@
 //!
 //! ```text
 //! recordings ─┐
-//!             ├─calibrate─> residual ─screening─> candidates ─refit─> decision ──> model + effect
-//! machine ────┘                ^                                                       │
-//!                              └────────────── until the noise is reached <────────────┘
+//!             ├─calibrate─> machine ─screening─> amendments ─fits─> sets ─judgement─> machine + effects
+//! machine ────┘                ^                                     │
+//!                              └──────────── best set first <────────┘
 //! ```
 
 pub mod amendment;
