@@ -49,9 +49,6 @@ pub enum Proposal {
     /// The same, but where both ends of a cylinder have it, each end has values of its own: it is a
     /// fault of one valve.
     PerEnd,
-    /// As `PerPlace`, and together with other effects: with more play the blows fall elsewhere in the
-    /// revolution, which hides what else is missing.
-    Wear,
     /// As `PerPlace`, from the fluctuation that an encoder shows, too.
     CrankSpeed,
     /// It is the zero of the crank angle: fitted from the start, and proposed where pressures are all that was

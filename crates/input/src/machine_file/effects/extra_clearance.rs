@@ -11,7 +11,7 @@ use mechanism::declaration;
 declaration! {
     /// Clearance on top of the joint's own. The joint needs a section, with journal_radius and
     /// contact; with `clearance: ideal` it becomes clear.
-    ExtraClearance at [Throw, Joint], Joint, Wear:
+    ExtraClearance at [Throw, Joint], Joint:
     "The joint has more play than was believed."
     law "c + Δc; an ideal joint becomes clear" after "" {
         /// By how much the radial clearance is larger.
