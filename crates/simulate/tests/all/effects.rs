@@ -161,15 +161,20 @@ fn moved(entry: &Entry, values: &[f64], index: usize, value: f64) -> Resolved {
     resolve(&tree)
 }
 
-/// A step over which the parameter is moved either way.
-fn step(parameter: &Parameter) -> f64 {
+/// A step over which the parameter is moved either way. The usual film changes so little that over a smaller step the
+/// difference is that of the integration's rounding.
+fn step(entry: &Entry, parameter: &Parameter) -> f64 {
     let [low, high] = parameter.bounds;
     let size = if parameter.start == 0.0 {
         0.1 * (high - low)
     } else {
         parameter.start
     };
-    1e-5 * size.abs()
+    let share = match entry.name {
+        "squeeze_film" => 1e-3,
+        _ => 1e-5,
+    };
+    share * size.abs()
 }
 
 #[test]
@@ -192,7 +197,14 @@ fn derivatives_of_the_whole_catalogue_equal_differences() {
         let centre = moved(entry, &values, 0, values[0]);
         let all: Vec<Moved> = free
             .iter()
-            .map(|i| moved(entry, &values, *i, values[*i] + step(&entry.parameters[*i])))
+            .map(|i| {
+                moved(
+                    entry,
+                    &values,
+                    *i,
+                    values[*i] + step(entry, &entry.parameters[*i]),
+                )
+            })
             .map(|m| Moved {
                 machine: m.machine,
                 sensors: m.sensors,
@@ -201,7 +213,7 @@ fn derivatives_of_the_whole_catalogue_equal_differences() {
         let found = sensitivities(&centre.machine, &centre.sensors, &all, &settings).unwrap();
         for (i, derivative) in free.into_iter().zip(&found.derivatives) {
             let parameter = &entry.parameters[i];
-            let step = step(parameter);
+            let step = step(entry, parameter);
             let at = |sign: f64| {
                 let machine = moved(entry, &values, i, values[i] + sign * step);
                 simulate(&machine.machine, &machine.sensors, &settings, false)
