@@ -1,4 +1,7 @@
 //! The effects that act at one place of a machine.
+//!
+//! Loops add up what they do: a closure that is handed to an iterator is compiled without the instructions of lanes, and
+//! calls a function for each multiplication that is fused with an addition.
 
 use super::acts::{Acts, JointAt, RodSpring, Shape};
 use super::place::{End, Joint, Place};
@@ -54,7 +57,13 @@ impl<'a, S: Scalar> Acting<'a, S> {
         if !self.any() {
             return None;
         }
-        self.all().find_map(|effect| effect.rod())
+        for effect in self.all() {
+            let rod = effect.rod();
+            if rod.is_some() {
+                return rod;
+            }
+        }
+        None
     }
 
     /// Acceleration of the frame, m/s²; none where it stands still.
@@ -63,10 +72,16 @@ impl<'a, S: Scalar> Acting<'a, S> {
         if !self.any() {
             return None;
         }
-        let moves = self
-            .all()
-            .filter_map(|effect| effect.frame_acceleration(angle, speed));
-        moves.reduce(|sum, more| sum + more)
+        let mut sum: Option<Vec2<S>> = None;
+        for effect in self.all() {
+            if let Some(more) = effect.frame_acceleration(angle, speed) {
+                sum = Some(match sum {
+                    Some(sum) => sum + more,
+                    None => more,
+                });
+            }
+        }
+        sum
     }
 
     /// Those that act at a joint.
@@ -105,15 +120,23 @@ impl<S: Scalar> AtJoint<'_, S> {
             |axis: Vec2<S>| Vec2::new(axis.dot(&normal), turned(axis).dot(&normal)),
         );
         let [bearing, journal] = self.axes;
-        let effects = self.acting.at_joint(self.joint);
-        let shapes = effects.filter_map(|effect| effect.shape(within(bearing), within(journal)));
-        shapes.reduce(
-            #[inline(always)]
-            |a, b| Shape {
-                wider: a.wider + b.wider,
-                change: [a.change[0] + b.change[0], a.change[1] + b.change[1]],
-            },
-        )
+        let (bearing, journal) = (within(bearing), within(journal));
+        let mut sum: Option<Shape<S>> = None;
+        for effect in self.acting.at_joint(self.joint) {
+            if let Some(more) = effect.shape(bearing, journal) {
+                sum = Some(match sum {
+                    Some(sum) => Shape {
+                        wider: sum.wider + more.wider,
+                        change: [
+                            sum.change[0] + more.change[0],
+                            sum.change[1] + more.change[1],
+                        ],
+                    },
+                    None => more,
+                });
+            }
+        }
+        sum
     }
 
     /// Force of the film on the journal along the normal, N.
@@ -122,7 +145,10 @@ impl<S: Scalar> AtJoint<'_, S> {
         if !self.acting.any() {
             return S::zero();
         }
-        let effects = self.acting.at_joint(self.joint);
-        effects.fold(S::zero(), |sum, effect| sum + effect.film_force(at))
+        let mut sum = S::zero();
+        for effect in self.acting.at_joint(self.joint) {
+            sum += effect.film_force(at);
+        }
+        sum
     }
 }

@@ -131,11 +131,12 @@ impl<S: Scalar> EmpiricalForce<S> {
     fn harmonics(&self, at: &PistonAt<S>) -> S {
         let (sine, cosine) = at.angle.sin_cos();
         let (mut c, mut s) = (S::one(), S::zero());
-        let orders = self.cosines.iter().zip(&self.sines);
-        orders.fold(S::zero(), |sum, (a, b)| {
+        let mut sum = S::zero();
+        for (a, b) in self.cosines.iter().zip(&self.sines) {
             (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
-            sum + *a * c + *b * s
-        })
+            sum = sum + *a * c + *b * s;
+        }
+        sum
     }
 }
 
