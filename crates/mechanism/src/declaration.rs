@@ -119,6 +119,8 @@ pub enum Quantity {
     Speed,
     /// Hz.
     Frequency,
+    /// s.
+    Duration,
     /// m/s.
     Velocity,
     /// m/s².

@@ -77,6 +77,7 @@ pub(super) fn with_kind<W: WithKind>(quantity: Quantity, then: W) -> W::Output {
         Quantity::Compliance => then.with::<quantity::Compliance>(),
         Quantity::Pressure => then.with::<quantity::Pressure>(),
         Quantity::Viscosity => then.with::<quantity::Viscosity>(),
+        Quantity::Duration => then.with::<quantity::Duration>(),
         Quantity::StiffnessPerRoot => then.with::<quantity::StiffnessPerRoot>(),
         Quantity::ForcePerPressure => then.with::<quantity::ForcePerPressure>(),
     }

@@ -58,6 +58,7 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
     for name in [
         "valve_loss",
         "ring_leakage",
+        "valve_leakage",
         "heat_transfer",
         "gas_pulsation",
         "valve_flutter",
@@ -76,6 +77,8 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
         "crank_angle_offset",
         "sensor_resonance",
         "sensor_gain",
+        "sensor_offset",
+        "sensor_delay",
         "mains_hum",
         "empirical_force",
     ] {

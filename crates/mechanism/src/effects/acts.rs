@@ -108,7 +108,24 @@ pub(crate) struct ChamberAt<S> {
     pub closed: S,
 }
 
+/// Difference of pressures, over the suction pressure, below which a flow is laminar.
+const LAMINAR: f64 = 0.02;
+
 impl<S: Scalar> ChamberAt<S> {
+    /// √(p² − p_other²), Pa, negative where the gas flows in: what a throttle lets flow (Stodola 1927).
+    #[inline(always)]
+    pub fn throttled_to(&self, other: S) -> S {
+        let squares = self.pressure * self.pressure - other * other;
+        let floor = self.suction * self.suction * (LAMINAR * LAMINAR);
+        squares / (squares * squares + floor * floor).sqrt().sqrt()
+    }
+
+    /// n/(p V): the rate at which the logarithm of the pressure falls for a flow ṁ R T, 1/J.
+    #[inline(always)]
+    pub fn loss_of_flow(&self) -> S {
+        self.exponent / (self.pressure * self.area * self.distance)
+    }
+
     /// Crank angle since suction and discharge valve opened, rad, from a quarter of a turn before to three
     /// quarters after. They open at these shares of the lines' pressures, by the polytropes of a piston with
     /// ideal joints.
@@ -157,6 +174,8 @@ pub(crate) struct PistonAt<S> {
     pub speed: S,
     /// Pressure at the head end, Pa.
     pub pressure: S,
+    /// Pressure of the discharge line, Pa.
+    pub discharge: S,
     /// Crank angle since the throw's top dead centre, rad.
     pub angle: S,
     /// Speed of the crank, rad/s.

@@ -83,6 +83,7 @@ catalogue! {
     valve_loss::ValveLoss,
     suction_unloading::SuctionUnloading,
     ring_leakage::RingLeakage,
+    valve_leakage::ValveLeakage,
     heat_transfer::HeatTransfer,
     gas_pulsation::GasPulsation,
     valve_flutter::ValveFlutter,

@@ -17,9 +17,6 @@ use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
 
-/// Difference of pressures, over the suction pressure, below which the flow is laminar.
-const LAMINAR: f64 = 0.02;
-
 parameters! {
     /// Parameters of leaking rings.
     pub struct RingLeakage<S> {
@@ -52,10 +49,6 @@ impl<S: Scalar> Acts<S> for RingLeakage<S> {
 
     #[inline(always)]
     fn drift(&self, at: &ChamberAt<S>) -> S {
-        let squares = at.pressure * at.pressure - at.across * at.across;
-        let floor = at.suction * at.suction * (LAMINAR * LAMINAR);
-        let root = squares / (squares * squares + floor * floor).sqrt().sqrt();
-        let volume = at.area * at.distance;
-        -(at.exponent * self.area * self.gas_speed * root) / (at.pressure * volume)
+        -(self.area * self.gas_speed * at.throttled_to(at.across)) * at.loss_of_flow()
     }
 }

@@ -10,7 +10,7 @@
 //!
 //! ė is the rate at which the journal approaches the bearing. While it leaves, a share s of that force is left:
 //! a film that cannot pull has none (Gümbel 1914), one that is fed with oil all around has all of it. The film ends at the height of the
-//! roughness: 1 − ε² is rounded to √((1 − ε²)² + h²). The wedge that rotation makes is left out. A
+//! roughness, and stays so thin where the metal touches: 1 − ε² is no less than h, rounded over a fifth of it. The wedge that rotation makes is left out. A
 //! film that fills a whole bearing is so stiff that nothing touches; `length` is what is wet.
 //! Signature: impacts rounded and late, less ringing, more so the smaller the clearance.
 
@@ -22,6 +22,8 @@ use std::f64::consts::PI;
 
 /// Speed over which a film that leaves the bearing tears, m/s; blows have a hundredth of a metre per second and more.
 const TEARS: f64 = 1e-3;
+/// Share of the roughness over which the film comes to its end.
+const ROUNDED: f64 = 0.2;
 
 parameters! {
     /// Parameters of the film.
@@ -50,7 +52,7 @@ declaration! {
         /// nothing touches. 2 mm where it is left out.
         length: Length(AboveZero), 0.0005 to 0.05, start 0.002;
         /// Share of the clearance that the roughness keeps open; 0.1 where it is left out.
-        roughness: Number(AboveZero), 0.05 to 0.5, start 0.1;
+        roughness: Number(AboveZero), 0.01 to 0.5, start 0.1;
         /// Share of the force that is left while the journal leaves the bearing, 0 to 1; 1 where it is left out.
         @shape separation: Number(FromZero), 0.0 to 1.0, start 1.0;
         /// Share of the force at the centre that is a long bearing's, which grows less toward contact, 0 to 1; 0 where it is
@@ -63,12 +65,12 @@ impl<S: Scalar> Acts<S> for SqueezeFilm<S> {
     #[inline(always)]
     fn film_force(&self, at: &JointAt<S>) -> S {
         let e = at.penetration / at.clearance + 1.0;
-        let gap = S::one() - e * e;
-        let square = gap * gap + self.roughness * self.roughness;
-        // ((1 − ε²)² + h²)^(5/4) and, of a long bearing, ^(3/4).
-        let root = square.sqrt();
-        let thin = square * root.sqrt();
-        let thin_of_long = root * root.sqrt();
+        let above = S::one() - e * e - self.roughness;
+        let round = self.roughness * ROUNDED;
+        let gap = self.roughness + (above + (above * above + round * round).sqrt()) * 0.5;
+        let root = gap.sqrt();
+        let thin = gap * gap * root;
+        let thin_of_long = gap * root;
         let c = at.clearance;
         let oil = self.viscosity * at.journal_radius * self.length * self.length * self.length;
         let still = oil * PI / (c * c * c);

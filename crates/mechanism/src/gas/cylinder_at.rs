@@ -61,6 +61,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
         let piston = || PistonAt {
             speed: motion.crosshead_rate,
             pressure: head_end.pressure,
+            discharge: throw.cylinder.discharge,
             angle: motion.angle,
             crank_speed: self.speed,
             mass: throw.crosshead.mass,
@@ -79,8 +80,11 @@ impl<S: Scalar> CylinderAt<'_, S> {
             false => S::zero(),
             true => {
                 let piston = piston();
-                let forces = self.effects.all().map(|e| e.piston_force(&piston));
-                forces.fold(S::zero(), |sum, force| sum + force)
+                let mut sum = S::zero();
+                for effect in self.effects.all() {
+                    sum += effect.piston_force(&piston);
+                }
+                sum
             }
         };
         Gas {
@@ -199,15 +203,16 @@ impl<S: Scalar> CylinderAt<'_, S> {
             End::Head => [PI, 0.0],
             End::Crank => [0.0, PI],
         };
-        let [filled, emptied] = angles.map(|angle| {
+        let mut lines = [S::zero(); 2];
+        for (i, angle) in angles.into_iter().enumerate() {
             let at_centre = ChamberAt {
                 angle: S::constant(angle),
                 growth: S::zero(),
                 ..seen
             };
-            self.lines(end, &at_centre)
-        });
-        [filled[0], emptied[1]]
+            lines[i] = self.lines(end, &at_centre)[i];
+        }
+        lines
     }
 
     /// Pressures at which the open valves hold the chamber: suction, discharge.
@@ -246,16 +251,21 @@ impl<S: Scalar> CylinderAt<'_, S> {
         if !self.effects.any() || self.drift.is_none() {
             return [S::zero(); 2];
         }
-        [End::Head, End::Crank].map(|end| {
+        let mut drifts = [S::zero(); 2];
+        for end in [End::Head, End::Crank] {
             let (state, Some(mut chamber)) = chambers[end as usize] else {
-                return S::zero();
+                continue;
             };
-            let other = chambers[1 - end as usize].1.map(|other| other.pressure);
-            chamber.across = other.unwrap_or(chamber.across);
-            let effects = self.effects.at_end(end);
-            let rate = effects.fold(S::zero(), |sum, effect| sum + effect.drift(&chamber));
-            chamber.closed * rate + self.reopened(end, state, rate)
-        })
+            if let Some(other) = chambers[1 - end as usize].1 {
+                chamber.across = other.pressure;
+            }
+            let mut rate = S::zero();
+            for effect in self.effects.at_end(end) {
+                rate += effect.drift(&chamber);
+            }
+            drifts[end as usize] = chamber.closed * rate + self.reopened(end, state, rate);
+        }
+        drifts
     }
 
     /// Rate of the drift, 1/s, where a valve stands open in the stroke that closed it; 0 elsewhere. Near a

@@ -6,7 +6,7 @@ use common::{REVOLUTION, Run, SPEED, single_stage, with_clearance};
 use mechanism::effects::{
     BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
     Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
-    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLoss,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLeakage, ValveLoss,
 };
 use mechanism::frame::Frame;
 use mechanism::gas::CrankEnd;
@@ -252,6 +252,32 @@ fn leaking_rings_let_the_pressure_fall_by_stodola_s_ellipse() {
     assert!(against > vacuum);
 }
 
+#[test]
+fn a_valve_that_leaks_lets_gas_to_its_line_by_stodola_s_ellipse() {
+    let end = 270_f64.to_radians();
+    let face = PI * PISTON * PISTON;
+    let flow = |area: f64, p: f64, line: f64| {
+        let d = p * p - line * line;
+        let floor = (0.02 * PS).powi(2);
+        area * 290.0 * d / (d * d + floor * floor).powf(0.25)
+    };
+    let tight = PS * ((STROKE + DEAD) / distance(end)).powf(M);
+    for ([suction, discharge], falls) in [([8e-6, 0.0], true), ([0.0, 8e-6], false)] {
+        let law = ValveLeakage {
+            suction,
+            discharge,
+            gas_speed: 290.0,
+        };
+        let found = at_angles(ideal(Law::ValveLeakage(law)), &[270.0], pressure)[0];
+        let expected = compressed(end, |x, p| {
+            -M * (flow(suction, p, PS) + flow(discharge, p, PD)) / (p * face * x)
+        });
+        near(found, expected.exp(), 2e-5);
+        assert_eq!(found < 0.99 * tight, falls);
+        assert_eq!(found > 1.01 * tight, !falls);
+    }
+}
+
 /// Where leaking gas is faster than the piston the valve stands open: after the dead centre, and long after it
 /// where much leaks.
 #[test]
@@ -449,23 +475,31 @@ fn ring_friction_is_a_square_wave_of_odd_orders() {
 }
 
 #[test]
-fn misalignment_has_once_and_twice_the_speed_and_nothing_else() {
-    let machine = ideal(Law::Misalignment(Misalignment {
-        first: 200.0,
-        first_phase: 0.5,
-        second: 70.0,
-        second_phase: -1.0,
-    }));
-    let samples = at_angles(machine, &revolution(64), |at| at.throws[0].gas.effects);
-    for k in 1..=6 {
-        let expected = match k {
-            1 => [200.0 * 0.5_f64.cos(), -200.0 * 0.5_f64.sin()],
-            2 => [70.0 * 1_f64.cos(), 70.0 * 1_f64.sin()],
-            _ => [0.0; 2],
-        };
-        let found = order(&samples, f64::from(k));
-        let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
-        assert!(off < 1e-9, "order {k}: {found:?}");
+fn misalignment_has_once_to_three_times_the_speed_and_nothing_else() {
+    for load_exponent in [0.0, 0.5, 1.0] {
+        let machine = ideal(Law::Misalignment(Misalignment {
+            first: 200.0,
+            first_phase: 0.5,
+            second: 70.0,
+            second_phase: -1.0,
+            third: 40.0,
+            third_phase: 2.0,
+            load_exponent,
+        }));
+        let load = (PD / 1e6).powf(load_exponent);
+        let samples = at_angles(machine, &revolution(64), |at| at.throws[0].gas.effects);
+        for k in 1..=6 {
+            let (force, phase) = match k {
+                1 => (200.0, 0.5_f64),
+                2 => (70.0, -1.0),
+                3 => (40.0, 2.0),
+                _ => (0.0, 0.0),
+            };
+            let expected = [load * force * phase.cos(), -load * force * phase.sin()];
+            let found = order(&samples, f64::from(k));
+            let off = (found[0] - expected[0]).hypot(found[1] - expected[1]);
+            assert!(off < 1e-9, "order {k}: {found:?}");
+        }
     }
 }
 
@@ -812,6 +846,36 @@ fn a_film_pushes_back_as_ocvirk_s() {
         -still / 0.75_f64.powf(1.5) * 0.1,
         1e-9,
     );
+    // Where the metal touches the film is as thick as the roughness, however deep the journal goes.
+    let resists = |effects: Vec<Effect>, depth: f64| {
+        let mut machine = with_clearance(0.0, clearance, 2e4);
+        machine.effects = effects;
+        let mut dynamics = Dynamics::new(machine, false);
+        let i = dynamics.layout().throws[0].small_end.unwrap();
+        let mut y = dynamics.initial_state();
+        (y[i], y[i + 2]) = (depth * clearance, 0.1);
+        dynamics.evaluate(0.0, &y).throws[0]
+            .joints
+            .small_end
+            .force
+            .x
+    };
+    let mut rough = film(Joint::SmallEnd);
+    if let Law::SqueezeFilm(film) = &mut rough.law {
+        film.roughness = 0.1;
+    }
+    for depth in [1.05_f64, 1.3] {
+        let found = resists(vec![rough.clone()], depth) - resists(Vec::new(), depth);
+        let square = depth * depth;
+        let deeper = square - 1.0 + 0.1;
+        let thin: f64 = 0.1 + 0.5 * (f64::hypot(deeper, 0.02) - deeper);
+        near(
+            found,
+            -still * (1.0 + 2.0 * square) / thin.powf(2.5) * 0.1,
+            1e-7,
+        );
+        assert!((thin - 0.1).abs() < 1e-3);
+    }
     // A film that cannot pull resists the approach alone; one that half can pulls half as much. It tears over 1 mm/s.
     for separation in [0.0, 0.5] {
         let mut weak = film(Joint::SmallEnd);

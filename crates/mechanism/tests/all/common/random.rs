@@ -6,7 +6,7 @@ use mechanism::drive::{Drive, MotorLine};
 use mechanism::effects::{
     BearingOvality, Effect, EmpiricalForce, End, GasPulsation, HeatTransfer, Joint, Law,
     Misalignment, Oval, Place, RingFriction, RingLeakage, RodFlexibility, RotatingUnbalance,
-    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLoss,
+    Shaken, SqueezeFilm, SuctionUnloading, ValveFlutter, ValveLeakage, ValveLoss,
 };
 use mechanism::gas::CrankEnd;
 use mechanism::joints::contact::{ContactLaw, Hertz, Impact, KelvinVoigt, Restitution};
@@ -223,6 +223,15 @@ pub fn catalogue() -> Vec<Effect> {
             None,
         ),
         at(
+            Law::ValveLeakage(ValveLeakage {
+                suction: 2e-6,
+                discharge: 1e-6,
+                gas_speed: 290.0,
+            }),
+            None,
+            Some(End::Head),
+        ),
+        at(
             Law::HeatTransfer(HeatTransfer {
                 stanton: 0.02,
                 wall_temperature: 1.2,
@@ -275,6 +284,9 @@ pub fn catalogue() -> Vec<Effect> {
                 first_phase: 0.3,
                 second: 100.0,
                 second_phase: 1.9,
+                third: 60.0,
+                third_phase: -0.4,
+                load_exponent: 0.5,
             }),
             None,
             None,
