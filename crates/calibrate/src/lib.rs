@@ -33,6 +33,7 @@ pub mod correction;
 pub mod crank_motion;
 pub mod data_sheet;
 mod earlier;
+pub mod energies;
 mod envelopes;
 pub mod error;
 mod few_revolutions;

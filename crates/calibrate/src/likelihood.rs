@@ -53,24 +53,40 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn deviance(&self, x: &[f64]) -> Result<f64, Error> {
+        Ok(self.deviance_of(&self.predictions(x)?, self.timing))
+    }
+
+    /// The allowance among `timings` with which the recordings are likeliest at `x`, and the deviance there.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub fn likeliest(&self, x: &[f64], timings: &[f64]) -> Result<(f64, f64), Error> {
         let predictions = self.predictions(x)?;
+        let all = timings
+            .iter()
+            .map(|timing| (*timing, self.deviance_of(&predictions, *timing)));
+        let best = all.min_by(|a, b| a.1.total_cmp(&b.1));
+        best.ok_or(Error::Nothing("no allowance"))
+    }
+
+    fn deviance_of(&self, predictions: &[Prediction], timing: f64) -> f64 {
         let (mut spread, mut squares, mut count) = (0.0, 0.0, 0.0);
-        for (run, prediction) in self.problem.runs.iter().zip(&predictions) {
+        for (run, prediction) in self.problem.runs.iter().zip(predictions) {
             for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
-                let weights = weights(observed, predicted, self.timing);
+                let weights = weights(observed, predicted, timing);
                 for (k, weight) in observed.orders.iter().zip(weights) {
                     let parts = if *k == 0 { 1.0 } else { 2.0 };
                     spread -= 2.0 * parts * weight.ln();
                     count += parts;
                 }
             }
-            let residuals = residuals(run, prediction, self.timing);
+            let residuals = residuals(run, prediction, timing);
             squares += residuals.iter().map(|r| r * r).sum::<f64>();
         }
         let mean = if count > 0.0 { squares / count } else { 0.0 };
-        match self.timing > 0.0 || mean <= 1.0 {
-            true => Ok(spread + squares),
-            false => Ok(spread + count * (mean.ln() + 1.0)),
+        match timing > 0.0 || mean <= 1.0 {
+            true => spread + squares,
+            false => spread + count * (mean.ln() + 1.0),
         }
     }
 
@@ -207,18 +223,18 @@ fn derivatives(
 }
 
 /// The mean of an acceleration belongs to the sensor; that of a pressure has no imaginary part.
-fn push(all: &mut Vec<f64>, value: Complex64, order: usize) {
+pub(crate) fn push(all: &mut Vec<f64>, value: Complex64, order: usize) {
     all.push(value.re);
     all.push(if order == 0 { 0.0 } else { value.im });
 }
 
-fn amplitude(lines: &OrderLines, order: usize) -> Complex64 {
+pub(crate) fn amplitude(lines: &OrderLines, order: usize) -> Complex64 {
     lines.amplitude.get(order).copied().unwrap_or_default()
 }
 
 /// One over the standard deviation of the real part of each compared line. An error ε of the angle,
 /// normal with variance τ², moves a line c by a mean square E|c e^(ikε) − c|² = 2|c|²(1 − e^(−k²τ²/2)).
-fn weights(observed: &Observed, predicted: &OrderLines, timing: f64) -> Vec<f64> {
+pub(crate) fn weights(observed: &Observed, predicted: &OrderLines, timing: f64) -> Vec<f64> {
     let lines = &observed.lines.amplitude;
     let greatest = lines.iter().map(|c| c.norm()).fold(0.0, f64::max);
     let accuracy = (ACCURACY * greatest).powi(2);

@@ -74,9 +74,23 @@ impl Amendment {
         }
     }
 
-    /// The same with the form of its law free as well; none where it has one form.
-    pub(crate) fn of_any_form(&self) -> Option<Self> {
-        self.effect()?.of_any_form().map(Self::Effect)
+    /// The same with the usual form of its law, and these values in it; none where its law has one form.
+    pub(crate) fn of_usual_form(&self, values: &[f64]) -> Option<(Self, Vec<f64>)> {
+        let usual = self.effect()?.of_usual_form()?;
+        let values = usual.usually_formed(values);
+        Some((Self::Effect(usual), values))
+    }
+
+    /// The same at each of its places alone, with the values of that place; nothing where it has one place.
+    pub(crate) fn at_places_alone(&self, values: &[f64]) -> Vec<(Self, Vec<f64>)> {
+        let Some(effect) = self.effect().filter(|effect| !effect.each.is_empty()) else {
+            return Vec::new();
+        };
+        let alone = |(item, first): (Candidate, usize)| {
+            let count = item.entry.parameters.len();
+            (Self::Effect(item), values[first..first + count].to_vec())
+        };
+        effect.items().into_iter().map(alone).collect()
     }
 
     /// Where it is tried: values of an effect's parameters (SI), or the coordinate of a correction.
@@ -88,12 +102,6 @@ impl Amendment {
                 Ok(DOUBTED.iter().map(|by| vec![by * deviation]).collect())
             }
         }
-    }
-
-    /// Whether a probe has the usual form of its law.
-    pub(crate) fn is_usual_form(&self, probe: &[f64]) -> bool {
-        self.effect()
-            .is_none_or(|candidate| candidate.is_usual_form(probe))
     }
 
     /// A probe at which hardly anything of it is left, so that a descent can leave it out.
@@ -173,12 +181,12 @@ mod tests {
         let own = problem.parameters.len();
         let values = film.effect().unwrap().usual();
         let added = film.added(&problem, &values).unwrap();
-        assert_eq!((film.items(), film.free()), (2, 3));
-        assert_eq!(added.parameters.len(), own + 3);
+        assert_eq!((film.items(), film.free()), (2, 5));
+        assert_eq!(added.parameters.len(), own + 5);
         assert!(added.parameters[own..].iter().all(|p| p.places.len() == 2));
         // Each bearing has been worn in its own direction.
         let oval = both(&problem, "bearing_ovality").unwrap();
-        assert_eq!((oval.items(), oval.free()), (2, 4));
+        assert_eq!((oval.items(), oval.free()), (2, 8));
     }
 
     #[test]

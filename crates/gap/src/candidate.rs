@@ -70,7 +70,7 @@ impl Candidate {
                         fixed,
                         each: each.clone(),
                         shared: false,
-                        formed: false,
+                        formed: true,
                     };
                     let usual = candidate.usual();
                     let seen = known || !candidate.place.iter().any(|(_, word)| word == PRESSURE);
@@ -128,13 +128,20 @@ impl Candidate {
         }
     }
 
-    /// The same with the form of its law free as well; none where its law has one form.
-    pub(crate) fn of_any_form(&self) -> Option<Self> {
+    /// The same with the usual form of its law; none where its law has one form.
+    pub(crate) fn of_usual_form(&self) -> Option<Self> {
         let forms = self.entry.parameters.iter().any(|p| p.shape);
-        (forms && !self.formed).then(|| Self {
-            formed: true,
+        (forms && self.formed).then(|| Self {
+            formed: false,
             ..self.clone()
         })
+    }
+
+    /// These values, with those of the usual form of its law.
+    pub(crate) fn usually_formed(&self, values: &[f64]) -> Vec<f64> {
+        let parameters = self.entry.parameters.iter().cycle();
+        let usual = |(value, p): (&f64, &Parameter)| if p.shape { p.start } else { *value };
+        values.iter().zip(parameters).map(usual).collect()
     }
 
     /// The parameters that are searched, by their indices.
@@ -246,6 +253,8 @@ impl Candidate {
             let mut item = self.clone();
             item.each = Vec::new();
             item.place.push(word.clone());
+            let position = |key: &str| self.entry.places.iter().position(|c| c.key == key);
+            item.place.sort_by_key(|(key, _)| position(key));
             (item, i * own)
         };
         self.each.iter().enumerate().map(item).collect()
@@ -263,15 +272,6 @@ impl Candidate {
     pub(crate) fn usual(&self) -> Vec<f64> {
         let of_item = self.entry.parameters.iter().map(|p| p.start);
         of_item.collect::<Vec<f64>>().repeat(self.sets())
-    }
-
-    /// Whether these values have the usual form of its law.
-    pub(crate) fn is_usual_form(&self, values: &[f64]) -> bool {
-        let parameters = self.entry.parameters.iter().cycle();
-        values
-            .iter()
-            .zip(parameters)
-            .all(|(value, p)| !p.shape || *value == p.start)
     }
 
     /// Values with next to nothing of its amplitudes.

@@ -1,9 +1,9 @@
 //! Fits a machine to its recordings, from what is slow in them to what is fast.
 //!
-//! The ringing of the contacts has many local minima, its low orders have few. A descent therefore allows features to
-//! stand elsewhere in the revolution at first, and less and less of that. No law of the catalogue is quite a machine's:
-//! where a descent allows less than the law is off by, the likelihood falls again. The allowance with which it is
-//! greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
+//! The ringing of the contacts has many local minima, its low orders and its energies have few. A descent therefore
+//! compares those first, then lines that may stand elsewhere in the revolution, with less and less of that. No law of
+//! the catalogue is quite a machine's: where a descent allows less than the law is off by, the likelihood falls again.
+//! The allowance with which it is greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
 
 use crate::criteria::NOISE;
 use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
@@ -12,28 +12,50 @@ use crate::journal::Finished;
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use calibrate::Problem;
+use calibrate::energies::Energies;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observation;
-use calibrate::optimiser::Progress;
+use calibrate::optimiser::{LeastSquares, Progress};
 use calibrate::secant::secant;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// By how much features may stand elsewhere, rad, and the evaluations that a descent may take there: for every start,
-/// and for those that have led near.
-const ROUGH: [(f64, u64); 3] = [(0.03, 10), (0.01, 8), (0.003, 10)];
-const FINE: [(f64, u64); 4] = [(0.01, 25), (0.003, 25), (0.001, 25), (0.0, 40)];
+/// The stages of a descent: for every start, and for those that have led near.
+const ROUGH: [Stage; 3] = [
+    Stage::Energies(12),
+    Stage::Lines(0.01, 8),
+    Stage::Lines(0.003, 10),
+];
+const FINE: [Stage; 4] = [
+    Stage::Lines(0.01, 25),
+    Stage::Lines(0.003, 25),
+    Stage::Lines(0.001, 25),
+    Stage::Lines(0.0, 40),
+];
 /// The same for pressures alone, which do not ring: nothing in them is in the way of a descent, and where their valves work
 /// counts from the start.
-const ROUGH_OF_GAS: [(f64, u64); 1] = [(0.0, 12)];
-const FINE_OF_GAS: [(f64, u64); 1] = [(0.0, 30)];
+const ROUGH_OF_GAS: [Stage; 1] = [Stage::Lines(0.0, 12)];
+const FINE_OF_GAS: [Stage; 1] = [Stage::Lines(0.0, 30)];
+/// Allowance that a descent with lines begins with at least, rad.
+const LEAST: f64 = 0.001;
+/// Sizes of the discrepancy that a model may have, rad: of timing, and of pressures alone none.
+const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Relative change of the sum of squares at which a descent ends.
 const CHANGE: f64 = 1e-2;
 /// Runs that candidates are compared with.
 const FEW: usize = 3;
 /// Share of the range by which a descent starts within a bound.
 const INSIDE: f64 = 0.01;
+
+/// What a stage of a descent compares, and the evaluations that it may take.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    /// Energies by band and sector.
+    Energies(u64),
+    /// Lines that may stand elsewhere by so much, rad.
+    Lines(f64, u64),
+}
 
 /// Asked between evaluations whether to go on.
 pub type Watch<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
@@ -64,8 +86,7 @@ impl Fitter<'_> {
         Ok(model.map(|model| (model, rough.start)))
     }
 
-    /// Where short descents from these points lead, the best of them. With each allowance that is smaller half of them
-    /// go on.
+    /// Where short descents from these points lead, the best of them. After each stage half of them go on.
     ///
     /// # Errors
     /// [`Error::Stopped`].
@@ -78,7 +99,7 @@ impl Fitter<'_> {
         let of_gas = starts
             .first()
             .is_some_and(|(problem, _)| is_of_pressures(problem));
-        let stages: &[(f64, u64)] = if of_gas { &ROUGH_OF_GAS } else { &ROUGH };
+        let stages: &[Stage] = if of_gas { &ROUGH_OF_GAS } else { &ROUGH };
         for stage in stages {
             let next = led.into_par_iter().map(|mut rough| {
                 let problem = &starts[rough.start].0;
@@ -90,7 +111,7 @@ impl Fitter<'_> {
             });
             let next = next.collect::<Result<Vec<_>, Error>>()?;
             led = next.into_iter().flatten().collect();
-            led.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
+            led.sort_by(|a, b| a.last.total_cmp(&b.last));
             led.truncate(led.len().div_ceil(2));
         }
         Ok(led.into_iter().next())
@@ -98,12 +119,23 @@ impl Fitter<'_> {
 
     /// The model with all its fitted runs, continued from where a few of them have led.
     pub fn settled(&self, start: &Start) -> Result<Option<Model>, Error> {
+        self.settled_from(start, f64::INFINITY)
+    }
+
+    /// The same from where no more than this allowance was needed, rad: more would lead away again.
+    pub fn settled_from(&self, start: &Start, timing: f64) -> Result<Option<Model>, Error> {
         let (problem, x) = start;
-        let stages: &[(f64, u64)] = match is_of_pressures(problem) {
-            true => &FINE_OF_GAS,
-            false => &FINE,
+        let stages: Vec<Stage> = match is_of_pressures(problem) {
+            true => FINE_OF_GAS.to_vec(),
+            false => {
+                let allowed = |stage: &&Stage| match stage {
+                    Stage::Lines(allowed, _) => *allowed <= timing.max(LEAST),
+                    Stage::Energies(_) => true,
+                };
+                FINE.iter().filter(allowed).copied().collect()
+            }
         };
-        let fine = self.descended(problem, x, stages)?;
+        let fine = self.descended(problem, x, &stages)?;
         match fine {
             None => Ok(None),
             Some(fine) => possible(Model::at(
@@ -120,7 +152,7 @@ impl Fitter<'_> {
         &self,
         problem: &Problem,
         x: &[f64],
-        stages: &[(f64, u64)],
+        stages: &[Stage],
     ) -> Result<Option<Descent>, Error> {
         let fitted = problem.with_runs(|run| self.effort.fits(&run.id)).metered();
         if fitted.parameters.is_empty() {
@@ -130,19 +162,36 @@ impl Fitter<'_> {
         let numbers = self.effort.journal.once(&input, || {
             let mut descent = Descent::nowhere();
             descent.end = x.to_vec();
-            for (timing, evaluations) in stages {
-                let likelihood = Likelihood::coarse(&fitted, *timing);
+            for stage in stages {
                 let within = || ((self.watch)(), fitted.meter.steps() < MOST_OF_A_DESCENT);
-                match descend(&likelihood, &descent.end, *evaluations, &within) {
-                    Ok(progress) => descent.end = progress.x,
-                    Err(Error::Fit(_)) => break,
-                    Err(error) => return Err(error),
-                }
-                let Ok(deviance) = likelihood.deviance(&descent.end) else {
-                    break;
+                let led = match stage {
+                    Stage::Energies(evaluations) => {
+                        let energies = Energies::new(&fitted);
+                        let led = descend(&energies, &descent.end, *evaluations, &within);
+                        led.map(|led| (energies.squares(&led.x).map(|left| (None, left)), led.x))
+                    }
+                    Stage::Lines(timing, evaluations) => {
+                        let likelihood = Likelihood::coarse(&fitted, *timing);
+                        let led = descend(&likelihood, &descent.end, *evaluations, &within);
+                        led.map(|led| {
+                            let likeliest = likelihood.likeliest(&led.x, timings(&fitted));
+                            (likeliest.map(|(timing, d)| (Some(timing), d)), led.x)
+                        })
+                    }
                 };
+                let (timing, left) = match led {
+                    Ok((Ok(measure), x)) => {
+                        descent.end = x;
+                        measure
+                    }
+                    Ok((Err(_), _)) | Err(Error::Fit(_)) => break,
+                    Err(error) => return Err(error),
+                };
+                descent.last = left;
                 // With less allowance than the law is off by, less fits.
-                if !descent.note(*timing, deviance) && *timing < ROUGH[0].0 {
+                if let Some(timing) = timing
+                    && !descent.note(timing, left)
+                {
                     break;
                 }
             }
@@ -223,6 +272,14 @@ impl Fitter<'_> {
     }
 }
 
+/// The sizes that the discrepancy of a problem's model may have, rad.
+fn timings(problem: &Problem) -> &'static [f64] {
+    match is_of_pressures(problem) {
+        true => &[0.0],
+        false => &TIMINGS,
+    }
+}
+
 /// Where a short descent has led.
 pub(crate) struct Rough {
     /// The index of its start.
@@ -231,8 +288,9 @@ pub(crate) struct Rough {
     pub x: Vec<f64>,
     /// Twice the negative logarithm of the likelihood there.
     pub deviance: f64,
-    /// Where the last descent ended.
+    /// Where the last descent ended, and what was left there.
     end: Vec<f64>,
+    last: f64,
 }
 
 impl Rough {
@@ -242,6 +300,7 @@ impl Rough {
             x: x.to_vec(),
             deviance: f64::INFINITY,
             end: x.to_vec(),
+            last: f64::INFINITY,
         }
     }
 
@@ -250,7 +309,7 @@ impl Rough {
         if descent.least < self.deviance {
             (self.x, self.deviance) = (descent.x, descent.least);
         }
-        self.end = descent.end;
+        (self.end, self.last) = (descent.end, descent.last);
     }
 }
 
@@ -278,7 +337,6 @@ impl Descent {
 
     /// Takes note of where a descent with this allowance ended; whether the recordings are likelier so.
     fn note(&mut self, timing: f64, deviance: f64) -> bool {
-        self.last = deviance;
         let better = deviance < self.least;
         if better {
             self.x.clone_from(&self.end);
@@ -288,11 +346,15 @@ impl Descent {
     }
 
     fn numbers(&self) -> Vec<f64> {
-        match self.least.is_finite() {
+        match self.last.is_finite() {
             true => [
-                &[self.last, self.timing, self.least],
-                &self.end[..],
-                &self.x[..],
+                &[self.last, self.timing, self.least][..],
+                &self.end,
+                if self.x.is_empty() {
+                    &self.end
+                } else {
+                    &self.x
+                },
             ]
             .concat(),
             false => Vec::new(),
@@ -316,21 +378,20 @@ impl Descent {
 
 /// A descent. `watch` decides whether to go on, and whether there are steps left for that.
 fn descend(
-    likelihood: &Likelihood,
+    problem: &impl LeastSquares,
     start: &[f64],
     evaluations: u64,
     watch: &dyn Fn() -> (ControlFlow<()>, bool),
 ) -> Result<Progress, Error> {
-    use calibrate::optimiser::LeastSquares;
     let mut stopped = false;
-    let bounds = likelihood.bounds();
+    let bounds = problem.bounds();
     // A descent within bounds does not leave one that it starts at.
     let within = start.iter().zip(&bounds).map(|(x, [low, high])| {
         let margin = INSIDE * (high - low);
         x.clamp(low + margin, high - margin)
     });
     let start: Vec<f64> = within.collect();
-    let found = secant(likelihood, &start, CHANGE, evaluations, &mut |_| {
+    let found = secant(problem, &start, CHANGE, evaluations, &mut |_| {
         let (answer, affordable) = watch();
         stopped |= answer.is_break();
         match affordable {

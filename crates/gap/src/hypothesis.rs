@@ -62,53 +62,83 @@ impl Hypothesis {
         kinds
     }
 
-    /// It fitted to all runs of `problem`, from where a few have led.
+    /// It fitted to all runs of `problem`, from where a few have led: with the allowance that they needed, and with greater
+    /// ones first; the likelier of the two.
     ///
     /// # Errors
     /// [`Error::Stopped`].
     pub fn settled(&self, fitter: &Fitter, problem: &Problem) -> Result<Option<Self>, Error> {
         let with = added(problem, &self.set)?;
-        let model = fitter.settled(&(with, self.model.x.clone()))?;
+        let start = (with, self.model.x.clone());
+        let near = fitter.settled_from(&start, self.model.timing)?;
+        let far = fitter.settled(&start)?;
+        let both = near.into_iter().chain(far);
+        let model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
         Ok(model.map(|model| Self::new(self.set.clone(), model, problem.parameters.len())))
     }
 
-    /// The same with the forms of its laws free as well, where the recordings are likelier so by more than that
-    /// freedom costs.
+    /// The same with the usual forms of its laws, where the recordings are less likely so by no more than what the
+    /// freedom of another form costs.
     ///
     /// # Errors
     /// [`Error::Stopped`].
-    pub fn of_any_form(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
-        let formed = |one: &Amended| one.amendment.of_any_form();
-        if self.set.iter().all(|one| formed(one).is_none()) {
+    pub fn of_usual_form(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
+        let values = self.values(problem);
+        let all = self.set.iter().zip(&values);
+        let usual: Vec<_> = all
+            .map(|(one, values)| one.amendment.of_usual_form(values))
+            .collect();
+        if usual.iter().all(Option::is_none) {
             return Ok(self);
         }
-        let values = self.values(problem);
-        let set = self.set.iter().zip(values).map(|(one, values)| Amended {
-            amendment: formed(one).unwrap_or_else(|| one.amendment.clone()),
-            values: match one.amendment.effect() {
-                Some(_) => values,
-                None => Vec::new(),
-            },
-        });
-        let set: Vec<Amended> = set.collect();
+        let (set, start) = self.exchanged(problem, usual)?;
+        let usual = fitter.settled_from(&start, self.model.timing)?;
         let own = problem.parameters.len();
-        let mut with = problem.clone();
-        let mut x = self.model.x[..own].to_vec();
-        for (one, first) in set.iter().zip(firsts(&self.model.problem, &self.set, own)) {
-            let coordinate = &self.model.x[first.min(self.model.x.len() - 1)..];
-            let (added, own) = match one.amendment.effect() {
-                Some(_) => (
-                    one.amendment.added(&with, &one.values)?,
-                    vec![0.0; one.amendment.free()],
-                ),
-                None => (one.amendment.added(&with, &[])?, coordinate[..1].to_vec()),
-            };
-            with = added;
-            x.extend(own);
+        let usual = usual.map(|model| Self::new(set, model, own));
+        Ok(usual.filter(|usual| usual.cost < self.cost).unwrap_or(self))
+    }
+
+    /// The sets that have one of its amendments at one of its places alone, each with the start of a fit.
+    ///
+    /// # Errors
+    /// A machine that cannot be so.
+    pub fn at_places_alone(&self, problem: &Problem) -> Result<Vec<(Vec<Amended>, Start)>, Error> {
+        let mut all = Vec::new();
+        for (i, values) in self.values(problem).iter().enumerate() {
+            for alone in self.set[i].amendment.at_places_alone(values) {
+                let mut new = vec![None; self.set.len()];
+                new[i] = Some(alone);
+                all.push(self.exchanged(problem, new)?);
+            }
         }
-        let free = fitter.settled(&(with, x))?;
-        let free = free.map(|model| Self::new(set, model, own));
-        Ok(free.filter(|free| free.cost < self.cost).unwrap_or(self))
+        Ok(all)
+    }
+
+    /// Its set with some amendments exchanged for others at these values, and the start of a fit with it.
+    fn exchanged(
+        &self,
+        problem: &Problem,
+        new: Vec<Option<(Amendment, Vec<f64>)>>,
+    ) -> Result<(Vec<Amended>, Start), Error> {
+        let own = problem.parameters.len();
+        let (mut set, mut with) = (Vec::new(), problem.clone());
+        let mut x = self.model.x[..own].to_vec();
+        let firsts = firsts(&self.model.problem, &self.set, own);
+        for ((one, first), new) in self.set.iter().zip(firsts).zip(new) {
+            let one = match new {
+                Some((amendment, values)) => {
+                    x.extend(vec![0.0; amendment.free()]);
+                    Amended { amendment, values }
+                }
+                None => {
+                    x.extend(&self.model.x[first..first + one.amendment.free()]);
+                    one.clone()
+                }
+            };
+            with = one.amendment.added(&with, &one.values)?;
+            set.push(one);
+        }
+        Ok((set, (with, x)))
     }
 
     /// The values of its amendments as they were fitted, SI.

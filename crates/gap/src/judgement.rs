@@ -74,10 +74,7 @@ pub(crate) fn judged(
     (fitter.say)("fitting to all runs", nothing.model.fitted);
     let settled = chosen
         .into_par_iter()
-        .map(|set| match set.settled(fitter, problem)? {
-            Some(set) => Ok(Some(set.of_any_form(fitter, problem)?)),
-            None => Ok(None),
-        });
+        .map(|set| set.settled(fitter, problem));
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
     let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
     others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -94,7 +91,7 @@ pub(crate) fn judged(
             sure = probable;
         }
     }
-    let believed = believed.clone();
+    let believed = believed.clone().of_usual_form(fitter, problem)?;
     let probabilities = (0..believed.set.len()).map(|i| {
         let rivals = rivals(&believed, i, &others).map(|rival| (believed.cost - rival.cost).exp());
         sure / (1.0 + rivals.sum::<f64>())

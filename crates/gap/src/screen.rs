@@ -18,6 +18,8 @@ use crate::journal::Finished;
 use crate::model::Model;
 use crate::projector::Projector;
 use crate::recorded::is_of_pressures;
+use calibrate::Problem;
+use calibrate::energies::Energies;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
 use nalgebra::DVector;
@@ -25,8 +27,6 @@ use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
-/// By how much features may stand elsewhere, rad; not in pressures alone.
-const TIMING: f64 = 0.03;
 
 /// An amendment that may explain a part of the residual.
 #[derive(Clone, Debug)]
@@ -55,9 +55,12 @@ struct Base {
 }
 
 impl Base {
-    fn at(likelihood: &Likelihood, x: &[f64]) -> Self {
-        let residual = DVector::from_vec(likelihood.residuals(x));
-        let projector = Projector::new(&likelihood.jacobian(x));
+    fn at(problem: &Problem, x: &[f64]) -> Self {
+        let residual = DVector::from_vec(residuals(problem, x));
+        let projector = Projector::new(&match is_of_pressures(problem) {
+            true => Likelihood::new(problem).jacobian(x),
+            false => Energies::new(problem).jacobian(x),
+        });
         Self {
             x: x.to_vec(),
             left: projector.apply(&residual),
@@ -78,43 +81,43 @@ impl Base {
     }
 }
 
+/// What is compared: the lines of pressures alone, energies elsewhere.
+fn residuals(problem: &Problem, x: &[f64]) -> Vec<f64> {
+    match is_of_pressures(problem) {
+        true => Likelihood::new(problem).residuals(x),
+        false => Energies::new(problem).residuals(x),
+    }
+}
+
 /// The amendments, the most promising first. Those that cannot be simulated are left out. They are
-/// looked at where the machine is fitted, and where it is nominal: without what is missing a
-/// fit may have gone far astray.
+/// looked at where the machine is fitted; a machine to which nothing was added (`alone`) also where it is nominal: without
+/// what is missing a fit may have gone far astray.
 ///
 /// # Errors
 /// [`Error::Stopped`].
 pub(crate) fn screen(
     fitter: &Fitter,
     model: &Model,
+    alone: bool,
     amendments: Vec<Amendment>,
 ) -> Result<Vec<Screened>, Error> {
-    let timing = if is_of_pressures(&model.problem) {
-        0.0
-    } else {
-        TIMING
-    };
-    let likelihood = Likelihood::coarse(&model.problem, timing);
     let nominal = vec![0.0; model.x.len()];
-    let mut bases = vec![Base::at(&likelihood, &model.x)];
-    if nominal != model.x {
-        bases.push(Base::at(&likelihood, &nominal));
+    let mut bases = vec![Base::at(&model.problem, &model.x)];
+    if alone && nominal != model.x {
+        bases.push(Base::at(&model.problem, &nominal));
     }
     // The score and the probe there; nothing for what cannot be simulated.
-    let best = |amendment: &Amendment, base: &Base, usual: bool| -> Result<Finished, Error> {
+    let best = |amendment: &Amendment, base: &Base| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let metered = model.problem.metered();
-        let mut probes = amendment.probes(&model.problem)?;
-        probes.retain(|probe| amendment.is_usual_form(probe) == usual);
-        for probe in probes {
+        for probe in amendment.probes(&model.problem)? {
             if (fitter.watch)().is_break() {
                 return Err(Error::Stopped);
             }
             let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
                 continue;
             };
-            let there = Likelihood::coarse(&with, timing).residuals(&x);
-            let score = base.score(there);
+            let score = base.score(residuals(&with, &x));
             let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
             if let Some(score) = score.filter(better) {
                 best = Some((score, probe));
@@ -128,27 +131,28 @@ pub(crate) fn screen(
         })
     };
     let screened = amendments.into_par_iter().map(|amendment| {
-        let (mut scores, mut starts) = (vec![f64::NEG_INFINITY; bases.len()], Vec::new());
-        for (base, score) in bases.iter().zip(&mut scores) {
-            // The usual form of its law, and the others.
-            for usual in [true, false] {
-                let input = ("screen", &model.problem, &base.x, amendment.label(), usual);
-                let work = || best(&amendment, base, usual);
-                let found = fitter.effort.journal.once(&input, work)?;
-                if let Some((best, values)) = found.split_first() {
-                    *score = score.max(*best);
-                    starts.push(Point {
-                        x: base.x.clone(),
-                        values: values.to_vec(),
-                    });
-                }
+        let (mut scores, mut starts) = (Vec::new(), Vec::new());
+        for base in &bases {
+            let input = ("screen", &model.problem, &base.x, amendment.label());
+            let found = fitter
+                .effort
+                .journal
+                .once(&input, || best(&amendment, base))?;
+            let (score, values) = found.split_first().unwrap_or((&f64::NEG_INFINITY, &[]));
+            scores.push(*score);
+            if score.is_finite() {
+                starts.push(Point {
+                    x: base.x.clone(),
+                    values: values.to_vec(),
+                });
             }
         }
         let screened = Screened { amendment, starts };
         Ok((!screened.starts.is_empty()).then_some((screened, scores)))
     });
     let screened = screened.collect::<Result<Vec<_>, Error>>()?;
-    Ok(ordered(screened.into_iter().flatten().collect()))
+    let all: Vec<(Screened, Vec<f64>)> = screened.into_iter().flatten().collect();
+    Ok(ordered(all))
 }
 
 /// The most promising first: by the place that each has at the point where it has the best one. Shares at different

@@ -18,7 +18,8 @@ use std::collections::BTreeMap;
 pub(crate) const MOST: usize = 3;
 /// Amendments of one kind (its places and orders) that are fitted beside an empty set, the most promising first.
 const OF_A_KIND: usize = 3;
-/// Amendments that are fitted beside others.
+/// Amendments that are fitted by themselves and beside others, the most promising first.
+const ALONE: usize = 16;
 const BESIDE: usize = 8;
 /// How many of those that were fitted roughly are fitted further, beside an empty set and beside others (successive
 /// halving, Jamieson and Talwalkar 2016).
@@ -68,8 +69,24 @@ impl Search<'_> {
                 }
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            let alone = self.at_places_alone(&nodes[0])?;
+            nodes.extend(alone);
+            nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         }
         Ok(nodes)
+    }
+
+    /// The node with one of its amendments at one place alone: what acts at two places imitates what acts at one.
+    fn at_places_alone(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+        let own = self.few.parameters.len();
+        let fitted = node.at_places_alone(self.few)?.into_par_iter();
+        let fitted = fitted.map(|(set, start)| {
+            (self.fitter.say)(&words(node, "one place of it"), node.model.fitted);
+            let model = self.fitter.explored(&[start])?;
+            Ok(model.map(|(model, _)| Hypothesis::new(set, model, own)))
+        });
+        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+        Ok(fitted.into_iter().flatten().collect())
     }
 
     /// The set of a node with each of the most promising other amendments.
@@ -79,7 +96,12 @@ impl Search<'_> {
             .amendments
             .iter()
             .filter(|amendment| !node.has(amendment));
-        let screened = screen(self.fitter, &node.model, others.cloned().collect())?;
+        let screened = screen(
+            self.fitter,
+            &node.model,
+            node.set.is_empty(),
+            others.cloned().collect(),
+        )?;
         let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
         let of_a_kind = |screened: &Screened| {
             let count = kinds
@@ -91,9 +113,7 @@ impl Search<'_> {
         let mut chosen: Vec<Screened> = screened;
         let mut of_a_kind = of_a_kind;
         chosen.retain(|screened| of_a_kind(screened));
-        if !node.set.is_empty() {
-            chosen.truncate(BESIDE);
-        }
+        chosen.truncate(if node.set.is_empty() { ALONE } else { BESIDE });
         let rough = chosen
             .into_par_iter()
             .map(|screened| self.roughly(node, &screened));
@@ -110,9 +130,7 @@ impl Search<'_> {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
             let own = self.few.parameters.len();
             let model = self.fitter.settled(&trial.start)?;
-            let fitted = model.map(|model| Hypothesis::new(trial.set, model, own));
-            let formed = fitted.map(|fitted| fitted.of_any_form(self.fitter, self.few));
-            formed.transpose()
+            Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())

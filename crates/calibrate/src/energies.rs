@@ -1,0 +1,316 @@
+//! How strongly a machine rings, where in its revolution, and in which band of orders.
+//!
+//! The phase of ringing has many local minima, its energy has few: a fit to energies leads to where a fit to lines may
+//! begin. The lowest orders, which do not ring, count as lines.
+
+use crate::error::Error;
+use crate::likelihood::{FAILED, amplitude, push, weights};
+use crate::observation::{Observation, Observed, POINTS};
+use crate::optimiser::LeastSquares;
+use crate::prediction::{Prediction, prediction};
+use crate::problem::Problem;
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+
+/// The first order of the lowest band; the bands are octaves.
+const FIRST: usize = 8;
+/// Least and greatest number of sectors of a band, and its orders to a sector: a band does not resolve more.
+const SECTORS: [usize; 2] = [4, 24];
+const ORDERS: usize = 2;
+/// Energies below this share of a band's mean are not told apart.
+const QUIET: f64 = 0.03;
+/// Standard deviation of the logarithm of an energy that a law somewhat off predicts: 16 % of the amplitude.
+const SPREAD: f64 = 0.3;
+/// By how much a slow feature may stand elsewhere, rad.
+const TIMING: f64 = 0.03;
+
+/// The residuals of a problem's energies: differences of logarithms over [`SPREAD`].
+pub struct Energies<'a> {
+    problem: &'a Problem,
+}
+
+/// A band of one channel.
+struct Band {
+    orders: std::ops::Range<usize>,
+    sectors: usize,
+}
+
+/// The bands of a channel that is compared up to the order `last`.
+fn bands(last: usize) -> Vec<Band> {
+    let mut bands = Vec::new();
+    let mut first = FIRST;
+    while first <= last {
+        let orders = first..(2 * first).min(last + 1);
+        let sectors = (orders.len() / ORDERS).clamp(SECTORS[0], SECTORS[1]);
+        bands.push(Band { orders, sectors });
+        first *= 2;
+    }
+    bands
+}
+
+fn last(observed: &Observed) -> usize {
+    observed.orders.last().copied().unwrap_or(0)
+}
+
+fn residual_count(run: &Observation) -> usize {
+    let of = |channel: &Observed| {
+        let bands: usize = bands(last(channel)).iter().map(|band| band.sectors).sum();
+        bands + 2 * lowest(channel).count()
+    };
+    run.channels.iter().map(of).sum()
+}
+
+fn lowest(observed: &Observed) -> impl Iterator<Item = &usize> {
+    observed.orders.iter().take_while(|k| **k < FIRST)
+}
+
+impl Band {
+    /// The signal of its orders over the grid of crank angles.
+    fn signal(&self, lines: &[Complex64]) -> Vec<Complex64> {
+        let mut signal = vec![Complex64::ZERO; POINTS];
+        for k in self.orders.clone() {
+            signal[k] = lines.get(k).copied().unwrap_or_default();
+        }
+        FftPlanner::new()
+            .plan_fft_inverse(POINTS)
+            .process(&mut signal);
+        signal
+    }
+
+    /// Means of a function of the grid over the sectors, which overlap by half.
+    fn means(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut means = vec![0.0; self.sectors];
+        let width = TAU / self.sectors as f64;
+        for point in 0..POINTS {
+            let place = TAU * point as f64 / POINTS as f64 / width;
+            let (sector, part) = (place.floor(), place.fract());
+            let share = 0.5 * (1.0 + (PI * part).cos());
+            let sector = sector as usize;
+            let value = of(point);
+            means[sector % self.sectors] += share * value;
+            means[(sector + 1) % self.sectors] += (1.0 - share) * value;
+        }
+        let scale = self.sectors as f64 / POINTS as f64;
+        means.iter().map(|mean| mean * scale).collect()
+    }
+
+    /// What is added to each energy before its logarithm is taken.
+    fn floor(&self, observed: &Observed) -> f64 {
+        let sum = |of: &[f64]| -> f64 { self.orders.clone().filter_map(|k| of.get(k)).sum() };
+        let energies: Vec<f64> = observed
+            .lines
+            .amplitude
+            .iter()
+            .map(|c| c.norm_sqr())
+            .collect();
+        let floor = sum(&observed.lines.variance) + QUIET * sum(&energies);
+        floor.max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The residuals of a run, channel by channel: its lowest lines, then its bands; with their derivatives.
+fn compared(run: &Observation, prediction: &Prediction, count: usize) -> (Vec<f64>, DMatrix<f64>) {
+    let mut all = Vec::new();
+    let mut slopes: Vec<Vec<f64>> = vec![Vec::new(); count];
+    for (channel, (observed, predicted)) in run.channels.iter().zip(&prediction.lines).enumerate() {
+        let derivative = |parameter: usize| -> &[Complex64] {
+            let of = prediction.derivatives.get(parameter);
+            of.and_then(|of| of.get(channel)).map_or(&[], Vec::as_slice)
+        };
+        let weights = weights(observed, predicted, TIMING);
+        for (k, weight) in lowest(observed).zip(weights) {
+            let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
+            push(&mut all, apart * weight, *k);
+            for (parameter, slopes) in slopes.iter_mut().enumerate() {
+                let slope = derivative(parameter).get(*k).copied().unwrap_or_default();
+                push(slopes, slope * weight, *k);
+            }
+        }
+        for band in bands(last(observed)) {
+            let floor = band.floor(observed);
+            let energies = |signal: &[Complex64]| band.means(|i| signal[i].norm_sqr());
+            let signal = band.signal(&predicted.amplitude);
+            let there = energies(&band.signal(&observed.lines.amplitude));
+            let here = energies(&signal);
+            let apart = here.iter().zip(&there);
+            all.extend(apart.map(|(here, there)| ((here + floor) / (there + floor)).ln() / SPREAD));
+            for (parameter, slopes) in slopes.iter_mut().enumerate() {
+                let moved = band.signal(derivative(parameter));
+                let change = band.means(|i| 2.0 * (signal[i].conj() * moved[i]).re);
+                let each = change.iter().zip(&here);
+                slopes.extend(each.map(|(change, here)| change / (here + floor) / SPREAD));
+            }
+        }
+    }
+    let rows = all.len();
+    let slopes = DMatrix::from_vec(rows, count, slopes.concat());
+    (all, slopes)
+}
+
+impl<'a> Energies<'a> {
+    /// Of this problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        Self { problem }
+    }
+
+    /// The sum of the squares of the residuals.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub fn squares(&self, x: &[f64]) -> Result<f64, Error> {
+        let all = self.residuals(x);
+        match all.contains(&FAILED) {
+            true => Err(Error::Nothing("a run cannot be simulated")),
+            false => Ok(all.iter().map(|r| r * r).sum()),
+        }
+    }
+
+    fn of_run(
+        &self,
+        run: &Observation,
+        x: &[f64],
+        derivatives: bool,
+    ) -> Result<(Vec<f64>, DMatrix<f64>), Error> {
+        let prediction = prediction(self.problem, run, x, derivatives, true)?;
+        Ok(compared(
+            run,
+            &prediction,
+            if derivatives { x.len() } else { 0 },
+        ))
+    }
+}
+
+impl LeastSquares for Energies<'_> {
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.problem
+            .parameters
+            .iter()
+            .map(|p| p.box_bounds())
+            .collect()
+    }
+
+    fn count(&self) -> usize {
+        self.problem.runs.iter().map(residual_count).sum()
+    }
+
+    fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        self.problem.once(&"energies", x, || {
+            let runs = self.problem.runs.par_iter();
+            let parts: Vec<Vec<f64>> = runs
+                .map(|run| match self.of_run(run, x, false) {
+                    Ok((residuals, _)) => residuals,
+                    Err(_) => vec![FAILED; residual_count(run)],
+                })
+                .collect();
+            parts.concat()
+        })
+    }
+
+    fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
+        let columns = || {
+            let runs = self.problem.runs.par_iter();
+            let parts: Vec<DMatrix<f64>> = runs
+                .map(|run| match self.of_run(run, x, true) {
+                    Ok((_, derivatives)) => derivatives,
+                    Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+                })
+                .collect();
+            let mut whole = DMatrix::zeros(self.count(), x.len());
+            let mut row = 0;
+            for part in &parts {
+                whole.rows_mut(row, part.nrows()).copy_from(part);
+                row += part.nrows();
+            }
+            whole.as_slice().to_vec()
+        };
+        let values = self.problem.once(&"derivatives of energies", x, columns);
+        DMatrix::from_vec(self.count(), x.len(), values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mechanism::drive::GivenSpeed;
+    use signal::order_lines::OrderLines;
+
+    const LAST: usize = 70;
+
+    /// Lines of a ring of order 40 that begins at `start` and dies off within a twelfth of a revolution.
+    fn ring(start: f64, strength: f64) -> Vec<Complex64> {
+        let decay = 12.0 / TAU;
+        let line = |k: usize| {
+            let beside = Complex64::new(decay, k as f64 - 40.0);
+            strength * Complex64::from_polar(1.0, -(k as f64) * start) / beside
+        };
+        (0..=LAST).map(line).collect()
+    }
+
+    fn lines(amplitude: Vec<Complex64>) -> OrderLines {
+        OrderLines {
+            variance: vec![1e-6; amplitude.len()],
+            amplitude,
+            revolutions: 20,
+        }
+    }
+
+    fn run(amplitude: Vec<Complex64>) -> Observation {
+        Observation {
+            id: String::new(),
+            settings: Vec::new(),
+            crank: GivenSpeed {
+                speed: 50.0,
+                fluctuation: Vec::new(),
+            },
+            channels: vec![Observed {
+                column: "crosshead_acceleration_m_s2".into(),
+                orders: (0..=LAST).collect(),
+                lines: lines(amplitude),
+            }],
+        }
+    }
+
+    fn predicted(amplitude: Vec<Complex64>, derivatives: Vec<Vec<Vec<Complex64>>>) -> Prediction {
+        Prediction {
+            lines: vec![lines(amplitude)],
+            derivatives,
+            periodic: true,
+        }
+    }
+
+    #[test]
+    fn a_ring_out_of_phase_has_the_same_energies_and_a_stronger_one_has_not() {
+        let recorded = run(ring(1.0, 1.0));
+        let norm = |amplitude| {
+            let (residuals, _) = compared(&recorded, &predicted(amplitude, Vec::new()), 0);
+            assert_eq!(residuals.len(), residual_count(&recorded));
+            residuals.iter().map(|r| r * r).sum::<f64>().sqrt()
+        };
+        assert!(norm(ring(1.0, 1.0)) < 1e-9);
+        // Half a cycle of order 40 later every line of it has another sign.
+        let turned = norm(ring(1.0 + PI / 40.0, 1.0));
+        let stronger = norm(ring(1.0, 2.0));
+        assert!(2.0 * turned < stronger, "{turned} {stronger}");
+        // Where it begins a quarter of a revolution later the energies stand elsewhere.
+        let later = norm(ring(1.0 + 0.25 * TAU, 1.0));
+        assert!(later > 2.0 * turned, "{turned} {later}");
+    }
+
+    #[test]
+    fn derivatives_are_the_limits_of_differences() {
+        let recorded = run(ring(1.0, 1.0));
+        let (here, by) = (ring(1.1, 1.4), ring(2.0, 0.7));
+        let moved = |h: f64| here.iter().zip(&by).map(|(c, d)| c + d * h).collect();
+        let at = |h| compared(&recorded, &predicted(moved(h), Vec::new()), 0).0;
+        let with = predicted(here.clone(), vec![vec![by.clone()]]);
+        let (_, slopes) = compared(&recorded, &with, 1);
+        let h = 1e-5;
+        for ((up, down), slope) in at(h).iter().zip(at(-h)).zip(slopes.column(0).iter()) {
+            let difference = (up - down) / (2.0 * h);
+            assert!((difference - slope).abs() < 1e-6 * (1.0 + slope.abs()));
+        }
+    }
+}
