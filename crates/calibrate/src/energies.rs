@@ -4,7 +4,7 @@
 //! begin. The lowest orders, which do not ring, count as lines.
 
 use crate::error::Error;
-use crate::likelihood::{FAILED, amplitude, push, weights};
+use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
 use crate::observation::{Observation, Observed, POINTS};
 use crate::optimiser::LeastSquares;
 use crate::prediction::{Prediction, prediction};
@@ -211,19 +211,10 @@ impl LeastSquares for Energies<'_> {
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let columns = || {
-            let runs = self.problem.runs.par_iter();
-            let parts: Vec<DMatrix<f64>> = runs
-                .map(|run| match self.of_run(run, x, true) {
-                    Ok((_, derivatives)) => derivatives,
-                    Err(_) => DMatrix::zeros(residual_count(run), x.len()),
-                })
-                .collect();
-            let mut whole = DMatrix::zeros(self.count(), x.len());
-            let mut row = 0;
-            for part in &parts {
-                whole.rows_mut(row, part.nrows()).copy_from(part);
-                row += part.nrows();
-            }
+            let whole = stacked(self.problem, |run| match self.of_run(run, x, true) {
+                Ok((_, derivatives)) => derivatives,
+                Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+            });
             whole.as_slice().to_vec()
         };
         let values = self.problem.once(&"derivatives of energies", x, columns);

@@ -158,21 +158,27 @@ impl LeastSquares for Likelihood<'_> {
 
 impl Likelihood<'_> {
     fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
-        let runs = self.problem.runs.par_iter();
-        let parts: Vec<DMatrix<f64>> = runs
-            .map(|run| match self.prediction(run, x, true) {
-                Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
-                Err(_) => DMatrix::zeros(residual_count(run), x.len()),
-            })
-            .collect();
-        let mut whole = DMatrix::zeros(self.count(), x.len());
-        let mut row = 0;
-        for part in &parts {
-            whole.rows_mut(row, part.nrows()).copy_from(part);
-            row += part.nrows();
-        }
-        whole
+        stacked(self.problem, |run| match self.prediction(run, x, true) {
+            Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
+            Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+        })
     }
+}
+
+/// The rows of each run, one under another.
+pub(crate) fn stacked(
+    problem: &Problem,
+    of_run: impl Fn(&Observation) -> DMatrix<f64> + Sync + Send,
+) -> DMatrix<f64> {
+    let parts: Vec<DMatrix<f64>> = problem.runs.par_iter().map(of_run).collect();
+    let rows = parts.iter().map(DMatrix::nrows).sum();
+    let mut whole = DMatrix::zeros(rows, parts.first().map_or(0, DMatrix::ncols));
+    let mut row = 0;
+    for part in &parts {
+        whole.rows_mut(row, part.nrows()).copy_from(part);
+        row += part.nrows();
+    }
+    whole
 }
 
 /// Root mean square of residuals, which are in standard deviations of the noise: 1 where noise is all that is left.
