@@ -7,8 +7,10 @@ use input::Resolved;
 use rustfft::num_complex::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
+use signal::high_pass::HighPass;
 use signal::order_lines::OrderLines;
 use simulate::{Sensor, Settings, Transient, sensitivities};
+use std::f64::consts::TAU;
 
 /// Relative local error of the integration; far below the noise of any sensor.
 const TOLERANCE: f64 = 1e-6;
@@ -65,10 +67,11 @@ pub(crate) fn prediction(
     coarse: bool,
 ) -> Result<Prediction, Error> {
     let mut machine = problem.machine(run, x)?;
-    let delays = take_delays(&mut machine.sensors);
-    let speed = machine.speed.abs();
+    let slow = Slow::taken_from(&mut machine.sensors);
+    let turning = machine.speed;
+    let speed = turning.abs();
     // With the speed given, samples then stand at the grid's angles themselves.
-    let sample_rate = POINTS as f64 * speed / std::f64::consts::TAU;
+    let sample_rate = POINTS as f64 * speed / TAU;
     let failed = |source| Error::Simulation {
         run: run.id.clone(),
         source,
@@ -93,9 +96,9 @@ pub(crate) fn prediction(
     groups.iter_mut().for_each(|group| group.retain(moving));
     groups.retain(|group| !group.is_empty());
     let mut moved = problem.moved(run, x, &groups)?;
-    let moved_delays: Vec<Vec<f64>> = moved
+    let moved_slow: Vec<Vec<Slow>> = moved
         .iter_mut()
-        .map(|moved| take_delays(&mut moved.sensors))
+        .map(|moved| Slow::taken_from(&mut moved.sensors))
         .collect();
     let record = sensitivities(&machine.machine, &machine.sensors, &moved, &settings);
     let record = record.map_err(failed)?;
@@ -114,12 +117,12 @@ pub(crate) fn prediction(
     let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
     let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
     let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
-    // A delay turns the lines as an offset of the crank angle does that the shaft takes as long for.
-    let lag = |channel: usize| offset + run.crank.speed * delays[channel];
+    let shown =
+        |channel: usize, lines: OrderLines| slow[channel].shown(later(lines, offset), turning);
     let lines = series
         .iter()
         .enumerate()
-        .map(|(channel, s)| Ok(later(lines_of(s)?, lag(channel))))
+        .map(|(channel, s)| Ok(shown(channel, lines_of(s)?)))
         .collect::<Result<Vec<_>, Error>>()?;
     let mut derivatives = record
         .derivatives
@@ -132,7 +135,7 @@ pub(crate) fn prediction(
             channels
                 .map(|(channel, (derivative, x))| {
                     let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
-                    let lines = later(lines_of(&at_angle)?, lag(channel));
+                    let lines = shown(channel, lines_of(&at_angle)?);
                     let per_coordinate = |c: &Complex64| c / problem.step();
                     Ok(lines.amplitude.iter().map(per_coordinate).collect())
                 })
@@ -145,10 +148,19 @@ pub(crate) fn prediction(
     for (parameter, of_parameter) in derivatives.iter_mut().enumerate() {
         let group = groups.iter().position(|group| group.contains(&parameter));
         for (channel, (of_channel, lines)) in of_parameter.iter_mut().zip(&lines).enumerate() {
-            let later = group.map_or(0.0, |g| moved_delays[g][channel] - delays[channel]);
-            let slope = offset_slopes[parameter] + run.crank.speed * later / problem.step();
+            let slope = offset_slopes[parameter];
             for (k, (d, c)) in of_channel.iter_mut().zip(&lines.amplitude).enumerate() {
                 *d -= Complex64::I * (k as f64 * slope) * c;
+                if let Some(moved) = group.map(|g| &moved_slow[g][channel])
+                    && *moved != slow[channel]
+                {
+                    let [before, after] =
+                        [&slow[channel], moved].map(|slow| slow.response(k, turning));
+                    // What is shut off altogether has nothing that could change.
+                    if before != Complex64::ZERO {
+                        *d += (after / before - 1.0) / problem.step() * c;
+                    }
+                }
             }
         }
     }
@@ -159,10 +171,45 @@ pub(crate) fn prediction(
     })
 }
 
-/// The delays of sensors, s, which have none afterwards.
-fn take_delays(sensors: &mut [Sensor]) -> Vec<f64> {
-    let delays = sensors.iter_mut().map(|sensor| &mut sensor.chain.delay);
-    delays.map(std::mem::take).collect()
+/// What of a measuring chain takes longer than a period to settle, or to pass: the lines are multiplied by its response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slow {
+    /// s.
+    delay: f64,
+    /// Hz.
+    high_pass: Option<f64>,
+}
+
+impl Slow {
+    /// That of each sensor, which has none of it afterwards.
+    fn taken_from(sensors: &mut [Sensor]) -> Vec<Self> {
+        let chains = sensors.iter_mut().map(|sensor| &mut sensor.chain);
+        chains
+            .map(|chain| Self {
+                delay: std::mem::take(&mut chain.delay),
+                high_pass: chain.high_pass.take(),
+            })
+            .collect()
+    }
+
+    /// Its response at an order of a crank that turns at `speed`, rad/s.
+    fn response(&self, order: usize, speed: f64) -> Complex64 {
+        let frequency = order as f64 * speed;
+        let coupled = |cutoff: f64| HighPass::response(frequency / (TAU * cutoff));
+        let passed = self.high_pass.map_or(Complex64::ONE, coupled);
+        passed * Complex64::cis(-frequency * self.delay)
+    }
+
+    /// Lines behind it.
+    fn shown(&self, mut lines: OrderLines, speed: f64) -> OrderLines {
+        let both = lines.amplitude.iter_mut().zip(&mut lines.variance);
+        for (k, (c, variance)) in both.enumerate() {
+            let response = self.response(k, speed);
+            *c *= response;
+            *variance *= response.norm_sqr();
+        }
+        lines
+    }
 }
 
 /// The rate at which the motion is sampled, Hz. Without filters between motion and recorder four

@@ -10,7 +10,7 @@
 //! | where are the impacts, and how often? | [`spectral_kurtosis`](mod@spectral_kurtosis), [`kurtogram`](mod@kurtogram), [`envelope`](mod@envelope), [`cepstrum`] |
 //! | how much at which multiple of the speed? | [`crank_angle`], [`tacho`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
 //! | how do the revolutions differ? | [`synchronous_average`], [`crank_waterfall`](mod@crank_waterfall), [`phase_portrait`] |
-//! | what does a measuring chain do? | [`biquad`], [`decimate`], [`delay`], [`noise`] |
+//! | what does a measuring chain do? | [`biquad`], [`high_pass`], [`decimate`], [`delay`], [`noise`] |
 //! | what has it done? | [`nonsynchronous`], [`quantisation`] |
 
 pub mod amplitude_spectrum;
@@ -25,6 +25,7 @@ pub mod delay;
 pub mod envelope;
 pub mod error;
 mod fft;
+pub mod high_pass;
 mod interpolation;
 mod kaiser;
 pub mod kurtogram;

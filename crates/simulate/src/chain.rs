@@ -9,6 +9,7 @@ use scalar::Scalar;
 use signal::biquad::Filter;
 use signal::decimate::Decimator;
 use signal::delay::Delay;
+use signal::high_pass::HighPass;
 use std::f64::consts::TAU;
 
 /// Fewest inner samples per recorded one.
@@ -111,7 +112,12 @@ impl Sampling {
 
     /// Begins a record of `sensor`.
     pub(crate) fn begin(&self, sensor: &Sensor, machine: &Machine) -> Result<UnderWay, Error> {
-        let filters = filters(sensor, self.inner_rate).map_err(|source| {
+        let rate = self.inner_rate / self.factor as f64;
+        let coupled = |cutoff: f64| HighPass::new(cutoff, rate);
+        let high_pass = sensor.chain.high_pass.map(coupled).transpose();
+        let filters = filters(sensor, self.inner_rate);
+        let both = filters.and_then(|filters| Ok((filters, high_pass?)));
+        let (filters, high_pass) = both.map_err(|source| {
             let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
             Error::Sensor {
                 column: sensor.measured.column(&names),
@@ -119,6 +125,7 @@ impl Sampling {
             }
         })?;
         Ok(UnderWay {
+            high_pass,
             delay: Delay::new(sensor.chain.delay * self.inner_rate),
             sensor: sensor.clone(),
             filters,
@@ -139,6 +146,7 @@ pub(crate) struct UnderWay {
     sensor: Sensor,
     delay: Delay,
     filters: Vec<Filter>,
+    high_pass: Option<HighPass>,
     /// Inner samples so far.
     seen: usize,
     /// Those of them, filtered, that are not decimated yet.
@@ -194,6 +202,9 @@ impl UnderWay {
         let Chain { hum, offset, .. } = self.sensor.chain;
         if self.sensor.measured.is_angle() {
             return self.recorded;
+        }
+        if let Some(high_pass) = self.high_pass {
+            high_pass.apply(&mut self.recorded);
         }
         if let Some(hum) = hum {
             for (i, x) in self.recorded.iter_mut().enumerate() {

@@ -69,7 +69,7 @@ impl Quantity {
 }
 
 /// What happens between the quantity and the recorded number, in this order: delay, mounting resonance,
-/// low-pass, gain, hum, offset, noise, range, quantisation; of an encoder the offset of its zero alone.
+/// low-pass, gain, high-pass, hum, offset, noise, range, quantisation; of an encoder the offset of its zero alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// By how much the recorded number is late, s.
@@ -78,6 +78,8 @@ pub struct Chain {
     pub mounting: Option<Resonance>,
     /// Low-pass of the amplifier.
     pub low_pass: Option<LowPass>,
+    /// Frequency below which the channel does not pass, by a filter of the first order (−3 dB there), Hz.
+    pub high_pass: Option<f64>,
     /// Factor on the value (1 when calibrated right).
     pub gain: f64,
     /// Mains hum on the cable, after the gain.
@@ -100,6 +102,7 @@ impl Default for Chain {
             delay: 0.0,
             mounting: None,
             low_pass: None,
+            high_pass: None,
             gain: 1.0,
             hum: None,
             offset: 0.0,

@@ -9,3 +9,4 @@ mod own_recordings;
 mod real_pressure;
 mod replay;
 mod search;
+mod slow_chain;

@@ -79,6 +79,7 @@ fn the_catalogue_has_the_names_that_other_programs_use() {
         "sensor_gain",
         "sensor_offset",
         "sensor_delay",
+        "sensor_highpass",
         "mains_hum",
         "empirical_force",
     ] {

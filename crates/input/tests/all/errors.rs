@@ -315,7 +315,7 @@ fn paths_that_lead_nowhere() {
             "effects.ring_friction: found 'ring_friction', expected valve_loss",
             "effects.valve_los: found 'valve_los', expected valve_loss; did you mean 'valve_loss'?",
             "sensors.7: found '7', expected crosshead_acceleration",
-            "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, mounting, gain, axis, end; did you mean 'range'?",
+            "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, high_pass, mounting, gain, axis, end; did you mean 'range'?",
             "unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects"
         ]
     );

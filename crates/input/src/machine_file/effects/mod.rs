@@ -43,6 +43,6 @@ own! {
     after rod_flexibility { frame_compliance }
     after misalignment {
         speed_fluctuation, crank_angle_offset, sensor_resonance, sensor_gain, sensor_offset,
-        sensor_delay, mains_hum
+        sensor_delay, sensor_highpass, mains_hum
     }
 }

@@ -22,11 +22,14 @@ const BITS: &str = "bits";
 const NOISE: &str = "noise";
 const DELAY: &str = "delay";
 const LOW_PASS: &str = "low_pass";
+const HIGH_PASS: &str = "high_pass";
 const MOUNTING: &str = "mounting";
 const GAIN: &str = "gain";
 
 /// The keys of a chain.
-pub(super) const KEYS: [&str; 7] = [RANGE, BITS, NOISE, DELAY, LOW_PASS, MOUNTING, GAIN];
+pub(super) const KEYS: [&str; 8] = [
+    RANGE, BITS, NOISE, DELAY, LOW_PASS, HIGH_PASS, MOUNTING, GAIN,
+];
 
 /// Reads the value of a key of the chain of a sensor of kind `K`; false for any other key.
 pub(super) fn read<'de, K: Kind, A: MapAccess<'de>>(
@@ -58,6 +61,10 @@ pub(super) fn read<'de, K: Kind, A: MapAccess<'de>>(
                 order: low_pass.order.get(),
             });
         }
+        HIGH_PASS => {
+            let high_pass: Option<HighPass> = map.next_value()?;
+            chain.high_pass = high_pass.map(|high_pass| high_pass.cutoff.si());
+        }
         MOUNTING => {
             let mounting: Option<Resonance> = map.next_value()?;
             chain.mounting = mounting.map(|mounting| sensor::Resonance {
@@ -75,12 +82,13 @@ pub(super) fn read<'de, K: Kind, A: MapAccess<'de>>(
 }
 
 /// Meaning and schema of each of [`KEYS`] in a chain of kind `K`.
-pub(super) fn schemas<K: Kind>(generator: &mut SchemaGenerator) -> [(&'static str, Schema); 7] {
+pub(super) fn schemas<K: Kind>(generator: &mut SchemaGenerator) -> [(&'static str, Schema); 8] {
     let range = generator.subschema_for::<Option<RangeText<K>>>();
     let bits = generator.subschema_for::<Option<Count<1, 32>>>();
     let noise = generator.subschema_for::<Option<Noise<Level<K>>>>();
     let delay = generator.subschema_for::<Option<NonNegative<Duration>>>();
     let low_pass = generator.subschema_for::<Option<LowPass>>();
+    let high_pass = generator.subschema_for::<Option<HighPass>>();
     let mounting = generator.subschema_for::<Option<Resonance>>();
     let gain = generator.subschema_for::<Option<Number<Any>>>();
     [
@@ -96,6 +104,10 @@ pub(super) fn schemas<K: Kind>(generator: &mut SchemaGenerator) -> [(&'static st
             delay,
         ),
         ("Low-pass filter of the amplifier (Butterworth).", low_pass),
+        (
+            "Coupling that does not pass what is constant (first order), as of a charge amplifier.",
+            high_pass,
+        ),
         ("Resonance of the sensor on its mount.", mounting),
         (
             "Factor on the value; 1, as when calibrated right, where it is left out.",
@@ -112,6 +124,14 @@ struct LowPass {
     cutoff: Positive<Frequency>,
     /// Order.
     order: Count<1, 8>,
+}
+
+/// A high-pass filter of the first order.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct HighPass {
+    /// Frequency at which it damps by 3 dB.
+    cutoff: Positive<Frequency>,
 }
 
 /// Gaussian noise: white, plus 1/f.

@@ -242,7 +242,7 @@ fn schema(entry: &Entry, generator: &mut SchemaGenerator) -> Schema {
 struct Schemas<'a>(&'a mut SchemaGenerator);
 
 impl WithKind for Schemas<'_> {
-    type Output = [(&'static str, Schema); 7];
+    type Output = [(&'static str, Schema); 8];
     fn with<K: Kind>(self) -> Self::Output {
         chain::schemas::<K>(self.0)
     }
