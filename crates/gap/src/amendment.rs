@@ -8,6 +8,8 @@ use calibrate::{Parameter, Problem};
 
 /// Values at which a doubtful value is tried, in standard deviations of its prior.
 const DOUBTED: [f64; 4] = [-2.0, -0.7, 0.7, 2.0];
+/// Sizes at which waves are tried, over what a linear machine would need: contacts give way.
+const SIZES: [f64; 2] = [1.0, 0.3];
 
 /// A change of the machine that may explain what its calibration leaves.
 #[derive(Clone, Debug, PartialEq)]
@@ -102,6 +104,25 @@ impl Amendment {
                 Ok(DOUBTED.iter().map(|by| vec![by * deviation]).collect())
             }
         }
+    }
+
+    /// Its waves by themselves, each at two phases; nothing where it has none.
+    pub(crate) fn quadratures(&self) -> Vec<Vec<f64>> {
+        self.effect().map_or(Vec::new(), Candidate::quadratures)
+    }
+
+    /// The probes that shares of its [`quadratures`](Self::quadratures) come to: as large and smaller, and in other forms.
+    pub(crate) fn combinations(&self, shares: &[f64]) -> Vec<Vec<f64>> {
+        let Some(effect) = self.effect() else {
+            return Vec::new();
+        };
+        let of_size = |size: &f64| {
+            let shares: Vec<f64> = shares.iter().map(|share| size * share).collect();
+            effect.combined(&shares)
+        };
+        let mut probes: Vec<Vec<f64>> = SIZES.iter().map(of_size).collect();
+        probes.extend(effect.other_forms_of(&probes[0]));
+        probes
     }
 
     /// A probe at which hardly anything of it is left, so that a descent can leave it out.

@@ -3,6 +3,8 @@
 use crate::candidate::Candidate;
 use crate::recorded_values::recorded_values;
 use calibrate::Problem;
+use input::effects::Parameter;
+use std::f64::consts::TAU;
 
 /// Amplitudes at which an effect is tried, over its usual one.
 const AMPLITUDES: [f64; 3] = [0.2, 1.0, 5.0];
@@ -13,18 +15,93 @@ const STEPS: usize = 12;
 const VALUES: usize = 5;
 /// Bounds this far apart are wide.
 const WIDE: f64 = 15.0;
-/// Phases at which an effect is tried.
-const PHASES: usize = 4;
 
 impl Candidate {
-    /// Values at which it is tried: amplitudes, phases, what else may lie anywhere, and what the
-    /// recordings show by themselves.
+    /// Values at which it is tried: amplitudes, what else may lie anywhere, and what the recordings show by themselves.
+    /// Waves are tried by their [`quadratures`](Self::quadratures).
     pub fn probes(&self, problem: &Problem) -> Vec<Vec<f64>> {
-        let items = self.sets();
-        let mut probes = self.item_probes();
+        let mut probes = match self.waves().is_empty() {
+            true => self.item_probes(),
+            false => Vec::new(),
+        };
         probes.extend(recorded_values(self.entry, problem));
         let probes = probes.into_iter();
-        probes.map(|probe| probe.repeat(items)).collect()
+        probes.map(|probe| probe.repeat(self.sets())).collect()
+    }
+
+    /// The terms of its law that are waves, a cos(kα + φ): the indices of amplitude and phase among its values.
+    fn waves(&self) -> Vec<[usize; 2]> {
+        let count = self.entry.parameters.len();
+        let phases = self.free().filter(|i| self.entry.parameters[*i].cyclic);
+        let of_item: Vec<[usize; 2]> = phases.map(|phase| [phase - 1, phase]).collect();
+        let of_set = |set: usize| {
+            let waves = of_item.iter();
+            waves.map(move |wave| wave.map(|index| index + set * count))
+        };
+        (0..self.sets()).flat_map(of_set).collect()
+    }
+
+    /// Each wave by itself at its usual size, at two phases a quarter of a period apart. What small waves change is a sum of
+    /// what these do.
+    pub fn quadratures(&self) -> Vec<Vec<f64>> {
+        let count = 2 * self.waves().len();
+        let alone = |only: usize| {
+            let mut shares = vec![0.0; count];
+            shares[only] = 1.0;
+            self.combined(&shares)
+        };
+        (0..count).map(alone).collect()
+    }
+
+    /// The waves that have these shares of the [`quadratures`](Self::quadratures).
+    pub fn combined(&self, shares: &[f64]) -> Vec<f64> {
+        let mut values = self.usual();
+        let parameter = |i: usize| &self.entry.parameters[i % self.entry.parameters.len()];
+        for (wave, shares) in self.waves().iter().zip(shares.chunks_exact(2)) {
+            let [amplitude, phase] = *wave;
+            let [low, high] = parameter(amplitude).bounds;
+            let size = self.wave_size(parameter(amplitude)) * shares[0].hypot(shares[1]);
+            values[amplitude] = size.clamp(low, high);
+            let [from, to] = parameter(phase).bounds;
+            let turn = shares[1].atan2(shares[0]).rem_euclid(TAU) / TAU;
+            values[phase] = from + (to - from) * turn;
+        }
+        values
+    }
+
+    /// Its usual size; that of the law's first wave for one that the usual form does not have.
+    fn wave_size(&self, amplitude: &Parameter) -> f64 {
+        let first = self.entry.parameters.iter().find(|p| p.absent.is_some());
+        match (amplitude.absent, first) {
+            (None, Some(first)) => first.start,
+            _ => amplitude.start,
+        }
+    }
+
+    /// These values with each part of the form of its law that is no wave at its other end, and with all of them.
+    pub fn other_forms_of(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        let waves = self.waves().concat();
+        let count = self.entry.parameters.len();
+        let shapes: Vec<usize> = self
+            .free()
+            .filter(|i| self.entry.parameters[*i].shape && !waves.contains(i))
+            .collect();
+        let with = |changed: &[usize]| {
+            let mut probe = values.to_vec();
+            for (i, value) in probe.iter_mut().enumerate() {
+                let parameter = &self.entry.parameters[i % count];
+                let [low, high] = parameter.bounds;
+                if changed.contains(&(i % count)) {
+                    *value = if parameter.start == low { high } else { low };
+                }
+            }
+            probe
+        };
+        let mut forms: Vec<Vec<f64>> = shapes.iter().map(|i| with(&[*i])).collect();
+        if shapes.len() > 1 {
+            forms.push(with(&shapes));
+        }
+        forms
     }
 
     /// Whether what it changes is how much play there is, all around.
@@ -34,31 +111,6 @@ impl Candidate {
         amplitudes.next().is_some_and(|p| p.unit == "m")
             && amplitudes.next().is_none()
             && !parameters.iter().any(|p| p.cyclic)
-    }
-
-    /// The usual effect with each part of the form of its law at its other end, and with all of them.
-    fn other_forms(&self, usual: &[f64]) -> Vec<Vec<f64>> {
-        let parameters = self.entry.parameters;
-        let shapes: Vec<usize> = (0..parameters.len())
-            .filter(|i| parameters[*i].shape && !parameters[*i].cyclic)
-            .collect();
-        let with = |changed: &[usize]| {
-            let mut probe = usual.to_vec();
-            for i in changed {
-                let [low, high] = parameters[*i].bounds;
-                probe[*i] = if parameters[*i].start == low {
-                    high
-                } else {
-                    low
-                };
-            }
-            probe
-        };
-        let mut forms: Vec<Vec<f64>> = shapes.iter().map(|i| with(&[*i])).collect();
-        if shapes.len() > 1 {
-            forms.push(with(&shapes));
-        }
-        forms
     }
 
     fn item_probes(&self) -> Vec<Vec<f64>> {
@@ -90,7 +142,7 @@ impl Candidate {
                 probes.extend(shares.iter().map(|share| amplitude(-share)));
             }
         }
-        probes.extend(self.other_forms(&usual));
+        probes.extend(self.other_forms_of(&usual));
         // What may lie anywhere is varied by itself.
         for (i, parameter) in parameters.iter().enumerate() {
             let [low, high] = parameter.bounds;
@@ -103,28 +155,6 @@ impl Candidate {
                     probe
                 }));
             }
-        }
-        // The phases of the gas turn together; what they are to each other is left to the fit.
-        let cyclic: Vec<usize> = (0..parameters.len())
-            .filter(|i| parameters[*i].cyclic)
-            .collect();
-        if !cyclic.is_empty() {
-            let together = self.is_of_gas();
-            let turned = |probe: &Vec<f64>, k: usize| {
-                let mut probe = probe.clone();
-                let mut k = k;
-                for i in &cyclic {
-                    let [low, high] = parameters[*i].bounds;
-                    probe[*i] = low + (high - low) * (k % PHASES) as f64 / PHASES as f64;
-                    k /= if together { 1 } else { PHASES };
-                }
-                probe
-            };
-            let free = if together { 1 } else { cyclic.len() as u32 };
-            let each = probes
-                .iter()
-                .flat_map(|p| (0..PHASES.pow(free)).map(move |k| turned(p, k)));
-            probes = each.collect();
         }
         probes
     }

@@ -8,7 +8,8 @@
 //! 1 − min_a |P (r + a Δ)|² / |P r|²
 //! ```
 //!
-//! (Rao 1948; finite amplitudes because the linear test misses effects that saturate.)
+//! (Rao 1948; finite amplitudes because the linear test misses effects that saturate.) A wave has a phase as well: it is the
+//! best sum of its two quadratures.
 
 use crate::amendment::Amendment;
 use crate::error::Error;
@@ -22,11 +23,13 @@ use calibrate::Problem;
 use calibrate::energies::Energies;
 use calibrate::likelihood::Likelihood;
 use calibrate::optimiser::LeastSquares;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// A probe is not scaled by more than this: further away the change is another one.
 const SCALED: f64 = 2.0;
+/// What is added to the squares of changes that may be alike, over the greatest.
+const RIDGE: f64 = 1e-6;
 
 /// An amendment that may explain a part of the residual.
 #[derive(Clone, Debug)]
@@ -69,15 +72,32 @@ impl Base {
         }
     }
 
-    /// The score of a probe that has these residuals.
-    fn score(&self, there: Vec<f64>) -> Option<f64> {
-        let change = (self.projector).apply(&(DVector::from_vec(there) - &self.residual));
+    /// What a probe that has these residuals changes that the calibrated parameters cannot.
+    fn change(&self, there: Vec<f64>) -> DVector<f64> {
+        self.projector
+            .apply(&(DVector::from_vec(there) - &self.residual))
+    }
+
+    /// The score of a change; none where nothing changes.
+    fn score(&self, change: &DVector<f64>) -> Option<f64> {
         let size = change.norm_squared();
         (size > 0.0).then(|| {
-            let share = (-self.left.dot(&change) / size).clamp(0.0, SCALED);
-            let left = (&self.left + share * &change).norm_squared();
+            let share = (-self.left.dot(change) / size).clamp(0.0, SCALED);
+            let left = (&self.left + share * change).norm_squared();
             1.0 - left / self.left.norm_squared()
         })
+    }
+
+    /// The shares of these changes that leave the least together.
+    fn shares(&self, changes: &[DVector<f64>]) -> Option<Vec<f64>> {
+        let all = DMatrix::from_columns(changes);
+        let mut normal = all.tr_mul(&all);
+        let little = RIDGE * normal.diagonal().max();
+        for i in 0..changes.len() {
+            normal[(i, i)] += little;
+        }
+        let shares = normal.cholesky()?.solve(&-all.tr_mul(&self.left));
+        Some(shares.as_slice().to_vec())
     }
 }
 
@@ -110,18 +130,33 @@ pub(crate) fn screen(
     let best = |amendment: &Amendment, base: &Base| -> Result<Finished, Error> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         let metered = model.problem.metered();
-        for probe in amendment.probes(&model.problem)? {
-            if (fitter.watch)().is_break() {
-                return Err(Error::Stopped);
+        let mut tried = |probes: Vec<Vec<f64>>| -> Result<Vec<DVector<f64>>, Error> {
+            let mut changes = Vec::new();
+            for probe in probes {
+                if (fitter.watch)().is_break() {
+                    return Err(Error::Stopped);
+                }
+                let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
+                    continue;
+                };
+                let change = base.change(residuals(&with, &x));
+                let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
+                if let Some(score) = base.score(&change).filter(better) {
+                    best = Some((score, probe));
+                }
+                changes.push(change);
             }
-            let Some((with, x)) = start(&metered, &base.x, amendment, &probe) else {
-                continue;
-            };
-            let score = base.score(residuals(&with, &x));
-            let better = |score: &f64| best.as_ref().is_none_or(|(best, _)| score > best);
-            if let Some(score) = score.filter(better) {
-                best = Some((score, probe));
-            }
+            Ok(changes)
+        };
+        tried(amendment.probes(&model.problem)?)?;
+        let quadratures = amendment.quadratures();
+        let count = quadratures.len();
+        let changes = tried(quadratures)?;
+        if count > 0
+            && changes.len() == count
+            && let Some(shares) = base.shares(&changes)
+        {
+            tried(amendment.combinations(&shares))?;
         }
         let found = best.into_iter();
         let numbers = found.flat_map(|(score, probe)| [vec![score], probe].concat());

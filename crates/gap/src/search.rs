@@ -114,6 +114,7 @@ impl Search<'_> {
         let mut of_a_kind = of_a_kind;
         chosen.retain(|screened| of_a_kind(screened));
         chosen.truncate(if node.set.is_empty() { ALONE } else { BESIDE });
+        (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
         let rough = chosen
             .into_par_iter()
             .map(|screened| self.roughly(node, &screened));
@@ -129,7 +130,10 @@ impl Search<'_> {
         let fitted = rough.into_par_iter().map(|trial| {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
             let own = self.few.parameters.len();
-            let model = self.fitter.settled(&trial.start)?;
+            let near = self.fitter.settled(&trial.start)?;
+            let anew = self.fitter.explored(&[anew(&trial.start, own)])?;
+            let both = near.into_iter().chain(anew.map(|(model, _)| model));
+            let model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
             Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
@@ -171,6 +175,13 @@ impl Search<'_> {
             start: (with, rough.x),
         }))
     }
+}
+
+/// The same amendments in the machine as it was given: without them its parameters may have been led far astray.
+fn anew((problem, x): &Start, own: usize) -> Start {
+    let mut x = x.clone();
+    x[..own].fill(0.0);
+    (problem.clone(), x)
 }
 
 /// A set that was fitted roughly.

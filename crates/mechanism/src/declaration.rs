@@ -86,7 +86,7 @@ pub struct Parameter {
     pub start: f64,
     /// The value at which the effect vanishes, if it is an amplitude, SI.
     pub absent: Option<f64>,
-    /// True for an angle whose bounds are a whole turn, or half a one, apart: it has no ends.
+    /// True for an angle whose bounds are a period of its law apart, a turn or a part of one: it has no ends.
     pub cyclic: bool,
     /// True where it is a form of the law and no size: the laws that the literature has for the effect differ in it.
     pub shape: bool,
@@ -281,6 +281,7 @@ macro_rules! declaration {
     (@bounds $low:literal to $high:literal) => { [$low, $high] };
     (@bounds turn) => { [0.0, std::f64::consts::TAU] };
     (@bounds half_turn) => { [0.0, std::f64::consts::PI] };
+    (@bounds third_of_turn) => { [0.0, std::f64::consts::TAU / 3.0] };
     (@cyclic) => { false };
     (@cyclic $cyclic:ident) => { true };
     (@shape) => { false };

@@ -130,13 +130,20 @@ impl Orbit<'_> {
         let scales = run.scales().into_iter().enumerate();
         let disturbed = scales.filter(|(i, _)| Some(*i) != crank).collect();
         let remembered = run.memory().len();
-        run.turn(self.period)?;
+        // When a free crank has turned by a period follows from its motion alone.
+        let end = match run.is_free() {
+            true => {
+                run.turn(self.period)?;
+                run.time()
+            }
+            false => from.time + f64::from(self.period) * run.revolution(),
+        };
         Ok(Stretch {
             from,
             disturbed,
             remembered,
             crank,
-            end: run.standing().time,
+            end,
             instants,
         })
     }

@@ -51,7 +51,7 @@ declaration! {
         /// By how much it is wider in each of three directions, a worn arc's next part; 0 mm where it is left out.
         @shape lobes: Length(FromZero), 0.0 to 3e-5, start 0.0;
         /// Direction of the first of the three, 0 deg where it is left out.
-        @shape lobes_direction: Angle(Any), turn, start 0.0;
+        @shape lobes_direction: Angle(Any), third_of_turn, start 0.0;
     }
 }
 

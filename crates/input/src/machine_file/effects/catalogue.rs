@@ -82,7 +82,7 @@ pub struct Parameter {
     pub whole: bool,
     /// True for a crank angle after the dead centre of a chamber.
     pub on_the_stroke: bool,
-    /// True for an angle whose bounds are a whole turn, or half a one, apart: it has no ends.
+    /// True for an angle whose bounds are a period of its law apart, a turn or a part of one: it has no ends.
     pub cyclic: bool,
     /// True where it is a form of the law and no size.
     pub shape: bool,
