@@ -63,6 +63,7 @@ mod search;
 pub mod secant;
 pub mod sensor_section;
 pub mod sensors;
+pub mod sizes;
 pub mod stages;
 pub mod task;
 pub mod throw_alone;

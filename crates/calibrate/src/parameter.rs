@@ -139,6 +139,14 @@ impl Parameter {
         }
     }
 
+    /// The derivative of the coordinate by the value.
+    pub(crate) fn slope(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Logarithmic => 1.0 / value,
+            Scale::Linear => 1.0 / self.half_width(),
+        }
+    }
+
     fn half_width(&self) -> f64 {
         0.5 * (self.bounds[1] - self.bounds[0])
     }

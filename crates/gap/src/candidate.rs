@@ -149,7 +149,7 @@ impl Candidate {
         (0..self.entry.parameters.len()).filter(|i| self.is_free(*i))
     }
 
-    fn is_free(&self, index: usize) -> bool {
+    pub(crate) fn is_free(&self, index: usize) -> bool {
         let is_form = self.entry.parameters[index].shape && !self.formed;
         !is_form && !self.fixed.iter().any(|(fixed, _)| *fixed == index)
     }

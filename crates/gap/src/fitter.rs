@@ -18,6 +18,7 @@ use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observation;
 use calibrate::optimiser::{LeastSquares, Progress};
 use calibrate::secant::secant;
+use calibrate::sizes::Sizes;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -45,8 +46,6 @@ const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 const CHANGE: f64 = 1e-2;
 /// Runs that candidates are compared with.
 const FEW: usize = 3;
-/// Share of the range by which a descent starts within a bound.
-const INSIDE: f64 = 0.01;
 
 /// What a stage of a descent compares, and the evaluations that it may take.
 #[derive(Clone, Copy, Debug)]
@@ -167,12 +166,13 @@ impl Fitter<'_> {
                 let led = match stage {
                     Stage::Energies(evaluations) => {
                         let energies = Energies::new(&fitted);
-                        let led = descend(&energies, &descent.end, *evaluations, &within);
+                        let led = descend(&energies, &fitted, &descent.end, *evaluations, &within);
                         led.map(|led| (energies.squares(&led.x).map(|left| (None, left)), led.x))
                     }
                     Stage::Lines(timing, evaluations) => {
                         let likelihood = Likelihood::coarse(&fitted, *timing);
-                        let led = descend(&likelihood, &descent.end, *evaluations, &within);
+                        let led =
+                            descend(&likelihood, &fitted, &descent.end, *evaluations, &within);
                         led.map(|led| {
                             let likeliest = likelihood.likeliest(&led.x, timings(&fitted));
                             (likeliest.map(|(timing, d)| (Some(timing), d)), led.x)
@@ -188,11 +188,8 @@ impl Fitter<'_> {
                     Err(error) => return Err(error),
                 };
                 descent.last = left;
-                // With less allowance than the law is off by, less fits.
-                if let Some(timing) = timing
-                    && !descent.note(timing, left)
-                {
-                    break;
+                if let Some(timing) = timing {
+                    descent.note(timing, left);
                 }
             }
             Ok(Finished {
@@ -335,14 +332,12 @@ impl Descent {
         }
     }
 
-    /// Takes note of where a descent with this allowance ended; whether the recordings are likelier so.
-    fn note(&mut self, timing: f64, deviance: f64) -> bool {
-        let better = deviance < self.least;
-        if better {
+    /// Takes note of where a descent with this allowance ended, if the recordings are likelier so.
+    fn note(&mut self, timing: f64, deviance: f64) {
+        if deviance < self.least {
             self.x.clone_from(&self.end);
             (self.timing, self.least) = (timing, deviance);
         }
-        better
     }
 
     fn numbers(&self) -> Vec<f64> {
@@ -376,22 +371,19 @@ impl Descent {
     }
 }
 
-/// A descent. `watch` decides whether to go on, and whether there are steps left for that.
+/// A descent of what is `compared` of a problem. `watch` decides whether to go on, and whether there are steps left for that.
 fn descend(
-    problem: &impl LeastSquares,
+    compared: &impl LeastSquares,
+    problem: &Problem,
     start: &[f64],
     evaluations: u64,
     watch: &dyn Fn() -> (ControlFlow<()>, bool),
 ) -> Result<Progress, Error> {
     let mut stopped = false;
-    let bounds = problem.bounds();
-    // A descent within bounds does not leave one that it starts at.
-    let within = start.iter().zip(&bounds).map(|(x, [low, high])| {
-        let margin = INSIDE * (high - low);
-        x.clamp(low + margin, high - margin)
-    });
-    let start: Vec<f64> = within.collect();
-    let found = secant(problem, &start, CHANGE, evaluations, &mut |_| {
+    let sizes = Sizes::new(compared, &problem.parameters);
+    let start = sizes.from_own(start).into_iter().zip(sizes.bounds());
+    let start: Vec<f64> = start.map(|(z, [low, high])| z.clamp(low, high)).collect();
+    let mut found = secant(&sizes, &start, CHANGE, evaluations, &mut |_| {
         let (answer, affordable) = watch();
         stopped |= answer.is_break();
         match affordable {
@@ -399,6 +391,7 @@ fn descend(
             false => ControlFlow::Break(()),
         }
     });
+    found.x = sizes.to_own(&found.x);
     if stopped {
         Err(Error::Stopped)
     } else {

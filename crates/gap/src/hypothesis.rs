@@ -114,6 +114,28 @@ impl Hypothesis {
         Ok(all)
     }
 
+    /// The sets that lack one of its amendments, each with the start of a fit.
+    ///
+    /// # Errors
+    /// A machine that cannot be so.
+    pub fn without_one(&self, problem: &Problem) -> Result<Vec<(Vec<Amended>, Start)>, Error> {
+        let own = problem.parameters.len();
+        let firsts = firsts(&self.model.problem, &self.set, own);
+        let without = |left_out: usize| {
+            let mut x = self.model.x[..own].to_vec();
+            let mut set = Vec::new();
+            for (i, one) in self.set.iter().enumerate().filter(|(i, _)| *i != left_out) {
+                x.extend(&self.model.x[firsts[i]..firsts[i] + one.amendment.free()]);
+                set.push(one.clone());
+            }
+            Ok((set.clone(), (added(problem, &set)?, x)))
+        };
+        match self.set.len() {
+            0 | 1 => Ok(Vec::new()),
+            count => (0..count).map(without).collect(),
+        }
+    }
+
     /// Its set with some amendments exchanged for others at these values, and the start of a fit with it.
     fn exchanged(
         &self,

@@ -3,7 +3,6 @@
 use crate::candidate::Candidate;
 use crate::recorded_values::recorded_values;
 use calibrate::Problem;
-use input::effects::Parameter;
 use std::f64::consts::TAU;
 
 /// Amplitudes at which an effect is tried, over its usual one.
@@ -32,8 +31,11 @@ impl Candidate {
     /// The terms of its law that are waves, a cos(kα + φ): the indices of amplitude and phase among its values.
     fn waves(&self) -> Vec<[usize; 2]> {
         let count = self.entry.parameters.len();
-        let phases = self.free().filter(|i| self.entry.parameters[*i].cyclic);
-        let of_item: Vec<[usize; 2]> = phases.map(|phase| [phase - 1, phase]).collect();
+        let of_item: Vec<[usize; 2]> = self
+            .entry
+            .waves()
+            .filter(|[_, i]| self.is_free(*i))
+            .collect();
         let of_set = |set: usize| {
             let waves = of_item.iter();
             waves.map(move |wave| wave.map(|index| index + set * count))
@@ -60,22 +62,16 @@ impl Candidate {
         for (wave, shares) in self.waves().iter().zip(shares.chunks_exact(2)) {
             let [amplitude, phase] = *wave;
             let [low, high] = parameter(amplitude).bounds;
-            let size = self.wave_size(parameter(amplitude)) * shares[0].hypot(shares[1]);
+            let usual = self
+                .entry
+                .usual_wave(amplitude % self.entry.parameters.len());
+            let size = usual * shares[0].hypot(shares[1]);
             values[amplitude] = size.clamp(low, high);
             let [from, to] = parameter(phase).bounds;
             let turn = shares[1].atan2(shares[0]).rem_euclid(TAU) / TAU;
             values[phase] = from + (to - from) * turn;
         }
         values
-    }
-
-    /// Its usual size; that of the law's first wave for one that the usual form does not have.
-    fn wave_size(&self, amplitude: &Parameter) -> f64 {
-        let first = self.entry.parameters.iter().find(|p| p.absent.is_some());
-        match (amplitude.absent, first) {
-            (None, Some(first)) => first.start,
-            _ => amplitude.start,
-        }
     }
 
     /// These values with each part of the form of its law that is no wave at its other end, and with all of them.

@@ -61,27 +61,26 @@ impl Search<'_> {
             expanded.push(node.labels());
             let beside = self.beside(&node)?;
             for set in beside {
-                let labels = set.labels();
-                match nodes.iter_mut().find(|node| node.labels() == labels) {
-                    Some(same) if set.cost < same.cost => *same = set,
-                    Some(_) => {}
-                    None => nodes.push(set),
-                }
+                add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            let alone = self.at_places_alone(&nodes[0])?;
-            nodes.extend(alone);
+            let simpler = self.simpler(&nodes[0])?;
+            for set in simpler {
+                add(&mut nodes, set);
+            }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         }
         Ok(nodes)
     }
 
-    /// The node with one of its amendments at one place alone: what acts at two places imitates what acts at one.
-    fn at_places_alone(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+    /// The node with one of its amendments at one place alone, as what acts at two places imitates what acts at one; or
+    /// without one of them: it may have been no more than a way to the others.
+    fn simpler(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.parameters.len();
-        let fitted = node.at_places_alone(self.few)?.into_par_iter();
-        let fitted = fitted.map(|(set, start)| {
-            (self.fitter.say)(&words(node, "one place of it"), node.model.fitted);
+        let mut simpler = node.at_places_alone(self.few)?;
+        simpler.extend(node.without_one(self.few)?);
+        let fitted = simpler.into_par_iter().map(|(set, start)| {
+            (self.fitter.say)(&words(node, "less than it"), node.model.fitted);
             let model = self.fitter.explored(&[start])?;
             Ok(model.map(|(model, _)| Hypothesis::new(set, model, own)))
         });
@@ -174,6 +173,16 @@ impl Search<'_> {
             set,
             start: (with, rough.x),
         }))
+    }
+}
+
+/// Adds a set to others, or puts it in the place of the same one that was fitted worse.
+fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
+    let labels = set.labels();
+    match nodes.iter_mut().find(|node| node.labels() == labels) {
+        Some(same) if set.cost < same.cost => *same = set,
+        Some(_) => {}
+        None => nodes.push(set),
     }
 }
 

@@ -30,7 +30,7 @@ pub mod yaml;
 /// The catalogue of effects as data.
 pub mod effects {
     pub use crate::machine_file::effects::{
-        CATALOGUE, Choice, Entry, Kind, Parameter, Proposal, at_path, entry, proposed,
+        CATALOGUE, Choice, Entry, Kind, Parameter, Proposal, at_path, entry, of_path, proposed,
     };
 }
 

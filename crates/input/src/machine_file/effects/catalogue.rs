@@ -209,6 +209,22 @@ impl Entry {
         self.parameters.iter().filter(|p| p.absent.is_some())
     }
 
+    /// The terms of its law that are waves, a cos(kα + φ): the indices of amplitude and phase, which follow one another.
+    pub fn waves(&self) -> impl Iterator<Item = [usize; 2]> {
+        let phases = (0..self.parameters.len()).filter(|i| self.parameters[*i].cyclic);
+        phases.map(|phase| [phase - 1, phase])
+    }
+
+    /// The usual size of the wave whose amplitude has this index; that of the first one for a wave that the usual form of the
+    /// law does not have.
+    pub fn usual_wave(&self, amplitude: usize) -> f64 {
+        let parameter = &self.parameters[amplitude];
+        match (parameter.absent, self.amplitudes().next()) {
+            (None, Some(first)) => first.start,
+            _ => parameter.start,
+        }
+    }
+
     /// The item of a machine file's list of effects that puts this one at `place` (keys of
     /// [`places`](Self::places) and words) with `values` (SI) for its parameters, in their order.
     pub fn item(&self, place: &[(&str, &str)], values: &[f64]) -> Value {
@@ -261,7 +277,14 @@ pub fn proposed(by: Proposal) -> Option<&'static Entry> {
 /// The parameter that a path of the machine file leads to: `effects.valve_loss.discharge`,
 /// `effects.2.squeeze_film.viscosity`.
 pub fn at_path(path: &str) -> Option<&'static Parameter> {
+    let (entry, index) = of_path(path)?;
+    Some(&entry.parameters[index])
+}
+
+/// The same as the effect and the index among its parameters.
+pub fn of_path(path: &str) -> Option<(&'static Entry, usize)> {
     let (rest, key) = path.strip_prefix("effects.")?.rsplit_once('.')?;
-    let name = rest.rsplit('.').next()?;
-    entry(name)?.parameter(key)
+    let entry = entry(rest.rsplit('.').next()?)?;
+    let index = entry.parameters.iter().position(|p| p.key == key)?;
+    Some((entry, index))
 }

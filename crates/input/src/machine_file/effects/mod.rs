@@ -10,7 +10,7 @@ mod catalogue;
 mod present;
 mod section;
 
-pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry, proposed};
+pub use catalogue::{CATALOGUE, Choice, Entry, Parameter, at_path, entry, of_path, proposed};
 pub use mechanism::declaration::{Kind, Proposal};
 
 pub(super) use act::{Draft, Joint, Place};
