@@ -451,7 +451,7 @@ mod tests {
 
     fn strange(outcome: Outcome) -> Outcome {
         Outcome {
-            outside: Some(Outside::TimeLag),
+            outside: Some(Outside::Compression),
             ..outcome
         }
     }
@@ -492,7 +492,7 @@ mod tests {
         assert_eq!(found["false_discoveries"], share(1, 2));
         assert_eq!(found["pairs_found"], share(1, 2));
         assert_eq!(found["mistaken"], share(1, 3));
-        assert_eq!(found["hidden_against_named"]["time_lag"]["x"], 1);
+        assert_eq!(found["hidden_against_named"]["compression"]["x"], 1);
         // Named first are two: from 5 to 1, and from 11 to 4.
         assert_eq!(found["held_out_gap_closed"]["by_80_percent"], share(1, 2));
         assert_eq!(found["held_out_gap_closed"]["median"], 0.85);

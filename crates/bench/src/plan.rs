@@ -136,9 +136,9 @@ mod tests {
                     effects: [valve_loss]\nnothing: 1\noutside: 2\nrounds: 2\n";
         let cases = cases(&settings(text));
         let labels: Vec<String> = cases.iter().map(Case::label).collect();
-        let expected = ["valve_loss", "nothing", "contact_law", "ac_coupling"];
+        let expected = ["valve_loss", "nothing", "contact_law", "compression"];
         assert_eq!(labels[..4], expected);
-        assert_eq!(labels[6..], ["time_lag", "data_sheet"]);
+        assert_eq!(labels[6..], ["data_sheet", "contact_law"]);
         assert!(cases[2].hides("contact_law") && !cases[2].hides(NOTHING));
     }
 

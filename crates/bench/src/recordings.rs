@@ -48,8 +48,6 @@ pub struct Recorder {
 pub struct Clean {
     sensors: Vec<Sensor>,
     record: Record,
-    /// Speed of the crank, rad/s.
-    speed: f64,
 }
 
 impl Recorder {
@@ -98,15 +96,13 @@ impl Recorder {
         let record = simulate::simulate(&resolved.machine, &sensors, &self.settings, false);
         Ok(Clean {
             record: record.map_err(|e| e.to_string())?,
-            speed: resolved.speed.abs(),
             sensors,
         })
     }
 
     /// Changes a run to what no model has.
     pub fn change(&self, run: &mut Clean, outside: Outside) {
-        let rate = self.settings.sample_rate;
-        outside.change(&mut run.record, &run.sensors, rate, run.speed);
+        outside.change(&mut run.record, &run.sensors);
     }
 
     /// All runs of a machine.

@@ -28,7 +28,7 @@ and --resume.
 
 Examples:
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --dry-run
-  crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --cases 1..26
+  crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --cases 1..29
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --resume --only valve_loss
 
 Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
@@ -60,7 +60,7 @@ fn numbers(text: &str) -> Result<RangeInclusive<u64>, String> {
     let ends = text.split_once("..").unwrap_or((text, text));
     match (ends.0.trim().parse(), ends.1.trim().parse()) {
         (Ok(first), Ok(last)) if 0 < first && first <= last => Ok(first..=last),
-        _ => Err("expected numbers from 1 on, e.g. 1..26".to_owned()),
+        _ => Err("expected numbers from 1 on, e.g. 1..29".to_owned()),
     }
 }
 

@@ -21,6 +21,7 @@ pub mod fitter;
 mod fixture;
 pub mod folder;
 mod force;
+mod form;
 mod gas;
 mod hypothesis;
 pub mod journal;

@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::explain::Explanation;
 use crate::expression::expression;
 use crate::finding::{Correction, Found, Tried, first_item};
+use crate::form::form;
 use crate::missing_force::MissingForce;
 use crate::model::Model;
 use crate::notes::{closing, notes};
@@ -360,7 +361,7 @@ fn of_items(
             expression: is_law.then(|| expression(terms())),
             probability: found.effect.probability,
             places: found.candidate().places(),
-            form: None,
+            form: form(&item, |key| known(&parameters, key)),
             evidence: found.effect.evidence.clone(),
             pressure_rms_pa: pressures.iter().cloned().collect(),
             rivals: rivals.map(Other::from_tried).collect(),
@@ -371,6 +372,12 @@ fn of_items(
         }
     };
     Ok(items.map(effect).collect())
+}
+
+/// The value and the interval of the parameter of this key, where it has one.
+fn known(parameters: &[(&str, Bounded)], key: &str) -> Option<(f64, [f64; 2])> {
+    let (_, bounded) = parameters.iter().find(|(own, _)| *own == key)?;
+    Some((bounded.value, [bounded.low?, bounded.high?]))
 }
 
 /// The parameters of an item that has this index in the machine file's list, with what is known of them.

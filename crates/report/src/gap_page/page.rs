@@ -75,6 +75,8 @@ fn verdict(results: &Results) -> String {
     // An effect at two places is described once.
     sentences.dedup();
     let sentences = sentences.join(" ");
+    let forms: Vec<String> = results.effects.iter().filter_map(form).collect();
+    let sentences = format!("{sentences}{}", forms.concat());
     let [before, after] = [results.gap.before, results.gap.after].map(size);
     match results.verdict {
         Verdict::NoGap => format!(
@@ -92,6 +94,15 @@ fn verdict(results: &Results) -> String {
             "The misfit of the calibrated model is {before} times the noise. No effect of the catalogue explains it."
         ),
     }
+}
+
+/// What is known of the form of an effect's law, in a sentence.
+fn form(effect: &Effect) -> Option<String> {
+    let form = effect.form.as_ref()?;
+    Some(format!(
+        " Of the law of {}: {form}.",
+        text::words(&effect.label)
+    ))
 }
 
 /// The error of the simulated pressures, in a sentence.
