@@ -3,8 +3,8 @@
 use crate::error::Error;
 use crate::model::Model;
 use crate::places::{
-    BEARINGS, EITHER, MEASURE, PRESSURE, Place, distinguishes_ends, has_crank_end, is_clear,
-    places, recorded, throws, words,
+    BEARINGS, EITHER, MEASURE, PRESSURE, distinguishes_ends, has_crank_end, is_clear, places,
+    recorded, throws, words,
 };
 use crate::recorded::{is_of_pressures, shows_pressure};
 use calibrate::Problem;
@@ -81,10 +81,12 @@ impl Candidate {
                 }
             }
         }
-        let together: Vec<Self> = all
-            .iter()
-            .filter_map(|one| one.in_both_bearings(problem))
-            .collect();
+        let together = all.iter().flat_map(|one| {
+            let both = one.in_both_bearings(problem);
+            both.into_iter().chain(one.at_every_throw(&throws))
+        });
+        let possible = |one: &Self| one.added(problem, &one.usual()).is_ok();
+        let together: Vec<Self> = together.filter(possible).collect();
         all.extend(together);
         all
     }
@@ -92,27 +94,27 @@ impl Candidate {
     /// The same in the bearings of both ends of the rod, where it is in the first of them and both are clear.
     /// Oil and wear are alike there. A direction is each bearing's own.
     fn in_both_bearings(&self, problem: &Problem) -> Option<Self> {
-        let [first, other] = BEARINGS;
-        let rest = |words: &[(&'static str, String)]| -> Place {
-            words
-                .iter()
-                .filter(|(key, _)| *key != "joint")
-                .cloned()
-                .collect()
-        };
-        if self.joint() != Some(first)
-            || !is_clear(problem, &self.place, first)
-            || !is_clear(problem, &self.place, other)
-        {
-            return None;
-        }
-        let both = Self {
-            place: rest(&self.place),
-            each: BEARINGS.map(|joint| ("joint", joint.to_owned())).to_vec(),
-            shared: !self.entry.parameters.iter().any(|p| p.cyclic),
-            ..self.clone()
-        };
-        both.added(problem, &both.usual()).is_ok().then_some(both)
+        let clear = |joint: &&str| is_clear(problem, &self.place, joint);
+        let shared = !self.entry.parameters.iter().any(|p| p.cyclic);
+        let both = BEARINGS.iter().all(clear).then_some(BEARINGS)?;
+        self.at_each("joint", &both, shared)
+    }
+
+    /// The same at every throw of a machine that has several, with one set of values: what is the machine's is alike there.
+    fn at_every_throw(&self, throws: &[String]) -> Option<Self> {
+        let throws: Vec<&str> = throws.iter().map(String::as_str).collect();
+        (throws.len() > 1).then(|| self.at_each("throw", &throws, true))?
+    }
+
+    /// The same at each of these places, where it is at the first of them.
+    fn at_each(&self, key: &'static str, words: &[&str], shared: bool) -> Option<Self> {
+        let at_first = (key, words.first()?.to_string());
+        let index = self.place.iter().position(|word| *word == at_first)?;
+        let mut together = self.clone();
+        together.place.remove(index);
+        together.each = words.iter().map(|word| (key, (*word).to_owned())).collect();
+        together.shared = shared;
+        self.each.is_empty().then_some(together)
     }
 
     /// The same with only the parameters of these indices free, and the others without effect or as
