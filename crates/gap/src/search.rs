@@ -11,7 +11,10 @@ use crate::fitter::{Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, start};
 use crate::screen::{Screened, screen};
 use calibrate::Problem;
+use calibrate::parameter::Scale;
+use rand::RngExt;
 use rayon::prelude::*;
+use scalar::random::{Purpose, stream};
 use std::collections::BTreeMap;
 
 /// Most amendments of a set.
@@ -29,6 +32,10 @@ const REFINED_BESIDE: usize = 4;
 const LITTLE: f64 = 0.2;
 /// Nodes that are looked at further.
 const EXPANDED: usize = 2;
+
+/// Machines that are drawn about the given one, and by how much the logarithms of their parameters differ at most.
+const DRAWS: u64 = 4;
+const DRAWN: f64 = 0.5;
 
 /// What a search looks for, and in what.
 pub(crate) struct Search<'a> {
@@ -129,10 +136,12 @@ impl Search<'_> {
         let fitted = rough.into_par_iter().map(|trial| {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
             let own = self.few.parameters.len();
-            let near = self.fitter.settled(&trial.start)?;
-            let anew = self.fitter.explored(&[anew(&trial.start, own)])?;
-            let both = near.into_iter().chain(anew.map(|(model, _)| model));
-            let model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+            let mut model = self.fitter.settled(&trial.start)?;
+            if !model.as_ref().is_some_and(Fitter::is_at_noise) {
+                let far = self.fitter.explored(&anew(&trial.start, own))?;
+                let both = model.into_iter().chain(far.map(|(model, _)| model));
+                model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
+            }
             Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
@@ -186,11 +195,25 @@ fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
     }
 }
 
-/// The same amendments in the machine as it was given: without them its parameters may have been led far astray.
-fn anew((problem, x): &Start, own: usize) -> Start {
-    let mut x = x.clone();
-    x[..own].fill(0.0);
-    (problem.clone(), x)
+/// The same amendments in the machine as it was given, and in machines drawn about it: without the amendments its parameters
+/// may have been led far astray, and what is known of them to a factor only has many local minima.
+fn anew((problem, x): &Start, own: usize) -> Vec<Start> {
+    let drawn = |draw: u64| {
+        let mut random = stream(0, draw, Purpose::Design);
+        let mut x = x.clone();
+        for (x, parameter) in x.iter_mut().zip(&problem.parameters[..own]) {
+            let by: f64 = random.random_range(-DRAWN..DRAWN);
+            let [low, high] = parameter.box_bounds();
+            let to_a_factor = draw > 0 && parameter.scale == Scale::Logarithmic;
+            *x = if to_a_factor {
+                by.clamp(low, high)
+            } else {
+                0.0
+            };
+        }
+        (problem.clone(), x)
+    };
+    (0..=DRAWS).map(drawn).collect()
 }
 
 /// A set that was fitted roughly.
