@@ -44,7 +44,7 @@ impl Progress {
 
 /// How many plain evaluations one with the derivatives by so many parameters counts for. Tangents are
 /// carried through one revolution of a motion that has settled, and not through the transient. Two
-/// clear joints take 2.1, 2.3, 2.4 and 2.6 times the plain steps with 3, 6, 8 and 12 parameters
+/// clear joints take 2.1, 2.8, 2.8 and 2.8 times the plain steps with 3, 6, 8 and 12 parameters
 /// (`tests/all/cost.rs`).
 pub fn derivatives(parameters: usize) -> u64 {
     2 + parameters as u64 / 12

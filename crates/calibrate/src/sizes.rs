@@ -18,7 +18,7 @@ pub struct Sizes<'a, P> {
 }
 
 /// The least amplitude of a wave, in usual sizes: one of 0 has no phase, and no derivative by it.
-const LEAST: f64 = 1e-3;
+const LEAST_WAVE: f64 = 1e-3;
 
 /// What stands for a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +110,7 @@ impl<'a, P: LeastSquares> Sizes<'a, P> {
                     x[i] = parameter.coordinate((absent + usual * z[i]).clamp(low, high));
                 }
                 Coordinate::InPhase { usual, period } => {
-                    let amplitude = usual * z[i].hypot(z[i + 1]).max(LEAST);
+                    let amplitude = usual * z[i].hypot(z[i + 1]).max(LEAST_WAVE);
                     x[i] = parameter.coordinate(amplitude.clamp(low, high));
                     let (next, phase) = (&self.parameters[i + 1], z[i + 1].atan2(z[i]) / TAU);
                     // The turn that is nearest to the middle of its bounds.
