@@ -127,18 +127,11 @@ pub fn explain(
         }
     }
     let corrections = corrections(&estimates, &probabilities);
-    let set_right = || -> Result<Model, Error> {
-        let mut problem = problem.clone();
-        problem.parameters.retain(|p| !p.is_crank_angle_offset());
-        let start = vec![0.0; problem.parameters.len()];
-        let found = fitter.explored(&[(problem, start)])?;
-        found.map(|(model, _)| model).ok_or(Error::Nothing)
-    };
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
     let calibrated = baseline.gap();
-    if let Some((offset, without)) = crank_angle_offset(&estimates, set_right, &model)? {
+    if let Some(offset) = crank_angle_offset(fitter, &estimates, &model, found.len())? {
         chain.push(offset);
-        baseline = without;
+        baseline = set_right(fitter, problem)?;
     }
     let named = found.len() + chain.len() + corrections.len();
     let verdict = verdict(&baseline, &model, named);
@@ -158,6 +151,15 @@ pub fn explain(
         refused,
         missing_force,
     })
+}
+
+/// The machine without effects, calibrated as if the zero of the crank angle were at top dead centre.
+fn set_right(fitter: &Fitter, problem: &Problem) -> Result<Model, Error> {
+    let mut problem = problem.clone();
+    problem.parameters.retain(|p| !p.is_crank_angle_offset());
+    let start = vec![0.0; problem.parameters.len()];
+    let found = fitter.explored(&[(problem, start)])?;
+    found.map(|(model, _)| model).ok_or(Error::Nothing)
 }
 
 /// What pressures and everything else come to together.

@@ -1,10 +1,13 @@
 //! Errors of the measuring chain, not of the machine: reported as effects like any other.
 
 use crate::candidate::Candidate;
-use crate::criteria::{Evidence, evidence};
+use crate::criteria::{Evidence, NAMED, evidence, left, probability};
+use crate::error::Error;
 use crate::finding::{Found, Tried};
+use crate::fitter::Fitter;
 use crate::mains_hum::Hum;
 use crate::model::Model;
+use calibrate::Parameter;
 use calibrate::fit::Estimate;
 use input::effects::{Entry, Proposal, proposed};
 
@@ -13,30 +16,45 @@ const SET: f64 = 1.7e-3;
 /// An offset that counts is so many times the half width of its 95 % interval.
 const CLEAR: f64 = 2.0;
 
-/// The zero of the crank angle, where it is not at top dead centre; its item of a machine file.
+/// The zero of the crank angle, where it is not at top dead centre: where the model `after`, which has `others` effects
+/// beside it, is left with so much more without it that it is more probable than not.
 pub(crate) fn crank_angle_offset(
+    fitter: &Fitter,
     estimates: &[Estimate],
-    before: impl FnOnce() -> Result<Model, crate::Error>,
     after: &Model,
-) -> Result<Option<(Found, Model)>, crate::Error> {
-    let mut offsets = estimates
-        .iter()
-        .filter(|e| e.parameter.is_crank_angle_offset() && e.parameter.run.is_none());
-    let (Some(estimate), Some(entry)) = (offsets.next(), proposed(Proposal::CrankAngleZero)) else {
+    others: usize,
+) -> Result<Option<Found>, Error> {
+    let is_zero = |p: &Parameter| p.is_crank_angle_offset() && p.run.is_none();
+    let index = after.problem.parameters.iter().position(is_zero);
+    let estimate = estimates.iter().find(|e| is_zero(&e.parameter));
+    let (Some(index), Some(estimate)) = (index, estimate) else {
         return Ok(None);
     };
     let clear = estimate
         .interval
         .is_some_and(|[low, high]| estimate.value.abs() > CLEAR * 0.5 * (high - low));
-    if estimate.value.abs() < SET || !clear {
+    let Some(entry) = proposed(Proposal::CrankAngleZero).filter(|_| clear) else {
+        return Ok(None);
+    };
+    if estimate.value.abs() < SET {
         return Ok(None);
     }
-    let before = before()?;
-    let evidence = evidence(&before, after);
-    Ok(Some((
-        finding(entry, Vec::new(), vec![estimate.value], evidence),
-        before,
-    )))
+    let (mut problem, mut x) = (after.problem.clone(), after.x.clone());
+    problem.parameters.remove(index);
+    x.remove(index);
+    let Some(without) = fitter.settled(&(problem, x))? else {
+        return Ok(None);
+    };
+    let probability = probability(left(&without, after), others, 1);
+    let evidence = evidence(&without, after);
+    let found = finding(
+        entry,
+        Vec::new(),
+        vec![estimate.value],
+        evidence,
+        probability,
+    );
+    Ok(Some(found).filter(|_| probability > NAMED))
 }
 
 /// A hum as an effect.
@@ -56,7 +74,8 @@ pub(crate) fn mains_hum(hum: &Hum, model: &Model) -> Option<Found> {
         heldout_misfit: model.held_out.map(|held_out| [held_out; 2]),
         timing: model.timing,
     };
-    Some(finding(entry, place.collect(), values.collect(), evidence))
+    let (place, values) = (place.collect(), values.collect());
+    Some(finding(entry, place, values, evidence, 1.0))
 }
 
 fn finding(
@@ -64,6 +83,7 @@ fn finding(
     place: Vec<(&'static str, String)>,
     values: Vec<f64>,
     evidence: Evidence,
+    probability: f64,
 ) -> Found {
     let candidate = Candidate {
         entry,
@@ -78,7 +98,7 @@ fn finding(
             candidate,
             values,
             evidence,
-            probability: 1.0,
+            probability,
             model: None,
         },
         gap: None,
