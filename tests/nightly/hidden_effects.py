@@ -1,6 +1,6 @@
-"""Writes data/results/hidden-effects.csv from the cases of `crosshead hidden-effects`.
+"""Writes a file of data/results from the cases of `crosshead hidden-effects`.
 
-    python3 tests/nightly/hidden_effects.py FOLDER COMMAND...
+    python3 tests/nightly/hidden_effects.py NAME.csv FOLDER COMMAND...
 
 FOLDER is its `--out`, COMMAND the command that made it.
 """
@@ -25,6 +25,7 @@ def row(case):
         "size": case["size"],
         "hidden": " + ".join(h["effect"] for h in case["hidden"]) or case.get("outside") or "nothing",
         "named": " + ".join(n["effect"] for n in found["named"]) or "nothing",
+        "probability_of_the_first": first.get("probability"),
         "rivals_of_the_first": " + ".join(first.get("rivals", [])),
         "verdict": found["verdict"],
         "gap_before": gap.get("before"),
@@ -36,10 +37,10 @@ def row(case):
 
 
 def main():
-    folder, command = Path(sys.argv[1]), shlex.join(sys.argv[2:])
+    name, folder, command = sys.argv[1], Path(sys.argv[2]), shlex.join(sys.argv[3:])
     lines = (folder / "cases.jsonl").read_text().splitlines()
     cases = sorted(map(json.loads, lines), key=lambda case: case["case"])
-    print(results.write("hidden-effects.csv", [row(case) for case in cases], command))
+    print(results.write(name, [row(case) for case in cases], command))
 
 
 if __name__ == "__main__":
