@@ -112,17 +112,26 @@ pub fn effect(
             place.push((choice.key, word));
         }
     }
-    let drawn = |parameter: &effects::Parameter| match (entry.name, parameter.key) {
+    let drawn = |(index, parameter): (usize, &effects::Parameter)| match (entry.name, parameter.key)
+    {
         ("mains_hum", "frequency") => {
             let mains = MAINS[usize::from(random.random::<bool>())];
             mains * random.random_range(1.0 - GRID..1.0 + GRID)
         }
         _ if parameter.shape && other_forms => {
-            random.random_range(parameter.bounds[0]..parameter.bounds[1])
+            let [low, high] = parameter.bounds;
+            // A further wave is no larger than the first one usually is.
+            let is_wave = entry.waves().any(|[amplitude, _]| amplitude == index);
+            let most = if is_wave {
+                entry.usual_wave(index)
+            } else {
+                high
+            };
+            random.random_range(low..high.min(most))
         }
         _ => value(parameter, size, random),
     };
-    let mut values: Vec<f64> = entry.parameters.iter().map(drawn).collect();
+    let mut values: Vec<f64> = entry.parameters.iter().enumerate().map(drawn).collect();
     if entry.proposal == Proposal::ForceLaw {
         as_law(entry, &mut values, random);
     }

@@ -467,6 +467,29 @@ mod tests {
     use serde_json::json;
 
     #[test]
+    fn what_acts_at_every_throw_has_one_set_of_values() {
+        let mut problem = problem();
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../data/machines/two-stage.yaml"
+        );
+        let file = input::machine_file::read(std::path::Path::new(path)).unwrap();
+        problem.tree = file.to_tree().clone();
+        problem.parameters.clear();
+        let throws = throws(&problem.tree);
+        let all = Candidate::all(&problem);
+        let friction = all.iter().filter(|c| c.entry.name == "ring_friction");
+        let places: Vec<Vec<String>> = friction.clone().map(Candidate::places).collect();
+        let alone = throws.iter().map(|throw| vec![throw.clone()]);
+        let expected: Vec<Vec<String>> = alone.chain([throws.clone()]).collect();
+        assert_eq!(places, expected);
+        let every = friction.last().unwrap();
+        let added = every.added(&problem, &every.usual()).unwrap();
+        assert_eq!((every.items().len(), added.parameters.len()), (2, 4));
+        assert!(added.parameters.iter().all(|p| p.places.len() == 2));
+    }
+
+    #[test]
     fn pressures_tell_the_gas_at_the_ends_where_they_were_recorded() {
         let mut problem = problem();
         problem.tree["cylinder"]["crank_end"] =

@@ -209,3 +209,47 @@ fn firsts(problem: &Problem, set: &[Amended], own: usize) -> Vec<usize> {
     });
     all.collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::candidate::Candidate;
+    use crate::fixture::{effort, problem};
+
+    #[test]
+    fn a_set_without_one_keeps_the_coordinates_of_the_others() {
+        let problem = problem();
+        let own = problem.parameters.len();
+        let named = |name: &str| {
+            let mut all = Candidate::all(&problem).into_iter();
+            let candidate = all.find(|one| one.entry.name == name).unwrap();
+            let values = candidate.usual();
+            let amendment = Amendment::Effect(candidate);
+            Amended { amendment, values }
+        };
+        let set = vec![named("ring_friction"), named("sensor_gain")];
+        let with = added(&problem, &set).unwrap();
+        let x: Vec<f64> = (0..with.parameters.len())
+            .map(|i| 1e-3 * i as f64)
+            .collect();
+        let model = Model::at(with.clone(), &x, 0.0, &effort()).unwrap();
+        let both = Hypothesis::new(set, model, own);
+        let [gain, friction] = both.without_one(&problem).unwrap().try_into().unwrap();
+        for ((set, (problem, x_left)), kept) in [(gain, "sensor_gain"), (friction, "ring_friction")]
+        {
+            let kinds: Vec<&str> = set.iter().map(|one| one.amendment.kind()).collect();
+            assert_eq!(kinds, [kept]);
+            let values = |problem: &Problem, x: &[f64]| -> Vec<(String, f64)> {
+                let all = problem.parameters.iter().zip(x);
+                let key = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+                all.map(|(p, x)| (key(&p.path), *x)).collect()
+            };
+            let before = values(&with, &x);
+            let left = values(&problem, &x_left);
+            assert_eq!(left.len(), own + set[0].amendment.free());
+            assert!(left.iter().all(|one| before.contains(one)), "{left:?}");
+        }
+        let alone = Hypothesis::new(both.set[..1].to_vec(), both.model.clone(), own);
+        assert!(alone.without_one(&problem).unwrap().is_empty());
+    }
+}

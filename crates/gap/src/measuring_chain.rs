@@ -105,3 +105,36 @@ fn finding(
         rivals: Vec::new(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{effort, fitter, problem, problem_of};
+    use calibrate::Problem;
+    use serde_json::json;
+
+    /// The probability of an offset in a problem in which it is free, and was found to be 1° with little doubt.
+    fn named(mut problem: Problem, effort: &crate::effort::Effort) -> Option<f64> {
+        let zero = Parameter::named(&problem.tree, &[], "crank_angle_offset", None).unwrap();
+        problem.parameters.push(zero);
+        let offset = problem.parameters[1].clone();
+        let value = 1.0_f64.to_radians();
+        let x = [0.0, offset.coordinate(value)];
+        let model = Model::at(problem, &x, 0.0, effort).unwrap();
+        let estimate = Estimate {
+            parameter: offset,
+            value,
+            interval: Some([0.99 * value, 1.01 * value]),
+        };
+        let found = crank_angle_offset(&fitter(effort), &[estimate], &model, 0).unwrap();
+        found.map(|found| found.effect.probability)
+    }
+
+    #[test]
+    fn a_zero_is_named_where_the_model_is_left_with_much_without_it() {
+        let shifted = problem_of(json!([{"crank_angle_offset": {"offset": "1 deg"}}]));
+        assert!(named(shifted, &effort()).unwrap() > 0.9);
+        // Friction is hidden here, and the offset explains none of it.
+        assert_eq!(named(problem(), &effort()), None);
+    }
+}

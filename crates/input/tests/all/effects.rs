@@ -103,6 +103,7 @@ fn every_parameter_has_bounds_about_its_usual_value_and_words() {
             );
             // Within its bounds an effect does not vanish, unless its amplitude has two signs.
             if let Some(absent) = p.absent {
+                assert!(absent != p.start, "{} {}", entry.name, p.key);
                 assert!(absent < low || -low == high, "{} {}", entry.name, p.key);
             }
         }
