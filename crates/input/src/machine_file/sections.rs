@@ -265,6 +265,7 @@ impl FrameSection {
             stiffness_y: stiffness(&self.y),
             damping_x: damping(&self.x),
             damping_y: damping(&self.y),
+            hardening: 0.0,
             carries: false,
         }
     }

@@ -109,9 +109,9 @@ pub(crate) struct AtJoint<'a, S> {
 }
 
 impl<S: Scalar> AtJoint<'_, S> {
-    /// How far the joint is out of round in the direction `normal`; none where it is round.
+    /// How far the joint of this clearance, m, is out of round in the direction `normal`; none where it is round.
     #[inline(always)]
-    pub fn shape(&self, normal: Vec2<S>) -> Option<Shape<S>> {
+    pub fn shape(&self, normal: Vec2<S>, clearance: S) -> Option<Shape<S>> {
         if !self.acting.any() {
             return None;
         }
@@ -123,7 +123,7 @@ impl<S: Scalar> AtJoint<'_, S> {
         let (bearing, journal) = (within(bearing), within(journal));
         let mut sum: Option<Shape<S>> = None;
         for effect in self.acting.at_joint(self.joint) {
-            if let Some(more) = effect.shape(bearing, journal) {
+            if let Some(more) = effect.shape(bearing, journal, clearance) {
                 sum = Some(match sum {
                     Some(sum) => Shape {
                         wider: sum.wider + more.wider,

@@ -53,9 +53,9 @@ pub(crate) trait Acts<S: Scalar> {
     }
 
     /// By how much bearing and journal are out of round in the directions (cosine, sine) from the x
-    /// axes of the two; none where both are round.
+    /// axes of the two, in a joint of this radial clearance, m; none where both are round.
     #[inline(always)]
-    fn shape(&self, _bearing: Vec2<S>, _journal: Vec2<S>) -> Option<Shape<S>> {
+    fn shape(&self, _bearing: Vec2<S>, _journal: Vec2<S>, _clearance: S) -> Option<Shape<S>> {
         None
     }
 
@@ -108,16 +108,39 @@ pub(crate) struct ChamberAt<S> {
     pub closed: S,
 }
 
+/// The form of a gap through which gas leaks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gap<S> {
+    /// Ratio of the pressures below which the gas flows no faster.
+    pub critical_ratio: S,
+    /// Share of the flow that is laminar.
+    pub laminar: S,
+}
+
 /// Difference of pressures, over the suction pressure, below which a flow is laminar.
 const LAMINAR: f64 = 0.02;
 
 impl<S: Scalar> ChamberAt<S> {
-    /// √(p² − p_other²), Pa, negative where the gas flows in: what a throttle lets flow (Stodola 1927).
+    /// What a gap lets flow, Pa, negative where the gas flows in:
+    ///
+    /// ```text
+    /// (1 − m) √(p² − ((p_other − r p) / (1 − r))²) + m (p² − p_other²) / p_d        p > p_other
+    /// ```
+    ///
+    /// The first part is that of throttles: many in series have r = 0 (Stodola 1927), and one has the ratio at which its flow
+    /// chokes, below which it is p (Bendemann 1907). The second is that of a narrow gap (Poiseuille 1846, for a gas), over the discharge pressure.
     #[inline(always)]
-    pub fn throttled_to(&self, other: S) -> S {
-        let squares = self.pressure * self.pressure - other * other;
+    pub fn leaks_to(&self, other: S, gap: Gap<S>) -> S {
+        let inward = self.pressure.lt(other);
+        let (high, low) = (self.pressure.max(other), self.pressure.min(other));
+        let beyond = (low - gap.critical_ratio * high).max(S::zero());
+        let low = beyond / (S::one() - gap.critical_ratio);
+        let fall = high * high - low * low;
+        let squares = S::select(inward, -fall, fall);
         let floor = self.suction * self.suction * (LAMINAR * LAMINAR);
-        squares / (squares * squares + floor * floor).sqrt().sqrt()
+        let throttled = squares / (squares * squares + floor * floor).sqrt().sqrt();
+        let narrow = (self.pressure * self.pressure - other * other) / self.discharge;
+        throttled + gap.laminar * (narrow - throttled)
     }
 
     /// n/(p V): the rate at which the logarithm of the pressure falls for a flow ṁ R T, 1/J.

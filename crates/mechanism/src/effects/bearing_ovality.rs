@@ -2,8 +2,10 @@
 //! one that is oval,
 //!
 //! ```text
-//! c(γ) = c + c2 cos 2(γ − γ0) + c3 cos 3(γ − γ3)
+//! c(γ) = c + g (c2 cos 2(γ − γ0) + c3 cos 3(γ − γ3))          g = 1 + q (c/10⁻⁴ m − 1)
 //! ```
+//!
+//! What wears a bearing widens it too: with q = 0 its form is that of one machine, with q = 1 it is a share of the clearance.
 //!
 //! In the bearings γ counts from the rod's axis (big and small end) or the frame's x (main bearing). In
 //! the journals it counts from the crank pin's direction or the crosshead's x. The force is normal to
@@ -18,6 +20,9 @@ use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::Scalar;
 
+/// Radial clearance at which the amplitudes are stated, m.
+const REFERENCE: f64 = 1e-4;
+
 parameters! {
     /// Parameters of the bearing.
     pub struct BearingOvality<S> {
@@ -29,6 +34,8 @@ parameters! {
         pub lobes: S,
         /// Direction γ3 of the first of them, rad.
         pub lobes_direction: S,
+        /// Share q of both amplitudes that is in proportion to the clearance.
+        pub growth: S,
         fixed {
             /// What is oval.
             pub oval: Oval,
@@ -52,6 +59,9 @@ declaration! {
         @shape lobes: Length(FromZero), 0.0 to 3e-5, start 0.0;
         /// Direction of the first of the three, 0 deg where it is left out.
         @shape lobes_direction: Angle(Any), third_of_turn, start 0.0;
+        /// Share of both amplitudes that is in proportion to the clearance, 0 to 1; they are then those of a radial clearance of
+        /// 0.1 mm. 0 where it is left out.
+        @shape growth: Number(FromZero), 0.0 to 1.0, start 0.0;
     }
 }
 
@@ -62,12 +72,14 @@ pub fn law(values: &[f64], alternatives: Alternatives) -> BearingOvality {
         direction,
         lobes,
         lobes_direction,
+        growth,
     } = Values::new(values);
     BearingOvality {
         amplitude,
         direction,
         lobes,
         lobes_direction,
+        growth,
         oval: alternatives.part.unwrap_or(Oval::Bearing),
     }
 }
@@ -75,7 +87,7 @@ pub fn law(values: &[f64], alternatives: Alternatives) -> BearingOvality {
 impl BearingOvality {
     /// Refuses a joint of this clearance, m, in which the surfaces would meet all around.
     pub(super) fn check(&self, clearance: f64) -> Result<(), Clash> {
-        match self.amplitude + self.lobes >= clearance {
+        match (self.amplitude + self.lobes) * self.grown(clearance) >= clearance {
             false => Ok(()),
             true => Err(Clash {
                 key: "amplitude",
@@ -85,9 +97,17 @@ impl BearingOvality {
     }
 }
 
+impl<S: Scalar> BearingOvality<S> {
+    /// By what factor it is more out of round at this clearance, m, than at [`REFERENCE`].
+    #[inline(always)]
+    fn grown(&self, clearance: S) -> S {
+        S::one() + self.growth * (clearance / REFERENCE - S::one())
+    }
+}
+
 impl<S: Scalar> Acts<S> for BearingOvality<S> {
     #[inline(always)]
-    fn shape(&self, bearing: Vec2<S>, journal: Vec2<S>) -> Option<Shape<S>> {
+    fn shape(&self, bearing: Vec2<S>, journal: Vec2<S>, clearance: S) -> Option<Shape<S>> {
         let direction = match self.oval {
             Oval::Bearing => bearing,
             Oval::Journal => journal,
@@ -102,9 +122,10 @@ impl<S: Scalar> Acts<S> for BearingOvality<S> {
         let (turn_sine, turn_cosine) = (self.lobes_direction * 3.0).sin_cos();
         let third_along = third_cosine * turn_cosine + third_sine * turn_sine;
         let third_across = third_sine * turn_cosine - third_cosine * turn_sine;
-        let change = -(self.amplitude * across * 2.0 + self.lobes * third_across * 3.0);
+        let grown = self.grown(clearance);
+        let change = -grown * (self.amplitude * across * 2.0 + self.lobes * third_across * 3.0);
         Some(Shape {
-            wider: self.amplitude * along + self.lobes * third_along,
+            wider: grown * (self.amplitude * along + self.lobes * third_along),
             change: match self.oval {
                 Oval::Bearing => [change, S::zero()],
                 Oval::Journal => [S::zero(), change],

@@ -72,7 +72,7 @@ macro_rules! catalogue {
                 piston_force(at: &PistonAt<S>) -> S;
                 frame_acceleration(angle: S, speed: S) -> Option<Vec2<S>>;
                 rod() -> Option<RodSpring<S>>;
-                shape(bearing: Vec2<S>, journal: Vec2<S>) -> Option<Shape<S>>;
+                shape(bearing: Vec2<S>, journal: Vec2<S>, clearance: S) -> Option<Shape<S>>;
                 film_force(at: &JointAt<S>) -> S;
             }
         }

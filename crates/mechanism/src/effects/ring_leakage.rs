@@ -8,11 +8,12 @@
 //! A is the area of one throttle over the root of their number, with its discharge coefficient, R T
 //! the square of `gas_speed`, taken where the gas comes from as in the suction line. The second
 //! equation is the first law for a chamber that loses gas of its own state. At equal pressures the
-//! root is smoothed over 2 % of the suction pressure. Near a dead centre gas may leak faster than the piston
+//! root is smoothed over 2 % of the suction pressure. One throttle alone, whose flow chokes, and a narrow
+//! gap have other laws ([`ChamberAt::leaks_to`]). Near a dead centre gas may leak faster than the piston
 //! compresses; then the suction valve stays open (`gas`). Signature: compression too low, expansion too
 //! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
 
-use super::acts::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt, Gap};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
@@ -24,6 +25,10 @@ parameters! {
         pub area: S,
         /// √(R T) of the gas in the suction line, m/s; 290 for air.
         pub gas_speed: S,
+        /// Ratio of the pressures below which the gas flows no faster.
+        pub critical_ratio: S,
+        /// Share of the flow that is laminar.
+        pub laminar: S,
     }
 }
 
@@ -38,6 +43,11 @@ declaration! {
         /// Root of gas constant times temperature in the suction line; 290 m/s, as for air, where it
         /// is left out.
         gas_speed: Velocity(AboveZero), 150.0 to 500.0, start 290.0;
+        /// Ratio of the pressures below which the gas flows no faster: 0, as for many throttles in series, where it is left out;
+        /// 0.53 for one orifice and air.
+        @shape critical_ratio: Number(FromZero), 0.0 to 0.6, start 0.0;
+        /// Share of the flow that is laminar, as in a narrow gap, 0 to 1; 0 where it is left out.
+        @shape laminar: Number(FromZero), 0.0 to 1.0, start 0.0;
     } as RingLeakage
 }
 
@@ -49,6 +59,10 @@ impl<S: Scalar> Acts<S> for RingLeakage<S> {
 
     #[inline(always)]
     fn drift(&self, at: &ChamberAt<S>) -> S {
-        -(self.area * self.gas_speed * at.throttled_to(at.across)) * at.loss_of_flow()
+        let gap = Gap {
+            critical_ratio: self.critical_ratio,
+            laminar: self.laminar,
+        };
+        -(self.area * self.gas_speed * at.leaks_to(at.across, gap)) * at.loss_of_flow()
     }
 }

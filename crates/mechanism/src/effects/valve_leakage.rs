@@ -5,11 +5,12 @@
 //! ṁ = A √((p² − p_line²) / (R T))         d ln p / dt = −n ṁ R T / (p V)     while both valves are closed
 //! ```
 //!
-//! A is an effective area, with its discharge coefficient, R T the square of `gas_speed`, as of gas in the suction line.
+//! A is an effective area, with its discharge coefficient, R T the square of `gas_speed`, as of gas in the suction line. A gap whose
+//! flow chokes, and a narrow one, have other laws ([`ChamberAt::leaks_to`]).
 //! Signature: a suction valve that leaks lets the pressure rise too slowly and fall too fast, a discharge valve
 //! that leaks the other way round; both the more the slower the machine.
 
-use super::acts::{Acts, ChamberAt};
+use super::acts::{Acts, ChamberAt, Gap};
 use crate::declaration;
 use crate::lift::parameters;
 use scalar::Scalar;
@@ -23,6 +24,10 @@ parameters! {
         pub discharge: S,
         /// √(R T) of the gas in the suction line, m/s; 290 for air.
         pub gas_speed: S,
+        /// Ratio of the pressures below which the gas flows no faster.
+        pub critical_ratio: S,
+        /// Share of the flow that is laminar.
+        pub laminar: S,
     }
 }
 
@@ -39,6 +44,11 @@ declaration! {
         /// Root of gas constant times temperature in the suction line; 290 m/s, as for air, where it
         /// is left out.
         gas_speed: Velocity(AboveZero), 150.0 to 500.0, start 290.0;
+        /// Ratio of the pressures below which the gas flows no faster: 0, as for many throttles in series, where it is left out;
+        /// 0.53 for one orifice and air.
+        @shape critical_ratio: Number(FromZero), 0.0 to 0.6, start 0.0;
+        /// Share of the flow that is laminar, as in a narrow gap, 0 to 1; 0 where it is left out.
+        @shape laminar: Number(FromZero), 0.0 to 1.0, start 0.0;
     } as ValveLeakage
 }
 
@@ -50,8 +60,12 @@ impl<S: Scalar> Acts<S> for ValveLeakage<S> {
 
     #[inline(always)]
     fn drift(&self, at: &ChamberAt<S>) -> S {
-        let suction = self.suction * at.throttled_to(at.suction);
-        let discharge = self.discharge * at.throttled_to(at.discharge);
+        let gap = Gap {
+            critical_ratio: self.critical_ratio,
+            laminar: self.laminar,
+        };
+        let suction = self.suction * at.leaks_to(at.suction, gap);
+        let discharge = self.discharge * at.leaks_to(at.discharge, gap);
         -((suction + discharge) * self.gas_speed) * at.loss_of_flow()
     }
 }

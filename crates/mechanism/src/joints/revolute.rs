@@ -275,7 +275,7 @@ impl<S: Scalar> Clearance<S> {
             },
         );
         let shape = match model {
-            JointModel::ThreeMode => effects.shape(normal),
+            JointModel::ThreeMode => effects.shape(normal, self.clearance),
             JointModel::TwoMode | JointModel::MasslessLink => None,
         };
         let Some(Shape { wider, change }) = shape else {

@@ -15,6 +15,7 @@ fn framed() -> Machine {
         stiffness_y: 2e7,
         damping_x: 1e4,
         damping_y: 1e4,
+        hardening: 0.0,
         carries: false,
     });
     machine

@@ -26,6 +26,8 @@ declaration! {
         frequency: Frequency(AboveZero), 5.0 to 400.0, start 40.0;
         /// Damping, of the critical one; 5 % where it is left out.
         damping_ratio: Ratio(FromZero), 0.002 to 0.5, start 0.05;
+        /// By what share its springs are stiffer where it has moved by 0.1 mm; 0 where it is left out.
+        @shape hardening: Number(FromZero), 0.0 to 2.0, start 0.0;
     }
 }
 
@@ -42,6 +44,7 @@ impl Act for Values {
             stiffness_y: stiffness,
             damping_x: damping,
             damping_y: damping,
+            hardening: self.hardening,
             carries: true,
         });
         Ok(())

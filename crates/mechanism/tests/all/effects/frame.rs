@@ -67,6 +67,7 @@ fn a_frame_on_springs_follows_the_forces_by_its_frequency_response() {
         stiffness_y: mass * natural * natural,
         damping_x: 2.0 * ratio * mass * natural,
         damping_y: 2.0 * ratio * mass * natural,
+        hardening: 0.0,
         carries: true,
     });
     let settled: Vec<f64> = revolution(128).iter().map(|d| d + 20.0 * 360.0).collect();
@@ -82,5 +83,39 @@ fn a_frame_on_springs_follows_the_forces_by_its_frequency_response() {
         let r = k * SPEED / natural;
         let gain = r * r / ((1.0 - r * r).powi(2) + (2.0 * ratio * r).powi(2)).sqrt() / mass;
         near(size(order(&felt, k)), gain * size(order(&force, k)), 1e-5);
+    }
+}
+
+/// Springs that harden: what the frame feels is what its equation of motion gives at its place.
+#[test]
+fn a_frame_hardens_with_the_square_of_its_displacement() {
+    let (mass, frequency, hardening) = (450.0, 40.0, 0.7);
+    let natural = TAU * frequency;
+    let felt = |hardening: f64| {
+        let mut machine = single_stage();
+        machine.frame = Some(Frame {
+            mass,
+            stiffness_x: mass * natural * natural,
+            stiffness_y: mass * natural * natural,
+            damping_x: 0.0,
+            damping_y: 0.0,
+            hardening,
+            carries: true,
+        });
+        let mut dynamics = Dynamics::new(machine, false);
+        let state = dynamics.initial_state();
+        let place = dynamics.layout().frame.unwrap();
+        [0.0, 1e-4, -2e-4].map(|x| {
+            let mut y = state.clone();
+            y[place] = x;
+            dynamics.evaluate(0.0, &y).throws[0].carried.x
+        })
+    };
+    let (linear, hard) = (felt(0.0), felt(hardening));
+    for (i, x) in [0.0, 1e-4, -2e-4_f64].into_iter().enumerate() {
+        let spring = natural * natural * x;
+        near(linear[i] - linear[0] + 1.0, 1.0 - spring, 1e-9);
+        let stiffer = spring * hardening * (x / 1e-4).powi(2);
+        near(hard[i] - linear[i] + 1.0, 1.0 - stiffer, 1e-9);
     }
 }
