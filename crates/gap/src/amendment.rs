@@ -95,6 +95,17 @@ impl Amendment {
         effect.items().into_iter().map(alone).collect()
     }
 
+    /// The same with values of each place's own, all of them as its one set of values; none where each has its own.
+    pub(crate) fn of_each_place(&self, values: &[f64]) -> Option<(Self, Vec<f64>)> {
+        let effect = self.effect().filter(|effect| effect.shared)?;
+        let own = Candidate {
+            shared: false,
+            ..effect.clone()
+        };
+        let values = values.repeat(own.sets());
+        Some((Self::Effect(own), values))
+    }
+
     /// Where it is tried: values of an effect's parameters (SI), or the coordinate of a correction.
     pub(crate) fn probes(&self, problem: &Problem) -> Result<Vec<Vec<f64>>, Error> {
         match self {
@@ -207,7 +218,15 @@ mod tests {
         assert!(added.parameters[own..].iter().all(|p| p.places.len() == 2));
         // Each bearing has been worn in its own direction.
         let oval = both(&problem, "bearing_ovality").unwrap();
-        assert_eq!((oval.items(), oval.free()), (2, 8));
+        assert_eq!((oval.items(), oval.free()), (2, 10));
+        assert_eq!(oval.of_each_place(&oval.effect().unwrap().usual()), None);
+        // Values of their own begin as those that both had.
+        let (own, repeated) = film.of_each_place(&values).unwrap();
+        assert_eq!((own.items(), own.free()), (2, 10));
+        assert_eq!(repeated, [values.clone(), values].concat());
+        let freed = own.added(&problem, &repeated).unwrap();
+        assert_eq!(freed.tree, added.tree);
+        assert!(freed.parameters.iter().all(|p| p.places.len() == 1));
     }
 
     #[test]

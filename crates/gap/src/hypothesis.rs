@@ -114,6 +114,22 @@ impl Hypothesis {
         Ok(all)
     }
 
+    /// The sets that have values of each place's own for one of its amendments, each with the start of a fit.
+    ///
+    /// # Errors
+    /// A machine that cannot be so.
+    pub fn of_each_place(&self, problem: &Problem) -> Result<Vec<(Vec<Amended>, Start)>, Error> {
+        let mut all = Vec::new();
+        for (i, values) in self.values(problem).iter().enumerate() {
+            if let Some(own) = self.set[i].amendment.of_each_place(values) {
+                let mut new = vec![None; self.set.len()];
+                new[i] = Some(own);
+                all.push(self.exchanged(problem, new)?);
+            }
+        }
+        Ok(all)
+    }
+
     /// The sets that lack one of its amendments, each with the start of a fit.
     ///
     /// # Errors

@@ -71,8 +71,8 @@ impl Search<'_> {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            let simpler = self.simpler(&nodes[0])?;
-            for set in simpler {
+            let varied = self.varied(&nodes[0])?;
+            for set in varied {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -80,14 +80,15 @@ impl Search<'_> {
         Ok(nodes)
     }
 
-    /// The node with one of its amendments at one place alone, as what acts at two places imitates what acts at one; or
-    /// without one of them: it may have been no more than a way to the others.
-    fn simpler(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+    /// The node with one of its amendments at one place alone, as what acts at two places imitates what acts at one; with
+    /// values of each place's own; or without one of them: it may have been no more than a way to the others.
+    fn varied(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.parameters.len();
-        let mut simpler = node.at_places_alone(self.few)?;
-        simpler.extend(node.without_one(self.few)?);
-        let fitted = simpler.into_par_iter().map(|(set, start)| {
-            (self.fitter.say)(&words(node, "less than it"), node.model.fitted);
+        let mut varied = node.at_places_alone(self.few)?;
+        varied.extend(node.of_each_place(self.few)?);
+        varied.extend(node.without_one(self.few)?);
+        let fitted = varied.into_par_iter().map(|(set, start)| {
+            (self.fitter.say)(&words(node, "variations"), node.model.fitted);
             let model = self.fitter.explored(&[start])?;
             Ok(model.map(|(model, _)| Hypothesis::new(set, model, own)))
         });
