@@ -47,6 +47,14 @@ pub struct Arguments {
     /// Sample rate, if neither a column of time nor a heading has it; a plain number is in Hz
     #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
     sample_rate: Option<String>,
+    /// Lines of a text file that stand before its table; usually found without it
+    #[arg(
+        long,
+        value_name = "LINES",
+        default_value_t = 0,
+        hide_default_value = true
+    )]
+    skip: u64,
     /// Unit of the columns that have none, or what 1 in the file is (in a WAV file: full scale)
     #[arg(long, value_name = "UNIT")]
     unit: Option<String>,
@@ -162,6 +170,7 @@ impl Arguments {
         let options = Options {
             columns: self.column.clone(),
             sample_rate_hz: parsed(&self.sample_rate, sample_rate)?,
+            skipped_lines: self.skip,
         };
         Ok(Said {
             options,

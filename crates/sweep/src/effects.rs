@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use input::effects::{Entry, Parameter, entry};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::sweep_file::Amount;
 
@@ -128,6 +128,33 @@ fn of_catalogue(entry: &'static Entry, id: &Id, is_one_of_several: bool) -> Vec<
         position,
     });
     amplitudes.collect()
+}
+
+/// A machine file with the effects that these paths name, as `effects.ring_leakage.area`: those that it lacks are put at the
+/// end of its list, without amplitude. An effect that has to name its place is not.
+pub(crate) fn completed<'a>(tree: &Value, paths: impl Iterator<Item = &'a str>) -> Value {
+    let mut tree = tree.clone();
+    for path in paths {
+        let mut parts = path.split('.');
+        let (Some("effects"), Some(name), Some(_)) = (parts.next(), parts.next(), parts.next())
+        else {
+            continue;
+        };
+        let is_there = items(&tree).flatten().any(|(id, _)| id.name == name);
+        let entry = entry(name).filter(|entry| !entry.places.iter().any(|place| place.required));
+        if let Some(entry) = entry.filter(|_| !is_there) {
+            let none: Map<String, Value> = entry
+                .amplitudes()
+                .filter_map(|p| Some((p.key.to_owned(), p.value(p.absent?))))
+                .collect();
+            let item = Map::from_iter([(name.to_owned(), Value::Object(none))]);
+            match &mut tree["effects"] {
+                Value::Array(list) => list.push(Value::Object(item)),
+                other => *other = Value::Array(vec![Value::Object(item)]),
+            }
+        }
+    }
+    tree
 }
 
 /// The amplitudes of `id` in a file; where it vanishes if the file does not have it.

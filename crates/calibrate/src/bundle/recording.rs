@@ -115,6 +115,7 @@ impl Series {
         let options = Options {
             columns: columns.iter().map(|c| (*c).to_owned()).collect(),
             sample_rate_hz: run.sample_rate_hz.map(|rate| rate.get()),
+            skipped_lines: 0,
         };
         let mut file = MeasuredFile::open(&path, &options).map_err(|error| match error {
             recordings::Error::NoColumn { name, among } => {

@@ -107,10 +107,12 @@ fn windows(
 ) -> Result<(Windows, Current), Error> {
     let wrong = |reason: String| layout.wrong(reason);
     let rate = recording.sample_rate_hz().ok_or_else(|| {
-        wrong(
-            "neither a column of time nor a heading tells the sample rate: give --sample-rate"
-                .into(),
-        )
+        let names: Vec<&str> = layout.channels.iter().map(|c| c.name.as_str()).collect();
+        wrong(format!(
+            "the sample rate is not known: there is no column of time, and no heading states it. Found: {}. Give \
+             --sample-rate, or call the column of time `time [s]`",
+            names.join(", ")
+        ))
     })?;
     let stated = layout.stated_speed(recording.labels())?;
     let mut speed = stated;

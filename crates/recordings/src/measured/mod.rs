@@ -22,7 +22,7 @@ pub use names::stem;
 pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::{TimeColumn, agree};
-pub(crate) use names::{name_and_unit, seconds_per_unit};
+pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
 
 use crate::{Column, Error, Value};
 use clock::Clock;
@@ -43,6 +43,8 @@ pub struct Options {
     pub columns: Vec<String>,
     /// Samples per second.
     pub sample_rate_hz: Option<f64>,
+    /// Lines of a text file before its table, where they would be taken for it.
+    pub skipped_lines: u64,
 }
 
 /// A channel of a file.

@@ -60,12 +60,30 @@ fn ending(name: &str) -> Option<(&'static str, &'static str)> {
     ENDINGS.into_iter().find(|(ending, _)| ends(ending))
 }
 
-/// Seconds per unit of a column of time (`t`, `t_s`, `time`, `Time [ms]`); none for other columns.
+/// What a column of time is called, in small letters.
+const TIMES: [&str; 9] = [
+    "t",
+    "time",
+    "elapsed time",
+    "elapsed_time",
+    "zeit",
+    "temps",
+    "tempo",
+    "tiempo",
+    "tid",
+];
+
+/// Seconds per unit of a column of time (`t`, `t_s`, `time`, `Time [ms]`, `Zeit [s]`); none for other columns.
 pub(crate) fn seconds_per_unit(name: &str, unit: Option<&str>) -> Option<f64> {
-    if !["t", "time"].contains(&stem(name).to_ascii_lowercase().as_str()) {
-        return None;
+    match TIMES.contains(&stem(name).to_lowercase().as_str()) {
+        true => seconds_of_unit(unit.unwrap_or("s")),
+        false => None,
     }
-    match unit.unwrap_or("s") {
+}
+
+/// Seconds in a unit of time; none for other units.
+pub(crate) fn seconds_of_unit(unit: &str) -> Option<f64> {
+    match unit {
         "s" | "sec" => Some(1.0),
         "ms" => Some(1e-3),
         "us" | "µs" => Some(1e-6),
@@ -73,6 +91,16 @@ pub(crate) fn seconds_per_unit(name: &str, unit: Option<&str>) -> Option<f64> {
         "min" => Some(60.0),
         _ => None,
     }
+}
+
+/// Whether a cell has nothing but a unit that channels usually have, with or without brackets.
+pub(crate) fn is_unit(cell: &str) -> bool {
+    let cell = cell.trim_matches(['[', ']', '(', ')', ' ']);
+    let others = [
+        "V", "mV", "mm/s", "m/s²", "m/s2", "psig", "psia", "barg", "bara", "°", "°C", "%",
+    ];
+    let known = ENDINGS.iter().map(|(_, unit)| *unit).chain(others);
+    seconds_of_unit(cell).is_some() || known.into_iter().any(|unit| unit == cell)
 }
 
 #[cfg(test)]
@@ -110,6 +138,7 @@ mod tests {
             ("t_s", Some(1.0)),
             ("Time [ms]", Some(1e-3)),
             ("time_us", Some(1e-6)),
+            ("Zeit [s]", Some(1.0)),
             ("torque", None),
             ("time [V]", None),
         ] {

@@ -14,6 +14,7 @@ fn options(columns: &[&str], sample_rate_hz: Option<f64>) -> Options {
     Options {
         columns: columns.iter().map(|c| (*c).to_owned()).collect(),
         sample_rate_hz,
+        skipped_lines: 0,
     }
 }
 
@@ -152,6 +153,63 @@ fn csv_of_many_dialects() {
     let (channels, rate) = read(&path, &options(&[], Some(5.0)));
     assert_eq!(channels["column_2"], [2.0, 4.0]);
     assert_eq!(rate, Some(5.0));
+}
+
+/// As data loggers write them: what they say of themselves first, units in a line of their own, dates for times.
+#[test]
+fn csv_as_loggers_write_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let rows = |write: &dyn Fn(usize) -> String| (0..40).map(write).collect::<String>();
+    let german = rows(&|i| format!("0,{i:03};{},5\n", i + 1));
+    let plain = rows(&|i| format!("{},{}.5\n", i as f64 / 1000.0, i + 1));
+    // Past midnight.
+    let dated = rows(&|i| {
+        let (day, at) = if i < 20 {
+            (1, "23:59:59.99")
+        } else {
+            (2, "00:00:00.00")
+        };
+        format!("2026-01-{day:02} {at}{:02},{}.5\n", i % 20 * 5, i + 1)
+    });
+    let clock = rows(&|i| format!("10:00:00.{i:03},{}.5\n", i + 1));
+    for (text, name, rate) in [
+        (format!("Zeit [s];Druck\n{german}"), "Druck", 1000.0),
+        (format!("Elapsed (s);acc\n{german}"), "acc", 1000.0),
+        (
+            format!("Device: ABC\nChannels,2\nSample rate: 1 kHz\n\nTime,Accel\ns,g\n{plain}"),
+            "Accel [g]",
+            1000.0,
+        ),
+        (format!("when,acc\n{clock}"), "acc", 1000.0),
+        (format!("when,acc\n{dated}"), "acc", 2000.0),
+    ] {
+        fs::write(&path, &text).unwrap();
+        let (channels, found) = read(&path, &Options::default());
+        assert_eq!(channels.keys().collect::<Vec<_>>(), [name], "{text}");
+        assert_eq!(channels[name][2], 3.5);
+        assert_eq!(channels[name].len(), 40);
+        assert!((found.unwrap() - rate).abs() < 1e-6 * rate, "{found:?}");
+    }
+    // Without times the stated rate counts.
+    let values = rows(&|i| format!("{i},{i}.5\n"));
+    fs::write(&path, format!("Sampling frequency,2 kHz\na,b\n{values}")).unwrap();
+    let (channels, rate) = read(&path, &Options::default());
+    assert_eq!(channels.keys().collect::<Vec<_>>(), ["a", "b"]);
+    assert_eq!(rate, Some(2000.0));
+    // What could be a table and is none is skipped on request.
+    fs::write(&path, format!("x,y\n1,2\nt,acc\n{plain}")).unwrap();
+    let skipping = Options {
+        skipped_lines: 2,
+        ..Options::default()
+    };
+    let (channels, _) = read(&path, &skipping);
+    assert_eq!(channels["acc"].len(), 40);
+    let error = message(&path, &Options::default());
+    assert!(error.contains("line 3, column `x`: found `t`"), "{error}");
+    fs::write(&path, format!("when,acc\n{clock}noon,1\n")).unwrap();
+    let error = message(&path, &Options::default());
+    assert!(error.contains("found `noon`, expected a time"), "{error}");
 }
 
 #[test]

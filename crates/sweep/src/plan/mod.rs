@@ -43,7 +43,7 @@ use sha2::{Digest, Sha256};
 use simulate::{Settings, Unrecordable};
 
 use crate::design::hash::unit;
-use crate::effects::VariedEffect;
+use crate::effects::{VariedEffect, completed};
 use crate::labels::{Joint, joints, labels};
 use crate::split;
 use crate::sweep_file::{Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
@@ -191,6 +191,7 @@ impl Plan {
         base: Resolved,
         document: &Value,
     ) -> Result<Self, Error> {
+        let tree = &completed(tree, file.paths());
         let sweep = resolved_sweep(document, tree);
         let mut plan = Self {
             name: file.name.clone(),

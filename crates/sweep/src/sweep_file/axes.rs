@@ -20,6 +20,16 @@ pub enum Block {
     Random(Random),
 }
 
+impl Block {
+    /// What its cases set, as its axes are named.
+    pub fn names(&self) -> Vec<&str> {
+        match self {
+            Self::Grid(axes) | Self::Zip(axes) => axes.names().collect(),
+            Self::Random(random) => random.axes.names().collect(),
+        }
+    }
+}
+
 /// Cases whose values are drawn at random.
 #[derive(Clone, Debug, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -63,6 +73,11 @@ impl<T> Axes<T> {
     pub fn joints(&self) -> Option<&T> {
         let joints = self.0.iter().find(|(name, _)| name == "joints");
         joints.map(|(_, values)| values)
+    }
+
+    /// The names of all axes.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(name, _)| name.as_str())
     }
 
     /// The other axes.

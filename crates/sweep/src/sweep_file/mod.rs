@@ -92,6 +92,15 @@ pub struct SweepFile {
 /// Most cases of one shard.
 pub const MOST_CASES_A_SHARD: u32 = 1_000_000;
 
+impl SweepFile {
+    /// The paths of the machine file that it sets or varies, and the other names of axes.
+    pub fn paths(&self) -> impl Iterator<Item = &str> {
+        let cases = self.cases.iter().flat_map(Block::names);
+        let diagrams = self.bifurcations.iter().map(|one| one.path.as_str());
+        cases.chain(self.vary.names()).chain(diagrams)
+    }
+}
+
 /// The JSON Schema of sweep.yaml, for editors and checks.
 pub fn schema() -> Value {
     let mut schema = input::schema::generate::<SweepFile>();

@@ -243,6 +243,44 @@ fn an_effect_that_the_sweep_varies_is_a_label_with_its_size() {
 }
 
 #[test]
+fn an_effect_that_a_case_names_and_the_machine_lacks_is_absent_elsewhere() {
+    let rest = "cases:
+  - grid: {speed: [400 rpm, 500 rpm]}
+  - grid: {effects.ring_leakage.area: [2 mm^2, 3 mm^2]}
+  - grid: {effects.valve_leakage.suction: 4 mm^2, effects.sensor_gain.error: 10 %}
+";
+    let plan = plan_of("single-stage.yaml", &[], rest);
+    let expected = [
+        "none",
+        "none",
+        "ring_leakage",
+        "ring_leakage",
+        "sensor_gain+valve_leakage",
+    ];
+    assert_eq!(faults(&plan), expected);
+    let columns = [
+        "effects.ring_leakage.area_m2",
+        "effects.sensor_gain.error",
+        "effects.valve_leakage.suction_m2",
+    ];
+    assert_eq!(sizes(&plan), columns);
+    // Written out, it is the same sweep.
+    let written = input::yaml::to_string(plan.sweep()).unwrap();
+    let document = Document::parse(&written, "sweep.yaml").unwrap();
+    assert_eq!(Plan::new(&document, Path::new("")).unwrap().id, plan.id);
+    // A bearing has to be named.
+    let oval = "name: test
+machine: single-stage.yaml
+run: {revolutions: 4, transient: 2}
+cases: [{grid: {effects.bearing_ovality.amplitude: 10 um}}]
+";
+    let machines = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
+    let document = Document::parse(oval, "sweep.yaml").unwrap();
+    let message = Plan::new(&document, &machines).unwrap_err().to_string();
+    assert!(message.contains("bearing_ovality"), "{message}");
+}
+
+#[test]
 fn whole_lists_of_effects_are_labels_too() {
     let rest = "cases:
   - grid:

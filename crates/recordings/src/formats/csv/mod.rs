@@ -1,5 +1,9 @@
 //! CSV of plain columns, for spreadsheets and for a look with the naked eye (RFC 4180).
 
+mod cells;
+mod date;
+mod heading;
+mod lines;
 mod read;
 mod write;
 

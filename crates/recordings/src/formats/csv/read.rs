@@ -2,37 +2,26 @@
 //!
 //! - The columns are separated by commas, semicolons or tabs. Where commas do not separate, they may be the decimal
 //!   sign.
-//! - The first line has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`). A file
-//!   without names has the columns `column_1`, `column_2`, ... Lines before it that are empty or begin with `#` are
-//!   skipped.
+//! - The line before the first row has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`), or in
+//!   a line of its own between. A file without names has the columns `column_1`, `column_2`, ... What a data logger writes
+//!   before is skipped but for the sample rate.
+//! - The time is the column that is called so, or the first one where its unit is one of time or it holds dates.
 //! - An empty cell is a missing sample, and so is an empty line within a single column.
 //! - A column that does not begin with a number is left out.
 
+use super::cells::{cells, number};
+use super::date::nanoseconds;
+use super::heading::Heading;
+use super::lines::Lines;
 use crate::Error;
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
-    seconds_per_unit, selected,
+    seconds_of_unit, seconds_per_unit, selected,
 };
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
-
-/// A longer line does not belong to a table.
-const LONGEST_LINE: u64 = 1 << 20;
+use std::path::Path;
 
 /// More columns than a table of channels has.
 const MOST_COLUMNS: usize = 1 << 12;
-
-/// Bytes that are read at a time.
-const BUFFER: usize = 1 << 18;
-
-struct Lines {
-    path: PathBuf,
-    file: BufReader<File>,
-    line: Vec<u8>,
-    /// Number of the line, from 1.
-    number: u64,
-}
 
 struct CsvSamples {
     lines: Lines,
@@ -45,60 +34,41 @@ struct CsvSamples {
     held: bool,
     /// Empty lines before it that are missing samples: those within a single column.
     empty: u64,
+    /// The first of the dates, ns.
+    start: Option<i64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Target {
     Nowhere,
     Time,
+    Date,
     Channel(usize),
 }
 
 /// Opens a file.
 pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
-    let mut lines = Lines::open(path)?;
-    let separator = loop {
-        if !lines.advance()? {
-            return Err(damaged(path, "it has no lines of numbers"));
-        }
-        if !lines.is_blank() {
-            break separator(&lines.line);
-        }
-    };
-    let first: Vec<String> = cells(&lines.line, separator)
-        .map(|cell| String::from_utf8_lossy(cell).trim().to_owned())
-        .collect();
-    if first.len() > MOST_COLUMNS {
-        return Err(damaged(path, format!("it has {} columns", first.len())));
+    let Heading {
+        lines,
+        separator,
+        names,
+        sample_rate_hz,
+    } = Heading::read(path, options.skipped_lines)?;
+    if names.len() > MOST_COLUMNS {
+        return Err(damaged(path, format!("it has {} columns", names.len())));
     }
-    let headless = first
+    let row: Vec<&[u8]> = cells(&lines.line, separator).collect();
+    let numeric: Vec<bool> = row
         .iter()
-        .all(|cell| !cell.is_empty() && number(cell.as_bytes(), separator).is_some());
-    let names: Vec<String> = if headless {
-        (1..=first.len()).map(|i| format!("column_{i}")).collect()
-    } else {
-        first
-    };
-    if !headless {
-        loop {
-            if !lines.advance()? {
-                return Err(damaged(path, "it has names of columns and no rows"));
-            }
-            if !lines.is_blank() {
-                break;
-            }
-        }
-    }
-    let numeric: Vec<bool> = cells(&lines.line, separator)
         .map(|cell| number(cell, separator).is_some())
         .chain(std::iter::repeat(true))
         .take(names.len())
         .collect();
     let headings: Vec<(String, Option<String>)> = names.iter().map(|n| name_and_unit(n)).collect();
-    let scale = |(name, unit): &(String, Option<String>)| seconds_per_unit(name, unit.as_deref());
-    let time = (0..names.len()).find(|&i| numeric[i] && scale(&headings[i]).is_some());
+    let time = time_column(&headings, &numeric, &row);
+    let index = time.as_ref().map(|(index, _)| *index);
     let candidates: Vec<usize> = (0..names.len())
-        .filter(|&i| numeric[i] && Some(i) != time)
+        .filter(|&i| numeric[i] && Some(i) != index)
         .collect();
     let all: Vec<MeasuredChannel> = candidates
         .iter()
@@ -117,11 +87,18 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     for (channel, &i) in wanted.iter().enumerate() {
         targets[candidates[i]] = Target::Channel(channel);
     }
-    let time = time.map(|i| {
-        targets[i] = Target::Time;
+    let stated = options
+        .sample_rate_hz
+        .or(sample_rate_hz.filter(|_| time.is_none()));
+    let time = time.map(|(i, time)| {
+        let (target, seconds_per_unit) = match time {
+            Time::Number(seconds) => (Target::Time, seconds),
+            Time::Date => (Target::Date, 1.0),
+        };
+        targets[i] = target;
         TimeColumn {
             name: names[i].clone(),
-            seconds_per_unit: scale(&headings[i]).unwrap_or(1.0),
+            seconds_per_unit,
             single_precision: false,
         }
     });
@@ -133,10 +110,11 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         names,
         held: true,
         empty: 0,
+        start: None,
     };
     let count = channels.len();
     MeasuredFile::of_one(channels, Vec::new(), |labels| {
-        Recording::new(path, labels, count, options.sample_rate_hz, time, samples)
+        Recording::new(path, labels, count, stated, time, samples)
     })
 }
 
@@ -144,90 +122,44 @@ fn damaged(path: &Path, reason: impl ToString) -> Error {
     Error::damaged("CSV", path, reason)
 }
 
-impl Lines {
-    fn open(path: &Path) -> Result<Self, Error> {
-        let file = files::open(path).map_err(Error::io("open", path))?;
-        let mut lines = Self {
-            path: path.to_owned(),
-            file: BufReader::with_capacity(BUFFER, file),
-            line: Vec::new(),
-            number: 0,
-        };
-        let start = lines.file.fill_buf().map_err(Error::io("read", path))?;
-        if start.starts_with(b"\xef\xbb\xbf") {
-            lines.file.consume(3);
-        }
-        Ok(lines)
-    }
-
-    /// Reads the next line, without its end; false at the end of the file.
-    fn advance(&mut self) -> Result<bool, Error> {
-        self.line.clear();
-        let read = (&mut self.file)
-            .take(LONGEST_LINE)
-            .read_until(b'\n', &mut self.line);
-        let read = read.map_err(Error::io("read", &self.path))?;
-        if read == 0 {
-            return Ok(false);
-        }
-        self.number += 1;
-        if self.line.last() == Some(&b'\n') {
-            self.line.pop();
-            if self.line.last() == Some(&b'\r') {
-                self.line.pop();
-            }
-        } else if read as u64 == LONGEST_LINE {
-            let reason = format!("line {} is longer than {LONGEST_LINE} bytes", self.number);
-            return Err(damaged(&self.path, reason));
-        }
-        Ok(true)
-    }
-
-    fn is_blank(&self) -> bool {
-        let text = self.line.trim_ascii();
-        text.is_empty() || text.starts_with(b"#")
-    }
+/// What a column of time holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Time {
+    /// Numbers, in a unit of so many seconds.
+    Number(f64),
+    /// Dates or times of day.
+    Date,
 }
 
-/// The separator that occurs most often outside quotation marks; semicolons and tabs before commas,
-/// which may be decimal signs.
-fn separator(line: &[u8]) -> u8 {
-    let count = |separator: u8| cells(line, separator).count();
-    [b';', b'\t']
-        .into_iter()
-        .find(|&separator| count(separator) > 1)
-        .unwrap_or(b',')
+/// The column of time: one that is called so, the first one where its unit is one of time, or where it holds dates. A
+/// quantity that is measured has another unit.
+fn time_column(
+    headings: &[(String, Option<String>)],
+    numeric: &[bool],
+    row: &[&[u8]],
+) -> Option<(usize, Time)> {
+    let called = |i: usize| {
+        let (name, unit) = &headings[i];
+        seconds_per_unit(name, unit.as_deref()).filter(|_| numeric[i])
+    };
+    let named = (0..headings.len()).find_map(|i| Some((i, Time::Number(called(i)?))));
+    let by_unit = || {
+        let unit = headings.first()?.1.as_deref()?;
+        let seconds = seconds_of_unit(unit).filter(|_| numeric[0])?;
+        Some((0, Time::Number(seconds)))
+    };
+    let dated = || {
+        let first = row.first()?;
+        nanoseconds(first).map(|_| (0, Time::Date))
+    };
+    named.or_else(by_unit).or_else(dated)
 }
 
-/// The cells of a line; quotation marks around a cell are taken off.
-fn cells(line: &[u8], separator: u8) -> impl Iterator<Item = &[u8]> {
-    let mut quoted = false;
-    let split = line.split(move |&byte| {
-        if byte == b'"' {
-            quoted = !quoted;
-        }
-        byte == separator && !quoted
-    });
-    split.map(|cell| {
-        let cell = cell.trim_ascii();
-        let inside = cell.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\""));
-        inside.unwrap_or(cell).trim_ascii()
-    })
-}
-
-/// The number in a cell, NaN in an empty one; none where something else stands there.
-fn number(cell: &[u8], separator: u8) -> Option<f64> {
-    if cell.is_empty() {
-        return Some(f64::NAN);
-    }
-    let text = std::str::from_utf8(cell).ok()?;
-    if let Ok(number) = text.parse() {
-        return Some(number);
-    }
-    if separator != b',' && text.contains(',') && !text.contains('.') {
-        return text.replacen(',', ".", 1).parse().ok();
-    }
-    None
+/// Seconds from the first date to that of a cell.
+fn seconds(cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
+    let at = nanoseconds(cell)?;
+    let start = *start.get_or_insert(at);
+    Some((at - start) as f64 * 1e-9)
 }
 
 impl CsvSamples {
@@ -239,19 +171,24 @@ impl CsvSamples {
             if target == Target::Nowhere {
                 continue;
             }
-            let Some(number) = number(cell, self.separator) else {
+            let number = match target {
+                Target::Date => seconds(cell, &mut self.start),
+                _ => number(cell, self.separator),
+            };
+            let Some(number) = number else {
                 let text: String = String::from_utf8_lossy(cell).chars().take(40).collect();
                 return Err(damaged(
                     &self.lines.path,
                     format!(
-                        "line {}, column `{}`: found `{text}`, expected a number",
+                        "line {}, column `{}`: found `{text}`, expected {}",
                         self.lines.number,
-                        self.names[found - 1]
+                        self.names[found - 1],
+                        if target == Target::Date { "a time" } else { "a number" },
                     ),
                 ));
             };
             match target {
-                Target::Time => times.push(number),
+                Target::Time | Target::Date => times.push(number),
                 Target::Channel(channel) => channels[channel].push(number as f32),
                 Target::Nowhere => {}
             }

@@ -1,0 +1,52 @@
+//! Times of day and dates in the cells of a table.
+
+use chrono::{NaiveDateTime, NaiveTime};
+
+/// How a time is written: ISO 8601 and what loggers make of it, day or month first.
+const FORMATS: [&str; 5] = [
+    "%Y-%m-%d %H:%M:%S%.f",
+    "%Y-%m-%dT%H:%M:%S%.f",
+    "%Y/%m/%d %H:%M:%S%.f",
+    "%d.%m.%Y %H:%M:%S%.f",
+    "%m/%d/%Y %H:%M:%S%.f",
+];
+
+/// Nanoseconds of a time since 1970, or of a time of day since midnight; none where a cell holds none. A comma may stand
+/// before the fraction, and `Z` at the end.
+pub(super) fn nanoseconds(cell: &[u8]) -> Option<i64> {
+    let text = std::str::from_utf8(cell).ok()?.trim_end_matches('Z').replace(',', ".");
+    let date = FORMATS
+        .iter()
+        .find_map(|format| NaiveDateTime::parse_from_str(&text, format).ok());
+    match date {
+        Some(date) => date.and_utc().timestamp_nanos_opt(),
+        None => {
+            let time = NaiveTime::parse_from_str(&text, "%H:%M:%S%.f").ok()?;
+            time.signed_duration_since(NaiveTime::MIN).num_nanoseconds()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_read_as_loggers_write_them() {
+        let at = |text: &str| nanoseconds(text.as_bytes());
+        let expected = Some(1_767_225_661_000_500_000);
+        for text in [
+            "2026-01-01 00:01:01.0005",
+            "2026-01-01T00:01:01.000500Z",
+            "2026/01/01 00:01:01.0005",
+            "01.01.2026 00:01:01,0005",
+            "01/01/2026 00:01:01.0005",
+        ] {
+            assert_eq!(at(text), expected, "{text}");
+        }
+        assert_eq!(at("00:01:01.0005"), Some(61_000_500_000));
+        for text in ["", "12", "2026-01-01", "2026-13-01 00:00:00", "a:b:c"] {
+            assert_eq!(at(text), None, "{text}");
+        }
+    }
+}

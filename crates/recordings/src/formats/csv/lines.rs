@@ -1,0 +1,78 @@
+//! The lines of a text file, one at a time.
+
+use crate::Error;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// A longer line does not belong to a table.
+const LONGEST_LINE: u64 = 1 << 20;
+
+/// Bytes that are read at a time.
+const BUFFER: usize = 1 << 18;
+
+/// A file, and the line that was read last.
+pub(super) struct Lines {
+    pub path: PathBuf,
+    file: BufReader<File>,
+    /// Without its end.
+    pub line: Vec<u8>,
+    /// Number of the line, from 1.
+    pub number: u64,
+}
+
+impl Lines {
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let file = files::open(path).map_err(Error::io("open", path))?;
+        let mut lines = Self {
+            path: path.to_owned(),
+            file: BufReader::with_capacity(BUFFER, file),
+            line: Vec::new(),
+            number: 0,
+        };
+        let start = lines.file.fill_buf().map_err(Error::io("read", path))?;
+        if start.starts_with(b"\xef\xbb\xbf") {
+            lines.file.consume(3);
+        }
+        Ok(lines)
+    }
+
+    /// Reads the next line; false at the end of the file.
+    pub fn advance(&mut self) -> Result<bool, Error> {
+        self.line.clear();
+        let read = (&mut self.file)
+            .take(LONGEST_LINE)
+            .read_until(b'\n', &mut self.line);
+        let read = read.map_err(Error::io("read", &self.path))?;
+        if read == 0 {
+            return Ok(false);
+        }
+        self.number += 1;
+        if self.line.last() == Some(&b'\n') {
+            self.line.pop();
+            if self.line.last() == Some(&b'\r') {
+                self.line.pop();
+            }
+        } else if read as u64 == LONGEST_LINE {
+            let reason = format!("line {} is longer than {LONGEST_LINE} bytes", self.number);
+            return Err(Error::damaged("CSV", &self.path, reason));
+        }
+        Ok(true)
+    }
+
+    /// Reads up to the next line that is neither empty nor a comment; false at the end of the file.
+    pub fn advance_to_text(&mut self) -> Result<bool, Error> {
+        while self.advance()? {
+            if !self.is_blank() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Whether the line is empty or a comment.
+    pub fn is_blank(&self) -> bool {
+        let text = self.line.trim_ascii();
+        text.is_empty() || text.starts_with(b"#")
+    }
+}
