@@ -1,12 +1,14 @@
 //! `crosshead features`: measured recordings become a table of features.
 
 use crate::bundle::AllowOutside;
-use crate::{Failure, interrupt};
+use crate::output::hint;
+use crate::progress::Progress;
+use crate::{Failure, console, interrupt};
 use ::features::recorded::{
-    CrankReference, Input, Said, Summary, Table, Unit, WindowLength, counted, inputs, row,
+    CrankReference, Input, KnownMachine, Said, Summary, Table, Unit, WindowLength, counted, inputs,
+    row,
 };
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use input::quantity::{AboveZero, Angle, Frequency, Quantity, Speed};
 use recordings::WholeFile;
 use recordings::formats::table_file::{TableFile, TableFormat};
@@ -18,25 +20,32 @@ use sweep::in_order::in_order;
 /// Arguments of `crosshead features`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml) or
-a dataset of gen-dataset. The sample rate is read from a column of time (t, t_s, time), units from the
-columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the folder of a file
-says what its channels are: crank angle, tacho, accelerations and pressures with their units.
+FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml)
+or a dataset of gen-dataset. The sample rate is read from a column of time (t, t_s, time), units
+from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the
+folder of a file says what its channels are: crank angle, tacho, accelerations and pressures with
+their units.
 
-The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead centre,
-or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without a speed, a
-crank angle or a tacho nothing per order or revolution; without top dead centre no sectors of the
-crank angle. The column `missing` has the reason for a null value, `warnings` lists what looks wrong.
+The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead
+centre, or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without
+a speed, a crank angle or a tacho nothing per order or revolution; without top dead centre no
+sectors of the crank angle. The column `missing` has the reason for a null value, `warnings` lists
+what looks wrong.
+
+Indicated power and mean pressure of a cylinder pressure need the crank angle from top dead centre,
+and bore, stroke and rod: the machine section of a bundle, or --machine.
 
 Gaps of up to 4 samples without a number are bridged by straight lines; a longer gap ends a window.
 
 Examples:
   crosshead features bearing.wav --unit '50 m/s^2' --speed '1480 rpm' --out bearing.parquet
-  crosshead features log.csv --column 'acc [g]' --window '10 revolutions' --speed '500 rpm' --out log.parquet
+  crosshead features log.csv --column 'acc [g]' --window '10 revolutions' --speed '500 rpm' \\
+      --out log.parquet
   crosshead features log.csv --tacho keyphasor --top-dead-centre '30 deg' --out log-features.csv
+  crosshead features indicated.csv --machine machine.yaml --out indicated.parquet
   crosshead features datasets/paper2 my-bundle/ --out features.parquet
 
-Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 interrupted.")]
 pub struct Arguments {
     /// Recordings
     #[arg(required = true, value_name = "FILE")]
@@ -64,6 +73,10 @@ pub struct Arguments {
     /// pulse to there
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     top_dead_centre: Option<String>,
+    /// The machine, for the indicated power of its cylinder pressures [default: the machine section of a
+    /// bundle]
+    #[arg(long, value_name = "MACHINE.yaml")]
+    machine: Option<PathBuf>,
     /// Length of a window: '2 s' or '10 revolutions' [default: the whole file up to 10 s (or
     /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
@@ -73,9 +86,6 @@ pub struct Arguments {
     /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
-    /// Threads that compute [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
 }
 
 /// Computes the features and writes them.
@@ -104,13 +114,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = TableFile::new(file, format, &schema).map_err(Failure::work)?;
     let mut summary = Summary::new(columns);
     let cancel = interrupt::flag()?;
-    let threads = crate::gen_dataset::threads(arguments.threads);
+    let threads = console::threads();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(Failure::work)?;
     let mut windows = table.windows(length);
-    let bar = bar();
+    let progress = Progress::new(
+        "windows",
+        None,
+        "{spinner} {pos} windows  {per_sec}  {elapsed}",
+    );
     in_order(
         &pool,
         2 * threads,
@@ -119,15 +133,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         |window, row| {
             window.map_err(Failure::input)?;
             if cancel.load(Ordering::Relaxed) {
-                return Err(Failure::work("interrupted; nothing was written"));
+                return Err(Failure::interrupted("interrupted; nothing was written"));
             }
-            bar.inc(1);
+            progress.add(1);
             let Some(mut row) = row else { return Ok(()) };
             summary.add(&mut row);
             output.write(row.values).map_err(Failure::work)
         },
     )?;
-    bar.finish_and_clear();
+    drop(progress);
     output.commit().map_err(Failure::work)?;
     for line in note.into_iter().chain(summary.warnings()) {
         eprintln!("{line}");
@@ -152,6 +166,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if left_out > 0.0 {
         println!("  {left_out:.3} s were too short for a window and are left out");
     }
+    if format == TableFormat::Parquet {
+        hint(format_args!(
+            "python3 -c 'import pandas; print(pandas.read_parquet(\"{}\").T)'",
+            out.display()
+        ));
+    }
     Ok(())
 }
 
@@ -172,6 +192,7 @@ impl Arguments {
                 tacho: self.tacho.clone(),
                 top_dead_centre: parsed(&self.top_dead_centre, top_dead_centre)?,
             },
+            machine: (self.machine.as_deref().map(KnownMachine::read)).transpose()?,
             allow_outside: self.outside.allow_outside,
         })
     }
@@ -259,14 +280,4 @@ fn refuse_input_as_output(inputs: &[Input], out: &Path) -> Result<(), Failure> {
             input.path.display()
         ))),
     }
-}
-
-/// Windows done, on standard error; nothing where that is no terminal.
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {pos} windows  {per_sec}  {elapsed}")
-    {
-        bar.set_style(style);
-    }
-    bar
 }

@@ -2,6 +2,7 @@
 //!
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
+//! - [`run_figures`]: p-V cards, rod loads and waveforms of one run;
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
 //! - [`features_page`]: the HTML page that documents the features;
@@ -28,8 +29,10 @@ pub mod figure;
 mod files;
 pub mod gap_page;
 mod level;
+mod over_crank_angle;
 mod plate;
 mod revolutions;
+pub mod run_figures;
 mod statistics;
 pub mod text;
 

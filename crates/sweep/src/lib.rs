@@ -13,6 +13,7 @@ mod normal;
 pub mod plan;
 pub mod ranges;
 pub mod reader;
+pub mod run_analysis;
 pub mod run_table;
 mod runner;
 pub mod split;

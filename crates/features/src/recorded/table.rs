@@ -11,6 +11,7 @@ use input::bundle_channel::{Meaning, unit_of_column};
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
+use simulate::Chamber;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -80,6 +81,8 @@ impl Columns {
 pub(super) struct Layout {
     pub(super) file: String,
     pub(super) channels: Vec<Scaled>,
+    /// The chambers of the machine, under the names of the channels that have their pressures.
+    chambers: Vec<Chamber>,
     /// Channels whose unit is not known.
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
@@ -113,6 +116,9 @@ impl Layout {
         let channels = channels(input, file, said.unit.as_ref(), reference);
         let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
+        let chambers = input.machine.as_ref().map_or_else(Vec::new, |machine| {
+            machine.chambers_of(&channels, |channel| input.column_of(&channel.name))
+        });
         let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
@@ -146,6 +152,7 @@ impl Layout {
             stated_speed_rpm: input.speed_rpm,
             file: shown,
             channels,
+            chambers,
             without_unit,
             label_positions,
             known,
@@ -319,6 +326,7 @@ pub fn row(job: &Job) -> Row {
                 from_top_dead_centre: crank.from_top_dead_centre,
             }),
             channels: &channels,
+            chambers: &layout.chambers,
         },
         true,
     );
