@@ -11,6 +11,7 @@ mod output;
 
 pub mod bundle;
 pub mod calibrate;
+pub mod compare;
 pub mod completions;
 pub mod console;
 pub mod explain_gap;
@@ -22,6 +23,7 @@ mod interrupt;
 pub mod man;
 pub mod program;
 mod progress;
+mod reading;
 pub mod replay;
 pub mod report;
 pub mod schema;

@@ -1,7 +1,9 @@
 //! The programs `crosshead` and `gen-dataset`: their verbs, and which is called.
 
 use crate::console::{Console, colour_of_clap};
-use crate::{Failure, calibrate, completions, explain_gap, features, gen_dataset, hidden_effects};
+use crate::{
+    Failure, calibrate, compare, completions, explain_gap, features, gen_dataset, hidden_effects,
+};
 use crate::{man, replay, report, schema, simulate, sweep, verify};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 
@@ -33,6 +35,8 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Compute the features of recordings, measured or simulated
     Features(features::Arguments),
+    /// Compare two recordings, or two datasets: features, waveforms, spectra
+    Compare(compare::Arguments),
     /// Check that the files of a finished dataset are those that were written
     Verify(verify::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
@@ -85,6 +89,7 @@ impl Program for Crosshead {
             Verb::Sweep(arguments) => sweep::run(arguments),
             Verb::Simulate(arguments) => simulate::run(arguments),
             Verb::Features(arguments) => features::run(arguments),
+            Verb::Compare(arguments) => compare::run(arguments),
             Verb::Verify(arguments) => verify::run(arguments),
             Verb::Report(arguments) => report::run(arguments),
             Verb::Calibrate(arguments) => calibrate::run(arguments),

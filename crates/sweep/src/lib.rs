@@ -1,6 +1,7 @@
 //! sweep.yaml becomes cases, shards and a committed dataset.
 
 pub mod calibration;
+pub mod comparison;
 pub mod dataset;
 pub mod design;
 pub mod distribution;

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod calibrated_sweep;
+mod compare;
 mod console;
 mod damage;
 mod dataset;

@@ -5,6 +5,7 @@
 //! Table::new(inputs)  the columns over all files
 //! Table::windows()    the windows of all files, in order
 //! row(window)         its row; rows depend on their window alone
+//! recorded(window)    its channels in SI
 //! ```
 
 mod counted;
@@ -26,7 +27,7 @@ pub use jobs::Jobs;
 pub use machine::KnownMachine;
 pub use shaft::Asked as CrankReference;
 pub use summary::Summary;
-pub use table::{Job, Row, row};
+pub use table::{Job, Recorded, Row, recorded, row};
 pub use units::Unit;
 pub use window_length::WindowLength;
 

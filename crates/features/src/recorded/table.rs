@@ -301,18 +301,46 @@ pub struct Row {
     pub(super) bridged: usize,
 }
 
-/// The row of a window.
-pub fn row(job: &Job) -> Row {
-    let (layout, columns) = (&*job.layout, job.columns);
-    let measured = layout.channels.iter().zip(&job.window.channels);
+/// A window in SI.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// Samples per second.
+    pub sample_rate_hz: f64,
+    /// Its channels but for the crank angle.
+    pub channels: Vec<Channel>,
+    /// The crank angle from top dead centre at each sample, in [0, 2π), rad, where it is known.
+    pub crank_angle: Option<Vec<f32>>,
+}
+
+/// The channels of a window.
+pub fn recorded(job: &Job) -> Recorded {
+    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let crank = job.layout.crank(&raw).and_then(Result::ok);
+    let crank = crank.filter(|crank| crank.from_top_dead_centre);
+    Recorded {
+        sample_rate_hz: job.sample_rate_hz,
+        channels: channels_in_si(job),
+        crank_angle: crank.map(|crank| crank.angles),
+    }
+}
+
+/// The measured channels of a window.
+fn channels_in_si(job: &Job) -> Vec<Channel> {
+    let measured = job.layout.channels.iter().zip(&job.window.channels);
     let measured = measured.filter(|(channel, _)| channel.role == Role::Measured);
-    let channels: Vec<Channel> = measured
+    measured
         .map(|(channel, samples)| Channel {
             name: channel.name.clone(),
             unit: channel.unit.clone(),
             samples: samples.iter().map(|x| channel.in_si(*x)).collect(),
         })
-        .collect();
+        .collect()
+}
+
+/// The row of a window.
+pub fn row(job: &Job) -> Row {
+    let (layout, columns) = (&*job.layout, job.columns);
+    let channels = channels_in_si(job);
     let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let samples = raw.first().map_or(0, |samples| samples.len());
     let crank = layout.crank(&raw);
