@@ -12,6 +12,8 @@ pub enum Failure {
     Work(String),
     /// A dataset is not complete yet. Exit status 3.
     Incomplete(String),
+    /// The user has stopped the work. Exit status 130, as shells report one that Ctrl-C has ended.
+    Interrupted(String),
 }
 
 impl Failure {
@@ -23,6 +25,30 @@ impl Failure {
     /// Failed work.
     pub fn work(message: impl ToString) -> Self {
         Self::Work(message.to_string())
+    }
+
+    /// Work that the user has stopped.
+    pub fn interrupted(message: impl ToString) -> Self {
+        Self::Interrupted(message.to_string())
+    }
+
+    /// What it says.
+    pub fn message(&self) -> &str {
+        match self {
+            Self::Input(message)
+            | Self::Work(message)
+            | Self::Incomplete(message)
+            | Self::Interrupted(message) => message,
+        }
+    }
+
+    fn status(&self) -> u8 {
+        match self {
+            Self::Work(_) => 1,
+            Self::Input(_) => 2,
+            Self::Incomplete(_) => 3,
+            Self::Interrupted(_) => 130,
+        }
     }
 
     /// A file of the output that could not be written.
@@ -39,9 +65,12 @@ impl From<input::Error> for Failure {
 
 impl From<sweep::Error> for Failure {
     fn from(error: sweep::Error) -> Self {
-        match error.is_input() {
-            true => Self::input(error),
-            false => Self::work(error),
+        match error {
+            sweep::Error::Cancelled { .. } | sweep::Error::DiagramsCancelled { .. } => {
+                Self::interrupted(error)
+            }
+            error if error.is_input() => Self::input(error),
+            error => Self::work(error),
         }
     }
 }
@@ -58,12 +87,11 @@ impl From<sweep::engines::Error> for Failure {
 
 /// Prints the message of a failure and returns the exit status.
 pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
-    let (message, status) = match outcome {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Input(message)) => (message, 2),
-        Err(Failure::Work(message)) => (message, 1),
-        Err(Failure::Incomplete(message)) => (message, 3),
-    };
-    eprintln!("error: {message}");
-    ExitCode::from(status)
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {}", failure.message());
+            ExitCode::from(failure.status())
+        }
+    }
 }

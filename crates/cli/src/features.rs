@@ -1,16 +1,14 @@
 //! `crosshead features`: measured recordings become a table of features.
 
-use crate::bundle::AllowOutside;
-use crate::{Failure, interrupt};
-use ::features::recorded::{
-    CrankReference, Input, Said, Summary, Table, Unit, WindowLength, counted, inputs, row,
-};
+use crate::output::hint;
+use crate::progress::Progress;
+use crate::reading::Reading;
+use crate::{Failure, console, interrupt};
+use ::features::recorded::{Input, Summary, Table, counted, inputs, row};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use input::quantity::{AboveZero, Angle, Frequency, Quantity, Speed};
 use recordings::WholeFile;
 use recordings::formats::table_file::{TableFile, TableFormat};
-use recordings::measured::{LONGEST_BRIDGED, Options};
+use recordings::measured::LONGEST_BRIDGED;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use sweep::in_order::in_order;
@@ -18,72 +16,41 @@ use sweep::in_order::in_order;
 /// Arguments of `crosshead features`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml) or
-a dataset of gen-dataset. The sample rate is read from a column of time (t, t_s, time), units from the
-columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the folder of a file
-says what its channels are: crank angle, tacho, accelerations and pressures with their units.
+FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml)
+or a dataset of gen-dataset. The sample rate is read from a column of time (t, t_s, time), units
+from the columns' names: acc_m_s2, 'acc [m/s^2]', 'pressure (bar)'. The recordings.yaml in the
+folder of a file says what its channels are: crank angle, tacho, accelerations and pressures with
+their units.
 
-The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead centre,
-or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without a speed, a
-crank angle or a tacho nothing per order or revolution; without top dead centre no sectors of the
-crank angle. The column `missing` has the reason for a null value, `warnings` lists what looks wrong.
+The crank angle is the column crank_angle_rad or crank_angle_deg, which counts from top dead
+centre, or the one of --crank-angle or --tacho. Without a unit there are statistics alone; without
+a speed, a crank angle or a tacho nothing per order or revolution; without top dead centre no
+sectors of the crank angle. The column `missing` has the reason for a null value, `warnings` lists
+what looks wrong.
+
+Indicated power and mean pressure of a cylinder pressure need the crank angle from top dead centre,
+and bore, stroke and rod: the machine section of a bundle, or --machine.
 
 Gaps of up to 4 samples without a number are bridged by straight lines; a longer gap ends a window.
 
 Examples:
   crosshead features bearing.wav --unit '50 m/s^2' --speed '1480 rpm' --out bearing.parquet
-  crosshead features log.csv --column 'acc [g]' --window '10 revolutions' --speed '500 rpm' --out log.parquet
+  crosshead features log.csv --column 'acc [g]' --window '10 revolutions' --speed '500 rpm' \\
+      --out log.parquet
   crosshead features log.csv --tacho keyphasor --top-dead-centre '30 deg' --out log-features.csv
+  crosshead features indicated.csv --machine machine.yaml --out indicated.parquet
   crosshead features datasets/paper2 my-bundle/ --out features.parquet
 
-Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 interrupted.")]
 pub struct Arguments {
     /// Recordings
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Take this column only; may be repeated [default: every column of numbers]
-    #[arg(long, value_name = "NAME")]
-    column: Vec<String>,
-    /// Sample rate, if neither a column of time nor a heading has it; a plain number is in Hz
-    #[arg(long, value_name = "HZ", allow_hyphen_values = true)]
-    sample_rate: Option<String>,
-    /// Lines of a text file that stand before its table; usually found without it
-    #[arg(
-        long,
-        value_name = "LINES",
-        default_value_t = 0,
-        hide_default_value = true
-    )]
-    skip: u64,
-    /// Unit of the columns that have none, or what 1 in the file is (in a WAV file: full scale)
-    #[arg(long, value_name = "UNIT")]
-    unit: Option<String>,
-    /// Speed of the crank, if neither a crank angle nor the file has it
-    #[arg(long, value_name = "SPEED", allow_hyphen_values = true)]
-    speed: Option<String>,
-    /// Crank angle, where its column is not called crank_angle_rad or crank_angle_deg; the unit in
-    /// brackets where the file has none: 'encoder [deg]'
-    #[arg(long, value_name = "COLUMN", conflicts_with = "tacho")]
-    crank_angle: Option<String>,
-    /// Pulses, one per revolution
-    #[arg(long, value_name = "COLUMN")]
-    tacho: Option<String>,
-    /// Reading of the crank angle at top dead centre; with a tacho, how far the crank turns from the
-    /// pulse to there
-    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
-    top_dead_centre: Option<String>,
-    /// Length of a window: '2 s' or '10 revolutions' [default: the whole file up to 10 s (or
-    /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
-    window: Option<String>,
     #[command(flatten)]
-    outside: AllowOutside,
+    reading: Reading,
     /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
-    /// Threads that compute [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
 }
 
 /// Computes the features and writes them.
@@ -94,8 +61,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     let format = format(out)?;
-    let length = parsed(&arguments.window, window)?.unwrap_or(WindowLength::Default);
-    let said = arguments.said()?;
+    let (said, length) = (arguments.reading.said()?, arguments.reading.window()?);
     let inputs = inputs(&arguments.files, &said).map_err(Failure::input)?;
     refuse_input_as_output(&inputs, out)?;
     let table = Table::new(&inputs, &said).map_err(Failure::input)?;
@@ -112,13 +78,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = TableFile::new(file, format, &schema).map_err(Failure::work)?;
     let mut summary = Summary::new(columns);
     let cancel = interrupt::flag()?;
-    let threads = crate::gen_dataset::threads(arguments.threads);
+    let threads = console::threads();
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(Failure::work)?;
     let mut windows = table.windows(length);
-    let bar = bar();
+    let progress = Progress::new(
+        "windows",
+        None,
+        "{spinner} {pos} windows  {per_sec}  {elapsed}",
+    );
     in_order(
         &pool,
         2 * threads,
@@ -127,15 +97,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         |window, row| {
             window.map_err(Failure::input)?;
             if cancel.load(Ordering::Relaxed) {
-                return Err(Failure::work("interrupted; nothing was written"));
+                return Err(Failure::interrupted("interrupted; nothing was written"));
             }
-            bar.inc(1);
+            progress.add(1);
             let Some(mut row) = row else { return Ok(()) };
             summary.add(&mut row);
             output.write(row.values).map_err(Failure::work)
         },
     )?;
-    bar.finish_and_clear();
+    drop(progress);
     output.commit().map_err(Failure::work)?;
     for line in note.into_iter().chain(summary.warnings()) {
         eprintln!("{line}");
@@ -160,38 +130,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if left_out > 0.0 {
         println!("  {left_out:.3} s were too short for a window and are left out");
     }
-    Ok(())
-}
-
-impl Arguments {
-    /// What they say of all files.
-    fn said(&self) -> Result<Said, Failure> {
-        let unit = parsed(&self.unit, unit)?;
-        let options = Options {
-            columns: self.column.clone(),
-            sample_rate_hz: parsed(&self.sample_rate, sample_rate)?,
-            skipped_lines: self.skip,
-        };
-        Ok(Said {
-            options,
-            speed_rpm: parsed(&self.speed, speed_rpm)?,
-            unit,
-            crank: CrankReference {
-                crank_angle: self.crank_angle.clone(),
-                tacho: self.tacho.clone(),
-                top_dead_centre: parsed(&self.top_dead_centre, top_dead_centre)?,
-            },
-            allow_outside: self.outside.allow_outside,
-        })
+    if format == TableFormat::Parquet {
+        hint(format_args!(
+            "python3 -c 'import pandas; print(pandas.read_parquet(\"{}\").T)'",
+            out.display()
+        ));
     }
-}
-
-/// An argument that may be left out.
-fn parsed<T>(
-    text: &Option<String>,
-    parse: impl FnOnce(&str) -> Result<T, Failure>,
-) -> Result<Option<T>, Failure> {
-    text.as_deref().map(parse).transpose()
+    Ok(())
 }
 
 /// The format of the table `out`.
@@ -209,55 +154,6 @@ fn format(out: &Path) -> Result<TableFormat, Failure> {
     })
 }
 
-fn window(text: &str) -> Result<WindowLength, Failure> {
-    WindowLength::parse(text).map_err(|found| {
-        Failure::input(format!(
-            "--window: found {found}, expected a duration, e.g. '2 s', or '10 revolutions'"
-        ))
-    })
-}
-
-fn unit(text: &str) -> Result<Unit, Failure> {
-    Unit::parse(text).ok_or_else(|| {
-        let text = text.trim();
-        Failure::input(format!(
-            "--unit: found '{text}', expected a unit, e.g. 'm/s^2', or what 1 in the file is, e.g. \
-             '100 m/s^2'"
-        ))
-    })
-}
-
-/// `--top-dead-centre`, rad.
-fn top_dead_centre(text: &str) -> Result<f64, Failure> {
-    let angle = Quantity::<Angle>::parse(text).map_err(|found| {
-        let expected = Quantity::<Angle>::expected();
-        Failure::input(format!(
-            "--top-dead-centre: found {found}, expected {expected}"
-        ))
-    })?;
-    Ok(angle.si())
-}
-
-fn sample_rate(text: &str) -> Result<f64, Failure> {
-    let plain = text.trim().parse().ok();
-    let rate = match plain {
-        Some(rate) => Quantity::<Frequency, AboveZero>::new(rate).ok_or(format!("'{text}'")),
-        None => Quantity::parse(text),
-    };
-    rate.map(|rate| rate.si()).map_err(|found| {
-        let expected = Quantity::<Frequency, AboveZero>::expected();
-        Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
-    })
-}
-
-fn speed_rpm(text: &str) -> Result<f64, Failure> {
-    let speed = Quantity::<Speed, AboveZero>::parse(text).map_err(|found| {
-        let expected = Quantity::<Speed, AboveZero>::expected();
-        Failure::input(format!("--speed: found {found}, expected {expected}"))
-    })?;
-    Ok(speed.si() * 30.0 / std::f64::consts::PI)
-}
-
 fn refuse_input_as_output(inputs: &[Input], out: &Path) -> Result<(), Failure> {
     let canonical = out.canonicalize().ok();
     let same = |input: &&Input| canonical.is_some() && input.path.canonicalize().ok() == canonical;
@@ -268,14 +164,4 @@ fn refuse_input_as_output(inputs: &[Input], out: &Path) -> Result<(), Failure> {
             input.path.display()
         ))),
     }
-}
-
-/// Windows done, on standard error; nothing where that is no terminal.
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {pos} windows  {per_sec}  {elapsed}")
-    {
-        bar.set_style(style);
-    }
-    bar
 }

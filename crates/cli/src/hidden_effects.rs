@@ -3,8 +3,8 @@
 //! Each case goes through the disk: a bundle is made, the workflow is given its folder and nothing
 //! else, and what it writes is held against what was hidden.
 
-use crate::output::write_file;
-use crate::{Failure, explain_gap, interrupt};
+use crate::output::{hint, write_file};
+use crate::{Failure, console, explain_gap, interrupt};
 use bench::outcome::CASES;
 use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outcome, Outside};
 use bench::{Recorder, cases};
@@ -20,18 +20,18 @@ pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
 /// Arguments of `crosshead hidden-effects`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-Each case makes a bundle of recordings of a machine. The contacts of that machine differ from the stated
-ones, and effects are hidden in it (or none). The case then runs crosshead explain-gap on the bundle
-alone. DIR/cases.jsonl gets a line per case, matrix.json and matrix.md the counts, and cases/ machine,
-results and page of each explanation. Several processes may share a folder, each with its own --cases
-and --resume.
+Each case makes a bundle of recordings of a machine. The contacts of that machine differ from the
+stated ones, and effects are hidden in it (or none). The case then runs crosshead explain-gap on
+the bundle alone. DIR/cases.jsonl gets a line per case, matrix.json and matrix.md the counts, and
+cases/ machine, results and page of each explanation. Several processes may share a folder, each
+with its own --cases and --resume.
 
 Examples:
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --dry-run
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --cases 1..29
   crosshead hidden-effects pipelines/hidden-effects.yaml --out proof --resume --only valve_loss
 
-Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 stopped.")]
 pub struct Arguments {
     /// What is hidden in what (crosshead schema hidden-effects)
     #[arg(value_name = "SETTINGS.yaml")]
@@ -123,25 +123,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for (i, case) in open.enumerate() {
         let outcome = bench.outcome(case, |asked, folder| {
             let results = explain_gap::into_folder(asked, folder, &cancel);
-            results.map_err(
-                |(Failure::Input(why) | Failure::Work(why) | Failure::Incomplete(why))| why,
-            )
+            results.map_err(|failure| failure.message().to_owned())
         });
         if cancel.load(Ordering::Relaxed) {
             write(&Matrix::new(&ledger.read().map_err(failure)?), out)?;
-            return Err(Failure::work(format!(
+            return Err(Failure::interrupted(format!(
                 "stopped: {i} of {count} cases are done; --resume continues from there"
             )));
         }
         let outcome = outcome.map_err(failure)?;
         ledger.add(&outcome).map_err(failure)?;
-        eprintln!("{} of {count}: {}", i + 1, line(case, &outcome));
+        if !console::is_quiet() {
+            eprintln!("{} of {count}: {}", i + 1, line(case, &outcome));
+        }
     }
     let done = ledger.read().map_err(failure)?;
     let matrix = Matrix::new(&done);
     write(&matrix, out)?;
     print!("{}", matrix.summary());
     println!("{}", out.join(MATRIX[1]).display());
+    hint(format_args!(
+        "the page of each case is {}/cases/*/report.html",
+        out.display()
+    ));
     Ok(())
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Every verb is a file here: its arguments as a struct, and a `run` that calls the libraries.
 //! Results go to files, summaries to standard output, progress and the one message of a failure to
-//! standard error. Exit status: 0 done, 1 the work failed, 2 the input or the arguments are wrong, 3 a
-//! dataset is not complete yet.
+//! standard error, and there the next step. Exit status: 0 done, 1 the work failed, 2 the input or the
+//! arguments are wrong, 3 a dataset is not complete yet, 130 interrupted (Ctrl-C).
 #![allow(clippy::print_stdout)]
 
 #[macro_use]
@@ -11,15 +11,21 @@ mod output;
 
 pub mod bundle;
 pub mod calibrate;
+pub mod compare;
+pub mod completions;
+pub mod console;
 pub mod explain_gap;
 pub mod failure;
 pub mod features;
 pub mod gen_dataset;
 pub mod hidden_effects;
 mod interrupt;
+pub mod man;
+pub mod program;
+mod progress;
+mod reading;
 pub mod replay;
 pub mod report;
-mod run_progress;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;

@@ -7,7 +7,7 @@
 //!
 //! Names of runs, cases and files come from others. What is printed is [`Harmless`], whoever wrote it.
 
-use crate::Failure;
+use crate::{Failure, console};
 use recordings::WholeFile;
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
@@ -15,6 +15,14 @@ use std::path::Path;
 
 /// Exit status of a program that the signal of a broken pipe has ended, as the shell reports it.
 const BROKEN_PIPE: i32 = 128 + 13;
+
+/// Words with which messages begin, and how they are coloured (Select Graphic Rendition, ECMA-48).
+const LABELS: [(&str, &str); 4] = [
+    ("error:", "1;31"),
+    ("warning:", "33"),
+    ("note:", "36"),
+    ("next:", "32"),
+];
 
 /// Writes a file that appears whole or not at all.
 ///
@@ -26,10 +34,22 @@ pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
 }
 
 /// Writes to standard output, and ends the program where that fails.
-#[allow(clippy::exit)] // A summary that cannot be written: what follows it could not be either.
 pub(crate) fn print(text: Arguments) {
     let mut out = io::stdout().lock();
-    if let Err(error) = write(&mut out, text).and_then(|()| out.flush()) {
+    let written = write(&mut out, text).and_then(|()| out.flush());
+    end_if_unwritten(written);
+}
+
+/// Writes what this program has made, as it is, to standard output; ends the program where that fails.
+pub(crate) fn bytes(content: &[u8]) {
+    let mut out = io::stdout().lock();
+    let written = out.write_all(content).and_then(|()| out.flush());
+    end_if_unwritten(written);
+}
+
+#[allow(clippy::exit)] // A summary that cannot be written: what follows it could not be either.
+fn end_if_unwritten(written: io::Result<()>) {
+    if let Err(error) = written {
         if error.kind() == io::ErrorKind::BrokenPipe {
             std::process::exit(BROKEN_PIPE);
         }
@@ -46,9 +66,25 @@ pub(crate) fn harmless(text: &str) -> String {
     harmless
 }
 
-/// Writes to standard error, if that can be written.
+/// Writes to standard error, if that can be written. The word with which a message begins is coloured
+/// where colours are wanted.
 pub(crate) fn message(text: Arguments) {
-    let _ = write(&mut io::stderr().lock(), text);
+    let mut err = io::stderr().lock();
+    let text = text.to_string();
+    let label = LABELS.iter().find(|(label, _)| text.starts_with(label));
+    let _ = match label.filter(|_| console::is_coloured()) {
+        Some((label, colour)) => err
+            .write_all(format!("\u{1b}[{colour}m{label}\u{1b}[0m").as_bytes())
+            .and_then(|()| write(&mut err, format_args!("{}", &text[label.len()..]))),
+        None => write(&mut err, format_args!("{text}")),
+    };
+}
+
+/// Says what its user may do next, in a line that can be copied; nothing with `--quiet`.
+pub(crate) fn hint(next: Arguments) {
+    if !console::is_quiet() {
+        message(format_args!("next: {next}\n"));
+    }
 }
 
 fn write(out: &mut impl Write, text: Arguments) -> io::Result<()> {

@@ -2,7 +2,8 @@
 
 use crate::Failure;
 use crate::bundle::AllowOutside;
-use crate::output::write_file;
+use crate::output::{hint, write_file};
+use crate::progress::Progress;
 use ::calibrate::bundle_replay::{BundleReplay, Possible, Results};
 use ::calibrate::relation_spread::RelationSpread;
 use ::calibrate::{Error, bundle};
@@ -16,8 +17,8 @@ const SPEED: f64 = 1e-5;
 /// Arguments of `crosshead replay`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-BUNDLE is a folder with recordings.yaml. Each run is simulated at the speed, load and clearances that
-the bundle states, with the crank where the recording has it, settled and without noise.
+BUNDLE is a folder with recordings.yaml. Each run is simulated at the speed, load and clearances
+that the bundle states, with the crank where the recording has it, settled and without noise.
 
 Examples:
   crosshead replay my-bundle --out replayed
@@ -66,8 +67,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     let possible = Possible::read(machine).map_err(Failure::input)?;
+    let progress = Progress::of_time("simulating the runs");
     let replays = replay.write().map_err(Failure::work)?;
     let results = replay.results(&replays, &possible).map_err(Failure::work)?;
+    drop(progress);
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&path, text.as_bytes())?;
     summary(&results);
@@ -77,6 +80,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     println!("{}", path.display());
+    let of_machine = machine.map_or(String::new(), |m| format!(" --machine {}", m.display()));
+    hint(format_args!(
+        "crosshead calibrate {}{of_machine} --out calibrated",
+        arguments.bundle.display()
+    ));
     Ok(())
 }
 

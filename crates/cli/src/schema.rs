@@ -1,6 +1,7 @@
 //! `crosshead schema`: the JSON Schema of a file that people write.
 
 use crate::Failure;
+use crate::output::hint;
 use clap::{Args, ValueEnum};
 
 /// Arguments of `crosshead schema`.
@@ -39,5 +40,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let text = serde_json::to_string_pretty(&schema).map_err(Failure::work)?;
     println!("{text}");
+    hint(format_args!(
+        "save it, and begin your file with `# yaml-language-server: $schema=FILE`"
+    ));
     Ok(())
 }

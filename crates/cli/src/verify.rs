@@ -1,8 +1,9 @@
 //! `verify`: whether a finished dataset is the one that was written.
 
 use crate::Failure;
+use crate::output::hint;
+use crate::progress::Progress;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::path::PathBuf;
 use sweep::dataset::verify;
 
@@ -14,10 +15,10 @@ Examples:
   crosshead verify s3://bucket/faults
   cd datasets/paper2 && sha256sum -c SHA256SUMS
 
-Nothing is written. manifest.json is enough: a published copy needs no _sweep. Compared are the length and
-the SHA-256 of every file, the rows of every table with its footer, and manifest.json with SHA256SUMS.
-Files in signals, features, mcap and bifurcations that the manifest does not have are named. Each fault
-is a line on standard output.
+Nothing is written. manifest.json is enough: a published copy needs no _sweep. Compared are the
+length and the SHA-256 of every file, the rows of every table with its footer, and manifest.json
+with SHA256SUMS. Files in signals, features, mcap and bifurcations that the manifest does not have
+are named. Each fault is a line on standard output.
 
 Exit status: 0 all is as it was written; 1 something is not; 2 there is no finished dataset.")]
 pub struct Arguments {
@@ -32,15 +33,13 @@ pub struct Arguments {
 /// Files that are damaged, missing or too many, or no dataset.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dataset = arguments.dataset.display();
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {bytes}/{total_bytes}  {eta} left") {
-        bar.set_style(style);
-    }
+    let template = "{bar:40} {bytes}/{total_bytes}  {eta} left";
+    let progress = Progress::new("bytes", None, template);
     let found = verify(&arguments.dataset, &mut |all, done| {
-        bar.set_length(all);
-        bar.set_position(done);
+        progress.set_total(all);
+        progress.set(done);
     });
-    bar.finish_and_clear();
+    drop(progress);
     let found = found?;
     if !found.has_sums {
         eprintln!("warning: {dataset} has no SHA256SUMS: nothing vouches for manifest.json itself");
@@ -57,5 +56,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         "{dataset}: {} files, {megabytes:.1} MB, all as they were written",
         found.files
     );
+    hint(format_args!("crosshead report {dataset}"));
     Ok(())
 }

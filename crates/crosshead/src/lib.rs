@@ -42,6 +42,7 @@
 //!     speed_rpm: Some(record.mean_speed.to_degrees() / 6.0),
 //!     crank_angle: None,
 //!     channels: &channels,
+//!     chambers: &simulate::Chamber::of_machine(&machine.machine),
 //! };
 //! let values = row(&window, false);
 //! let kurtosis = names.iter().position(|(name, _)| name.name == "crosshead_acceleration.kurtosis");

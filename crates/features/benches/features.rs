@@ -25,6 +25,7 @@ fn window(c: &mut Criterion) {
         speed_rpm: Some(600.0),
         crank_angle: None,
         channels: &channels,
+        chambers: &[],
     };
     c.bench_function("window", |b| b.iter(|| features::features(&window)));
 }

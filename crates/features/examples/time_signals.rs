@@ -45,6 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         speed_rpm: Some(600.0),
         crank_angle: None,
         channels: &channels,
+        chambers: &[],
     };
     let mut out = std::io::stdout();
     let mut line =

@@ -46,6 +46,13 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
         let envelope = LazyCell::new(|| Envelope::new(&x, window.sample_rate, held(&grid)?));
         let synchronous = LazyCell::new(|| Ok(SynchronousAverage::new(held(&revolutions)?)?));
         let sectors = LazyCell::new(|| spectral::sectors(held(&revolutions)?, window));
+        let overall = LazyCell::new(|| {
+            let rate = window.sample_rate;
+            Ok(spectral::overall_vibration(&x, rate, held(&grid)?)?)
+        });
+        let card = LazyCell::new(|| {
+            spectral::card(&channel.name, held(&revolutions)?, held(&grid)?, window)
+        });
         row.extend(lines.map(|line| match line.value {
             Value::Statistic(value) => value(&statistics),
             // What is left of a constant after filtering is rounding.
@@ -60,6 +67,8 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
             Value::Synchronous(value) => Ok(value(held(&synchronous)?)?),
             Value::Sector(index) => Ok(held(&sectors)?[index]),
             Value::Cepstrum => spectral::cepstrum_at_revolution(held(&revolutions)?),
+            Value::Overall(value) => Ok(value(held(&overall)?)),
+            Value::Indicated(value) => Ok(value(held(&card)?)),
         }));
     }
     row
@@ -116,7 +125,7 @@ mod tests {
             ("Kanal 3", "V"),
         ];
         let definitions = definitions(channels);
-        assert_eq!(definitions.len(), 90 + 50 + 10 + 10);
+        assert_eq!(definitions.len(), 93 + 52 + 10 + 10);
         let unit_of = |name: &str| {
             let found = definitions.iter().find(|d| d.name == name);
             found
@@ -149,6 +158,9 @@ mod tests {
             ("residual_rms_m_s2", "m/s^2"),
             ("sector_12_rms_m_s2", "m/s^2"),
             ("cepstrum_revolution", "1"),
+            ("acceleration_rms_m_s2", "m/s^2"),
+            ("velocity_rms_m_s", "m/s"),
+            ("displacement_rms_m", "m"),
         ] {
             assert_eq!(
                 unit_of(&format!("throw1.crosshead_acceleration.{name}")),
@@ -157,6 +169,11 @@ mod tests {
         }
         assert_eq!(unit_of("cylinder_pressure.mean_pa"), "Pa");
         assert_eq!(unit_of("cylinder_pressure.order_20_rms_pa"), "Pa");
+        assert_eq!(unit_of("cylinder_pressure.indicated_power_w"), "W");
+        assert_eq!(
+            unit_of("cylinder_pressure.indicated_mean_pressure_pa"),
+            "Pa"
+        );
         assert_eq!(unit_of("torque.peak_n_m"), "N m");
         assert_eq!(unit_of("Kanal 3.skewness"), "1");
     }

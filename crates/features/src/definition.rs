@@ -35,6 +35,8 @@ pub enum Group {
     Envelope,
     /// Of what differs within a revolution and between revolutions.
     Revolutions,
+    /// Of the p-V card of a chamber.
+    Indicator,
     /// Of the kind of motion.
     Motion,
     /// Why values are missing.

@@ -9,7 +9,8 @@
 //! |---|---|
 //! | all but the crank angle | statistics of the samples |
 //! | accelerations (m/s^2), pressures (Pa) | orders 1 to 20 of the shaft |
-//! | accelerations | frequency bands, velocity-acceleration portrait, spectral shape, envelope, synchronous residual, crank-angle sectors, cepstrum |
+//! | pressures | indicated power and mean pressure, where the chamber is known |
+//! | accelerations | frequency bands, velocity-acceleration portrait, spectral shape, overall velocity and displacement, envelope, synchronous residual, crank-angle sectors, cepstrum |
 //!
 //! A new feature is a function where its signal processing lives, and a line in the table.
 
@@ -32,4 +33,5 @@ pub use missing::missing;
 pub use motion::{Motion, motion, motion_definitions};
 pub use reason::{Reason, Remedy};
 pub use row::{Cell, Content, FEWEST_SAMPLES, column, columns, row, row_with_reasons};
+pub use spectral::{OVERALL_HZ, overall_vibration};
 pub use window::{CrankAngles, Window};

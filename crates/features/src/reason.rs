@@ -28,6 +28,9 @@ pub enum Reason {
     /// A feature of stated crank angles of a shaft whose zero is not known.
     #[error("where top dead centre is, is not known")]
     NoTopDeadCentre,
+    /// A feature of a chamber, of a pressure whose chamber is not known.
+    #[error("the chamber that the pressure is of is not known")]
+    NoChamber,
     /// There is no channel but the crank angle.
     #[error("there is no channel to analyse")]
     NoChannel,
@@ -69,6 +72,8 @@ pub enum Remedy {
     Speed,
     /// Where top dead centre is.
     TopDeadCentre,
+    /// The machine: bore, stroke and rod.
+    Machine,
     /// A longer window.
     LongerWindow,
     /// A higher sample rate.
@@ -81,6 +86,7 @@ impl Reason {
         use signal::Error as Signal;
         match self {
             Self::NoSpeed => Some(Remedy::Speed),
+            Self::NoChamber => Some(Remedy::Machine),
             Self::NoTopDeadCentre => Some(Remedy::TopDeadCentre),
             Self::Signal(Signal::TooFewRevolutions { .. } | Signal::TooFewSamples { .. })
             | Self::Motion(chaos::Error::TooShort { .. }) => Some(Remedy::LongerWindow),

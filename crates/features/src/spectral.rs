@@ -8,10 +8,12 @@ use signal::cepstrum::real_cepstrum;
 use signal::crank_angle::CrankAngle;
 use signal::crank_waterfall::crank_waterfall;
 use signal::order_spectrum::{OrderSpectrum, order_spectrum};
+use signal::overall_vibration::OverallVibration;
 use signal::segments::Segments;
 use signal::spectral_shape::{SpectralShape, spectral_shape};
 use signal::welch::welch_over;
 use signal::windows;
+use simulate::IndicatorCard;
 
 /// Edges of the frequency bands, Hz: octaves, the first reaching down to 0 and the last up to
 /// the Nyquist frequency. They are the same for every sample rate, so that
@@ -46,6 +48,10 @@ pub(crate) const SHAPE_TO_HZ: f64 = 2560.0;
 /// Nyquist frequency. Recorders sample at 2.5 times their bandwidth or more (2.56 in analysers).
 pub(crate) const PASSED: f64 = 0.4;
 
+/// The band of overall vibration, Hz. Below it sensors drift; the lowest speed of ISO 20816-8 is 120 rpm,
+/// 2 Hz. Above it the velocity of a machine is small.
+pub const OVERALL_HZ: [f64; 2] = [2.0, 1000.0];
+
 /// Length of the segments of a spectrum where no speed is known, s: a revolution at 300 rpm. That is the
 /// lowest usual speed of process compressors (API 618), so that the lines of faster ones are resolved.
 pub(crate) const SEGMENT_S: f64 = 0.2;
@@ -67,14 +73,9 @@ pub(crate) fn band(bands: &[f64], index: usize, sample_rate: f64) -> Result<f64,
     Err(Reason::BandAboveNyquist { low_hz, nyquist_hz })
 }
 
-/// The equally spaced crank angles at which a window is resampled. Their number per revolution is a power
-/// of two, and not below the samples per revolution (but for the 1 % that the grid allows).
+/// The equally spaced crank angles at which a window is resampled, as fine as its samples.
 pub(crate) fn angle_grid(window: &Window) -> Result<AngleGrid, Reason> {
-    let angle = crank_angle(window)?;
-    let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;
-    // Below 64 the orders would not fit; above 65 536 there is more detail than an encoder's.
-    let points = per_revolution.clamp(64, 1 << 16).next_power_of_two();
-    Ok(AngleGrid::new(&angle, points)?)
+    Ok(AngleGrid::as_fine_as_recorded(&crank_angle(window)?)?)
 }
 
 /// The crank angle of a window: as recorded, or of a constant speed.
@@ -146,6 +147,42 @@ pub(crate) fn shape(
     let spectrum = welch_over(x, sample_rate, windows::Window::Hann, &segments)?;
     let highest = SHAPE_TO_HZ.min(PASSED * sample_rate);
     Ok(spectral_shape(&spectrum.up_to(highest))?)
+}
+
+/// Overall vibration of an acceleration over the whole revolutions of `grid`, from 2 to 1000 Hz or up to
+/// what the sample rate (Hz) resolves: the values of the features `acceleration_rms`, `velocity_rms` and
+/// `displacement_rms`.
+///
+/// # Errors
+/// A channel whose length is not that of the grid, or one with a sample that is not finite.
+pub fn overall_vibration(
+    x: &[f64],
+    sample_rate: f64,
+    grid: &AngleGrid,
+) -> Result<OverallVibration, signal::Error> {
+    let [low, high] = OVERALL_HZ;
+    let (x, at_equal_times) = grid.at_equal_times(x, sample_rate)?;
+    let band = [low, high.min(PASSED * sample_rate)];
+    OverallVibration::new(&x, at_equal_times, band)
+}
+
+/// The p-V card of the channel of this name, where its chamber and top dead centre are known.
+pub(crate) fn card(
+    channel: &str,
+    pressure: &Revolutions,
+    grid: &AngleGrid,
+    window: &Window,
+) -> Result<IndicatorCard, Reason> {
+    let mut chambers = window.chambers.iter();
+    let chamber = chambers.find(|chamber| chamber.column == channel);
+    let chamber = chamber.ok_or(Reason::NoChamber)?;
+    match window.crank_angle {
+        Some(crank) if crank.from_top_dead_centre => {
+            let revolutions_per_s = window.sample_rate / grid.samples_per_revolution();
+            Ok(IndicatorCard::new(chamber, pressure, revolutions_per_s))
+        }
+        _ => Err(Reason::NoTopDeadCentre),
+    }
 }
 
 /// RMS per sector of the crank angle over all revolutions, where it counts from top dead centre.

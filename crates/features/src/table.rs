@@ -1,7 +1,9 @@
 //! The one list of features: names, units and documentation, and where each value comes from.
 
 mod condition;
+mod indicator;
 mod line;
+mod overall;
 
 pub(crate) use line::{Line, Unit, Value};
 
@@ -13,13 +15,14 @@ use signal::phase_portrait::PhasePortrait;
 use std::sync::LazyLock;
 
 /// The features of a channel of this unit, in the order of their columns: statistics of every
-/// channel, orders of accelerations and pressures, all others of accelerations.
+/// channel, orders of accelerations and pressures, the p-V card of pressures, all others of accelerations.
 pub(crate) fn lines(unit: &str) -> impl Iterator<Item = &'static Line> + use<> {
     let acceleration = unit == "m/s^2";
     let pressure = unit == "Pa";
     TABLE.iter().filter(move |line| match line.value {
         Value::Statistic(_) => true,
         Value::Order(_) | Value::OrderRms(_) => acceleration || pressure,
+        Value::Indicated(_) => pressure,
         _ => acceleration,
     })
 }
@@ -30,7 +33,9 @@ static TABLE: LazyLock<Vec<Line>> = LazyLock::new(|| {
     let orders_rms = (1..=HIGHEST_ORDER).map(order_rms);
     let spectra = bands.chain(orders).chain(orders_rms);
     let chained = statistics().into_iter().chain(spectra).chain(portrait());
-    chained.chain(condition::lines()).collect()
+    // Columns that are added stand last, so that the others keep their places.
+    let added = overall::lines().chain(indicator::lines());
+    chained.chain(condition::lines()).chain(added).collect()
 });
 
 const LEI: &str =

@@ -1,6 +1,7 @@
 //! A stretch of a recording, as features take it.
 
 use signal::channel::Channel;
+use simulate::Chamber;
 
 /// A stretch of a recording that is summed up as one row.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +15,9 @@ pub struct Window<'a> {
     pub crank_angle: Option<CrankAngles<'a>>,
     /// The channels, all as long as the crank angle. One named `crank_angle_rad` is passed over.
     pub channels: &'a [Channel],
+    /// The chambers of the machine, each with the name of the channel that has its pressure. Without
+    /// them there is no indicated power.
+    pub chambers: &'a [Chamber],
 }
 
 /// The crank angle of each sample of a window.

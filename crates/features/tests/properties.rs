@@ -29,6 +29,7 @@ fn window(channels: &[Channel], per_revolution: f64) -> Window<'_> {
         speed_rpm: Some(60.0 * 10_000.0 / per_revolution),
         crank_angle: None,
         channels,
+        chambers: &[],
     }
 }
 
@@ -270,6 +271,7 @@ fn spectral_shape_does_not_hang_on_the_sample_rate() {
             speed_rpm,
             crank_angle: None,
             channels: &channels,
+            chambers: &[],
         };
         let row = defined(&channels).into_iter().zip(features(&window));
         let shape = row.filter(|(d, _)| d.feature.starts_with("spectral_"));

@@ -1,12 +1,9 @@
 //! The picture of one simulated case.
 
 use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series};
-use crate::revolutions::Revolutions;
+use crate::over_crank_angle::over_crank_angle;
 use crate::text;
 use simulate::Trace;
-
-/// At most this many revolutions are drawn behind their mean: the last ones.
-const REVOLUTIONS: usize = 20;
 
 /// Everything that the picture shows, at the times of one recording.
 ///
@@ -103,14 +100,20 @@ impl<'a> CasePicture<'a> {
             title: "Crosshead acceleration: each revolution, and the mean".to_owned(),
             x: Axis::crank_angle(),
             y: Axis::linear("acceleration (m/s²)"),
-            series: self.over_crank_angle(self.acceleration_m_s2, Colour::Class(0), ""),
+            series: over_crank_angle(
+                self.crank_angle_rad,
+                self.acceleration_m_s2,
+                Colour::Class(0),
+                "",
+            ),
             ..Panel::default()
         }
     }
 
     fn contact_force(&self) -> Panel {
         let series = self.joints.iter().enumerate().flat_map(|(i, joint)| {
-            self.over_crank_angle(
+            over_crank_angle(
+                self.crank_angle_rad,
                 joint.contact_force_n,
                 joint_colour(i),
                 &text::words(joint.name),
@@ -144,21 +147,6 @@ impl<'a> CasePicture<'a> {
             series: vec![Series::new("", Colour::Class(0), Mark::Line, points)],
             ..Panel::default()
         }
-    }
-
-    /// The last revolutions lightly and their mean on top; a single revolution as a line.
-    fn over_crank_angle(&self, signal: &[f64], colour: Colour, name: &str) -> Vec<Series> {
-        let revolutions = Revolutions::new(self.crank_angle_rad, signal);
-        let Some(mean) = revolutions.mean() else {
-            return vec![Series::new(name, colour, Mark::Line, revolutions.longest())];
-        };
-        let skipped = revolutions.curves.len().saturating_sub(REVOLUTIONS);
-        let each = revolutions.curves.into_iter().skip(skipped);
-        let mut series: Vec<Series> = each
-            .map(|curve| Series::new("", colour, Mark::FaintLine, curve))
-            .collect();
-        series.push(Series::new(name, colour, Mark::BoldLine, mean));
-        series
     }
 }
 

@@ -2,8 +2,10 @@
 //!
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
+//! - [`run_figures`]: p-V cards, rod loads and waveforms of one run;
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
+//! - [`comparison_page`]: the HTML page of two recordings or datasets side by side;
 //! - [`features_page`]: the HTML page that documents the features;
 //! - [`calibration_page`]: the HTML page of a calibration;
 //! - [`gap_page`]: the HTML page of an explanation;
@@ -21,6 +23,7 @@ pub mod case_picture;
 pub mod chaos_page;
 pub mod classes;
 mod column;
+pub mod comparison_page;
 mod dataset;
 pub mod dataset_page;
 pub mod features_page;
@@ -28,8 +31,10 @@ pub mod figure;
 mod files;
 pub mod gap_page;
 mod level;
+mod over_crank_angle;
 mod plate;
 mod revolutions;
+pub mod run_figures;
 mod statistics;
 pub mod text;
 

@@ -86,6 +86,27 @@ pub fn readable_unit(largest: f64, unit: &str) -> (f64, &str) {
     }
 }
 
+/// A number to three significant digits with the SI prefix that leaves it between 1 and 1000: `1.25 kW`,
+/// `340 µm`. The unit is one that takes prefixes.
+pub fn prefixed(value: f64, unit: &str) -> String {
+    const PREFIXES: [(f64, &str); 6] = [
+        (1e6, "M"),
+        (1e3, "k"),
+        (1.0, ""),
+        (1e-3, "m"),
+        (1e-6, "µ"),
+        (1e-9, "n"),
+    ];
+    // To three digits 999.6 is 1000, which has the next prefix.
+    let size = value.abs() * 1.0005;
+    let fits = PREFIXES.iter().find(|(factor, _)| size >= *factor);
+    let (factor, prefix) = match value {
+        0.0 => (1.0, ""),
+        _ => *fits.unwrap_or(&PREFIXES[PREFIXES.len() - 1]),
+    };
+    format!("{} {prefix}{unit}", number(value / factor, 3))
+}
+
 /// A name with its unit in parentheses; an empty unit is left out.
 pub fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
@@ -209,6 +230,21 @@ fn group(fixed: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn prefixes_leave_numbers_between_one_and_a_thousand() {
+        for (value, unit, expected) in [
+            (1254.0, "W", "1.25 kW"),
+            (-0.00034, "m", "−340 µm"),
+            (999.6, "N", "1 kN"),
+            (0.0, "m/s", "0 m/s"),
+            (4.2e-3, "m/s", "4.2 mm/s"),
+            (3.93e5, "Pa", "393 kPa"),
+            (2e-12, "m", "0.002 nm"),
+        ] {
+            assert_eq!(prefixed(value, unit), expected);
+        }
+    }
 
     #[test]
     fn numbers_have_the_digits_asked_for() {

@@ -28,6 +28,8 @@ pub struct AngleGrid {
     points_per_revolution: usize,
     /// Multiple of 2π/points at which the first revolution starts.
     first_point: usize,
+    /// Sample indices at which the first revolution starts and the last ends.
+    ends: [f64; 2],
 }
 
 impl AngleGrid {
@@ -81,7 +83,20 @@ impl AngleGrid {
             samples_per_revolution: angle.samples_per_revolution(),
             points_per_revolution: n,
             first_point: first.rem_euclid(n as i64) as usize,
+            ends: [first, first + count].map(|point| angle.position(point as f64 * step)),
         })
+    }
+
+    /// The grid that is as fine as the recording: its points per revolution are a power of two, and not
+    /// below the samples per revolution (but for the 1 % that [`AngleGrid::new`] allows).
+    ///
+    /// # Errors
+    /// Less than one revolution.
+    pub fn as_fine_as_recorded(angle: &CrankAngle) -> Result<Self, Error> {
+        let per_revolution = (angle.samples_per_revolution() / 1.01).ceil() as usize;
+        // Below 64 low orders would not fit; above 65 536 there is more detail than an encoder's.
+        let points = per_revolution.clamp(64, 1 << 16).next_power_of_two();
+        Self::new(angle, points)
     }
 
     /// The highest order that resampling leaves unchanged (within 1e-4): 0.8 of half the samples,
@@ -118,6 +133,29 @@ impl AngleGrid {
             points_per_revolution: self.points_per_revolution,
             first_point: self.first_point,
         })
+    }
+
+    /// The whole revolutions of a channel at equal times, and their sample rate, Hz: that of the recording,
+    /// raised so that the samples divide the time of the revolutions.
+    ///
+    /// # Errors
+    /// A channel whose length is not that of the crank angle, a sample rate that is not positive.
+    pub fn at_equal_times(&self, x: &[f64], sample_rate: f64) -> Result<(Vec<f64>, f64), Error> {
+        positive("sample rate, Hz", sample_rate)?;
+        if x.len() != self.samples {
+            return Err(Error::LengthMismatch {
+                what: "samples of a channel beside its crank angle",
+                got: x.len(),
+                expected: self.samples,
+            });
+        }
+        let [start, end] = self.ends;
+        let length = end - start;
+        // Within rounding of a whole number it is that number.
+        let count = (length - 1e-6).ceil().max(2.0);
+        let step = length / count;
+        let at = |i: usize| interpolate(x, start + i as f64 * step);
+        Ok(((0..count as usize).map(at).collect(), sample_rate / step))
     }
 
     /// Time that the crank takes around each point, from half a step before to half a step after,

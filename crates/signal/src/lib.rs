@@ -10,6 +10,7 @@
 //! | where are the impacts, and how often? | [`spectral_kurtosis`](mod@spectral_kurtosis), [`kurtogram`](mod@kurtogram), [`envelope`](mod@envelope), [`cepstrum`] |
 //! | how much at which multiple of the speed? | [`crank_angle`], [`tacho`], [`angle_resampling`], [`order_spectrum`](mod@order_spectrum) |
 //! | how do the revolutions differ? | [`synchronous_average`], [`crank_waterfall`](mod@crank_waterfall), [`phase_portrait`] |
+//! | what do standards and indicators ask for? | [`overall_vibration`], [`indicated_work`](mod@indicated_work) |
 //! | what does a measuring chain do? | [`biquad`], [`high_pass`], [`decimate`], [`delay`], [`noise`] |
 //! | what has it done? | [`nonsynchronous`], [`quantisation`] |
 
@@ -26,6 +27,7 @@ pub mod envelope;
 pub mod error;
 mod fft;
 pub mod high_pass;
+pub mod indicated_work;
 mod interpolation;
 mod kaiser;
 pub mod kurtogram;
@@ -33,6 +35,7 @@ pub mod noise;
 pub mod nonsynchronous;
 pub mod order_lines;
 pub mod order_spectrum;
+pub mod overall_vibration;
 pub mod phase_portrait;
 pub mod quantisation;
 pub mod segments;

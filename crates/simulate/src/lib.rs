@@ -6,13 +6,16 @@
 //! noise alone.
 //!
 //! What the equations say beyond a record: [`poincare`] sections, [`bifurcation`] diagrams and the
-//! [`regime`] of a motion with its Lyapunov exponents.
+//! [`regime`] of a motion with its Lyapunov exponents. What its user looks at first: the
+//! [`indicator_card`] of each chamber and the [`rod_load`] of each throw.
 
 pub mod bifurcation;
 mod chain;
+pub mod chamber;
 mod ensemble;
 pub mod error;
 pub mod flow;
+pub mod indicator_card;
 mod instants;
 mod leaving;
 pub mod lookout;
@@ -27,6 +30,7 @@ pub mod record;
 mod recorder;
 pub mod regime;
 mod return_map;
+pub mod rod_load;
 mod run;
 mod sampler;
 mod section;
@@ -35,14 +39,17 @@ pub mod sensor;
 pub mod sensors;
 pub mod settings;
 mod simulate;
+mod slider_crank;
 mod strobes;
 mod tangents;
 mod task;
 pub mod trace;
 
+pub use chamber::Chamber;
 pub use ensemble::simulate_together;
 pub use error::Error;
 pub use flow::{Cycle, Flow};
+pub use indicator_card::IndicatorCard;
 pub use leaving::LONGEST_PERIOD;
 pub use lyapunov::{Exponent, ExponentSettings, exponents};
 pub use measure::measure;
@@ -51,6 +58,7 @@ pub use periodic_orbit::PeriodicOrbit;
 pub use poincare::{SectionSettings, Sections, sections};
 pub use record::Record;
 pub use regime::{Extent, Motion, Regime, machine_motion, motion};
+pub use rod_load::RodLoad;
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
     Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Range, Resonance, Sensor,

@@ -11,6 +11,10 @@ pub struct Trace {
     pub stride: usize,
     /// Crank angle in [0, 2π), rad.
     pub crank_angle: Vec<f64>,
+    /// Its rate, rad/s.
+    pub crank_speed: Vec<f64>,
+    /// Its second rate, rad/s².
+    pub crank_acceleration: Vec<f64>,
     /// Torque of the drive on the shaft, N m.
     pub torque: Vec<f64>,
     /// The main bearing, where it has clearance.
@@ -30,6 +34,10 @@ pub struct ThrowTrace {
     pub acceleration: Vec<f64>,
     /// Gas pressure at the head end, Pa.
     pub pressure: Vec<f64>,
+    /// Gas pressure at the crank end, Pa; none where the cylinder is single acting.
+    pub crank_end_pressure: Option<Vec<f64>>,
+    /// Force of the gas on piston and crosshead toward the head, N.
+    pub gas_force: Vec<f64>,
     /// Force of the effects on the crosshead toward the head, N.
     pub effects: Vec<f64>,
     /// The big end, where it has clearance.
@@ -83,6 +91,7 @@ impl Trace {
                 .map(|throw| ThrowTrace {
                     big_end: JointTrace::new(&throw.big_end),
                     small_end: JointTrace::new(&throw.small_end),
+                    crank_end_pressure: throw.cylinder.crank_end.as_ref().map(|_| Vec::new()),
                     ..ThrowTrace::default()
                 })
                 .collect(),
@@ -92,6 +101,8 @@ impl Trace {
 
     pub(crate) fn push(&mut self, at: &Evaluation<f64>) {
         self.crank_angle.push(at.angle.rem_euclid(TAU));
+        self.crank_speed.push(at.speed);
+        self.crank_acceleration.push(at.shaft.angular);
         self.torque.push(at.shaft.torque);
         if let Some(main) = &mut self.main {
             main.push(&at.main);
@@ -101,6 +112,10 @@ impl Trace {
             trace.velocity.push(throw.motion.crosshead_rate);
             trace.acceleration.push(throw.accelerations.crosshead);
             trace.pressure.push(throw.gas.head_end.pressure);
+            if let Some(pressure) = &mut trace.crank_end_pressure {
+                pressure.push(throw.gas.crank_end.pressure);
+            }
+            trace.gas_force.push(throw.gas.force);
             trace.effects.push(throw.gas.effects);
             if let Some(big) = &mut trace.big_end {
                 big.push(&throw.joints.big_end);

@@ -1,6 +1,7 @@
 //! sweep.yaml becomes cases, shards and a committed dataset.
 
 pub mod calibration;
+pub mod comparison;
 pub mod dataset;
 pub mod design;
 pub mod distribution;
@@ -13,6 +14,7 @@ mod normal;
 pub mod plan;
 pub mod ranges;
 pub mod reader;
+pub mod run_analysis;
 pub mod run_table;
 mod runner;
 pub mod split;

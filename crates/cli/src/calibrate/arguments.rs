@@ -13,12 +13,13 @@ use std::path::{Path, PathBuf};
 /// Arguments of `crosshead calibrate`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-What is fitted are paths of the machine file; without --parameter the contact stiffness, damping and
-friction of every joint that is clear in some run (as the run states, else as the machine file does), or,
-where pressures alone were recorded, exponent, clearance and pressures of the gas. With accelerations the
-zero of the crank angle is always fitted as well (crank_angle_offset). Above a misfit of 1.5 times the
-noise no interval is given; then values of the data sheet are freed one by one. Of every four runs one is held out and predicted,
-the last whose clearances a fitted run has. Options override the settings file.
+What is fitted are paths of the machine file; without --parameter the contact stiffness, damping
+and friction of every joint that is clear in some run (as the run states, else as the machine file
+does), or, where pressures alone were recorded, exponent, clearance and pressures of the gas. With
+accelerations the zero of the crank angle is always fitted as well (crank_angle_offset). Above a
+misfit of 1.5 times the noise no interval is given; then values of the data sheet are freed one by
+one. Of every four runs one is held out and predicted, the last whose clearances a fitted run has.
+Options override the settings file.
 
 Examples:
   crosshead calibrate my-bundle --out calibrated
@@ -27,7 +28,7 @@ Examples:
   crosshead calibrate calibration.yaml --out calibrated
   crosshead calibrate calibration.yaml --out calibrated --resume
 
-Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 stopped.")]
 pub struct Arguments {
     /// Folder of recordings, or several of one machine; or a settings file (crosshead schema calibration)
     #[arg(required = true, value_name = "BUNDLE|SETTINGS.yaml")]
@@ -166,6 +167,11 @@ impl Arguments {
             .or(settings.evaluations);
         settings.seed = self.seed.and_then(Count::new).or(settings.seed);
         Ok((settings, base, document))
+    }
+
+    /// The bundle, or the settings file, that is named first.
+    pub(super) fn first_input(&self) -> &Path {
+        self.input.first().map_or(Path::new(""), PathBuf::as_path)
     }
 
     pub(super) fn allow_outside(&self) -> bool {

@@ -4,6 +4,7 @@ pub(crate) mod arguments;
 mod progress;
 pub(crate) mod summary;
 
+use crate::output::hint;
 use crate::{Failure, interrupt, report};
 use ::calibrate::{Calibrated, Prepared, Settings, prepare};
 use std::sync::atomic::AtomicBool;
@@ -38,11 +39,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     println!("{}", done.machine.display());
     println!("{}", out.join(report::PAGE).display());
     if !done.results.complete {
-        return Err(Failure::work(format!(
+        return Err(Failure::interrupted(format!(
             "stopped before the end: {} has the best so far; --resume continues from there",
             out.display()
         )));
     }
+    hint(format_args!(
+        "crosshead explain-gap {} --machine {} --out explained",
+        arguments.first_input().display(),
+        done.machine.display()
+    ));
     Ok(())
 }
 

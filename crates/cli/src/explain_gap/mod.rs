@@ -5,6 +5,7 @@ mod summary;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
+use crate::output::hint;
 use crate::{Failure, interrupt, report};
 use clap::Args;
 use gap::folder::MACHINE;
@@ -31,7 +32,7 @@ Examples:
   crosshead explain-gap calibration.yaml --out explained
   crosshead explain-gap my-bundle --machine machine.yaml --out explained
 
-Exit status: 0 done; 1 the work failed or was stopped; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 stopped.")]
 pub struct Arguments {
     /// Folder of recordings; or a settings file with one (crosshead schema calibration)
     #[arg(value_name = "BUNDLE|SETTINGS.yaml")]
@@ -89,6 +90,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     summary::print(&results);
     println!("{}", out.join(MACHINE).display());
     println!("{}", out.join(report::PAGE).display());
+    hint(format_args!(
+        "crosshead simulate {}",
+        out.join(MACHINE).display()
+    ));
     Ok(())
 }
 
@@ -107,9 +112,10 @@ pub(crate) fn into_folder(
         false => ControlFlow::Continue(()),
     };
     let results = gap::into_folder(asked, out, &|stage| bar.show(stage), &watch);
-    bar.finish();
+    drop(bar);
     let results = results.map_err(|error| match error {
         gap::Error::Input(error) => Failure::input(error),
+        gap::Error::Stopped => Failure::interrupted(gap::Error::Stopped),
         error => Failure::work(error),
     })?;
     report::write_gap(out, &out.join(report::PAGE))?;

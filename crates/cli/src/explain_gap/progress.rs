@@ -1,23 +1,18 @@
-//! What is being tried, on a terminal.
+//! What is being tried.
 
+use crate::progress::Progress;
 use gap::Stage;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::time::Duration;
 
-/// How often the clock is redrawn between two stages.
-const TICK: Duration = Duration::from_millis(500);
-
-/// A line with the present stage; nothing if standard error is no terminal.
-pub struct Bar(ProgressBar);
+/// The present stage.
+pub struct Bar(Progress);
 
 impl Bar {
     pub fn new() -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(TICK);
-        Self(bar)
+        Self(Progress::new(
+            "explaining the gap",
+            None,
+            "{spinner} {elapsed} {msg}",
+        ))
     }
 
     pub fn show(&self, stage: &Stage) {
@@ -25,11 +20,6 @@ impl Bar {
             true => format!(", misfit {:.2}", stage.misfit),
             false => String::new(),
         };
-        let words = format!("{}{misfit}", stage.words);
-        self.0.set_message(crate::output::harmless(&words));
-    }
-
-    pub fn finish(&self) {
-        self.0.finish_and_clear();
+        self.0.say(&format!("{}{misfit}", stage.words));
     }
 }

@@ -28,7 +28,7 @@ pub fn plan(
     let done = finish(prepared, cancel)?;
     print(&done, &folder);
     if !done.results.complete {
-        return Err(Failure::work(format!(
+        return Err(Failure::interrupted(format!(
             "stopped during the calibration, before the first case; {} has the best so far, and \
              --resume continues from there",
             folder.display()

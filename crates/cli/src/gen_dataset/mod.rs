@@ -8,7 +8,8 @@ mod summary;
 pub(crate) use bar::Bar;
 pub(crate) use summary::{failures, summarise, warn};
 
-use crate::{Failure, interrupt, try_case};
+use crate::output::hint;
+use crate::{Failure, console, interrupt, try_case};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -27,7 +28,8 @@ Examples:
   gen-dataset pipelines/bearing-faults.yaml --out faults --resume --retry-failed
   gen-dataset pipelines/bearing-faults.yaml --dry-run
 
-Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the arguments are wrong.")]
+Exit status: 0 done; 1 the work failed, or some cases did; 2 the input or the arguments are wrong;
+130 interrupted.")]
 pub struct Arguments {
     /// The sweep file
     sweep: PathBuf,
@@ -37,9 +39,6 @@ pub struct Arguments {
     /// Format of the recordings, instead of the sweep's own
     #[arg(long, value_enum)]
     format: Option<FormatArgument>,
-    /// Threads that simulate [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
     /// Continue a dataset that was interrupted
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -83,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (_, true) => Existing::Overwrite,
         _ => Existing::Refuse,
     };
-    let threads = threads(arguments.threads);
+    let threads = console::threads();
     let options = Options {
         existing,
         threads,
@@ -100,10 +99,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut bar = Bar::default();
     let manifest = generate_in(claim, &plan, &options, &simulate_cases, &mut bar)
         .map_err(|error| failure(arguments, error))?;
-    bar.finish();
+    drop(bar);
     summarise(&plan, &manifest, &out, started.elapsed().as_secs_f64());
     let failed = failures(&manifest.failed, manifest.counts.cases, &out);
-    failed.map_or(Ok(()), |text| Err(Failure::work(text)))
+    if let Some(text) = failed {
+        return Err(Failure::work(text));
+    }
+    hint(format_args!("crosshead report {}", out.display()));
+    Ok(())
 }
 
 /// Locks the place of the dataset, and calibrates the machine where the sweep asks for it; else its
@@ -122,14 +125,6 @@ pub(crate) fn claim(
         }
         Some(_) => calibrated::plan(sweep, out, existing, cancel),
     }
-}
-
-/// Threads asked for, or one per core.
-pub(crate) fn threads(asked: Option<u16>) -> usize {
-    asked.map_or_else(
-        || std::thread::available_parallelism().map_or(1, Into::into),
-        usize::from,
-    )
 }
 
 /// `plan` with the recordings in another format, where one is asked for.

@@ -1,6 +1,8 @@
 //! `crosshead report`: the HTML pages of a dataset, of a calibration, or of an explanation.
 
 use crate::Failure;
+use crate::output::hint;
+use crate::progress::Progress;
 use ::report::calibration_page::CalibrationPage;
 use ::report::chaos_page::ChaosPage;
 use ::report::dataset_page::{DatasetPage, Design};
@@ -23,8 +25,9 @@ Examples:
   crosshead report calibrated
   crosshead report explained
 
-A calibration and an explanation have one page. Beside that of a dataset stand chaos.html (exponents, regimes, portraits, bifurcations), features.html (what each
-feature is) and figures/, every figure as an SVG file.
+A calibration and an explanation have one page. Beside that of a dataset stand chaos.html
+(exponents, regimes, portraits, bifurcations), features.html (what each feature is) and figures/,
+every figure as an SVG file.
 
 Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
@@ -49,12 +52,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else if GapPage::is_at(dir) {
         println!("{}", write_gap(dir, &out)?.display());
     } else {
+        let progress = Progress::of_time("pages of the dataset");
         let page = write_dataset(dir, &out).map_err(failed)?;
+        drop(progress);
         println!("{}", out.display());
         if let Design::Grid(grids) = &page.design {
             print!("{}", grids.markdown());
         }
     }
+    hint(format_args!("open {} in a browser", out.display()));
     Ok(())
 }
 

@@ -1,6 +1,7 @@
 //! `sweep cancel`: what was submitted is taken back.
 
 use crate::Failure;
+use crate::output::hint;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::engines::slurm::Jobs;
@@ -27,5 +28,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cancelled = Jobs::new(&arguments.url, arguments.scripts.as_deref())?.cancel()?;
     println!("cancelled: {cancelled}");
+    hint(format_args!(
+        "crosshead sweep status {}",
+        arguments.url.display()
+    ));
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `sweep export-delta`: a finished dataset as Delta tables.
 
 use crate::Failure;
+use crate::output::hint;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::{Output, export_delta};
@@ -12,9 +13,9 @@ Example:
   crosshead sweep export-delta /scratch/faults
   python -c 'import deltalake; print(deltalake.DeltaTable(\"/scratch/faults/features\").count())'
 
-signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are. Readers
-of Parquet see no difference, except polars, which then reads features/*.parquet and not the folder.
-Every table is compared with its checksum first. The command is safe to repeat.
+signals/, features/ and bifurcations/ each get a _delta_log; the Parquet files stay as they are.
+Readers of Parquet see no difference, except polars, which then reads features/*.parquet and not
+the folder. Every table is compared with its checksum first. The command is safe to repeat.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -36,5 +37,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             table.rows
         );
     }
+    hint(format_args!("crosshead verify {}", arguments.url.display()));
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::gen_dataset;
+use crate::output::hint;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -14,7 +15,8 @@ use sweep::ranges::ranges;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
-  crosshead sweep finalize /scratch/faults || sbatch --array=$(crosshead sweep finalize /scratch/faults) ...
+  crosshead sweep finalize /scratch/faults ||
+      sbatch --array=$(crosshead sweep finalize /scratch/faults) ...
 
 If shards are missing, their numbers are printed as schedulers take them: 0-3,7. Failed cases do not
 prevent completion; the manifest lists them. The command is safe to repeat.
@@ -67,5 +69,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     {
         println!("{text}");
     }
+    hint(format_args!("crosshead report {}", arguments.url.display()));
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! `sweep plan`: a dataset is begun.
 
 use crate::gen_dataset::{self, FormatArgument};
+use crate::output::hint;
 use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
@@ -12,10 +13,10 @@ use sweep::Sweep;
 Example:
   crosshead sweep plan pipelines/bearing-faults.yaml --out /scratch/faults --shards 100
 
-A sweep that calibrates its machine does so here. The command is safe to repeat; another sweep in the
-same place is refused. The shards are of equal size, from `shard_size` of the sweep file or --shards;
-each bifurcation diagram is one more shard. The bytes of a dataset depend on that size and not on the
-machines that make the shards.
+A sweep that calibrates its machine does so here. The command is safe to repeat; another sweep in
+the same place is refused. The shards are of equal size, from `shard_size` of the sweep file or
+--shards; each bifurcation diagram is one more shard. The bytes of a dataset depend on that size
+and not on the machines that make the shards.
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -58,5 +59,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         plan.shards(),
         plan.diagrams.len()
     );
+    hint(format_args!(
+        "crosshead sweep shard {} --index 0, and so for each shard",
+        out.display()
+    ));
     Ok(())
 }

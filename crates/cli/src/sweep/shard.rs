@@ -1,7 +1,8 @@
 //! `sweep shard`: one shard is made.
 
-use crate::gen_dataset::{self, Bar};
-use crate::{Failure, interrupt, try_case};
+use crate::gen_dataset::Bar;
+use crate::output::hint;
+use crate::{Failure, console, interrupt, try_case};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -22,7 +23,8 @@ Shards count from 0; LSF and Grid Engine count tasks from 1, so that their task 
 
 A finished shard stays as it is. Two processes may make the same shard at once.
 
-Exit status: 0 the shard is made; 1 the work failed; 2 the input or the arguments are wrong.")]
+Exit status: 0 the shard is made; 1 the work failed; 2 the input or the arguments are wrong;
+130 interrupted.")]
 pub struct Arguments {
     /// The dataset, as it was planned
     url: PathBuf,
@@ -32,9 +34,6 @@ pub struct Arguments {
     /// Added to the number, for arrays that cannot count far enough
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     offset: u64,
-    /// Threads that simulate [default: one per core]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    threads: Option<u16>,
     /// Make the shard again if cases of it failed
     #[arg(long)]
     retry_failed: bool,
@@ -54,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cancel = interrupt::flag()?;
     let options = Options {
         existing: Existing::Resume,
-        threads: gen_dataset::threads(arguments.threads),
+        threads: console::threads(),
         cancel: &cancel,
         retry_failed: arguments.retry_failed,
         trial: Some(&try_case::command),
@@ -62,20 +61,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let mut bar = Bar::default();
     let made = run_part(&plan, &output, index, &options, &simulate_cases, &mut bar);
-    bar.finish();
+    drop(bar);
     match made {
         Ok(true) => {
             let seconds = started.elapsed().as_secs_f64();
             println!("shard {index}: made in {seconds:.1} s");
+            hint(format_args!(
+                "crosshead sweep finalize {}, once all shards are made",
+                arguments.url.display()
+            ));
             Ok(())
         }
         Ok(false) => {
             println!("shard {index}: was made before");
             Ok(())
         }
-        Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => Err(Failure::work(
-            format!("stopped; shard {index} is not made, and the same command begins it again"),
-        )),
+        Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => {
+            Err(Failure::interrupted(format!(
+                "stopped; shard {index} is not made, and the same command begins it again"
+            )))
+        }
         Err(error) => Err(error.into()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::gen_dataset;
+use crate::output::hint;
 use clap::Args;
 use recordings::FailedCase;
 use serde::Serialize;
@@ -118,6 +119,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     for job in jobs {
         println!("Slurm job {job}");
+    }
+    let url = arguments.url.display();
+    match (found.complete, found.missing.is_empty()) {
+        (true, _) => hint(format_args!("crosshead report {url}")),
+        (false, true) => hint(format_args!("crosshead sweep finalize {url}")),
+        (false, false) => hint(format_args!(
+            "crosshead sweep shard {url} --index {}",
+            found.missing[0]
+        )),
     }
     Ok(())
 }

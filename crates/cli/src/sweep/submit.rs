@@ -1,6 +1,7 @@
 //! `sweep submit`: an engine is handed the shards.
 
 use crate::Failure;
+use crate::output::hint;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use sweep::dataset::{Output, status};
@@ -13,11 +14,11 @@ Examples:
   crosshead sweep submit /scratch/faults --engine slurm -- --partition=long --cpus-per-task=8
   crosshead sweep submit s3://bucket/faults --engine slurm --scripts /scratch/jobs
 
-Writes batch scripts and submits the missing shards as job arrays. One more job runs when they have
-ended, with or without success. It completes the dataset, or submits the shards that are still missing,
-up to three times in all. Each task simulates on as many threads as it has processors (--cpus-per-task,
-else one). The jobs get the environment of this command, including AWS_* for a bucket. The program must
-have the same path on all machines.
+Writes batch scripts and submits the missing shards as job arrays. One more job runs when they
+have ended, with or without success. It completes the dataset, or submits the shards that are
+still missing, up to three times in all. Each task simulates on as many threads as it has
+processors (--cpus-per-task, else one). The jobs get the environment of this command, including
+AWS_* for a bucket. The program must have the same path on all machines.
 
 Exit status: 0 submitted; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
@@ -55,5 +56,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Engine::Slurm => jobs.submit(&plan.name, &missing, arguments.array_size, &arguments.flags),
     };
     println!("{}", submitted?);
+    hint(format_args!(
+        "crosshead sweep status {}",
+        arguments.url.display()
+    ));
     Ok(())
 }

@@ -272,7 +272,7 @@ fn an_interrupted_dataset_is_resumed_to_the_same_bytes() {
     assert!(interrupt.success());
     let output = child.wait_with_output().unwrap();
     let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(output.status.code(), Some(130), "{message}");
     assert!(
         message.contains("--resume continues from there"),
         "{message}"

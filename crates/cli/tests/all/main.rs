@@ -2,6 +2,8 @@
 
 mod calibrate;
 mod calibrated_sweep;
+mod compare;
+mod console;
 mod damage;
 mod dataset;
 mod dataset_bytes;
@@ -9,6 +11,7 @@ mod explain_gap;
 mod explain_pressures;
 mod features;
 mod features_shaft;
+mod first_look;
 mod hidden_effects;
 mod hostile;
 mod one_run;

@@ -15,7 +15,7 @@ const MAY_IMPORT: [(&str, &str); 17] = [
     ("simulate", "scalar integrate mechanism signal"),
     ("input", "files scalar mechanism simulate"),
     ("recordings", "files"),
-    ("features", "chaos files input recordings signal"),
+    ("features", "chaos files input recordings signal simulate"),
     (
         "calibrate",
         "features files input mechanism recordings scalar signal simulate",

@@ -1,6 +1,6 @@
 //! The files that arguments name: single ones, the runs of bundles, the tables of datasets.
 
-use super::{Error, Unit, shaft};
+use super::{Error, KnownMachine, Unit, shaft};
 use input::bundle::{self, Bundle, Joint, Run};
 use input::bundle_channel::Meaning;
 use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
@@ -19,6 +19,8 @@ pub struct Input {
     pub(super) labels: Vec<(Column, Value)>,
     /// What the bundle says that its columns are, with their units.
     pub(super) meanings: BTreeMap<String, (Meaning, String)>,
+    /// The machine, where it is known.
+    pub(super) machine: Option<KnownMachine>,
 }
 
 impl Input {
@@ -26,6 +28,17 @@ impl Input {
     pub(super) fn meaning(&self, channel: &MeasuredChannel) -> Option<&(Meaning, String)> {
         let of = |name| self.meanings.get(name);
         of(&channel.column).or_else(|| of(&channel.name))
+    }
+
+    /// The model's column of the channel of this name, where the bundle states what it is.
+    pub(super) fn column_of(&self, channel: &str) -> Option<String> {
+        let of_channel = |column: &&String| {
+            column.as_str() == channel || recordings::measured::stem(column) == channel
+        };
+        match self.meanings.get(self.meanings.keys().find(of_channel)?) {
+            Some((Meaning::Measured { column, .. }, _)) => Some(column.clone()),
+            _ => None,
+        }
     }
 
     /// Opens the file.
@@ -46,6 +59,8 @@ pub struct Said {
     pub unit: Option<Unit>,
     /// Where the crank stands.
     pub crank: shaft::Asked,
+    /// The machine; none leaves it to the bundles.
+    pub machine: Option<KnownMachine>,
     /// Whether a bundle may name recordings outside of its folder.
     pub allow_outside: bool,
 }
@@ -95,6 +110,7 @@ pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
                     speed_rpm: said.speed_rpm,
                     labels: Vec::new(),
                     meanings: BTreeMap::new(),
+                    machine: said.machine.clone(),
                 },
             };
             inputs.push(input);
@@ -191,6 +207,7 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
         meanings: listed()
             .map(|(c, meaning)| (c.column.clone(), (meaning.clone(), c.unit.clone())))
             .collect(),
+        machine: (said.machine.clone()).or_else(|| KnownMachine::of_bundle(bundle)),
     })
 }
 

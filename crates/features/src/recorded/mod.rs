@@ -5,12 +5,14 @@
 //! Table::new(inputs)  the columns over all files
 //! Table::windows()    the windows of all files, in order
 //! row(window)         its row; rows depend on their window alone
+//! recorded(window)    its channels in SI
 //! ```
 
 mod counted;
 mod error;
 mod inputs;
 mod jobs;
+mod machine;
 mod shaft;
 mod summary;
 mod table;
@@ -22,9 +24,10 @@ pub use counted::counted;
 pub use error::Error;
 pub use inputs::{Input, Said, inputs};
 pub use jobs::Jobs;
+pub use machine::KnownMachine;
 pub use shaft::Asked as CrankReference;
 pub use summary::Summary;
-pub use table::{Job, Row, row};
+pub use table::{Job, Recorded, Row, recorded, row};
 pub use units::Unit;
 pub use window_length::WindowLength;
 

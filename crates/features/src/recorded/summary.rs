@@ -119,6 +119,9 @@ fn advice(reason: &Reason) -> String {
             "top dead centre is not known: --top-dead-centre gives it, with a crank angle or a tacho"
                 .into()
         }
+        Some(Remedy::Machine) => {
+            "the chamber is not known: --machine gives bore, stroke and rod of cylinder pressures".into()
+        }
         Some(Remedy::LongerWindow) => "the window is too short: a longer --window".into(),
         Some(Remedy::HigherSampleRate) => "the sample rate is too low".into(),
         None => reason.to_string(),

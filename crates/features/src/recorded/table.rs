@@ -11,6 +11,7 @@ use input::bundle_channel::{Meaning, unit_of_column};
 use recordings::measured::{Bridge, MeasuredChannel, MeasuredFile, Window};
 use recordings::{Column, Kind, Schema, Value};
 use signal::channel::Channel;
+use simulate::Chamber;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
@@ -80,6 +81,8 @@ impl Columns {
 pub(super) struct Layout {
     pub(super) file: String,
     pub(super) channels: Vec<Scaled>,
+    /// The chambers of the machine, under the names of the channels that have their pressures.
+    chambers: Vec<Chamber>,
     /// Channels whose unit is not known.
     pub(super) without_unit: Vec<String>,
     features: Vec<Column>,
@@ -113,6 +116,9 @@ impl Layout {
         let channels = channels(input, file, said.unit.as_ref(), reference);
         let channels = channels.map_err(|reason| Error::in_file(&input.path, reason))?;
         let measured = || channels.iter().filter(|c| c.role == Role::Measured);
+        let chambers = input.machine.as_ref().map_or_else(Vec::new, |machine| {
+            machine.chambers_of(&channels, |channel| input.column_of(&channel.name))
+        });
         let unknown = measured().filter(|c| c.unit.is_empty());
         let without_unit = unknown.map(|c| c.name.clone()).collect();
         let names = measured().map(|c| (c.name.as_str(), c.unit.as_str()));
@@ -146,6 +152,7 @@ impl Layout {
             stated_speed_rpm: input.speed_rpm,
             file: shown,
             channels,
+            chambers,
             without_unit,
             label_positions,
             known,
@@ -294,18 +301,46 @@ pub struct Row {
     pub(super) bridged: usize,
 }
 
-/// The row of a window.
-pub fn row(job: &Job) -> Row {
-    let (layout, columns) = (&*job.layout, job.columns);
-    let measured = layout.channels.iter().zip(&job.window.channels);
+/// A window in SI.
+#[derive(Clone, Debug)]
+pub struct Recorded {
+    /// Samples per second.
+    pub sample_rate_hz: f64,
+    /// Its channels but for the crank angle.
+    pub channels: Vec<Channel>,
+    /// The crank angle from top dead centre at each sample, in [0, 2π), rad, where it is known.
+    pub crank_angle: Option<Vec<f32>>,
+}
+
+/// The channels of a window.
+pub fn recorded(job: &Job) -> Recorded {
+    let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
+    let crank = job.layout.crank(&raw).and_then(Result::ok);
+    let crank = crank.filter(|crank| crank.from_top_dead_centre);
+    Recorded {
+        sample_rate_hz: job.sample_rate_hz,
+        channels: channels_in_si(job),
+        crank_angle: crank.map(|crank| crank.angles),
+    }
+}
+
+/// The measured channels of a window.
+fn channels_in_si(job: &Job) -> Vec<Channel> {
+    let measured = job.layout.channels.iter().zip(&job.window.channels);
     let measured = measured.filter(|(channel, _)| channel.role == Role::Measured);
-    let channels: Vec<Channel> = measured
+    measured
         .map(|(channel, samples)| Channel {
             name: channel.name.clone(),
             unit: channel.unit.clone(),
             samples: samples.iter().map(|x| channel.in_si(*x)).collect(),
         })
-        .collect();
+        .collect()
+}
+
+/// The row of a window.
+pub fn row(job: &Job) -> Row {
+    let (layout, columns) = (&*job.layout, job.columns);
+    let channels = channels_in_si(job);
     let raw: Vec<&[f32]> = job.window.channels.iter().map(Vec::as_slice).collect();
     let samples = raw.first().map_or(0, |samples| samples.len());
     let crank = layout.crank(&raw);
@@ -319,6 +354,7 @@ pub fn row(job: &Job) -> Row {
                 from_top_dead_centre: crank.from_top_dead_centre,
             }),
             channels: &channels,
+            chambers: &layout.chambers,
         },
         true,
     );

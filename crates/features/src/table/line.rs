@@ -4,9 +4,11 @@ use crate::definition::Group;
 use crate::envelope::Envelope;
 use crate::reason::Reason;
 use crate::statistics::Statistics;
+use signal::overall_vibration::OverallVibration;
 use signal::phase_portrait::PhasePortrait;
 use signal::spectral_shape::SpectralShape;
 use signal::synchronous_average::SynchronousAverage;
+use simulate::IndicatorCard;
 
 /// Source of the synchronous mean, for more than one part of the table.
 pub(super) const MCFADDEN: &str = "McFadden 1987, Mechanical Systems and Signal Processing 1, 83";
@@ -51,17 +53,20 @@ pub(crate) enum Value {
     /// RMS in the crank-angle sector of this index.
     Sector(usize),
     Cepstrum,
+    Overall(fn(&OverallVibration) -> f64),
+    Indicated(fn(&IndicatorCard) -> f64),
 }
 
 impl Value {
     pub(crate) fn group(&self) -> Group {
         match self {
             Self::Statistic(_) => Group::Statistics,
-            Self::Band(_) | Self::Shape(_) => Group::Spectrum,
+            Self::Band(_) | Self::Shape(_) | Self::Overall(_) => Group::Spectrum,
             Self::Order(_) | Self::OrderRms(_) | Self::Cepstrum => Group::Orders,
             Self::Portrait(_) => Group::Portrait,
             Self::Envelope(_) | Self::EnvelopeOrder(_) => Group::Envelope,
             Self::Synchronous(_) | Self::Sector(_) => Group::Revolutions,
+            Self::Indicated(_) => Group::Indicator,
         }
     }
 }

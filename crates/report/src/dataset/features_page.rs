@@ -7,7 +7,7 @@ use features::{Definition, Group};
 use sweep::reader::{Dataset, Subset};
 
 /// The groups with their headings.
-const GROUPS: [(Group, &str); 8] = [
+const GROUPS: [(Group, &str); 9] = [
     (Group::Statistics, "Statistics of the samples"),
     (Group::Spectrum, "Frequency bands and spectral shape"),
     (Group::Orders, "Orders of the shaft"),
@@ -17,6 +17,7 @@ const GROUPS: [(Group, &str); 8] = [
         "Impacts: envelope in the most impulsive band",
     ),
     (Group::Revolutions, "Revolution by revolution"),
+    (Group::Indicator, "Indicator card"),
     (Group::Motion, "Kind of motion, chaos"),
     (Group::Reasons, "Why values are missing"),
 ];

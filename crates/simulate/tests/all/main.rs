@@ -5,6 +5,7 @@ mod bifurcation;
 mod common;
 mod effects;
 mod ensemble;
+mod first_look;
 mod joint_models;
 mod known_flows;
 mod lyapunov;

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use features::Cell;
 use recordings::{Column, Kind, Role, Schema, Value};
 use signal::channel::Channel;
+use simulate::Chamber;
 
 use super::judged::{judged_columns, judged_values};
 use crate::Plan;
@@ -177,6 +178,7 @@ pub(super) fn features_row(
             from_top_dead_centre: true,
         }),
         channels,
+        chambers: &Chamber::of_machine(&case.resolved.machine),
     };
     let cells = features::row(&window, plan.chaos);
     row.extend(cells.into_iter().map(|cell| match cell {

@@ -61,7 +61,7 @@ fn a_calibration_that_was_killed_or_ended_goes_on_to_the_same_results() {
     assert!(kill.unwrap().success());
     let output = ended.wait_with_output().unwrap();
     let message = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert_eq!(output.status.code(), Some(130), "{message}");
     assert!(message.contains("stopped before the end"), "{message}");
     assert_eq!(results(&at("ended"))["complete"], false);
 

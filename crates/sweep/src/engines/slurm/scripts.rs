@@ -15,11 +15,11 @@ pub(super) fn shard(submitted: &Submitted, url: &Path) -> Result<String, Error> 
     let (program, url) = (word(&submitted.program)?, word(url)?);
     Ok(format!(
             "{}# Makes shard $1 + SLURM_ARRAY_TASK_ID. A process that a signal ended begins again here: if it dies of
-# one of its cases, that case is found and left out.
+# one of its cases, that case is found and left out. 130 is a process that was asked to end, and does not begin again.
 for beginning in {}; do
     {program} sweep shard {url} --offset \"$1\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\"
     status=$?
-    [ $status -gt 128 ] || exit $status
+    [ $status -gt 128 ] && [ $status -ne 130 ] || exit $status
 done
 exit $status
 ",

@@ -1,23 +1,24 @@
-//! `crosshead simulate`: one run of a machine, its signals and a picture.
+//! `crosshead simulate`: one run of a machine, its signals, what they say, and pictures.
+
+mod summary;
 
 use crate::Failure;
-use crate::run_progress::Progress;
+use crate::output::{hint, write_file};
+use crate::progress::Progress;
 use ::report::case_picture::CasePicture;
+use ::report::run_figures::{FIGURES, RunFigures};
 use clap::{Args, ValueEnum};
 use input::quantity::{AboveZero, Frequency, Quantity};
 use input::{MachineFile, Resolved};
-use mechanism::drive::Drive;
 use recordings::WholeFile;
 use recordings::formats::parquet::ROWS_PER_GROUP;
 use recordings::formats::{csv, parquet};
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
-use simulate::{
-    ExponentSettings, Extent, Motion, Penetration, Record, Regime, Settings, Transient,
-};
-use std::io::Write;
+use simulate::{ExponentSettings, Extent, Record, Settings, Transient};
 use std::path::{Path, PathBuf};
+use sweep::run_analysis::RunAnalysis;
 use sweep::run_table::run_table;
 
 /// Arguments of `crosshead simulate`.
@@ -26,7 +27,13 @@ use sweep::run_table::run_table;
 Examples:
   crosshead simulate data/machines/single-stage.yaml --set joints.big_end.clearance='0.2 mm'
   crosshead simulate machine.yaml --revolutions 5 --sample-rate '50 kHz' --format csv --out run1
-  crosshead simulate datasets/paper2/sweep.yaml --case case-000003")]
+  crosshead simulate datasets/paper2/sweep.yaml --case case-000003
+
+DIR gets the signals, picture.svg (the motion in the joints), pv-card.svg (pressure over volume of
+each chamber), rod-load.svg (gas, inertia and combined load at the crosshead pin, and where it
+reverses), waveform.svg (pressure and acceleration over the crank angle), and summary.json:
+indicated power and mean pressure of each chamber, the combined rod load with its reversal as API
+618 asks for it, and the overall vibration from 2 to 1000 Hz.")]
 pub struct Arguments {
     /// The machine file, or with --case a sweep file
     machine: PathBuf,
@@ -74,7 +81,7 @@ enum Format {
     Csv,
 }
 
-/// Runs the machine and writes `signals.parquet` (or `.csv`) and `picture.svg`.
+/// Runs the machine and writes `signals.parquet` (or `.csv`), `summary.json`, `picture.svg` and the figures.
 ///
 /// # Errors
 /// A wrong machine file or argument, an integration that fails, or files that cannot be written.
@@ -92,15 +99,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Parquet => "signals.parquet",
         Format::Csv => "signals.csv",
     });
-    let picture = out.join("picture.svg");
-    refuse_existing(&[&signals, &picture], arguments.overwrite)?;
+    let [picture, summary] = ["picture.svg", "summary.json"].map(|name| out.join(name));
+    let figures = FIGURES.map(|name| out.join(name));
+    let mut files: Vec<&Path> = vec![&signals, &picture, &summary];
+    files.extend(figures.iter().map(PathBuf::as_path));
+    refuse_existing(&files, arguments.overwrite)?;
 
     let recordable = settings.check(machine.speed);
     recordable.map_err(|e| Failure::input(format!("{}: {e}", machine.name)))?;
-    let mut progress = Progress::new();
+    let progress = Progress::new(
+        "% simulated",
+        Some(100),
+        "{bar:40} {pos} % simulated  {eta} left",
+    );
     let (m, sensors) = (&machine.machine, &machine.sensors);
-    let record = simulate::simulate_watched(m, sensors, &settings, &mut |done| progress.show(done))
+    let mut watch = |done: f64| progress.set((100.0 * done) as u64);
+    let record = simulate::simulate_watched(m, sensors, &settings, &mut watch)
         .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
+    drop(progress);
     let throws: Vec<&str> = machine
         .machine
         .throws
@@ -116,13 +132,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Format::Parquet => parquet::write_table(file, &table, ROWS_PER_GROUP),
         Format::Csv => csv::write_table(file, &table),
     })?;
-    let svg = picture_of(&machine, &record);
-    write_whole(&picture, |mut file| {
-        file.write_all(svg.as_bytes())
-            .map_err(recordings::Error::Write)?;
-        Ok(file)
-    })?;
-    summarise(&machine, &record, &channels, &[&signals, &picture]);
+    write_file(&picture, picture_of(&machine, &record).as_bytes())?;
+    let analysis = RunAnalysis::new(&machine.machine, &record, &channels);
+    summary::print(&machine, &record, &channels);
+    match &analysis {
+        Ok(analysis) => {
+            let numbers = analysis.summary(&machine.name, record.mean_speed);
+            let text = serde_json::to_string_pretty(&numbers).map_err(Failure::work)?;
+            write_file(&summary, text.as_bytes())?;
+            write_figures(&machine, &record, &channels, analysis, &figures)?;
+            summary::print_analysis(&numbers);
+        }
+        // A record of less than a revolution has its signals all the same.
+        Err(error) => {
+            eprintln!("warning: no p-V card and no rod load: {error}");
+            files.truncate(2);
+        }
+    }
+    for file in &files {
+        println!("{}", file.display());
+    }
     if arguments.motion {
         let judged = ExponentSettings {
             tolerance: settings.tolerance,
@@ -130,8 +159,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         let motion = simulate::machine_motion(&machine.machine, &judged, Extent::Spectrum)
             .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
-        tell_motion(motion.as_ref(), judged.revolutions);
+        summary::print_motion(motion.as_ref(), judged.revolutions);
     }
+    let of_machine = match arguments.case {
+        None => format!(" --machine {}", arguments.machine.display()),
+        Some(_) => String::new(),
+    };
+    hint(format_args!(
+        "crosshead features {}{of_machine} --out features.parquet",
+        signals.display()
+    ));
     Ok(())
 }
 
@@ -231,9 +268,35 @@ fn write_whole(
         .map_err(Failure::work)
 }
 
+/// Writes the figures of the analysis to these files.
+fn write_figures(
+    machine: &Resolved,
+    record: &Record,
+    channels: &[Channel],
+    analysis: &RunAnalysis,
+    files: &[PathBuf],
+) -> Result<(), Failure> {
+    let trace = record.trace.iter();
+    let angles = trace.flat_map(|trace| trace.crank_angle.iter().step_by(trace.stride.max(1)));
+    let figures = RunFigures {
+        title: &title(machine),
+        analysis,
+        crank_angle_rad: &angles.copied().collect::<Vec<_>>(),
+        channels,
+    };
+    let made = figures.files().into_iter().zip(files);
+    made.map(|(figure, file)| write_file(file, figure.svg.as_bytes()))
+        .collect()
+}
+
+/// The machine and its operating point.
+fn title(machine: &Resolved) -> String {
+    format!("{}, {}", machine.name, summary::rpm(machine.speed))
+}
+
 /// The picture of the run; empty where it has no throw.
 fn picture_of(machine: &Resolved, record: &Record) -> String {
-    let deep = too_deep(record).map(|joint| {
+    let deep = summary::too_deep(record).map(|joint| {
         let times = joint.deepest / joint.clearance;
         format!(
             " · {} penetrates by {times:.2} times its clearance",
@@ -241,82 +304,8 @@ fn picture_of(machine: &Resolved, record: &Record) -> String {
         )
     });
     let deep: String = deep.collect();
-    let title = format!("{}, {}{deep}", machine.name, rpm(machine.speed));
+    let title = format!("{}{deep}", title(machine));
     let trace = record.trace.as_ref();
     let picture = trace.and_then(|trace| CasePicture::new(&title, trace));
     picture.map_or(String::new(), |picture| picture.svg())
-}
-
-/// The joints whose surfaces penetrate each other too deeply.
-fn too_deep(record: &Record) -> impl Iterator<Item = &Penetration> {
-    record
-        .penetrations
-        .iter()
-        .filter(|joint| joint.is_too_deep())
-}
-
-fn summarise(machine: &Resolved, record: &Record, channels: &[Channel], files: &[&Path]) {
-    println!("{}, {}", machine.name, rpm(machine.speed));
-    let energy = record.energy_residual.map_or(String::new(), |missing| {
-        format!(
-            ", energy ledger closes to within {:.1e} of the energy turned over",
-            missing.abs()
-        )
-    });
-    println!(
-        "  {} steps, {} contact and gas switches{energy}",
-        record.work.accepted, record.work.switches
-    );
-    for channel in channels {
-        let samples = channel.samples.iter().map(|x| f64::from(*x));
-        let count = channel.samples.len().max(1) as f64;
-        let rms = (samples.clone().map(|x| x * x).sum::<f64>() / count).sqrt();
-        let peak = samples.map(f64::abs).fold(0.0, f64::max);
-        println!(
-            "  {}: rms {rms:.4e}, peak {peak:.4e} {}",
-            channel.name, channel.unit
-        );
-    }
-    if let Drive::Free(_) = machine.machine.drive {
-        println!("  mean speed {}", rpm(record.mean_speed));
-    }
-    for joint in too_deep(record) {
-        println!("  warning: {joint}");
-    }
-    for file in files {
-        println!("{}", file.display());
-    }
-}
-
-/// What kind of motion it is, and the numbers that say so.
-fn tell_motion(motion: Option<&Motion>, revolutions: u32) {
-    let Some(motion) = motion else {
-        println!("motion: periodic, 1 revolution; nothing moves freely");
-        return;
-    };
-    let period = match motion.regime {
-        Regime::Periodic { revolutions } => format!(", {revolutions} rev"),
-        _ => String::new(),
-    };
-    println!("motion: {}{period}", motion.regime.name());
-    println!("  Lyapunov exponents, 1/s, with standard errors, over {revolutions} revolutions:");
-    for exponent in &motion.exponents {
-        let (value, error) = (exponent.per_second, exponent.standard_error);
-        println!("    {value:.4} +- {error:.1e}");
-    }
-    if let Some(orbit) = &motion.orbit {
-        println!("  Floquet multipliers, over {:.6} s:", orbit.period);
-        // Below, they are rounding.
-        for multiplier in orbit.multipliers.iter().filter(|m| m.norm() > 1e-9) {
-            match multiplier.im {
-                0.0 => println!("    {:.3e}", multiplier.re),
-                im => println!("    {:.3e} {im:+.3e}i", multiplier.re),
-            }
-        }
-    }
-}
-
-/// A speed in rad/s as people say it.
-fn rpm(speed: f64) -> String {
-    format!("{:.4} rpm", speed * 30.0 / std::f64::consts::PI).replace(".0000", "")
 }

@@ -1,0 +1,123 @@
+//! The programs `crosshead` and `gen-dataset`: their verbs, and which is called.
+
+use crate::console::{Console, colour_of_clap};
+use crate::{
+    Failure, calibrate, compare, completions, explain_gap, features, gen_dataset, hidden_effects,
+};
+use crate::{man, replay, report, schema, simulate, sweep, verify};
+use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+
+/// Help is no wider than this, so that a line is read at once.
+pub const WIDEST_HELP: usize = 100;
+
+/// Labelled recordings of reciprocating compressors with worn bearings.
+#[derive(Parser)]
+#[command(
+    name = "crosshead",
+    version,
+    arg_required_else_help = true,
+    max_term_width = WIDEST_HELP
+)]
+pub struct Crosshead {
+    #[command(subcommand)]
+    verb: Verb,
+    #[command(flatten)]
+    console: Console,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Simulate a sweep of cases and write a labelled dataset (as the program gen-dataset)
+    GenDataset(gen_dataset::Arguments),
+    /// Make a dataset in steps, on many machines at once
+    Sweep(sweep::Arguments),
+    /// Simulate one run of a machine: signals, p-V cards, rod loads, pictures
+    Simulate(simulate::Arguments),
+    /// Compute the features of recordings, measured or simulated
+    Features(features::Arguments),
+    /// Compare two recordings, or two datasets: features, waveforms, spectra
+    Compare(compare::Arguments),
+    /// Check that the files of a finished dataset are those that were written
+    Verify(verify::Arguments),
+    /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
+    Report(report::Arguments),
+    /// Fit a machine's parameters to recordings of it
+    Calibrate(calibrate::Arguments),
+    /// Find which effect a model lacks that recordings show, and add it
+    ExplainGap(explain_gap::Arguments),
+    /// Hide effects in recordings made here, and count which of them explain-gap finds
+    HiddenEffects(hidden_effects::Arguments),
+    /// Simulate the runs of a bundle and report how far they differ from the recordings
+    Replay(replay::Arguments),
+    /// Print the JSON Schema of a file, for editors and checks
+    Schema(schema::Arguments),
+    /// Print a script that completes verbs and options in a shell
+    Completions(completions::Arguments),
+    /// Write the manual pages
+    Man(man::Arguments),
+}
+
+/// Simulate a sweep of cases and write a labelled dataset
+#[derive(Parser)]
+#[command(
+    name = "gen-dataset",
+    version,
+    about = "Simulate a sweep of cases and write a labelled dataset",
+    max_term_width = WIDEST_HELP
+)]
+pub struct GenDataset {
+    #[command(flatten)]
+    arguments: gen_dataset::Arguments,
+    #[command(flatten)]
+    console: Console,
+}
+
+/// What a program does.
+pub trait Program: CommandFactory + FromArgMatches {
+    /// Does it.
+    ///
+    /// # Errors
+    /// Those of its verb.
+    fn run(&self) -> Result<(), Failure>;
+}
+
+impl Program for Crosshead {
+    fn run(&self) -> Result<(), Failure> {
+        self.console.set()?;
+        match &self.verb {
+            Verb::GenDataset(arguments) => gen_dataset::run(arguments),
+            Verb::Sweep(arguments) => sweep::run(arguments),
+            Verb::Simulate(arguments) => simulate::run(arguments),
+            Verb::Features(arguments) => features::run(arguments),
+            Verb::Compare(arguments) => compare::run(arguments),
+            Verb::Verify(arguments) => verify::run(arguments),
+            Verb::Report(arguments) => report::run(arguments),
+            Verb::Calibrate(arguments) => calibrate::run(arguments),
+            Verb::ExplainGap(arguments) => explain_gap::run(arguments),
+            Verb::HiddenEffects(arguments) => hidden_effects::run(arguments),
+            Verb::Replay(arguments) => replay::run(arguments),
+            Verb::Schema(arguments) => schema::run(arguments),
+            Verb::Completions(arguments) => completions::run(arguments, commands()),
+            Verb::Man(arguments) => man::run(arguments, commands()),
+        }
+    }
+}
+
+impl Program for GenDataset {
+    fn run(&self) -> Result<(), Failure> {
+        self.console.set()?;
+        gen_dataset::run(&self.arguments)
+    }
+}
+
+/// Both programs, `crosshead` first, as clap knows them.
+pub fn commands() -> [Command; 2] {
+    [Crosshead::command(), GenDataset::command()]
+}
+
+/// The arguments of this process.
+pub fn parse<P: Program>() -> P {
+    let command = P::command().color(colour_of_clap(std::env::args_os()));
+    let matches = command.get_matches();
+    P::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}

@@ -1,0 +1,77 @@
+//! The machine that recordings are of, as far as an indicator needs it.
+
+use super::units::{Role, Scaled};
+use input::MachineFile;
+use input::bundle::Bundle;
+use input::bundle_channel::{Channel, Meaning, meaning};
+use simulate::Chamber;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The chambers of a machine.
+#[derive(Clone, Debug)]
+pub struct KnownMachine {
+    chambers: Arc<Vec<Chamber>>,
+    throws: Vec<String>,
+}
+
+impl KnownMachine {
+    /// The machine of a machine file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that describes no machine.
+    pub fn read(path: &Path) -> Result<Self, input::Error> {
+        Self::new(&input::machine_file::read(path)?)
+    }
+
+    /// The machine section of a bundle. One that is missing, or does not say enough for a simulation, is
+    /// no mistake here: only the indicated power needs it.
+    pub(super) fn of_bundle(bundle: &Bundle) -> Option<Self> {
+        let tree = input::from_bundle(&bundle.machine).ok()?;
+        Self::new(&MachineFile::from_tree(&tree).ok()?).ok()
+    }
+
+    fn new(file: &MachineFile) -> Result<Self, input::Error> {
+        let machine = file.resolve()?.machine;
+        Ok(Self {
+            chambers: Arc::new(Chamber::of_machine(&machine)),
+            throws: machine.throws.iter().map(|t| t.name.clone()).collect(),
+        })
+    }
+
+    /// The chambers whose pressures are among these channels of a file, each under the name of its
+    /// channel. `stated` gives the model's column of a channel where a bundle states it.
+    pub(super) fn chambers_of<'a>(
+        &self,
+        channels: &'a [Scaled],
+        stated: impl Fn(&'a Scaled) -> Option<String>,
+    ) -> Vec<Chamber> {
+        let throws: Vec<&str> = self.throws.iter().map(String::as_str).collect();
+        let measured = channels.iter().filter(|c| c.role == Role::Measured);
+        let pressures = measured.filter(|c| c.unit == "Pa");
+        let chamber = |channel: &'a Scaled| {
+            let column = stated(channel).or_else(|| by_name(&channel.name, &throws))?;
+            let chamber = self.chambers.iter().find(|c| c.column == column)?;
+            Some(chamber.named(&channel.name))
+        };
+        pressures.filter_map(chamber).collect()
+    }
+}
+
+/// The model's column of a pressure with this name, in words or as this program writes it.
+fn by_name(name: &str, throws: &[&str]) -> Option<String> {
+    let channel = |column: String| Channel {
+        name: name.to_owned(),
+        column,
+        unit: "Pa".to_owned(),
+        offset: None,
+        crank_angle_rad: None,
+    };
+    // The name comes without its unit, the model's columns end in theirs.
+    [format!("{name}_pa"), name.to_owned()]
+        .into_iter()
+        .find_map(|column| match meaning(&channel(column), throws) {
+            Ok(Meaning::Measured { column, .. }) => Some(column),
+            _ => None,
+        })
+}
