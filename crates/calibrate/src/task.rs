@@ -16,6 +16,7 @@ use crate::meter::Meter;
 use crate::observation::{Observation, Run};
 use crate::prediction::predict;
 use crate::problem::{Problem, columns};
+use crate::shut_valve::ShutValve;
 use crate::{alignment, bundle, contradiction, zero};
 use input::bundle_channel::Meaning;
 use input::{MachineFile, paths};
@@ -42,6 +43,8 @@ pub struct Task {
     pub zeroed: Vec<bool>,
     /// For each run whether an encoder gave the crank angle.
     pub encoded: Vec<bool>,
+    /// The valves that recorded pressures do not open.
+    pub shut_valves: Vec<ShutValve>,
     /// The columns that the machine has.
     columns: Vec<String>,
 }
@@ -107,6 +110,7 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
         runs,
         zeroed,
         encoded,
+        shut_valves: Vec::new(),
         columns: columns(&resolved),
     };
     task.observe()?;
@@ -121,7 +125,7 @@ impl Task {
         let nominal = vec![0.0; self.problem.parameters.len()];
         self.align(&nominal)?;
         let start = self.start_at_zero()?;
-        contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
+        self.shut_valves = contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
         self.settings.start = start;
         Ok(())
     }

@@ -58,6 +58,7 @@ pub use journal::Journal;
 pub use mains_hum::{Hum, remove_hum};
 pub use missing_force::MissingForce;
 pub use model::{Gap, Model};
+pub use recorded::Recorded;
 pub use residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 pub use results::Results;
 pub use scaling::{Scaling, scaling};

@@ -34,6 +34,9 @@ pub(crate) fn print(results: &Results) {
             predicted(results.fit.heldout_calibrated)
         );
     }
+    for shut in &results.shut_valves {
+        println!("{shut}");
+    }
     for (run, channels) in results.gas.iter().flat_map(|runs| runs.iter()) {
         for (column, found) in channels.iter() {
             gas(run, column, found);

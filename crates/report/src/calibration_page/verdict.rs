@@ -35,7 +35,8 @@ pub(super) fn verdict(page: &CalibrationPage) -> String {
 
 /// Warnings about the calibration.
 pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let shut = page.results.shut_valves.iter();
+    let mut warnings: Vec<String> = shut.map(ToString::to_string).collect();
     let fitted = page.fitted().after;
     if !page.results.complete {
         warnings.push(
