@@ -22,6 +22,8 @@ const UNITS: [(&str, f64); 6] = [
 ];
 /// Standard atmosphere, from which gauge pressures count, Pa.
 const ATMOSPHERE: f64 = 101_325.0;
+/// Logarithms of factors that differ by less are the same.
+const SAME: f64 = 1e-6;
 /// A valve that is open holds the pressure within this share while the chamber's volume changes by this factor. With
 /// both valves shut the pressure changes at least as much as the volume.
 const STEADY: f64 = 0.1;
@@ -86,7 +88,6 @@ pub(crate) fn shut_valves(
     let range = recorded.range();
     let lines = lines(&machine.throws[throw]);
     refuse_throw(machine, throw, range)?;
-    refuse_gauge(range, lines)?;
     refuse_unit(range, lines)?;
     let [shown, stated] = [range, lines];
     let mut shut = Vec::new();
@@ -139,64 +140,52 @@ fn is_impossible([least, greatest]: [f64; 2], [suction, discharge]: [f64; 2]) ->
     least < (1.0 - loss) * suction || greatest > (1.0 + loss) * discharge
 }
 
-fn refuse_gauge(range: [f64; 2], lines: [f64; 2]) -> Result<(), String> {
-    let [least, greatest] = range;
-    let raised = range.map(|p| p + ATMOSPHERE);
-    let gauge = least < (1.0 - greatest_loss()) * lines[0]
-        && meet(raised[0], lines[0])
-        && !is_impossible(raised, lines);
-    if gauge {
-        return Err(format!(
-            "its values, {least:.4} to {greatest:.4} Pa, fit the stated pressures, {:.4} to {:.4} Pa, if they count from \
-             the ambient pressure: state a gauge unit (barg, psig) and the ambient pressure as its offset",
-            lines[0], lines[1]
-        ));
-    }
-    if least < -REACHES * lines[0] {
-        return Err(format!(
-            "its least value is {least:.4} Pa, and no absolute pressure is below 0: check its unit and its zero"
-        ));
-    }
-    Ok(())
-}
-
-/// Refuses a range that another unit brings to the lines, where it is outside of them or never reaches the suction line.
+/// Refuses a range that another unit or zero brings to the lines, where it is outside of them or never reaches the suction line.
 fn refuse_unit(range: [f64; 2], lines: [f64; 2]) -> Result<(), String> {
     if !is_impossible(range, lines) && range[0] <= (1.0 + REACHES) * lines[0] {
         return Ok(());
     }
-    let pairs = UNITS
-        .iter()
-        .flat_map(|read| UNITS.map(|meant| (*read, meant)));
+    let fits = |factor: f64, zero: f64| {
+        let [least, greatest] = range.map(|p| factor * p + zero);
+        // Of a small factor little but the zero is left, which fits by itself where the suction pressure is the ambient one.
+        let full = meet(greatest, lines[1]) || factor == 1.0 || zero == 0.0;
+        let fits = meet(least, lines[0]) && !is_impossible([least, greatest], lines) && full;
+        fits.then(|| (least / lines[0]).ln().abs() + (greatest / lines[1]).ln().abs())
+    };
     let mut found: Vec<(f64, String)> = Vec::new();
-    for ((read, size), (meant, true_size)) in pairs.filter(|(read, meant)| read.0 != meant.0) {
-        let factor = true_size / size;
-        for (zero, gauge) in [
-            (0.0, ""),
-            (ATMOSPHERE, " and count from the ambient pressure"),
-        ] {
-            let [least, greatest] = range.map(|p| factor * p + zero);
-            if meet(least, lines[0]) && !is_impossible([least, greatest], lines) {
-                let off = (least / lines[0]).ln().abs() + (greatest / lines[1]).ln().abs();
-                found.push((off, format!("are in {meant} and not in {read}{gauge}")));
-            }
+    let gauge = "count from the ambient pressure";
+    found.extend(fits(1.0, ATMOSPHERE).map(|off| (off, gauge.to_owned())));
+    for (read, size) in UNITS {
+        for (meant, true_size) in UNITS.into_iter().filter(|(meant, _)| *meant != read) {
+            let units = format!("are in {meant} and not in {read}");
+            let factor = true_size / size;
+            let raised = fits(factor, ATMOSPHERE).map(|off| (off, format!("{units} and {gauge}")));
+            found.extend(fits(factor, 0.0).map(|off| (off, units)));
+            found.extend(raised);
         }
     }
-    let Some(nearest) = found.iter().map(|(off, _)| *off).min_by(f64::total_cmp) else {
-        return Ok(());
-    };
-    // Pairs of units that differ by the same factor are equally near.
-    found.retain(|(off, _)| *off - nearest < 1e-6);
-    let said: Vec<String> = found.into_iter().map(|(_, said)| said).collect();
-    Err(format!(
-        "its values, {:.4} to {:.4} Pa, fit the stated pressures, {:.4} to {:.4} Pa, if they {}: check its unit and the run's load, \
-         which are absolute",
-        range[0],
-        range[1],
-        lines[0],
-        lines[1],
-        said.join(", or ")
-    ))
+    let nearest = found.iter().map(|(off, _)| *off).min_by(f64::total_cmp);
+    if let Some(nearest) = nearest {
+        // Pairs of units that differ by the same factor are equally near.
+        found.retain(|(off, _)| *off - nearest < SAME);
+        let said: Vec<String> = found.into_iter().map(|(_, said)| said).collect();
+        return Err(format!(
+            "its values, {:.4} to {:.4} Pa, fit the stated pressures, {:.4} to {:.4} Pa, if they {}: check its unit and the \
+             run's load, which are absolute",
+            range[0],
+            range[1],
+            lines[0],
+            lines[1],
+            said.join(", or ")
+        ));
+    }
+    if range[0] < -REACHES * lines[0] {
+        return Err(format!(
+            "its least value is {:.4} Pa, and no absolute pressure is below 0: check its unit and its zero",
+            range[0]
+        ));
+    }
+    Ok(())
 }
 
 /// Refuses a range that is that of another throw's lines, and not of its own.
@@ -226,4 +215,198 @@ fn of_another_load(which: &str, valve: Valve, shown: f64, stated: f64) -> String
         "its {which} value is {shown:.4} Pa and never reaches the {line} pressure, {stated:.4} Pa, although the {line} valve opens: \
          check its unit and the run's load, which are absolute"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{PI, TAU};
+    use std::path::Path;
+
+    const COLUMN: &str = "cylinder_pressure_pa";
+    /// The lines of the single-stage machine, and its exponent.
+    const LINES: [f64; 2] = [105e3, 393e3];
+    const EXPONENT: f64 = 1.4;
+
+    fn machine(name: &str) -> Machine {
+        let file = format!("{}/../../data/machines/{name}", env!("CARGO_MANIFEST_DIR"));
+        let file = input::machine_file::read(Path::new(&file)).unwrap();
+        file.resolve().unwrap().machine
+    }
+
+    /// A pressure over the distance from the cover and whether the chamber grows.
+    fn recorded(chamber: &Chamber, pressure: impl Fn(f64, bool) -> f64) -> Recorded {
+        let angles: Vec<f64> = (0..360).map(|i| TAU * f64::from(i) / 360.0).collect();
+        let of = |angle: &f64| pressure(chamber.distance(*angle), chamber.is_growing(*angle));
+        Recorded {
+            pressures: angles.iter().map(of).collect(),
+            angles,
+            forward: true,
+        }
+    }
+
+    /// Ideal valves between these lines.
+    fn cycle(chamber: &Chamber, [suction, discharge]: [f64; 2]) -> Recorded {
+        let smallest = chamber.clearance;
+        let greatest = smallest + chamber.stroke();
+        recorded(chamber, |distance, grows| {
+            let closed = match grows {
+                true => discharge * (smallest / distance).powf(EXPONENT),
+                false => suction * (greatest / distance).powf(EXPONENT),
+            };
+            closed.clamp(suction, discharge)
+        })
+    }
+
+    /// Gas that is shut in, with this pressure where the chamber is largest.
+    fn blocked_in(chamber: &Chamber, pressure: f64) -> Recorded {
+        let greatest = chamber.clearance + chamber.stroke();
+        recorded(chamber, |distance, _| {
+            pressure * (greatest / distance).powf(EXPONENT)
+        })
+    }
+
+    fn scaled(recorded: &Recorded, factor: f64, zero: f64) -> Recorded {
+        let pressures = recorded.pressures.iter();
+        Recorded {
+            pressures: pressures.map(|p| factor * p + zero).collect(),
+            ..recorded.clone()
+        }
+    }
+
+    fn valves(recorded: &Recorded) -> Result<Vec<Valve>, String> {
+        let found = shut_valves(&machine("single-stage.yaml"), COLUMN, recorded)?;
+        Ok(found.into_iter().map(|(valve, _)| valve).collect())
+    }
+
+    fn chamber() -> Chamber {
+        Chamber::of_column(&machine("single-stage.yaml"), COLUMN).unwrap()
+    }
+
+    #[test]
+    fn what_a_machine_may_do_is_accepted() {
+        let chamber = chamber();
+        assert_eq!(valves(&cycle(&chamber, LINES)), Ok(Vec::new()));
+        let shut = Ok(vec![Valve::Discharge]);
+        // Unloaded, throttled either way at most as the catalogue has it, and motored without valves.
+        for loss in [0.0, 0.05, 0.3, 0.5] {
+            let unloaded = recorded(&chamber, |distance, grows| {
+                let sign = if grows { -1.0 } else { 1.0 };
+                let middle = (distance - chamber.clearance) / chamber.stroke();
+                LINES[0] * (1.0 + sign * loss * 4.0 * middle * (1.0 - middle))
+            });
+            assert_eq!(valves(&unloaded), shut, "{loss}");
+        }
+        // Closed late: the compression starts near the dead centre.
+        for filled in [1.1, 1.3, 1.6, 2.0] {
+            let late = recorded(&chamber, |distance, grows| match grows {
+                true => LINES[0],
+                false => {
+                    LINES[0]
+                        * (filled * chamber.clearance / distance)
+                            .max(1.0)
+                            .powf(EXPONENT)
+                }
+            });
+            assert_eq!(valves(&late), shut, "{filled}");
+        }
+        // Shut in with less gas than the suction line would give, and where both lines are far away.
+        let mut high = machine("single-stage.yaml");
+        high.throws[0].cylinder.discharge = 1e7;
+        for (pressure, expected) in [
+            (LINES[0], vec![Valve::Discharge]),
+            (1.4 * LINES[0], vec![Valve::Discharge, Valve::Suction]),
+        ] {
+            let found = shut_valves(&high, COLUMN, &blocked_in(&chamber, pressure)).unwrap();
+            let found: Vec<Valve> = found.into_iter().map(|(valve, _)| valve).collect();
+            assert_eq!(found, expected);
+        }
+    }
+
+    #[test]
+    fn every_other_unit_is_refused_in_a_machine_at_work_and_in_an_unloaded_one() {
+        let chamber = chamber();
+        let unloaded = recorded(&chamber, |_, _| LINES[0]);
+        for ((read, size), (meant, true_size)) in UNITS
+            .iter()
+            .flat_map(|read| UNITS.map(|meant| (*read, meant)))
+        {
+            if read == meant {
+                continue;
+            }
+            for right in [&cycle(&chamber, LINES), &unloaded] {
+                let said = valves(&scaled(right, size / true_size, 0.0)).unwrap_err();
+                assert!(
+                    said.contains(&format!("are in {meant} and not in {read}")),
+                    "{said}"
+                );
+            }
+        }
+        // 1 bar is 0 in barg.
+        for right in [&cycle(&chamber, LINES), &unloaded] {
+            let said = valves(&scaled(right, 1.0, -ATMOSPHERE)).unwrap_err();
+            assert!(said.contains("count from the ambient pressure"), "{said}");
+            let said = valves(&scaled(right, 1e-5, -1.01325)).unwrap_err();
+            assert!(said.contains("count from the ambient pressure"), "{said}");
+        }
+        let said = valves(&scaled(&unloaded, 1.0, -3e5)).unwrap_err();
+        assert!(said.contains("no absolute pressure is below 0"), "{said}");
+    }
+
+    #[test]
+    fn a_valve_that_opens_at_another_pressure_is_refused() {
+        let chamber = chamber();
+        for (lines, expected) in [
+            (
+                [LINES[0], 0.5 * LINES[1]],
+                "never reaches the discharge pressure",
+            ),
+            (
+                [1.6 * LINES[0], LINES[1]],
+                "never reaches the suction pressure",
+            ),
+        ] {
+            let said = valves(&cycle(&chamber, lines)).unwrap_err();
+            assert!(
+                said.contains(expected) && said.contains("valve opens"),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_pressure_of_another_throw_is_refused() {
+        let machine = machine("two-stage.yaml");
+        let columns = ["throw1.cylinder_pressure_pa", "throw2.cylinder_pressure_pa"];
+        for (own, other) in [(0, 1), (1, 0)] {
+            let right = cycle(
+                &Chamber::of_column(&machine, columns[own]).unwrap(),
+                lines(&machine.throws[own]),
+            );
+            assert_eq!(shut_valves(&machine, columns[own], &right), Ok(Vec::new()));
+            let said = shut_valves(&machine, columns[other], &right).unwrap_err();
+            assert!(said.contains("swapped"), "{said}");
+        }
+    }
+
+    #[test]
+    fn a_crank_that_turns_the_other_way_has_its_strokes_the_other_way_round() {
+        let chamber = chamber();
+        let forward = cycle(&chamber, [LINES[0], 0.5 * LINES[1]]);
+        let mirrored = Recorded {
+            angles: forward.angles.iter().map(|a| -a).collect(),
+            forward: false,
+            ..forward.clone()
+        };
+        assert!(forward.opens(Valve::Discharge, &chamber));
+        assert!(mirrored.opens(Valve::Discharge, &chamber));
+        assert!(
+            !Recorded {
+                forward: true,
+                ..mirrored
+            }
+            .opens(Valve::Discharge, &chamber)
+        );
+        assert!((chamber.distance(PI) - chamber.clearance - chamber.stroke()).abs() < 1e-9);
+    }
 }

@@ -1,7 +1,6 @@
 //! A valve that a recorded pressure does not open: what the machine does, and no contradiction.
 
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// A valve of a chamber.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,21 +37,76 @@ impl Valve {
     }
 }
 
-impl fmt::Display for ShutValve {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let verb = match self.valve {
-            Valve::Suction => "falls",
-            Valve::Discharge => "rises",
+/// What the valves that stay shut come to, a sentence for each valve of each channel.
+pub fn sentences(shut: &[ShutValve]) -> Vec<String> {
+    let mut groups: Vec<Vec<&ShutValve>> = Vec::new();
+    for one in shut {
+        let same = |group: &&mut Vec<&ShutValve>| {
+            group[0].channel == one.channel && group[0].valve == one.valve
         };
-        write!(
-            f,
-            "{}, {}: the {} valve does not open. The pressure {verb} only to {:.4} MPa, and that of the line is stated as {:.4} MPa. \
-             The cylinder is unloaded, motored or blocked in, or it leaks.",
-            self.run,
-            self.channel,
-            self.valve.name(),
-            self.reached_pa / 1e6,
-            self.stated_pa / 1e6,
-        )
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(one),
+            None => groups.push(vec![one]),
+        }
+    }
+    groups.iter().map(|group| sentence(group)).collect()
+}
+
+fn sentence(group: &[&ShutValve]) -> String {
+    let first = group[0];
+    let runs: Vec<&str> = group.iter().map(|one| one.run.as_str()).collect();
+    let verb = match first.valve {
+        Valve::Suction => "falls",
+        Valve::Discharge => "rises",
+    };
+    format!(
+        "{}, {}: the {} valve does not open. The pressure {verb} only to {}, and that of the line is stated as {}. The cylinder is \
+         unloaded, motored or blocked in, or it leaks.",
+        first.channel,
+        runs.join(", "),
+        first.valve.name(),
+        range(group.iter().map(|one| one.reached_pa)),
+        range(group.iter().map(|one| one.stated_pa)),
+    )
+}
+
+/// Least and greatest of some pressures, MPa; one number where both look the same.
+fn range(pressures: impl Iterator<Item = f64> + Clone) -> String {
+    let [least, greatest] = [
+        pressures.clone().fold(f64::INFINITY, f64::min),
+        pressures.fold(f64::NEG_INFINITY, f64::max),
+    ]
+    .map(|pressure| format!("{:.4}", pressure / 1e6));
+    match least == greatest {
+        true => format!("{least} MPa"),
+        false => format!("{least} to {greatest} MPa"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_one_channel_are_one_sentence() {
+        let shut = |run: &str, channel: &str, reached_pa| ShutValve {
+            run: run.to_owned(),
+            channel: channel.to_owned(),
+            valve: Valve::Discharge,
+            reached_pa,
+            stated_pa: 393e3,
+        };
+        let all = [
+            shut("a", "p", 110e3),
+            shut("a", "q", 120e3),
+            shut("b", "p", 115e3),
+        ];
+        let said = sentences(&all);
+        assert_eq!(said.len(), 2);
+        assert!(said[0].starts_with(
+            "p, a, b: the discharge valve does not open. The pressure rises only to 0.1100 to 0.1150 MPa, and that of the line is \
+             stated as 0.3930 MPa."
+        ));
+        assert!(said[1].starts_with("q, a: ") && said[1].contains("only to 0.1200 MPa"));
     }
 }

@@ -8,6 +8,7 @@ use crate::recorded::Recorded;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
+use calibrate::shut_valve;
 use input::effects::Proposal;
 use std::f64::consts::PI;
 
@@ -23,11 +24,7 @@ pub(crate) fn notes(
     effort: &Effort,
     recorded: &Recorded,
 ) -> Vec<String> {
-    let mut notes: Vec<String> = recorded
-        .shut_valves
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let mut notes = shut_valve::sentences(recorded.shut_valves);
     notes.extend(unexplained(explanation));
     if effort.held_out.is_empty() && !explanation.found.is_empty() {
         notes.push(
@@ -38,7 +35,12 @@ pub(crate) fn notes(
     }
     let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
     if explanation.estimates.iter().any(of_gas) {
-        notes.extend(recorded.gas.iter().filter_map(together));
+        // Where a valve stays shut there are no two lines that the polytropes lead to.
+        let opens = |gap: &&PressureGap| {
+            let mut shut = recorded.shut_valves.iter();
+            !shut.any(|shut| shut.run == gap.run && shut.channel == gap.column)
+        };
+        notes.extend(recorded.gas.iter().filter(opens).filter_map(together));
     }
     notes.extend(correlated(explanation));
     let unidentifiable = explanation.estimates.iter();

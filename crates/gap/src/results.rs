@@ -14,6 +14,7 @@ use crate::form::form;
 use crate::missing_force::MissingForce;
 use crate::model::Model;
 use crate::notes::{closing, notes};
+use crate::parts::ByPart;
 use crate::recorded::Recorded;
 use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 use crate::scaling::{Scaling, scaling};
@@ -53,6 +54,9 @@ pub struct Results {
     pub shut_valves: Vec<ShutValve>,
     /// What was fitted, by path, the parameters of effects included.
     pub parameters: ByName<Estimate>,
+    /// What each run and channel says of the effects by itself; none where nothing was tried.
+    #[serde(default)]
+    pub by_part: Option<ByPart>,
     /// Where the calibrated machine without the effects and the recordings disagree most, the greatest
     /// excess first.
     #[serde(rename = "where")]
@@ -250,6 +254,7 @@ impl Results {
             parameters: estimates
                 .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, true)))
                 .collect(),
+            by_part: ByPart::from_explanation(explanation, &effort.held_out)?,
             places: places(&maps.before, PLACES),
             scaling: scaling(before, &maps.before)?,
             heldout_runs: effort.held_out.clone(),

@@ -3,6 +3,7 @@
 use ::calibrate::converter::Converter;
 use ::calibrate::recorded_sensor::{RecordedNoise, RecordedSensor};
 use ::calibrate::results::{Correction, Diagram, Estimate, Gas, Known, Relations, Results, Tried};
+use ::calibrate::shut_valve::sentences;
 use std::collections::BTreeMap;
 
 /// Prints the results of a calibration.
@@ -34,7 +35,7 @@ pub(crate) fn print(results: &Results) {
             predicted(results.fit.heldout_calibrated)
         );
     }
-    for shut in &results.shut_valves {
+    for shut in sentences(&results.shut_valves) {
         println!("{shut}");
     }
     for (run, channels) in results.gas.iter().flat_map(|runs| runs.iter()) {
