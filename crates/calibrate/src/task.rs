@@ -14,6 +14,7 @@ use crate::error::Error;
 use crate::fit::FitSettings;
 use crate::meter::Meter;
 use crate::observation::{Observation, Run};
+use crate::parameter::Parameter;
 use crate::prediction::predict;
 use crate::problem::{Problem, columns};
 use crate::shut_valve::ShutValve;
@@ -114,6 +115,9 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
         columns: columns(&resolved),
     };
     task.observe()?;
+    if asked.parameters.0.is_empty() {
+        task.leave_out_unseen_lines();
+    }
     Ok(task)
 }
 
@@ -128,6 +132,18 @@ impl Task {
         self.shut_valves = contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
         self.settings.start = start;
         Ok(())
+    }
+
+    /// Takes the pressures of discharge lines that no recording shows as they are stated.
+    fn leave_out_unseen_lines(&mut self) {
+        let unseen = parameters::unseen_lines(&self.runs, &self.shut_valves);
+        let parameters = std::mem::take(&mut self.problem.parameters);
+        let is_seen = |parameter: &Parameter| !unseen.contains(&parameter.path);
+        if let Some(start) = &mut self.settings.start {
+            let mut parameters = parameters.iter();
+            start.retain(|_| parameters.next().is_none_or(is_seen));
+        }
+        self.problem.parameters = parameters.into_iter().filter(is_seen).collect();
     }
 
     /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre. The bounds of

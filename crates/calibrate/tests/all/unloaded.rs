@@ -14,6 +14,16 @@ const REVOLUTIONS: usize = 12;
 /// A bundle of one run with this pressure, Pa, over the crank angle, in a file that is said to be in `unit`, 1 Pa being `size`
 /// there.
 fn task_of(pressure: impl Fn(f64) -> f64, unit: &str, size: f64) -> Result<Task, Error> {
+    task_with(393e3, pressure, unit, size)
+}
+
+/// The same with this discharge pressure, Pa.
+fn task_with(
+    discharge: f64,
+    pressure: impl Fn(f64) -> f64,
+    unit: &str,
+    size: f64,
+) -> Result<Task, Error> {
     let folder = tempfile::tempdir().unwrap();
     let list = format!(
         "
@@ -34,7 +44,7 @@ runs:
 - id: motored
   file: motored.csv
   speed_rpm: 500
-  load: {{suction_pressure_pa: {SUCTION}, discharge_pressure_pa: 393000}}
+  load: {{suction_pressure_pa: {SUCTION}, discharge_pressure_pa: {discharge}}}
   channels:
   - {{name: crank angle, column: angle, unit: deg}}
   - {{name: cylinder pressure, column: pressure, unit: {unit}}}
@@ -75,6 +85,19 @@ fn pressures_at_the_suction_line_are_accepted_with_a_note() {
         let said = sentences(&task.shut_valves);
         let expected = "cylinder_pressure_pa, motored: the discharge valve does not open.";
         assert!(said[0].starts_with(expected), "{said:?}");
+        // The discharge line is not seen, and its pressure is not fitted.
+        let paths: Vec<&str> = task
+            .problem
+            .parameters
+            .iter()
+            .map(|p| p.path.as_str())
+            .collect();
+        let expected = [
+            "cylinder.exponent",
+            "cylinder.head_clearance",
+            "runs.motored.cylinder.suction",
+        ];
+        assert_eq!(paths, expected);
         // It is a motion that repeats itself.
         assert!(task.problem.runs[0].repeats_like(&task.problem.runs));
     }
@@ -88,5 +111,30 @@ fn a_wrong_unit_of_the_same_pressures_is_refused() {
             .map(|error| error.to_string());
         let refused = refused.unwrap_or_default();
         assert!(refused.contains("check its unit"), "{unit}: {refused}");
+    }
+}
+
+#[test]
+fn lines_of_the_same_pressure_have_one_value() {
+    let task = task_with(
+        SUCTION,
+        |angle| SUCTION * (1.0 - 0.04 * angle.sin()),
+        "Pa",
+        1.0,
+    )
+    .unwrap();
+    assert!(task.shut_valves.is_empty());
+    let parameters = task.problem.parameters.iter();
+    let lines: Vec<_> = parameters.filter(|p| p.run.is_some()).collect();
+    assert_eq!(lines.len(), 1);
+    assert_eq!(lines[0].places, ["cylinder.suction", "cylinder.discharge"]);
+    // The machine is possible at any value.
+    for x in lines[0].box_bounds() {
+        let mut tree = task.problem.tree.clone();
+        lines[0]
+            .write_for("motored", &mut tree, lines[0].value(x))
+            .unwrap();
+        let machine = input::MachineFile::from_tree(&tree).unwrap();
+        assert!(machine.resolve().is_ok());
     }
 }
