@@ -49,8 +49,9 @@ pub struct Part {
     pub channel: String,
     /// True where the run was predicted and not fitted to.
     pub held_out: bool,
-    /// Misfit of the calibrated machine without the effects, in standard deviations of the noise.
-    pub before: f64,
+    /// Misfit of the calibrated machine without the effects, in standard deviations of the noise; none where that was not looked
+    /// at.
+    pub before: Option<f64>,
     /// The same with them.
     pub after: f64,
 }
@@ -135,7 +136,7 @@ impl ByPart {
             let same = |part: &&(String, String, f64)| part.0 == run && part.1 == channel;
             Part {
                 held_out: held_out.contains(&run),
-                before: known.iter().find(same).map_or(f64::NAN, |part| part.2),
+                before: known.iter().find(same).map(|part| part.2),
                 run,
                 channel,
                 after,

@@ -207,6 +207,10 @@ impl View<'_> {
         by_part.parts.iter().enumerate().collect()
     }
 
+    fn before(part: &Part) -> String {
+        part.before.map_or_else(|| "–".to_owned(), size)
+    }
+
     fn channel(part: &Part) -> String {
         parts::channel(part)
     }
