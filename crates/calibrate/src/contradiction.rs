@@ -4,17 +4,18 @@ use crate::error::Error;
 use crate::observation::Run;
 use crate::observation::SPEED;
 use crate::prediction::{Prediction, predict};
+use crate::pressure_range::{Recorded, shut_valves};
 use crate::problem::Problem;
+use crate::shut_valve::ShutValve;
 use rayon::prelude::*;
 use signal::order_lines::OrderLines;
+use std::f64::consts::TAU;
 
 /// The first order of an acceleration is that of the crank's throw; the contacts hardly change it. A factor
 /// beyond this means another stroke, speed or unit.
 const FACTOR: f64 = 1.5;
 /// A phase beyond this means another zero of the crank angle, or a sensor the wrong way round, deg.
 const PHASE: f64 = 45.0;
-/// Share of a cylinder's pressures within which the greatest and least reach those that are stated.
-const PRESSURE: f64 = 0.25;
 /// Relative difference of two runs' pressures from which their order counts. Valve losses, which grow with the
 /// speed, raise the greatest pressure of a run by up to a fifth. Two runs have to differ by as much in all.
 const ORDER: f64 = 0.1;
@@ -37,26 +38,38 @@ pub fn speed(run: &Run, measured: f64) -> Result<(), Error> {
     Err(Error::unusable(&run.id, error))
 }
 
-/// Holds every run against what the machine shows at the coordinates `x`.
+/// Holds every run against what the machine shows at the coordinates `x`, and returns the valves that stay shut.
 ///
 /// # Errors
 /// The first run that no parameters could bring together with the machine, or two that seem to be each other.
-pub fn check(problem: &Problem, x: &[f64]) -> Result<(), Error> {
+pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<ShutValve>, Error> {
     let predictions = predictions(problem, x)?;
+    let mut shut = Vec::new();
     for (run, prediction) in problem.runs.iter().zip(&predictions) {
+        let machine = problem.machine(run, x)?;
+        let offset = problem.crank_angle_offset(run, x).0;
         for (observed, predicted) in run.channels.iter().zip(&prediction.lines) {
-            let found = match observed.column.contains("crosshead_acceleration") {
-                true => acceleration(&observed.lines, predicted),
-                false if observed.quantity().is_pressure() => pressure(&observed.lines, predicted),
-                false => None,
+            let of_channel = |reason: String| {
+                Error::unusable(&run.id, format!("channel {}: {reason}", observed.column))
             };
-            if let Some(reason) = found {
-                let reason = format!("channel {}: {reason}", observed.column);
-                return Err(Error::unusable(&run.id, reason));
+            if observed.column.contains("crosshead_acceleration") {
+                acceleration(&observed.lines, predicted).map_err(of_channel)?;
+            } else if observed.quantity().is_pressure() {
+                let recorded = recorded(&observed.lines, offset, machine.speed >= 0.0);
+                let valves = shut_valves(&machine.machine, &observed.column, &recorded);
+                let valves = valves.map_err(of_channel)?.into_iter();
+                shut.extend(valves.map(|(valve, [reached_pa, stated_pa])| ShutValve {
+                    run: run.id.clone(),
+                    channel: observed.column.clone(),
+                    valve,
+                    reached_pa,
+                    stated_pa,
+                }));
             }
         }
     }
-    swapped(problem, &predictions)
+    swapped(problem, &predictions)?;
+    Ok(shut)
 }
 
 /// What the machine shows of every run.
@@ -114,11 +127,11 @@ fn are_opposed(a: [f64; 2], b: [f64; 2]) -> bool {
     a.abs() > ORDER && b.abs() > ORDER && (a > 0.0) != (b > 0.0)
 }
 
-fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Option<String> {
+fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Result<(), String> {
     let [recorded, machine] = [observed, predicted].map(|lines| lines.amplitude[1]);
     let factor = recorded.norm() / machine.norm();
     if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
-        return Some(format!(
+        return Err(format!(
             "its first order is {:.4} m/s², and stroke and speed of the machine give {:.4} m/s²: \
              check its unit, crank_radius_m and speed_rpm",
             recorded.norm(),
@@ -126,49 +139,39 @@ fn acceleration(observed: &OrderLines, predicted: &OrderLines) -> Option<String>
         ));
     }
     let apart = (recorded / machine).arg().to_degrees();
-    (apart.abs() > PHASE).then(|| {
-        format!(
+    match apart.abs() > PHASE {
+        true => Err(format!(
             "its first order leads that of the machine by {apart:.0} deg: check that the crank angle \
              is 0 at top dead centre and that acceleration is positive toward the head"
-        )
-    })
-}
-
-fn pressure(observed: &OrderLines, predicted: &OrderLines) -> Option<String> {
-    let [recorded, machine] = [observed, predicted].map(extremes);
-    let [least, greatest] = recorded;
-    let reason = if greatest < (1.0 - PRESSURE) * machine[1] {
-        format!(
-            "its greatest value is {greatest:.4} Pa and never reaches the discharge pressure, {:.4} Pa",
-            machine[1]
-        )
-    } else if least > (1.0 + PRESSURE) * machine[0] {
-        format!(
-            "its least value is {least:.4} Pa and never reaches the suction pressure, {:.4} Pa",
-            machine[0]
-        )
-    } else {
-        return None;
-    };
-    Some(format!(
-        "{reason}: check its unit and the run's load, which are absolute"
-    ))
+        )),
+        false => Ok(()),
+    }
 }
 
 /// Least and greatest value of a synchronous mean, from its first orders.
 fn extremes(lines: &OrderLines) -> [f64; 2] {
-    let values = (0..POINTS).map(|i| {
-        let angle = std::f64::consts::TAU * i as f64 / POINTS as f64;
+    let values = recorded(lines, 0.0, true).pressures.into_iter();
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    })
+}
+
+/// A synchronous mean over the revolution, from its first orders. The recorded angles are ahead of the crank by `offset`, rad.
+fn recorded(lines: &OrderLines, offset: f64, forward: bool) -> Recorded {
+    let grid = (0..POINTS).map(|i| TAU * i as f64 / POINTS as f64);
+    let value = |angle: f64| {
         let terms = lines.amplitude.iter().take(POINTS / 4).enumerate();
         let value = terms.map(|(k, c)| {
             let (sin, cos) = (k as f64 * angle).sin_cos();
             c.re * cos - c.im * sin
         });
         value.sum::<f64>()
-    });
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-        [low.min(x), high.max(x)]
-    })
+    };
+    Recorded {
+        angles: grid.clone().map(|angle| angle - offset).collect(),
+        pressures: grid.map(value).collect(),
+        forward,
+    }
 }
 
 #[cfg(test)]

@@ -5,16 +5,16 @@ use signal::crank_angle::CrankAngle;
 use signal::order_lines::OrderLines;
 use std::f64::consts::{LN_2, TAU};
 
-/// Fewer revolutions leave no spectral bins between the orders.
-const ENOUGH: f64 = 2.99;
+/// Fewer revolutions have no noise of their own between the orders.
+const ENOUGH: f64 = 3.0;
 /// Orders up to this share of half the samples per revolution are used.
 const USED_ORDERS: f64 = 0.8;
 /// The upper part of them is taken for noise.
 const NOISE: f64 = 2.0 / 3.0;
 
-/// Whether a recording is that short.
+/// Whether a recording is that short: it lacks more than one sample of as many whole revolutions.
 pub(crate) fn is_short(angle: &CrankAngle) -> bool {
-    angle.revolutions() < ENOUGH
+    angle.revolutions() < ENOUGH - 1.5 / angle.samples_per_revolution()
 }
 
 /// The lines of the whole revolutions of a channel, from its first sample on, taken as one period of

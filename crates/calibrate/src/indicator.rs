@@ -13,8 +13,8 @@
 //!                suction opens └────┘ suction closes      ln V
 //! ```
 
-use mechanism::{Machine, Throw};
-use simulate::{ChamberEnd, Measured};
+pub use crate::chamber::Chamber;
+
 use std::f64::consts::{PI, TAU};
 
 /// Share of the way from suction to discharge, in ln p, that is left out at either end of a
@@ -26,20 +26,6 @@ const FEWEST: usize = 8;
 const EXPONENTS: [f64; 2] = [1.0, 5.0 / 3.0];
 /// Clearances among which those that go with them are looked for, as shares of the stroke.
 const CLEARANCES: [f64; 2] = [1e-3, 1.0];
-
-/// A chamber: how far its piston is from its cover. Volumes are lengths here, the area of the piston
-/// being the same throughout.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Chamber {
-    /// Which end of the cylinder.
-    pub end: ChamberEnd,
-    /// Gap between piston and cover at the chamber's own dead centre, m.
-    pub clearance: f64,
-    crank_radius: f64,
-    rod_length: f64,
-    /// The throw's own crank angle, 0 at the head's dead centre, less that of the shaft.
-    phase: f64,
-}
 
 /// The effective angles at which valves open and close, of the crankshaft, rad in [0, 2π).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,84 +107,6 @@ pub struct Indicator {
     /// What the curve leaves open: the readings at which the expansion is isothermal, and isentropic
     /// of a monatomic gas.
     pub alternatives: [Alternative; 2],
-}
-
-impl Chamber {
-    /// The chamber of the machine that a pressure's column names; none where it names none.
-    pub fn of_column(machine: &Machine, column: &str) -> Option<Self> {
-        let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
-        let ends = [ChamberEnd::Head, ChamberEnd::Crank];
-        let mut all = (0..names.len()).flat_map(|throw| ends.map(|end| (throw, end)));
-        let (throw, end) = all.find(|&(throw, end)| {
-            Measured::CylinderPressure { throw, end }.column(&names) == column
-        })?;
-        Self::of_throw(&machine.throws[throw], end)
-    }
-
-    fn of_throw(throw: &Throw, end: ChamberEnd) -> Option<Self> {
-        let cylinder = &throw.cylinder;
-        Some(Self {
-            end,
-            clearance: match end {
-                ChamberEnd::Head => cylinder.head_clearance,
-                ChamberEnd::Crank => cylinder.crank_end.as_ref()?.clearance,
-            },
-            crank_radius: throw.crank_radius,
-            rod_length: throw.rod.length,
-            phase: throw.local_angle(0.0),
-        })
-    }
-
-    /// Twice the crank radius, m.
-    pub fn stroke(&self) -> f64 {
-        2.0 * self.crank_radius
-    }
-
-    /// How far the piston is from where it stands at the chamber's dead centre, m.
-    pub fn travel(&self, crank_angle: f64) -> f64 {
-        let (sine, cosine) = (crank_angle + self.phase).sin_cos();
-        let [r, l] = [self.crank_radius, self.rod_length];
-        let position = r * cosine + (l * l - (r * sine).powi(2)).sqrt();
-        match self.end {
-            ChamberEnd::Head => r + l - position,
-            ChamberEnd::Crank => position - (l - r),
-        }
-    }
-
-    /// Distance from piston to cover, m: the volume over the area.
-    pub fn distance(&self, crank_angle: f64) -> f64 {
-        self.clearance + self.travel(crank_angle)
-    }
-
-    /// Crank angle of the chamber's own dead centre, where it is smallest, in [0, 2π).
-    fn dead_centre(&self) -> f64 {
-        let own = match self.end {
-            ChamberEnd::Head => 0.0,
-            ChamberEnd::Crank => PI,
-        };
-        (own - self.phase).rem_euclid(TAU)
-    }
-
-    /// The angle after the dead centre at which the piston has the distance, from 0 to π: bisection.
-    fn turned(&self, distance: f64) -> f64 {
-        if distance <= self.clearance {
-            return 0.0;
-        }
-        if distance >= self.clearance + self.stroke() {
-            return PI;
-        }
-        let [mut low, mut high] = [0.0, PI];
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            // The mechanism is symmetric about its dead centres.
-            if self.distance(self.dead_centre() + middle) < distance {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
-    }
 }
 
 impl Indicator {
@@ -383,6 +291,8 @@ fn straight_line(points: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    use simulate::ChamberEnd;
 
     const SUCTION: f64 = 1e5;
     const DISCHARGE: f64 = 4e5;

@@ -114,10 +114,25 @@ const SCATTER: f64 = 0.02;
 const REPEATS: f64 = 4.0;
 
 impl Observed {
+    /// The least order that is the machine's. The mean of an acceleration is its sensor's; that of a pressure is the gas's, and
+    /// may be all that there is of it.
+    fn first_order(&self) -> usize {
+        usize::from(!self.quantity().is_pressure())
+    }
+
+    /// Whether it has a line above its noise.
+    fn stands_out(&self) -> bool {
+        let lines = &self.lines;
+        (self.first_order()..=LOW_ORDERS.min(lines.amplitude.len() - 1))
+            .any(|k| lines.amplitude[k].norm_sqr() > STANDS_OUT * lines.variance[k])
+    }
+
     /// What its revolutions have in common, and how much they differ from that: mean squares.
     fn power_and_scatter(&self) -> [f64; 2] {
         let lines = &self.lines;
-        let power = lines.amplitude.iter().skip(1).map(|c| c.norm_sqr()).sum();
+        let first = self.first_order();
+        let power = lines.amplitude.iter().skip(first);
+        let power = power.map(|c| c.norm_sqr()).sum();
         let variance: f64 = lines.variance.iter().skip(1).sum();
         [power, lines.revolutions as f64 * variance]
     }
@@ -184,17 +199,18 @@ impl Observation {
                 let lines = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
                 let orders = orders(&lines);
-                if orders.len() <= LOW_ORDERS && !stands_out(&lines) {
+                let observed = Observed {
+                    column: channel.column.clone(),
+                    lines,
+                    orders,
+                };
+                if observed.orders.len() <= LOW_ORDERS && !observed.stands_out() {
                     return Err(Error::OnlyNoise {
                         run: run.id.clone(),
                         channel: channel.column.clone(),
                     });
                 }
-                Ok(Observed {
-                    column: channel.column.clone(),
-                    lines,
-                    orders,
-                })
+                Ok(observed)
             })
             .collect::<Result<_, _>>()?;
         Ok(Self {
@@ -269,11 +285,6 @@ fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
         }
     }
     Ok(())
-}
-
-fn stands_out(lines: &OrderLines) -> bool {
-    (1..=LOW_ORDERS.min(lines.amplitude.len() - 1))
-        .any(|k| lines.amplitude[k].norm_sqr() > STANDS_OUT * lines.variance[k])
 }
 
 /// All orders up to the last [`BAND`] whose mean power stands out of the noise. Choosing them one by

@@ -147,6 +147,11 @@ impl Parameter {
         }
     }
 
+    /// The standard error of a value whose coordinate has this one, SI.
+    pub fn error(&self, value: f64, of_coordinate: f64) -> f64 {
+        of_coordinate / self.slope(value).abs()
+    }
+
     fn half_width(&self) -> f64 {
         0.5 * (self.bounds[1] - self.bounds[0])
     }

@@ -17,6 +17,7 @@ use crate::problem::Problem;
 use crate::recorded_sensor::RecordedSensor;
 use crate::relation::ClearJoint;
 use crate::sensors::Sensors;
+use crate::shut_valve::ShutValve;
 use crate::task::Task;
 use crate::transfer::Transfer;
 use serde::{Deserialize, Serialize};
@@ -75,6 +76,9 @@ pub struct Results {
     /// The measuring chains that the recordings show, by column.
     #[serde(default)]
     pub noise: BTreeMap<String, RecordedSensor>,
+    /// The valves that recorded pressures do not open.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shut_valves: Vec<ShutValve>,
     /// The gas, by run and column; none where it was not fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gas: Option<ByName<ByName<Gas>>>,
@@ -259,6 +263,7 @@ impl Results {
             relations,
             predictions,
             noise: found.sensors.by_column.clone(),
+            shut_valves: task.shut_valves.clone(),
             gas: found.gas.map(gas::by_run),
         })
     }

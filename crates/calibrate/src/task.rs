@@ -14,8 +14,10 @@ use crate::error::Error;
 use crate::fit::FitSettings;
 use crate::meter::Meter;
 use crate::observation::{Observation, Run};
+use crate::parameter::Parameter;
 use crate::prediction::predict;
 use crate::problem::{Problem, columns};
+use crate::shut_valve::ShutValve;
 use crate::{alignment, bundle, contradiction, zero};
 use input::bundle_channel::Meaning;
 use input::{MachineFile, paths};
@@ -42,6 +44,8 @@ pub struct Task {
     pub zeroed: Vec<bool>,
     /// For each run whether an encoder gave the crank angle.
     pub encoded: Vec<bool>,
+    /// The valves that recorded pressures do not open.
+    pub shut_valves: Vec<ShutValve>,
     /// The columns that the machine has.
     columns: Vec<String>,
 }
@@ -107,9 +111,13 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
         runs,
         zeroed,
         encoded,
+        shut_valves: Vec::new(),
         columns: columns(&resolved),
     };
     task.observe()?;
+    if asked.parameters.0.is_empty() {
+        task.leave_out_unseen_lines();
+    }
     Ok(task)
 }
 
@@ -121,9 +129,21 @@ impl Task {
         let nominal = vec![0.0; self.problem.parameters.len()];
         self.align(&nominal)?;
         let start = self.start_at_zero()?;
-        contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
+        self.shut_valves = contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
         self.settings.start = start;
         Ok(())
+    }
+
+    /// Takes the pressures of discharge lines that no recording shows as they are stated.
+    fn leave_out_unseen_lines(&mut self) {
+        let unseen = parameters::unseen_lines(&self.runs, &self.shut_valves);
+        let parameters = std::mem::take(&mut self.problem.parameters);
+        let is_seen = |parameter: &Parameter| !unseen.contains(&parameter.path);
+        if let Some(start) = &mut self.settings.start {
+            let mut parameters = parameters.iter();
+            start.retain(|_| parameters.next().is_none_or(is_seen));
+        }
+        self.problem.parameters = parameters.into_iter().filter(is_seen).collect();
     }
 
     /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre. The bounds of

@@ -7,6 +7,7 @@ use crate::explain::{Explanation, Stage, explain};
 use crate::fitter::Watch;
 use crate::journal::Journal;
 use crate::mains_hum::remove_hum;
+use crate::recorded::Recorded;
 use crate::results::{RESULTS, Results};
 use calibrate::bundle_replay::BundleReplay;
 use calibrate::pressure_gap::pressure_gaps_of;
@@ -105,7 +106,15 @@ pub fn into_folder(
         &out.join(MACHINE),
         MachineFile::from_tree(&tree)?.to_yaml()?.as_bytes(),
     )?;
-    let results = Results::from_explanation(&explanation, &effort, &gas, sensors.by_column)?;
+    let results = Results::from_explanation(
+        &explanation,
+        &effort,
+        &Recorded {
+            gas: &gas,
+            shut_valves: &task.shut_valves,
+            noise: sensors.by_column,
+        },
+    )?;
     // Last, as what makes the folder whole.
     let text = serde_json::to_string_pretty(&results)?;
     WholeFile::write(&out.join(RESULTS), text.as_bytes())?;

@@ -1,11 +1,14 @@
 //! What must be known to judge an explanation, in sentences.
 
 use crate::candidate::Candidate;
+use crate::criteria::{NAMED, Verdict};
 use crate::effort::Effort;
 use crate::explain::Explanation;
+use crate::recorded::Recorded;
 use calibrate::fit::Estimate;
 use calibrate::indicator::Alternative;
 use calibrate::pressure_gap::PressureGap;
+use calibrate::shut_valve;
 use input::effects::Proposal;
 use std::f64::consts::PI;
 
@@ -19,9 +22,10 @@ const AS_GOOD: f64 = 1.5;
 pub(crate) fn notes(
     explanation: &Explanation,
     effort: &Effort,
-    gas: &[PressureGap],
+    recorded: &Recorded,
 ) -> Vec<String> {
-    let mut notes = Vec::new();
+    let mut notes = shut_valve::sentences(recorded.shut_valves);
+    notes.extend(unexplained(explanation));
     if effort.held_out.is_empty() && !explanation.found.is_empty() {
         notes.push(
             "No run was held out: there are too few. What was found has to hold in all of them at once; \
@@ -31,7 +35,12 @@ pub(crate) fn notes(
     }
     let of_gas = |e: &Estimate| e.parameter.path.contains("cylinder.");
     if explanation.estimates.iter().any(of_gas) {
-        notes.extend(gas.iter().filter_map(together));
+        // Where a valve stays shut there are no two lines that the polytropes lead to.
+        let opens = |gap: &&PressureGap| {
+            let mut shut = recorded.shut_valves.iter();
+            !shut.any(|shut| shut.run == gap.run && shut.channel == gap.column)
+        };
+        notes.extend(recorded.gas.iter().filter(opens).filter_map(together));
     }
     notes.extend(correlated(explanation));
     let unidentifiable = explanation.estimates.iter();
@@ -44,6 +53,31 @@ pub(crate) fn notes(
         ));
     }
     notes
+}
+
+/// Why nothing is named although there is a gap.
+fn unexplained(explanation: &Explanation) -> Option<String> {
+    if explanation.verdict != Verdict::Unexplained {
+        return None;
+    }
+    let before = explanation.baseline.fitted;
+    let refused = explanation.refused.iter();
+    let Some(nearest) = refused.max_by(|a, b| a.probability.total_cmp(&b.probability)) else {
+        return Some(format!(
+            "The gap is {before:.2} times the noise, and none of the effects that were tried makes the recordings likelier."
+        ));
+    };
+    let [_, after] = nearest.evidence.misfit;
+    let held_out = nearest.evidence.heldout_misfit;
+    let held_out = held_out.map_or(String::new(), |[before, after]| {
+        format!(", and {after:.2} of {before:.2} in held-out runs")
+    });
+    Some(format!(
+        "Nothing is named. The most probable of the effects that were tried is {}. It leaves {after:.2} of {before:.2} times the \
+         noise{held_out}: its probability is {:.2}, and {NAMED} is needed.",
+        nearest.candidate.label(),
+        nearest.probability,
+    ))
 }
 
 /// What a pressure by itself leaves open about clearance and exponents.

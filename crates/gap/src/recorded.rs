@@ -1,7 +1,10 @@
 //! What was recorded: pressures, accelerations, or both.
 
-use calibrate::Problem;
 use calibrate::observation::Observed;
+use calibrate::pressure_gap::PressureGap;
+use calibrate::recorded_sensor::RecordedSensor;
+use calibrate::{Problem, ShutValve};
+use std::collections::BTreeMap;
 
 /// Whether a channel is a cylinder's pressure.
 pub(crate) fn is_pressure(channel: &Observed) -> bool {
@@ -18,4 +21,14 @@ pub(crate) fn shows_pressure(problem: &Problem) -> bool {
 pub(crate) fn is_of_pressures(problem: &Problem) -> bool {
     let mut channels = problem.runs.iter().flat_map(|run| &run.channels);
     channels.all(is_pressure)
+}
+
+/// What the recordings show by themselves.
+pub struct Recorded<'a> {
+    /// Recorded pressures beside simulated ones.
+    pub gas: &'a [PressureGap],
+    /// The valves that they do not open.
+    pub shut_valves: &'a [ShutValve],
+    /// The measuring chains, by column.
+    pub noise: BTreeMap<String, RecordedSensor>,
 }

@@ -14,9 +14,12 @@ use crate::form::form;
 use crate::missing_force::MissingForce;
 use crate::model::Model;
 use crate::notes::{closing, notes};
+use crate::parts::ByPart;
+use crate::recorded::Recorded;
 use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 use crate::scaling::{Scaling, scaling};
 use crate::steps::Step;
+use calibrate::ShutValve;
 use calibrate::fit;
 use calibrate::pressure_gap::PressureGap;
 use calibrate::recorded_sensor::RecordedSensor;
@@ -46,8 +49,14 @@ pub struct Results {
     pub steps: Vec<Step>,
     /// What must be known to judge the results, in sentences.
     pub notes: Vec<String>,
+    /// The valves that recorded pressures do not open.
+    #[serde(default)]
+    pub shut_valves: Vec<ShutValve>,
     /// What was fitted, by path, the parameters of effects included.
     pub parameters: ByName<Estimate>,
+    /// What each run and channel says of the effects by itself; none where nothing was tried.
+    #[serde(default)]
+    pub by_part: Option<ByPart>,
     /// Where the calibrated machine without the effects and the recordings disagree most, the greatest
     /// excess first.
     #[serde(rename = "where")]
@@ -196,16 +205,16 @@ pub struct Maps {
 }
 
 impl Results {
-    /// The results of an explanation, with what is known of the recorded pressures and sensors.
+    /// The results of an explanation, with what the recordings show by themselves.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
     pub fn from_explanation(
         explanation: &Explanation,
         effort: &Effort,
-        gas: &[PressureGap],
-        noise: BTreeMap<String, RecordedSensor>,
+        recorded: &Recorded,
     ) -> Result<Self, Error> {
+        let gas = recorded.gas;
         let (before, after) = (&explanation.baseline, &explanation.explained);
         let nominal = &explanation.nominal;
         let maps = Maps {
@@ -240,17 +249,19 @@ impl Results {
                 pressure_rms_pa: PressureRms::from_gaps(gas.iter()),
             },
             steps: explanation.steps.clone(),
-            notes: notes(explanation, effort, gas),
+            notes: notes(explanation, effort, recorded),
+            shut_valves: recorded.shut_valves.to_vec(),
             parameters: estimates
                 .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, true)))
                 .collect(),
+            by_part: ByPart::from_explanation(explanation, &effort.held_out)?,
             places: places(&maps.before, PLACES),
             scaling: scaling(before, &maps.before)?,
             heldout_runs: effort.held_out.clone(),
             next_recording: explanation.next_recording.clone(),
             missing_force: explanation.missing_force.clone(),
             refused: explanation.refused.iter().map(Other::from_tried).collect(),
-            noise,
+            noise: recorded.noise.clone(),
             cost: effort.journal.spent(),
             seconds: None,
             runs: runs.map(run).collect(),

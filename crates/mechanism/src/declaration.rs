@@ -154,7 +154,7 @@ pub enum Range {
     FromZero,
     /// From 0, below 1.
     ProperPart,
-    /// Angles from 0 to 170 deg.
+    /// Angles from 0 to 180 deg.
     OnTheStroke,
     /// From 1.
     FromOne,

@@ -18,14 +18,19 @@ pub struct OrderLines {
     pub revolutions: usize,
 }
 
+/// Fewest bins on either side of an order from which its noise is estimated. The ratio of a power to the mean of two bins
+/// has no variance, and that to the mean of eight is above 8 once in 450.
+const FEWEST: usize = 4;
+
 /// The lines up to order `highest`.
 ///
 /// Over R revolutions the discrete Fourier transform has R − 1 bins between two orders. A signal
 /// that repeats every revolution has nothing there. The mean power of the bins around an order,
 /// half-way to the next ones, is therefore that of the noise in it, of any colour. B bins have
 /// 2B degrees of freedom. The ratio of a power to the mean of B others has the mean
-/// 2B/(2B − 2) (an F distribution's), by which the variance is widened. With fewer than three
-/// revolutions there are no such bins, and the variance is 0.
+/// 2B/(2B − 2) (an F distribution's), by which the variance is widened. With few revolutions so few bins
+/// would leave the variance to chance: then [`FEWEST`] bins on either side are taken, those beyond the next orders included.
+/// With fewer than three revolutions the variance is 0.
 ///
 /// # Errors
 /// `highest` not below half the points per revolution.
@@ -42,21 +47,27 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
     let mut work = x.samples().to_vec();
     let scale = 2.0 / work.len() as f64;
     let spectrum = fft::forward(&mut work);
-    let reach = (count - 1) / 2;
-    let degrees = (4 * reach) as f64;
-    let widened = if reach > 0 {
-        degrees / (degrees - 2.0)
-    } else {
-        0.0
+    let offsets: Vec<usize> = match (count - 1) / 2 {
+        0 => Vec::new(),
+        reach => (1..)
+            .filter(|offset| offset % count != 0)
+            .take(reach.max(FEWEST))
+            .collect(),
     };
     let noise = |bin: usize| {
-        let power = |offset: usize| {
+        let power = |offset: &usize| {
             // Below order 0 the spectrum is its own mirror image.
-            let below = spectrum[bin.abs_diff(offset)].norm_sqr();
-            below + spectrum[bin + offset].norm_sqr()
+            let below = spectrum[bin.abs_diff(*offset)].norm_sqr();
+            Some(below + spectrum.get(bin + offset)?.norm_sqr())
         };
-        let powers = (1..=reach).map(power);
-        widened * powers.sum::<f64>() / (2 * reach).max(1) as f64
+        let powers: Vec<f64> = offsets.iter().filter_map(power).collect();
+        let degrees = (4 * powers.len()) as f64;
+        match powers.is_empty() {
+            true => 0.0,
+            false => {
+                degrees / (degrees - 2.0) * powers.iter().sum::<f64>() / (2 * powers.len()) as f64
+            }
+        }
     };
     let of_order = |k: usize| {
         let scale = if k == 0 { 0.5 * scale } else { scale };
@@ -113,19 +124,37 @@ mod tests {
     #[test]
     fn the_variance_is_that_of_the_noise() {
         let mut state = 1_u64;
-        let lines = lines(40, |_| {
-            // A linear congruential generator (Knuth's MMIX): uniform from −1/2 to 1/2.
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        });
+        let lines = lines(40, |_| white(&mut state));
         let expected = 4.0 / 12.0 / (40 * PER_REVOLUTION) as f64;
         let mean = lines.variance[1..].iter().sum::<f64>() / 60.0;
         assert!((mean / expected - 1.0).abs() < 0.1, "{mean} {expected}");
         let powers = lines.amplitude[1..].iter().map(|c| c.norm_sqr());
         let found = powers.sum::<f64>() / 60.0;
         assert!((found / expected - 1.0).abs() < 0.5, "{found} {expected}");
+    }
+
+    /// White noise: uniform from −1/2 to 1/2, by a linear congruential generator (Knuth's MMIX).
+    fn white(state: &mut u64) -> f64 {
+        *state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+
+    /// Of three revolutions the two bins beside an order are too few: one line in 440 would be 20 times its variance.
+    #[test]
+    fn the_variance_of_three_revolutions_is_not_left_to_chance() {
+        let mut state = 1_u64;
+        let mut ratios = Vec::new();
+        for _ in 0..40 {
+            let lines = lines(3, |_| white(&mut state));
+            let both = lines.amplitude.iter().zip(&lines.variance).skip(1);
+            ratios.extend(both.map(|(c, variance)| c.norm_sqr() / variance));
+        }
+        let greatest = ratios.iter().copied().fold(0.0, f64::max);
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        assert!(greatest < 20.0, "{greatest}");
+        assert!((mean - 1.0).abs() < 0.1, "{mean}");
     }
 
     #[test]

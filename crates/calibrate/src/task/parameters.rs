@@ -6,6 +6,7 @@ use crate::observation::Run;
 use crate::parameter::Parameter;
 use crate::relation::ClearJoint;
 use crate::run_condition::CRANK_ANGLE_OFFSET;
+use crate::shut_valve::{ShutValve, Valve};
 use input::unit::Dimension;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -32,7 +33,13 @@ pub(super) fn fitted(
     };
     if asked.is_empty() {
         let defaults = defaults(tree, runs)?;
-        return defaults.iter().map(|path| of(path, None)).collect();
+        let mut parameters = Vec::new();
+        for path in &defaults {
+            let mut parameter = of(path, None)?;
+            with_equal_lines(runs, &mut parameter);
+            parameters.push(parameter);
+        }
+        return Ok(parameters);
     }
     let mut parameters: Vec<Parameter> = Vec::new();
     for (path, bounds) in asked {
@@ -94,26 +101,82 @@ fn defaults(tree: &Value, runs: &[Run]) -> Result<Vec<String>, Error> {
 }
 
 /// The exponent and the clearance of every chamber with a pressure, and the pressures of the lines
-/// in each run.
+/// in each run. Lines of the same pressure have one value.
 fn gas_defaults(runs: &[Run]) -> Vec<String> {
     let mut paths = BTreeSet::new();
     for run in runs {
         for channel in &run.channels {
-            let (throw, name) = match channel.column.split_once('.') {
-                Some((throw, name)) => (format!("throws.{throw}."), name),
-                None => (String::new(), channel.column.as_str()),
-            };
-            let clearance = match name.contains("crank_end") {
+            let throw = throw(&channel.column);
+            let clearance = match channel.column.contains("crank_end") {
                 true => "crank_end.clearance",
                 false => "head_clearance",
             };
             for value in ["exponent", clearance] {
                 paths.insert(format!("{throw}cylinder.{value}"));
             }
-            for line in ["suction", "discharge"] {
-                paths.insert(format!("runs.{}.{throw}cylinder.{line}", run.id));
+            paths.insert(line(run, &throw, Valve::Suction));
+            if !has_equal_lines(run, &throw) {
+                paths.insert(line(run, &throw, Valve::Discharge));
             }
         }
     }
     paths.into_iter().collect()
+}
+
+/// Gives the suction pressure of a machine that is motored to its discharge line as well: the valves between them are
+/// open, and one cannot be above the other.
+fn with_equal_lines(runs: &[Run], parameter: &mut Parameter) {
+    for run in runs {
+        for channel in &run.channels {
+            let throw = throw(&channel.column);
+            let is_suction = parameter.path == line(run, &throw, Valve::Suction);
+            let discharge = format!("{throw}cylinder.discharge");
+            if is_suction && has_equal_lines(run, &throw) && !parameter.places.contains(&discharge)
+            {
+                parameter.places.push(discharge);
+            }
+        }
+    }
+}
+
+/// Whether suction and discharge line of a throw are stated to have the same pressure.
+fn has_equal_lines(run: &Run, throw: &str) -> bool {
+    let stated = |line: &str| {
+        let path = format!("{throw}cylinder.{line}");
+        let mut settings = run.settings.iter();
+        settings
+            .find(|(own, _)| *own == path)
+            .map(|(_, value)| value)
+    };
+    stated("suction").is_some_and(|suction| stated("discharge") == Some(suction))
+}
+
+/// The section of the throw that a column names.
+fn throw(column: &str) -> String {
+    let throw = column.split_once('.').map(|(throw, _)| throw);
+    throw.map_or_else(String::new, |throw| format!("throws.{throw}."))
+}
+
+/// The pressure of a line in a run.
+fn line(run: &Run, throw: &str, valve: Valve) -> String {
+    format!("runs.{}.{throw}cylinder.{}", run.id, valve.name())
+}
+
+/// The discharge lines to which no chamber opens its valve in a run: the recording does not show their pressure. The suction
+/// pressure is fitted even so, as it is that of the gas which the chamber holds when it is largest.
+pub(super) fn unseen_lines(runs: &[Run], shut: &[ShutValve]) -> Vec<String> {
+    let (mut unseen, mut seen) = (BTreeSet::new(), BTreeSet::new());
+    for run in runs {
+        for channel in &run.channels {
+            let is_it = |one: &ShutValve| {
+                one.run == run.id && one.channel == channel.column && one.valve == Valve::Discharge
+            };
+            let path = line(run, &throw(&channel.column), Valve::Discharge);
+            match shut.iter().any(is_it) {
+                true => unseen.insert(path),
+                false => seen.insert(path),
+            };
+        }
+    }
+    unseen.difference(&seen).cloned().collect()
 }

@@ -3,6 +3,7 @@
 mod clearances;
 mod cost;
 mod data_sheet;
+mod few_revolutions;
 mod free_crank;
 mod interrupted;
 mod own_recordings;
@@ -10,3 +11,4 @@ mod real_pressure;
 mod replay;
 mod search;
 mod slow_chain;
+mod unloaded;

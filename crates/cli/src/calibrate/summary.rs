@@ -3,6 +3,7 @@
 use ::calibrate::converter::Converter;
 use ::calibrate::recorded_sensor::{RecordedNoise, RecordedSensor};
 use ::calibrate::results::{Correction, Diagram, Estimate, Gas, Known, Relations, Results, Tried};
+use ::calibrate::shut_valve::sentences;
 use std::collections::BTreeMap;
 
 /// Prints the results of a calibration.
@@ -33,6 +34,9 @@ pub(crate) fn print(results: &Results) {
             results.fit.calibrated.unwrap_or(f64::NAN),
             predicted(results.fit.heldout_calibrated)
         );
+    }
+    for shut in sentences(&results.shut_valves) {
+        println!("{shut}");
     }
     for (run, channels) in results.gas.iter().flat_map(|runs| runs.iter()) {
         for (column, found) in channels.iter() {

@@ -15,15 +15,15 @@ use std::marker::PhantomData;
 /// What a parameter is declared to be.
 pub(super) type Declared = (Quantity, Range);
 
-/// Angles from 0, below half a turn.
+/// Angles from 0 to half a turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct OnTheStroke;
 
 impl Bound for OnTheStroke {
     const NAME: &'static str = "Stroke";
-    const WORDS: &'static str = " from 0 to 170 deg";
+    const WORDS: &'static str = " from 0 to 180 deg";
     fn holds(value: f64) -> bool {
-        (0.0..=2.968).contains(&value)
+        (0.0..=std::f64::consts::PI).contains(&value)
     }
     fn keywords(_: &mut Schema) {}
 }

@@ -394,7 +394,7 @@ fn messages() {
         ),
         (
             json!([{"suction_unloading": {"held": "200 deg"}}]),
-            "effects.0.suction_unloading.held: found '200 deg', expected an angle from 0 to 170 deg with its unit, e.g. '30 deg'",
+            "effects.0.suction_unloading.held: found '200 deg', expected an angle from 0 to 180 deg with its unit, e.g. '30 deg'",
         ),
         (
             json!([{"valve_flutter": {"suction": "100 %"}}]),

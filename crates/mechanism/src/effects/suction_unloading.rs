@@ -37,7 +37,7 @@ declaration! {
     "The suction valve closes late, or is held open: part of the gas is pushed back before the compression starts."
     law "suction valve open until an angle after the dead centre, throttling by ζ u²; the rest is compressed" after "Bloch and Hoefner 1996" {
         /// Crank angle after the dead centre at which the valve closes.
-        held: Angle(OnTheStroke), 0.02 to 2.5, start 0.5, absent 0.0;
+        held: Angle(OnTheStroke), 0.02 to 3.1, start 0.5, absent 0.0;
         /// Loss coefficient of the valve while it is held; 0 where it is left out.
         loss: Number(FromZero), 0.002 to 0.5, start 0.05, absent 0.0;
     } as SuctionUnloading

@@ -4,6 +4,7 @@ use super::{CalibrationPage, Misfit, Parameter, words};
 use crate::text;
 use calibrate::likelihood::NOISE;
 use calibrate::results::Known;
+use calibrate::shut_valve::sentences;
 
 /// A misfit counts as smaller if it shrinks by more than this share.
 const CLOSER: f64 = 0.05;
@@ -35,7 +36,7 @@ pub(super) fn verdict(page: &CalibrationPage) -> String {
 
 /// Warnings about the calibration.
 pub(super) fn warnings(page: &CalibrationPage) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = sentences(&page.results.shut_valves);
     let fitted = page.fitted().after;
     if !page.results.complete {
         warnings.push(

@@ -4,6 +4,8 @@
 mod figures;
 mod folder;
 mod page;
+mod parts;
+mod units;
 
 use crate::calibration_page::Run;
 use gap::Results;

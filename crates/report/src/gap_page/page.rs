@@ -1,13 +1,15 @@
 //! The page itself.
 
-use super::{GapPage, figures};
+use super::units::usual;
+use super::{GapPage, figures, parts};
 use crate::calibration_page::{verdict::size, waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
+use gap::parts::{Agreement, Part, Values};
 use gap::results::{Bounded, Effect};
 use gap::scaling::Exponent;
-use gap::{Correction, Results, Scaling, Verdict};
+use gap::{ByPart, Correction, Results, Scaling, Verdict};
 use input::effects::entry;
 
 #[derive(Template)]
@@ -117,17 +119,6 @@ fn pressure(results: &Results) -> String {
     )
 }
 
-/// The unit in which people read a value of this SI unit, and the factor to it.
-fn usual(unit: &str) -> (f64, &str) {
-    match unit {
-        "rad" => (1_f64.to_degrees(), "deg"),
-        "m" => (1e3, "mm"),
-        "m^2" => (1e6, "mm^2"),
-        "%" => (100.0, "%"),
-        other => (1.0, other),
-    }
-}
-
 /// Significant digits that show the width of a parameter's interval to two digits, and at least four.
 fn digits(parameter: &Bounded) -> usize {
     let width = parameter.interval().map_or(0.0, |[low, high]| high - low);
@@ -206,6 +197,38 @@ impl View<'_> {
             Some((low, high)) => format!("{} to {}", Self::number(&low), Self::number(&high)),
             None => "not identifiable".to_owned(),
         }
+    }
+
+    fn parts_of(by_part: &ByPart) -> String {
+        parts::sentences(by_part)
+    }
+
+    fn rows(by_part: &ByPart) -> Vec<(usize, &Part)> {
+        by_part.parts.iter().enumerate().collect()
+    }
+
+    fn before(part: &Part) -> String {
+        part.before.map_or_else(|| "–".to_owned(), size)
+    }
+
+    fn channel(part: &Part) -> String {
+        parts::channel(part)
+    }
+
+    fn heading(values: &Values) -> String {
+        parts::heading(values)
+    }
+
+    fn own(values: &Values, part: &usize) -> String {
+        parts::own(values, *part)
+    }
+
+    fn together(values: &Values) -> String {
+        parts::together(values)
+    }
+
+    fn agreement(values: &Values, found: &Agreement) -> String {
+        parts::agreement(values, found)
     }
 
     fn has_rivals(effect: &Effect) -> bool {

@@ -16,10 +16,10 @@ use std::path::Path;
 const COLUMN: &str = "cylinder_pressure_pa";
 const ORDERS: usize = 60;
 /// Standard deviation of a line's noise, Pa: a thousandth of the swing.
-const NOISE: f64 = 200.0;
+pub(crate) const NOISE: f64 = 200.0;
 
 /// The single-stage machine with ideal joints.
-fn machine() -> Value {
+pub(crate) fn machine() -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
     let machine = input::machine_file::read(&path).unwrap();
     let mut tree = machine.to_tree().clone();
@@ -30,7 +30,7 @@ fn machine() -> Value {
     tree
 }
 
-fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
+pub(crate) fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
     let offset = Parameter::named(&tree, &[], CRANK_ANGLE_OFFSET, None).unwrap();
     Problem {
         tree,
@@ -42,7 +42,7 @@ fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
 }
 
 /// What the machine with these effects shows at a speed and a discharge pressure.
-fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> Observation {
+pub(crate) fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> Observation {
     let observed = |lines| Observed {
         column: COLUMN.into(),
         lines,
@@ -77,21 +77,30 @@ fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> Observation
 }
 
 fn explained(effects: &Value) -> gap::Explanation {
+    let runs = runs(effects);
+    explained_of(&problem(machine(), runs.to_vec()))
+}
+
+/// What the machine with these effects shows at several speeds and loads.
+pub(crate) fn runs(effects: &Value) -> [Observation; 4] {
     let runs = [
         ("a", 400.0, "0.4 MPa"),
         ("b", 600.0, "0.4 MPa"),
         ("c", 500.0, "0.5 MPa"),
         ("d", 550.0, "0.45 MPa"),
     ];
-    let runs = runs.map(|(id, rpm, discharge)| recorded(effects, id, rpm, discharge));
+    runs.map(|(id, rpm, discharge)| recorded(effects, id, rpm, discharge))
+}
+
+/// The explanation of a problem whose run `d` is held out.
+pub(crate) fn explained_of(problem: &Problem) -> gap::Explanation {
     let effort = Effort {
         held_out: vec!["d".into()],
         evaluations: 120,
         chaotic: false,
         journal: gap::Journal::default(),
     };
-    let problem = problem(machine(), runs.to_vec());
-    explain(&problem, None, &[], &effort, &|_| (), &|| {
+    explain(problem, None, &[], &effort, &|_| (), &|| {
         ControlFlow::Continue(())
     })
     .unwrap()
