@@ -27,6 +27,8 @@ enum Verb {
     Report(cli::report::Arguments),
     /// Fit a machine's parameters to recordings of it
     Calibrate(cli::calibrate::Arguments),
+    /// Estimate which joints are worn, and how much, from recordings
+    EstimateWear(cli::estimate_wear::Arguments),
     /// Find which effect a model lacks that recordings show, and add it
     ExplainGap(cli::explain_gap::Arguments),
     /// Hide effects in recordings made here, and count which of them explain-gap finds
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
         Verb::Verify(arguments) => cli::verify::run(&arguments),
         Verb::Report(arguments) => cli::report::run(&arguments),
         Verb::Calibrate(arguments) => cli::calibrate::run(&arguments),
+        Verb::EstimateWear(arguments) => cli::estimate_wear::run(&arguments),
         Verb::ExplainGap(arguments) => cli::explain_gap::run(&arguments),
         Verb::HiddenEffects(arguments) => cli::hidden_effects::run(&arguments),
         Verb::Replay(arguments) => cli::replay::run(&arguments),

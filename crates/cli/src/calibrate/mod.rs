@@ -1,7 +1,7 @@
 //! `crosshead calibrate`: a machine's parameters from recordings of it.
 
 pub(crate) mod arguments;
-mod progress;
+pub(crate) mod progress;
 pub(crate) mod summary;
 
 use crate::{Failure, interrupt, report};
@@ -25,6 +25,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         base: &base,
         machine: None,
         allow_outside: arguments.allow_outside(),
+        clearances_unknown: false,
         locate: &locate,
     };
     let cancel = interrupt::flag()?;

@@ -12,13 +12,13 @@ use std::time::Duration;
 const TICK: Duration = Duration::from_millis(500);
 
 /// The bar of the stage that is under way; `cancel` stops the calibration.
-pub(super) struct Bar<'a> {
+pub(crate) struct Bar<'a> {
     cancel: &'a AtomicBool,
     bar: ProgressBar,
 }
 
 impl<'a> Bar<'a> {
-    pub(super) fn new(cancel: &'a AtomicBool) -> Self {
+    pub(crate) fn new(cancel: &'a AtomicBool) -> Self {
         Self {
             cancel,
             bar: ProgressBar::hidden(),
@@ -34,6 +34,10 @@ impl Watcher for Bar<'_> {
             }
             Stage::DataSheet => {
                 "{spinner} the model is wrong: values of the data sheet, {pos} evaluations, {elapsed}, misfit {msg}"
+            }
+            Stage::Screen => "{spinner} clearances are screened, {pos} evaluations, {elapsed}",
+            Stage::Clearances => {
+                "{spinner} clearances are fitted, {pos} evaluations, {elapsed}, misfit {msg}"
             }
             Stage::Relations => return,
         };
