@@ -42,33 +42,25 @@ const CHANGE: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Most evaluations of the last descent.
-const LAST: u64 = 200;
+const LAST: u64 = 300;
 
 /// Where a descent has led.
 #[derive(Clone, Debug)]
-struct Led {
-    x: Vec<f64>,
-    /// What is left there, in the units of the last stage.
-    left: f64,
+pub(super) struct Led {
+    /// Coordinates.
+    pub x: Vec<f64>,
+    /// What is left there, in the units of the last stage: with lines, twice the negative logarithm of the likelihood.
+    pub left: f64,
 }
 
-/// The best coordinates that descents from these starts lead to.
-///
-/// # Errors
-/// A model that can be simulated nowhere.
-pub(super) fn explored(
-    model: &Model,
-    starts: &[Vec<f64>],
-    effort: &mut Effort,
-) -> Result<Vec<f64>, Error> {
+/// Where short descents from these starts lead with a few of the runs, the best first.
+pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -> Vec<Led> {
     let part = few(&model.problem);
-    let mut led: Vec<Led> = starts
-        .iter()
-        .map(|x| Led {
-            x: x.clone(),
-            left: f64::INFINITY,
-        })
-        .collect();
+    let at = |x: &Vec<f64>| Led {
+        x: x.clone(),
+        left: f64::INFINITY,
+    };
+    let mut led: Vec<Led> = starts.iter().map(at).collect();
     for stage in ROUGH {
         for led in &mut led {
             descend(&part, led, stage, effort);
@@ -76,17 +68,24 @@ pub(super) fn explored(
         led.sort_by(|a, b| a.left.total_cmp(&b.left));
         led.truncate(led.len().div_ceil(2).max(FOLLOWED));
     }
-    led.truncate(FOLLOWED);
-    for led in &mut led {
+    led
+}
+
+/// The best coordinates that descents from these ends lead to with all runs.
+pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Result<Vec<f64>, Error> {
+    let mut ends: Vec<Led> = Vec::new();
+    for mut led in led.into_iter().take(FOLLOWED) {
         for stage in FINE {
-            descend(&model.problem, led, stage, effort);
+            descend(&model.problem, &mut led, stage, effort);
         }
-        if misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE {
-            return Ok(led.x.clone());
+        let at_noise = misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE;
+        ends.push(led);
+        if at_noise || effort.stopped {
+            break;
         }
     }
-    let best = led.into_iter().min_by(|a, b| a.left.total_cmp(&b.left));
-    let best = best.filter(|best| best.left.is_finite());
+    ends.sort_by(|a, b| a.left.total_cmp(&b.left));
+    let best = ends.into_iter().next();
     best.map(|best| best.x)
         .ok_or(Error::Nothing("no descent has led anywhere"))
 }
@@ -122,13 +121,18 @@ fn secants(compared: &impl LeastSquares, x: &[f64], most: u64, effort: &mut Effo
     found.x
 }
 
-/// The fit of a model from `x`, by Levenberg and Marquardt's method, with intervals.
+/// The fit of a model from `x`, with intervals.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
+pub(super) fn fit(
+    model: &Model,
+    x: Vec<f64>,
+    optimiser: Optimiser,
+    effort: &mut Effort,
+) -> Result<Fit, Error> {
     let settings = FitSettings {
-        optimiser: Optimiser::LevenbergMarquardt,
+        optimiser,
         seed: 0,
         evaluations: LAST,
         held_out: Vec::new(),

@@ -9,7 +9,7 @@ use super::selection::{Found, selected};
 use super::verdict::{Grounds, together};
 use crate::comparison::compare_models;
 use crate::error::Error;
-use crate::fit::RunFit;
+use crate::fit::{Optimiser, RunFit};
 use crate::likelihood::{Likelihood, misfit};
 use crate::pictures;
 use crate::problem::Problem;
@@ -133,7 +133,7 @@ impl Prepared {
             }
             found.model.problem = self.task.problem.clone();
             effort.begins(Stage::Clearances);
-            let fit = descent::fit(&found.model, x, effort);
+            let fit = descent::fit(&found.model, x, Optimiser::LevenbergMarquardt, effort);
             effort.ends();
             found.fit = fit?;
         }

@@ -29,7 +29,7 @@ struct Point {
 }
 
 /// The best points around `x`, the best one first. One joint is moved over its grid, the best points are kept, and
-/// another is moved, until every joint may have moved. With `first` that joint moves first.
+/// another is moved, until every joint may have moved.
 ///
 /// # Errors
 /// A joint whose parameters are invalid.
@@ -37,7 +37,6 @@ pub(super) fn starts(
     model: &Model,
     joints: &[Joint],
     x: &[f64],
-    first: Option<usize>,
     effort: &mut Effort,
 ) -> Result<Vec<Vec<f64>>, Error> {
     let few = few(&model.problem);
@@ -49,12 +48,11 @@ pub(super) fn starts(
         moved: Vec::new(),
     }];
     let mut beam = all.clone();
-    for level in 0..model.clear.len() {
+    for _ in 0..model.clear.len() {
         let mut next: Vec<Point> = Vec::new();
         for point in &beam {
             for place in 0..model.clear.len() {
-                let wanted = first.is_none_or(|first| level > 0 || place == first);
-                if !wanted || point.moved.contains(&place) {
+                if point.moved.contains(&place) {
                     continue;
                 }
                 let parameter = &model.problem.parameters[place];
@@ -82,6 +80,30 @@ pub(super) fn starts(
     all.sort_by(|a, b| a.squares.total_cmp(&b.squares));
     all.truncate(STARTS);
     Ok(all.into_iter().map(|point| point.x).collect())
+}
+
+/// The best points with the clearance at `place`, that of `joint`, moved over its grid.
+pub(super) fn along(
+    model: &Model,
+    joint: &Joint,
+    place: usize,
+    x: &[f64],
+    effort: &mut Effort,
+) -> Vec<Vec<f64>> {
+    let few = few(&model.problem);
+    let energies = Energies::new(&few);
+    let mut points = Vec::new();
+    for clearance in grid(joint) {
+        let mut x = x.to_vec();
+        x[place] = model.problem.parameters[place].coordinate(clearance);
+        points.push((energies.squares(&x).unwrap_or(f64::INFINITY), x));
+        if !effort.evaluated() {
+            break;
+        }
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.truncate(BEAM);
+    points.into_iter().map(|(_, x)| x).collect()
 }
 
 fn x_of_best(all: &[Point], next: &[Point]) -> Vec<f64> {

@@ -10,3 +10,4 @@ mod real_pressure;
 mod replay;
 mod search;
 mod slow_chain;
+mod wear;

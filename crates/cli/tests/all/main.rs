@@ -5,6 +5,7 @@ mod calibrated_sweep;
 mod damage;
 mod dataset;
 mod dataset_bytes;
+mod estimate_wear;
 mod explain_gap;
 mod explain_pressures;
 mod features;
