@@ -10,7 +10,7 @@
 //!
 //! Each case is a row of OUT.csv, which is added to. Counts over all its rows are printed.
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 #[path = "bench/recording.rs"]
 mod recording;

@@ -53,6 +53,7 @@ pub fn case(
         crank: CrankMotion::Driven,
         meter: Meter::default(),
     };
+    eprintln!("{name}: {truth:?}, {} runs", runs.len());
     let start = Instant::now();
     let results = estimate(&problem, &[0.0], WORN_FROM, &mut Quiet)?;
     Ok(Case {

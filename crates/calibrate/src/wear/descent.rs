@@ -1,7 +1,7 @@
 //! Descents from what is slow in the recordings to what is fast.
 //!
 //! Energies have few minima and come first, then lines that may stand elsewhere in the revolution, with less and less of
-//! that. Of many starts half go on after each stage.
+//! that. Of many starts a third goes on after each stage.
 
 use super::effort::Effort;
 use super::model::Model;
@@ -23,7 +23,7 @@ enum Stage {
     Lines(f64, u64),
 }
 
-/// The stages with a few of the runs, after each of which half of the starts go on.
+/// The stages with a few of the runs, after each of which a third of the starts goes on.
 const ROUGH: [Stage; 3] = [
     Stage::Energies(12),
     Stage::Lines(0.01, 10),
@@ -36,13 +36,17 @@ const FINE: [Stage; 3] = [
     Stage::Lines(0.0, 40),
 ];
 /// Ends of rough descents that are followed with all runs.
-const FOLLOWED: usize = 2;
+const FOLLOWED: usize = 3;
+/// One of so many starts goes on after a stage.
+const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
 const CHANGE: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Most evaluations of the last descent.
 const LAST: u64 = 300;
+/// Most evaluations of a search from where it ends.
+const SEARCH: u64 = 800;
 
 /// Where a descent has led.
 #[derive(Clone, Debug)]
@@ -66,7 +70,7 @@ pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -
             descend(&part, led, stage, effort);
         }
         led.sort_by(|a, b| a.left.total_cmp(&b.left));
-        led.truncate(led.len().div_ceil(2).max(FOLLOWED));
+        led.truncate(led.len().div_ceil(KEPT).max(FOLLOWED));
     }
     led
 }
@@ -131,10 +135,14 @@ pub(super) fn fit(
     optimiser: Optimiser,
     effort: &mut Effort,
 ) -> Result<Fit, Error> {
+    let evaluations = match optimiser {
+        Optimiser::Default => SEARCH,
+        _ => LAST,
+    };
     let settings = FitSettings {
         optimiser,
         seed: 0,
-        evaluations: LAST,
+        evaluations,
         held_out: Vec::new(),
         start: Some(x),
     };

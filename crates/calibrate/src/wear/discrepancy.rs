@@ -13,6 +13,9 @@ use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares};
 use crate::problem::Problem;
 
+/// Greatest size of a discrepancy that still has a range, rad: beyond it high orders say nothing, and clearances far from
+/// each other explain what is left.
+const GREATEST: f64 = 0.003;
 /// Relative change of the sum of squares at which the descent ends.
 const CHANGE: f64 = 1e-4;
 /// Most evaluations of it.
@@ -39,7 +42,7 @@ pub(super) fn discrepancy(
 ) -> Result<Option<Discrepancy>, Error> {
     let x = fit.coordinates();
     let (timing, _) = Likelihood::new(problem).likeliest(&x, &TIMINGS)?;
-    if timing == 0.0 {
+    if timing == 0.0 || timing > GREATEST {
         return Ok(None);
     }
     let known: Vec<usize> = (0..x.len())

@@ -11,12 +11,14 @@ use crate::error::Error;
 use crate::observation::Observation;
 use crate::problem::Problem;
 
-/// Step of the logarithm of a clearance. The time in which a gap is crossed goes with its root and changes by a fifth.
-const STEP: f64 = 0.4;
+/// Step of the logarithm of a clearance. The time in which a gap is crossed goes with its root and changes by a tenth.
+const STEP: f64 = 0.2;
 /// Points that go on to the next joint.
 const BEAM: usize = 4;
 /// Points that are handed on.
-const STARTS: usize = 8;
+const STARTS: usize = 48;
+/// Distance of two of them at least, in logarithms of clearances.
+const APART: f64 = 0.3;
 /// Runs that are looked at.
 const RUNS: usize = 3;
 
@@ -78,8 +80,14 @@ pub(super) fn starts(
         beam = next;
     }
     all.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-    all.truncate(STARTS);
-    Ok(all.into_iter().map(|point| point.x).collect())
+    let mut starts: Vec<Vec<f64>> = Vec::new();
+    for point in all {
+        let near = |x: &Vec<f64>| x.iter().zip(&point.x).all(|(a, b)| (a - b).abs() < APART);
+        if starts.len() < STARTS && !starts.iter().any(near) {
+            starts.push(point.x);
+        }
+    }
+    Ok(starts)
 }
 
 /// The best points with the clearance at `place`, that of `joint`, moved over its grid.
@@ -150,9 +158,9 @@ mod tests {
             bounds: [3e-5, 1e-3],
         };
         let points = grid(&joint);
-        assert_eq!(points.len(), 5);
+        assert_eq!(points.len(), 11);
         assert!(
-            points.iter().all(|c| *c > 1.4e-4 && *c <= 1e-3),
+            points.iter().all(|c| *c > 1.2e-4 && *c <= 1e-3),
             "{points:?}"
         );
         for pair in points.windows(2) {

@@ -14,8 +14,9 @@ use crate::stages::Stage;
 
 /// Difference of Schwarz's criterion from which it is strong evidence (Raftery 1995).
 const STRONG: f64 = 6.0;
-/// Points from the screening at which descents with fitted contact parameters start.
-const STARTS: usize = 3;
+/// Points from which descents with the contact parameters of the machine file start. All points are followed only where
+/// these do not lead to the noise.
+const FIRST: usize = 12;
 
 /// A model with its fit.
 pub(super) struct Found {
@@ -64,7 +65,8 @@ pub(super) fn selected(
     effort.ends();
     let points = points?;
     effort.begins(Stage::Clearances);
-    let led = roughly(&model, &points, effort);
+    let first = &points[..points.len().min(FIRST)];
+    let led = roughly(&model, first, effort);
     let mut best = fitted(model, led, effort)?;
     while !effort.stopped && !best.fit.is_at_noise() {
         let Some((model, led)) = best_step(healthy, joints, &best, &points, effort)? else {
@@ -102,8 +104,7 @@ fn best_step(
             }
             Step::Contacts => {
                 let first = Model::new(healthy, joints, initially(joints), false)?;
-                let earlier = points.iter().take(STARTS);
-                let earlier = earlier.map(|x| model.coordinates_of(&first, x));
+                let earlier = points.iter().map(|x| model.coordinates_of(&first, x));
                 [x].into_iter().chain(earlier).collect()
             }
         };

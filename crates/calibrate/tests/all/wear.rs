@@ -36,7 +36,12 @@ impl Watcher for Steps {
 fn file(clearances: [&str; 2]) -> Value {
     let mut tree = machine(clearances);
     for joint in [BIG, SMALL] {
-        paths::set(&mut tree, &format!("{joint}.contact.relation"), json!("constant")).unwrap();
+        paths::set(
+            &mut tree,
+            &format!("{joint}.contact.relation"),
+            json!("constant"),
+        )
+        .unwrap();
     }
     for joint in ["guide", "main"] {
         tree["joints"][joint] = json!("ideal");
@@ -102,5 +107,10 @@ fn an_estimation_that_is_stopped_says_so_and_has_no_interval() {
     let results = estimate(&recorded, &[0.0], 1.5, &mut Steps(4)).unwrap();
     assert!(!results.complete);
     assert_eq!(results.interval, Interval::None);
-    assert!(results.joints.iter().all(|(_, joint)| joint.low_m.is_none()));
+    assert!(
+        results
+            .joints
+            .iter()
+            .all(|(_, joint)| joint.low_m.is_none())
+    );
 }

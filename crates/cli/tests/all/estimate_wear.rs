@@ -47,19 +47,30 @@ fn a_worn_big_end_is_found_with_its_clearance() {
     assert_eq!(results.worn(), ["joints.big_end"]);
     let joint = results.joints.get("joints.big_end").unwrap();
     assert_eq!(joint.healthy_m, Some(3e-5));
-    assert_eq!((joint.verdict, results.interval), (Verdict::Worn, Interval::Noise));
+    assert_eq!(
+        (joint.verdict, results.interval),
+        (Verdict::Worn, Interval::Noise)
+    );
     let (low, high) = (joint.low_m.unwrap(), joint.high_m.unwrap());
     // The file's contact holds at any clearance, the relation of Eq. (5) moves the stiffness a little.
-    assert!((joint.clearance_m.unwrap() / 1e-4 - 1.0).abs() < 2e-3, "{joint:?}");
+    assert!(
+        (joint.clearance_m.unwrap() / 1e-4 - 1.0).abs() < 2e-3,
+        "{joint:?}"
+    );
     assert!(low < high && high - low < 1e-6, "{joint:?}");
     let found = input::machine_file::read(&out.join("machine.yaml")).unwrap();
-    let text = found.to_tree()["joints"]["big_end"]["clearance"].as_str().unwrap();
+    let text = found.to_tree()["joints"]["big_end"]["clearance"]
+        .as_str()
+        .unwrap();
     let clearance = input::unit::parse(text).unwrap().si;
     assert!((clearance - joint.clearance_m.unwrap()).abs() < 1e-12);
     let page = fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("Worn: big end.") && page.contains("Diametral"));
     let said_of = String::from_utf8(done.stdout).unwrap();
-    assert!(said_of.contains("joints.big_end: worn, radial clearance 0.1"), "{said_of}");
+    assert!(
+        said_of.contains("joints.big_end: worn, radial clearance 0.1"),
+        "{said_of}"
+    );
 
     let again = estimate(folder.path(), &machine, &[]);
     assert_eq!(again.status.code(), Some(2));
@@ -81,10 +92,17 @@ fn what_cannot_be_estimated_says_why() {
     refused(&machine, &["--leave-out", "run1"], "run01");
     refused(&folder.path().join("none.yaml"), &[], "none.yaml");
 
-    let mut tree = input::machine_file::read(&machine).unwrap().to_tree().clone();
+    let mut tree = input::machine_file::read(&machine)
+        .unwrap()
+        .to_tree()
+        .clone();
     let big_end = tree["joints"]["big_end"].take();
     tree["joints"]["big_end"] = "ideal".into();
-    refused(&written(folder.path(), &tree), &[], "no joint that may be worn");
+    refused(
+        &written(folder.path(), &tree),
+        &[],
+        "no joint that may be worn",
+    );
     // Another stroke than that of the recordings.
     tree["joints"]["big_end"] = big_end;
     tree["crank"]["radius"] = "60 mm".into();
@@ -92,7 +110,9 @@ fn what_cannot_be_estimated_says_why() {
 
     let list = folder.path().join("recordings.yaml");
     let text = fs::read_to_string(&list).unwrap();
-    let lines = text.lines().filter(|line| !line.contains("name: acceleration"));
+    let lines = text
+        .lines()
+        .filter(|line| !line.contains("name: acceleration"));
     fs::write(&list, lines.collect::<Vec<_>>().join("\n")).unwrap();
     let machine = healthy(folder.path());
     refused(&machine, &[], "no channel shows clearances");
