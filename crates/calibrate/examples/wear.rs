@@ -1,7 +1,8 @@
 //! Measures what an estimation of wear reaches on recordings whose clearances are known.
 //!
 //! ```text
-//! wear own FIRST LAST SEED OUT.csv            machines drawn here, and their recordings
+//! wear own JOINTS FIRST LAST SEED OUT.csv     machines drawn here, and their recordings. Of JOINTS joints, 2 or 4,
+//!                                             one or more are worn: big end, small end, guide, main bearing
 //! wear bundle BUNDLE MACHINE RUN OUT.csv      a run of a bundle that states the true clearances
 //! wear labelled FOLDER MACHINE FIRST LAST OUT.csv
 //!                                             a set of labelled recordings of another program: FOLDER has labels.csv and
@@ -25,10 +26,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let command = format!("wear {}", words.join(" "));
     match words[..] {
-        ["own", first, last, seed, out] => {
+        ["own", joints, first, last, seed, out] => {
             let mut table = Table::open(Path::new(out), command)?;
             for case in first.parse()?..=last.parse()? {
-                table.add(&own::case_of(seed.parse()?, case)?)?;
+                table.add(&own::case_of(
+                    seed.parse()?,
+                    case,
+                    joints.parse::<usize>()?.clamp(2, 4),
+                )?)?;
             }
             table.summary();
         }
@@ -46,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             table.summary();
         }
         _ => {
-            return Err("usage: wear own FIRST LAST SEED OUT.csv | wear bundle BUNDLE MACHINE RUN OUT.csv | \
+            return Err("usage: wear own JOINTS FIRST LAST SEED OUT.csv | wear bundle BUNDLE MACHINE RUN OUT.csv | \
                  wear labelled FOLDER MACHINE FIRST LAST OUT.csv"
                 .into());
         }

@@ -1,7 +1,7 @@
 //! Machines that are drawn here, and their recordings.
 //!
 //! The healthy machine is the single-stage compressor with big end and small end clear, and contact parameters between 0.6 and
-//! 1.4 times their nominal values. Its file states them as a calibration finds them, 1 % off. In the worn machine one to
+//! 1.4 times their nominal values. Its file states them as a calibration finds them, 1 % off. In the worn machine one or more of the first two or
 //! four joints have 2 to 8 times their normal clearance; the others are as in the file, up to 20 % off. Each has one or two
 //! runs, crosshead or frame acceleration, with or without the pressure of the cylinder.
 
@@ -18,8 +18,11 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-/// The joints with their normal clearance, m, and whether they are clear in the file.
-const JOINTS: [(&str, f64, bool); 4] = [
+/// A joint with its normal clearance, m, and whether it is clear in the file.
+type Joint = (&'static str, f64, bool);
+
+/// The joints, of which the first so many may be worn. The others are ideal.
+const JOINTS: [Joint; 4] = [
     ("joints.big_end", 3e-5, true),
     ("joints.small_end", 3e-5, true),
     ("joints.guide", 5e-5, false),
@@ -35,11 +38,11 @@ const CONTACT: [&str; 3] = [
 const DRAWS: usize = 20;
 
 /// The case of this number.
-pub fn case_of(seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
+pub fn case_of(seed: u64, number: u64, joints: usize) -> Result<Case, Box<dyn Error>> {
     let mut random = stream(seed, number, Purpose::Variation);
     let mut last = None;
     for _ in 0..DRAWS {
-        match drawn(&mut random, seed, number) {
+        match drawn(&mut random, seed, number, &JOINTS[..joints]) {
             Ok(case) => return Ok(case),
             Err(error) => last = Some(error),
         }
@@ -47,9 +50,14 @@ pub fn case_of(seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
     Err(last.unwrap_or_else(|| "nothing was drawn".into()))
 }
 
-fn drawn(random: &mut Stream, seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
-    let (file, healthy) = machines(random)?;
-    let truth = clearances(random);
+fn drawn(
+    random: &mut Stream,
+    seed: u64,
+    number: u64,
+    joints: &[Joint],
+) -> Result<Case, Box<dyn Error>> {
+    let (file, healthy) = machines(random, joints)?;
+    let truth = clearances(random, joints);
     let mut worn = healthy;
     for (joint, clearance) in &truth {
         if *clearance > 0.0 {
@@ -77,10 +85,13 @@ fn drawn(random: &mut Stream, seed: u64, number: u64) -> Result<Case, Box<dyn Er
 }
 
 /// The machine file and the machine itself, healthy.
-fn machines(random: &mut Stream) -> Result<(Value, Value), Box<dyn Error>> {
+fn machines(random: &mut Stream, joints: &[Joint]) -> Result<(Value, Value), Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines/single-stage.yaml");
     let mut tree = input::machine_file::read(&path)?.to_tree().clone();
-    for (joint, normal, is_clear) in JOINTS {
+    for (joint, ..) in &JOINTS[joints.len()..] {
+        paths::set(&mut tree, joint, json!("ideal"))?;
+    }
+    for (joint, normal, is_clear) in joints.iter().copied() {
         set(&mut tree, &format!("{joint}.normal_clearance"), normal)?;
         if is_clear {
             set(&mut tree, &format!("{joint}.clearance"), normal)?;
@@ -95,7 +106,7 @@ fn machines(random: &mut Stream) -> Result<(Value, Value), Box<dyn Error>> {
         }
     }
     let mut file = tree.clone();
-    for path in JOINTS
+    for path in joints
         .iter()
         .flat_map(|(joint, ..)| CONTACT.map(|key| format!("{joint}.{key}")))
     {
@@ -108,13 +119,13 @@ fn machines(random: &mut Stream) -> Result<(Value, Value), Box<dyn Error>> {
 }
 
 /// The clearances of the worn machine, m; 0 for a joint that is ideal.
-fn clearances(random: &mut Stream) -> BTreeMap<String, f64> {
-    let count = random.random_range(1..=JOINTS.len());
-    let mut worn: Vec<usize> = (0..JOINTS.len()).collect();
+fn clearances(random: &mut Stream, joints: &[Joint]) -> BTreeMap<String, f64> {
+    let count = random.random_range(1..=joints.len());
+    let mut worn: Vec<usize> = (0..joints.len()).collect();
     while worn.len() > count {
         worn.remove(random.random_range(0..worn.len()));
     }
-    let of = |(i, (joint, normal, is_clear)): (usize, (&str, f64, bool))| {
+    let of = |(i, (joint, normal, is_clear)): (usize, Joint)| {
         let times = match worn.contains(&i) {
             true => random.random_range(2.0_f64.ln()..8.0_f64.ln()).exp(),
             false if is_clear => random.random_range(0.8..1.2),
@@ -122,7 +133,7 @@ fn clearances(random: &mut Stream) -> BTreeMap<String, f64> {
         };
         (joint.to_owned(), times * normal)
     };
-    JOINTS.into_iter().enumerate().map(of).collect()
+    joints.iter().copied().enumerate().map(of).collect()
 }
 
 /// The acceleration of the frame that the machine has a sensor for.

@@ -35,13 +35,11 @@ impl Watcher for Steps {
 /// has no guide and no main bearing that may be worn.
 fn file(clearances: [&str; 2]) -> Value {
     let mut tree = machine(clearances);
-    for joint in [BIG, SMALL] {
-        paths::set(
-            &mut tree,
-            &format!("{joint}.contact.relation"),
-            json!("constant"),
-        )
-        .unwrap();
+    for (joint, key, value) in [BIG, SMALL].into_iter().flat_map(|joint| {
+        [("relation", "constant"), ("at_clearance", "0.03 mm")]
+            .map(|(key, value)| (joint, key, value))
+    }) {
+        paths::set(&mut tree, &format!("{joint}.contact.{key}"), json!(value)).unwrap();
     }
     for joint in ["guide", "main"] {
         tree["joints"][joint] = json!("ideal");
@@ -51,7 +49,7 @@ fn file(clearances: [&str; 2]) -> Value {
 
 /// The healthy machine `file` beside the recordings of the machine `worn`.
 fn recorded(file: Value, worn: Value) -> Problem {
-    let mut recorded = problem(worn, &[], &[420.0, 560.0], ORDERS, NOISE.powi(2));
+    let mut recorded = problem(worn, &[], &[500.0], ORDERS, NOISE.powi(2));
     let offset = Parameter::named(&file, &[], CRANK_ANGLE_OFFSET, None);
     recorded.parameters = vec![offset.unwrap()];
     recorded.tree = file;
