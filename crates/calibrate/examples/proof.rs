@@ -9,6 +9,8 @@
 #![allow(clippy::print_stdout)]
 
 mod bench;
+#[path = "bench/recording.rs"]
+mod recording;
 
 use bench::Bench;
 use calibrate::fit::{FitSettings, Optimiser};

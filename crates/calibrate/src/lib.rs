@@ -71,6 +71,7 @@ pub mod stages;
 pub mod task;
 pub mod throw_alone;
 pub mod transfer;
+pub mod wear;
 pub mod zero;
 
 pub use bounded::Bounded;

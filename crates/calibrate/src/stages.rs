@@ -21,6 +21,10 @@ pub enum Stage {
     DataSheet,
     /// The relations between clearances are compared.
     Relations,
+    /// Clearances are screened on a grid.
+    Screen,
+    /// Clearances are fitted.
+    Clearances,
 }
 
 /// Follows a calibration, and may stop it.

@@ -6,6 +6,7 @@ mod fit_settings;
 mod parameters;
 mod relation;
 mod settings;
+mod stated_clearances;
 
 pub use settings::Settings;
 
@@ -74,6 +75,9 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
             encoded.push(any(|m| matches!(m, Meaning::CrankAngle(_))));
             runs.push(run);
         }
+    }
+    if settings.clearances_unknown {
+        stated_clearances::pass_over(&mut runs)?;
     }
     let free = tree["crank"]["drive"]["free"].is_object();
     for run in &mut runs {

@@ -14,6 +14,7 @@ pub mod calibrate;
 pub mod compare;
 pub mod completions;
 pub mod console;
+pub mod estimate_wear;
 pub mod explain_gap;
 pub mod failure;
 pub mod features;

@@ -2,7 +2,8 @@
 
 use crate::console::{Console, colour_of_clap};
 use crate::{
-    Failure, calibrate, compare, completions, explain_gap, features, gen_dataset, hidden_effects,
+    Failure, calibrate, compare, completions, estimate_wear, explain_gap, features, gen_dataset,
+    hidden_effects,
 };
 use crate::{man, replay, report, schema, simulate, sweep, verify};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -43,6 +44,8 @@ enum Verb {
     Report(report::Arguments),
     /// Fit a machine's parameters to recordings of it
     Calibrate(calibrate::Arguments),
+    /// Estimate which joints are worn, and how much, from recordings
+    EstimateWear(estimate_wear::Arguments),
     /// Find which effect a model lacks that recordings show, and add it
     ExplainGap(explain_gap::Arguments),
     /// Hide effects in recordings made here, and count which of them explain-gap finds
@@ -93,6 +96,7 @@ impl Program for Crosshead {
             Verb::Verify(arguments) => verify::run(arguments),
             Verb::Report(arguments) => report::run(arguments),
             Verb::Calibrate(arguments) => calibrate::run(arguments),
+            Verb::EstimateWear(arguments) => estimate_wear::run(arguments),
             Verb::ExplainGap(arguments) => explain_gap::run(arguments),
             Verb::HiddenEffects(arguments) => hidden_effects::run(arguments),
             Verb::Replay(arguments) => replay::run(arguments),

@@ -66,6 +66,7 @@ pub fn into_folder(
         base: asked.base,
         machine: None,
         allow_outside: asked.allow_outside,
+        clearances_unknown: false,
         locate: asked.locate,
     })
     .map_err(Error::Input)?;

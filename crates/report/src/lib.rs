@@ -9,6 +9,7 @@
 //! - [`features_page`]: the HTML page that documents the features;
 //! - [`calibration_page`]: the HTML page of a calibration;
 //! - [`gap_page`]: the HTML page of an explanation;
+//! - [`wear_page`]: the HTML page of an estimation of wear;
 //! - [`text`]: numbers with units, words, escaping.
 //!
 //! A page is a plain struct that renders itself. The same struct gives the same bytes, and a page
@@ -37,6 +38,7 @@ mod revolutions;
 pub mod run_figures;
 mod statistics;
 pub mod text;
+pub mod wear_page;
 
 pub use column::Column;
 pub use files::{write_page, write_pages};

@@ -14,6 +14,9 @@ pub struct Settings<'a> {
     pub machine: Option<&'a Value>,
     /// Whether its bundles may name recordings outside of their folders.
     pub allow_outside: bool,
+    /// Whether the clearances are what is asked for: those that the runs state are passed over, and the machine has
+    /// those of its file.
+    pub clearances_unknown: bool,
     /// Gives a mistake in the settings the place where they stand.
     pub locate: &'a dyn Fn(input::Error) -> input::Error,
 }

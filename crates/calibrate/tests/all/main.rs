@@ -12,3 +12,4 @@ mod replay;
 mod search;
 mod slow_chain;
 mod unloaded;
+mod wear;

@@ -1,7 +1,7 @@
 //! `crosshead calibrate`: a machine's parameters from recordings of it.
 
 pub(crate) mod arguments;
-mod progress;
+pub(crate) mod progress;
 pub(crate) mod summary;
 
 use crate::output::hint;
@@ -26,6 +26,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         base: &base,
         machine: None,
         allow_outside: arguments.allow_outside(),
+        clearances_unknown: false,
         locate: &locate,
     };
     let cancel = interrupt::flag()?;

@@ -7,13 +7,13 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The progress of the stage that is under way; `cancel` stops the calibration.
-pub(super) struct Bar<'a> {
+pub(crate) struct Bar<'a> {
     cancel: &'a AtomicBool,
     shown: Shown,
 }
 
 impl<'a> Bar<'a> {
-    pub(super) fn new(cancel: &'a AtomicBool) -> Self {
+    pub(crate) fn new(cancel: &'a AtomicBool) -> Self {
         Self {
             cancel,
             shown: Shown::hidden(),
@@ -31,6 +31,14 @@ impl Watcher for Bar<'_> {
             Stage::DataSheet => (
                 "evaluations at most for values of the data sheet",
                 "{spinner} the model is wrong: values of the data sheet, {pos} evaluations, {elapsed}, {msg}",
+            ),
+            Stage::Screen => (
+                "evaluations at most to screen clearances",
+                "{spinner} clearances are screened, {pos} evaluations, {elapsed}",
+            ),
+            Stage::Clearances => (
+                "evaluations at most to fit clearances",
+                "{spinner} clearances are fitted, {pos} evaluations, {elapsed}, {msg}",
             ),
             Stage::Relations => return,
         };

@@ -58,6 +58,7 @@ fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
         base: sweep.folder(),
         machine: machine.as_ref(),
         allow_outside: false,
+        clearances_unknown: false,
         locate: &|error: Error| sweep.locate(error),
     };
     let folder = root.join(CALIBRATION);

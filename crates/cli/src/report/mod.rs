@@ -1,4 +1,4 @@
-//! `crosshead report`: the HTML pages of a dataset, of a calibration, or of an explanation.
+//! `crosshead report`: the HTML pages of a dataset, of a calibration, of wear, or of an explanation.
 
 use crate::Failure;
 use crate::output::hint;
@@ -8,6 +8,7 @@ use ::report::chaos_page::ChaosPage;
 use ::report::dataset_page::{DatasetPage, Design};
 use ::report::features_page::FeaturesPage;
 use ::report::gap_page::GapPage;
+use ::report::wear_page::WearPage;
 use ::report::{Error, write_page, write_pages};
 use ::sweep::reader::Dataset;
 use clap::Args;
@@ -25,14 +26,14 @@ Examples:
   crosshead report calibrated
   crosshead report explained
 
-A calibration and an explanation have one page. Beside that of a dataset stand chaos.html
+A calibration, wear and an explanation have one page. Beside that of a dataset stand chaos.html
 (exponents, regimes, portraits, bifurcations), features.html (what each feature is) and figures/,
 every figure as an SVG file.
 
 Exit status: 0 done; 1 a page cannot be made or written; 2 the folder is no whole dataset.")]
 pub struct Arguments {
-    /// Folder of a dataset, a calibration or an explanation, as gen-dataset, calibrate or explain-gap
-    /// writes it
+    /// Folder of a dataset, a calibration, wear or an explanation, as gen-dataset, calibrate, estimate-wear
+    /// or explain-gap writes it
     dir: PathBuf,
     /// The page [default: DIR/report.html]
     #[arg(long, value_name = "FILE.html")]
@@ -49,6 +50,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| dir.join(PAGE));
     if CalibrationPage::is_at(dir) {
         println!("{}", write_calibration(dir, &out)?.display());
+    } else if WearPage::is_at(dir) {
+        println!("{}", write_wear(dir, &out)?.display());
     } else if GapPage::is_at(dir) {
         println!("{}", write_gap(dir, &out)?.display());
     } else {
@@ -104,6 +107,19 @@ pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Fa
 /// A folder that is no explanation, or a page that cannot be made or written.
 pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = GapPage::read(folder)
+        .map_err(failed)?
+        .render()
+        .map_err(Failure::work)?;
+    write_page(out, &page.html).map_err(failed)?;
+    Ok(out.to_owned())
+}
+
+/// Writes the page of the wear in `folder` to the file `out`, and says where that is.
+///
+/// # Errors
+/// A folder without an estimation of wear, or a page that cannot be made or written.
+pub(crate) fn write_wear(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+    let page = WearPage::read(folder)
         .map_err(failed)?
         .render()
         .map_err(Failure::work)?;

@@ -7,6 +7,7 @@ mod console;
 mod damage;
 mod dataset;
 mod dataset_bytes;
+mod estimate_wear;
 mod explain_gap;
 mod explain_pressures;
 mod features;

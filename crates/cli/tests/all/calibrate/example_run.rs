@@ -129,6 +129,7 @@ pub fn task_of(folder: &Path, text: &str) -> Task {
         calibration: &calibration,
         base: folder,
         allow_outside: false,
+        clearances_unknown: false,
         locate: &|error| error,
     };
     task(&settings)

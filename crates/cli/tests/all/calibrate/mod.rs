@@ -322,6 +322,7 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
         calibration: &calibration,
         base: folder.path(),
         allow_outside: false,
+        clearances_unknown: false,
         locate: &|error| error,
     };
     let out = folder.path().join("out");

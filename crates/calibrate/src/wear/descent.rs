@@ -1,0 +1,155 @@
+//! Descents from what is slow in the recordings to what is fast.
+//!
+//! Energies have few minima and come first, then lines that may stand elsewhere in the revolution, with less and less of
+//! that. Of many starts a third goes on after each stage.
+
+use super::effort::Effort;
+use super::model::Model;
+use super::screen::few;
+use crate::energies::Energies;
+use crate::error::Error;
+use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
+use crate::likelihood::{Likelihood, NOISE, misfit};
+use crate::optimiser::{LeastSquares, Progress};
+use crate::problem::Problem;
+use crate::secant::secant;
+
+/// What a stage compares, and the evaluations that it may take.
+#[derive(Clone, Copy, Debug)]
+enum Stage {
+    /// Energies by band and sector.
+    Energies(u64),
+    /// Lines that may stand elsewhere by so much, rad.
+    Lines(f64, u64),
+}
+
+/// The stages with a few of the runs, after each of which a third of the starts goes on.
+const ROUGH: [Stage; 3] = [
+    Stage::Energies(12),
+    Stage::Lines(0.01, 10),
+    Stage::Lines(0.003, 12),
+];
+/// The stages with all runs.
+const FINE: [Stage; 3] = [
+    Stage::Lines(0.003, 20),
+    Stage::Lines(0.001, 20),
+    Stage::Lines(0.0, 40),
+];
+/// Ends of rough descents that are followed with all runs.
+const FOLLOWED: usize = 3;
+/// One of so many starts goes on after a stage.
+const KEPT: usize = 3;
+/// Relative change of the sum of squares at which a stage ends.
+const CHANGE: f64 = 1e-2;
+/// Sizes of the discrepancy that a model may have, rad.
+pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
+/// Most evaluations of the last descent.
+const LAST: u64 = 300;
+/// Most evaluations of a search from where it ends.
+const SEARCH: u64 = 800;
+
+/// Where a descent has led.
+#[derive(Clone, Debug)]
+pub(super) struct Led {
+    /// Coordinates.
+    pub x: Vec<f64>,
+    /// What is left there, in the units of the last stage: with lines, twice the negative logarithm of the likelihood.
+    pub left: f64,
+}
+
+/// Where short descents from these starts lead with a few of the runs, the best first.
+pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -> Vec<Led> {
+    let part = few(&model.problem);
+    let at = |x: &Vec<f64>| Led {
+        x: x.clone(),
+        left: f64::INFINITY,
+    };
+    let mut led: Vec<Led> = starts.iter().map(at).collect();
+    for stage in ROUGH {
+        for led in &mut led {
+            descend(&part, led, stage, effort);
+        }
+        led.sort_by(|a, b| a.left.total_cmp(&b.left));
+        led.truncate(led.len().div_ceil(KEPT).max(FOLLOWED));
+    }
+    led
+}
+
+/// The best coordinates that descents from these ends lead to with all runs.
+pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Result<Vec<f64>, Error> {
+    let mut ends: Vec<Led> = Vec::new();
+    for mut led in led.into_iter().take(FOLLOWED) {
+        for stage in FINE {
+            descend(&model.problem, &mut led, stage, effort);
+        }
+        let at_noise = misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE;
+        ends.push(led);
+        if at_noise || effort.stopped {
+            break;
+        }
+    }
+    ends.sort_by(|a, b| a.left.total_cmp(&b.left));
+    let best = ends.into_iter().next();
+    best.map(|best| best.x)
+        .ok_or(Error::Nothing("no descent has led anywhere"))
+}
+
+/// One stage of a descent. Where the machine cannot be simulated, nothing is moved.
+fn descend(problem: &Problem, led: &mut Led, stage: Stage, effort: &mut Effort) {
+    if effort.stopped {
+        return;
+    }
+    let measured = match stage {
+        Stage::Energies(most) => {
+            let energies = Energies::new(problem);
+            let x = secants(&energies, &led.x, most, effort);
+            energies.squares(&x).map(|left| (x, left))
+        }
+        Stage::Lines(timing, most) => {
+            let lines = Likelihood::coarse(problem, timing);
+            let x = secants(&lines, &led.x, most, effort);
+            lines.likeliest(&x, &TIMINGS).map(|(_, left)| (x, left))
+        }
+    };
+    match measured {
+        Ok((x, left)) => (led.x, led.left) = (x, left),
+        Err(_) => led.left = f64::INFINITY,
+    }
+}
+
+fn secants(compared: &impl LeastSquares, x: &[f64], most: u64, effort: &mut Effort) -> Vec<f64> {
+    let found = secant(compared, x, CHANGE, most, &mut |progress: &Progress| {
+        effort.shown(progress.evaluations)
+    });
+    effort.spent += found.evaluations;
+    found.x
+}
+
+/// The fit of a model from `x`, with intervals.
+///
+/// # Errors
+/// As [`calibrate`].
+pub(super) fn fit(
+    model: &Model,
+    x: Vec<f64>,
+    optimiser: Optimiser,
+    effort: &mut Effort,
+) -> Result<Fit, Error> {
+    let evaluations = match optimiser {
+        Optimiser::Default => SEARCH,
+        _ => LAST,
+    };
+    let settings = FitSettings {
+        optimiser,
+        seed: 0,
+        evaluations,
+        held_out: Vec::new(),
+        start: Some(x),
+    };
+    let fit = calibrate(&model.problem, &settings, |progress| {
+        effort.fitted(progress.misfit());
+        effort.shown(progress.evaluations)
+    })?;
+    effort.spent += fit.evaluations;
+    Ok(fit)
+}

@@ -1,0 +1,254 @@
+//! An estimation of wear, from recordings to the files of its results.
+
+use super::descent;
+use super::discrepancy::{Discrepancy, discrepancy};
+use super::effort::Effort;
+use super::joint::Joint;
+use super::results::{Contact, Interval, Misfits, Results, RunMisfit, WEAR};
+use super::selection::{Found, selected};
+use super::verdict::{Grounds, together};
+use crate::comparison::compare_models;
+use crate::error::Error;
+use crate::fit::{Optimiser, RunFit};
+use crate::likelihood::{Likelihood, misfit};
+use crate::pictures;
+use crate::problem::Problem;
+use crate::results::{Estimate, MACHINE};
+use crate::stages::{Stage, Watcher};
+use crate::task::{Settings, Task, task};
+use input::MachineFile;
+use recordings::WholeFile;
+use std::path::{Path, PathBuf};
+
+/// Rounds in which runs without a recorded zero of the crank angle are aligned with the worn machine.
+const ALIGNMENTS: usize = 3;
+
+/// What is asked for.
+pub struct Asked<'a> {
+    /// The bundle and the machine file. The clearances of the bundle are passed over.
+    pub settings: Settings<'a>,
+    /// A joint counts as worn from this many times its normal clearance.
+    pub worn_from: f64,
+}
+
+/// An estimation whose input has been read and found to be usable.
+pub struct Prepared {
+    task: Task,
+    joints: Vec<Joint>,
+    worn_from: f64,
+    out: PathBuf,
+}
+
+/// An estimation that is on the disk.
+#[derive(Clone, Debug)]
+pub struct Estimated {
+    /// The machine file with the clearances that were found.
+    pub machine: PathBuf,
+    /// The content of `wear.json`.
+    pub results: Results,
+}
+
+/// Reads everything that an estimation into the folder `out` needs. Nothing is written.
+///
+/// # Errors
+/// A bundle, a machine or recordings that cannot be used or contradict each other, a machine without joints that may be
+/// worn, recordings without a channel that shows clearances.
+pub fn prepare(asked: &Asked, out: &Path) -> Result<Prepared, Error> {
+    let task = task(&asked.settings)?;
+    let joints = Joint::of_machine(&task.problem.tree)?;
+    if joints.is_empty() {
+        return Err(Error::Refused(
+            "the machine file has no joint that may be worn: big_end, small_end, guide or main in `joints` needs a \
+             section with a clearance (or 'ideal'), a size and a contact law"
+                .into(),
+        ));
+    }
+    for run in &task.problem.runs {
+        if run.channels.iter().all(|c| c.quantity().is_pressure()) {
+            return Err(Error::unusable(
+                &run.id,
+                "no channel shows clearances: an acceleration of the crosshead or the frame is needed, in a channel \
+                 that `sensors` of the machine file has",
+            ));
+        }
+    }
+    Ok(Prepared {
+        task,
+        joints,
+        worn_from: asked.worn_from,
+        out: out.to_owned(),
+    })
+}
+
+impl Prepared {
+    /// Estimates the clearances, and writes `wear.json`, the machine file with them, and what pictures are drawn from.
+    /// Where `watcher` stops the search, the best so far is written, marked as incomplete.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated, or files that cannot be written.
+    pub fn finish(mut self, watcher: &mut dyn Watcher) -> Result<Estimated, Error> {
+        let mut effort = Effort::new(watcher);
+        let healthy = self.task.problem.clone();
+        let x = start(&self.task);
+        let mut found = selected(&healthy, &self.joints, &x, &mut effort)?;
+        self.align(&mut found, &mut effort)?;
+        // The healthy machine is held against the aligned runs.
+        let healthy = Problem {
+            runs: found.model.problem.runs.clone(),
+            ..healthy
+        };
+        let concluded = conclude(
+            &healthy,
+            &x,
+            &self.joints,
+            &found,
+            self.worn_from,
+            &mut effort,
+        )?;
+        let problem = &found.model.problem;
+        let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
+        pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
+        let machine = self.out.join(MACHINE);
+        let tree = problem.fitted(&concluded.x)?;
+        let text = MachineFile::from_tree(&tree).and_then(|file| file.to_yaml())?;
+        WholeFile::write(&machine, text.as_bytes())?;
+        // What makes the folder whole comes last.
+        let path = self.out.join(WEAR);
+        let text = serde_json::to_string_pretty(&concluded.results);
+        let text = text.map_err(|error| Error::file(&path, error))?;
+        WholeFile::write(&path, text.as_bytes())?;
+        Ok(Estimated {
+            machine,
+            results: concluded.results,
+        })
+    }
+
+    /// Aligns runs without a recorded zero of the crank angle with the worn machine, and fits again.
+    fn align(&mut self, found: &mut Found, effort: &mut Effort) -> Result<(), Error> {
+        for _ in 0..ALIGNMENTS {
+            let x = found.fit.coordinates();
+            self.task.problem = found.model.problem.clone();
+            if effort.stopped || !self.task.zeroed.contains(&false) || !self.task.align(&x)? {
+                break;
+            }
+            found.model.problem = self.task.problem.clone();
+            effort.begins(Stage::Clearances);
+            let fit = descent::fit(&found.model, x, Optimiser::LevenbergMarquardt, effort);
+            effort.ends();
+            found.fit = fit?;
+        }
+        Ok(())
+    }
+}
+
+/// Estimates the clearances of the machine that the runs of `healthy` are of; its parameters are what else is unknown, at
+/// the coordinates `x` to begin with.
+///
+/// # Errors
+/// A machine that cannot be simulated.
+pub fn estimate(
+    healthy: &Problem,
+    x: &[f64],
+    worn_from: f64,
+    watcher: &mut dyn Watcher,
+) -> Result<Results, Error> {
+    let mut effort = Effort::new(watcher);
+    let joints = Joint::of_machine(&healthy.tree)?;
+    let found = selected(healthy, &joints, x, &mut effort)?;
+    let concluded = conclude(healthy, x, &joints, &found, worn_from, &mut effort)?;
+    Ok(concluded.results)
+}
+
+/// Where the search starts in what else is unknown.
+fn start(task: &Task) -> Vec<f64> {
+    let nominal = vec![0.0; task.problem.parameters.len()];
+    task.settings.start.clone().unwrap_or(nominal)
+}
+
+/// The results, and the coordinates that they are at.
+struct Concluded {
+    results: Results,
+    x: Vec<f64>,
+}
+
+fn conclude(
+    healthy: &Problem,
+    x: &[f64],
+    joints: &[Joint],
+    found: &Found,
+    worn_from: f64,
+    effort: &mut Effort,
+) -> Result<Concluded, Error> {
+    let fit = &found.fit;
+    let problem = &found.model.problem;
+    let whole = fit.complete && !effort.stopped;
+    let adequate = fit.model_is_adequate();
+    let wrong = match whole && !adequate {
+        true => discrepancy(problem, fit, effort)?,
+        false => None,
+    };
+    let discrepancy = wrong.as_ref();
+    let pairs = together(joints, found);
+    let grounds = Grounds {
+        healthy,
+        joints,
+        found,
+        discrepancy,
+        worn_from,
+    };
+    let verdicts = (0..joints.len())
+        .map(|i| Ok((joints[i].path.clone(), grounds.verdict(i, &pairs)?)))
+        .collect::<Result<_, Error>>()?;
+    let before = Likelihood::new(healthy).by_run(x)?;
+    let runs = fit.runs.iter().zip(&before);
+    let runs = runs.map(|(run, before): (&RunFit, _)| {
+        let misfits = RunMisfit {
+            healthy: misfit(before),
+            estimated: run.calibrated,
+        };
+        (run.id.clone(), misfits)
+    });
+    let others = fit.estimates.iter().skip(found.model.clear.len());
+    let results = Results {
+        complete: whole,
+        evaluations: effort.spent,
+        worn_from,
+        joints: verdicts,
+        together: pairs,
+        model_is_adequate: adequate,
+        interval: match (adequate && whole, discrepancy) {
+            (true, _) => Interval::Noise,
+            (false, Some(_)) => Interval::Discrepancy,
+            (false, None) => Interval::None,
+        },
+        timing_rad: discrepancy.map(|d| d.timing),
+        contact: match found.model.contacts {
+            true => Contact::Fitted,
+            false => Contact::MachineFile,
+        },
+        fit: Misfits {
+            unit: "standard deviations of the synchronous mean's noise".to_owned(),
+            noise_floor: 1.0,
+            healthy: misfit(&before.concat()),
+            estimated: found.misfit(),
+        },
+        runs: runs.collect(),
+        channels: channels(problem),
+        parameters: others
+            .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, adequate)))
+            .collect(),
+    };
+    let x = discrepancy.map_or_else(|| fit.coordinates(), |d: &Discrepancy| d.x.clone());
+    Ok(Concluded { results, x })
+}
+
+/// The columns that were compared, each once.
+fn channels(problem: &Problem) -> Vec<String> {
+    let mut columns: Vec<String> = Vec::new();
+    for channel in problem.runs.iter().flat_map(|run| &run.channels) {
+        if !columns.contains(&channel.column) {
+            columns.push(channel.column.clone());
+        }
+    }
+    columns
+}

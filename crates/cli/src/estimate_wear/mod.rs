@@ -1,0 +1,103 @@
+//! `crosshead estimate-wear`: which joints are worn, and how much, from recordings.
+
+mod summary;
+
+use crate::bundle::AllowOutside;
+use crate::calibrate::progress::Bar;
+use crate::{Failure, interrupt, report};
+use ::calibrate::Settings;
+use ::calibrate::wear::{Asked, WEAR, prepare};
+use clap::Args;
+use input::calibration::{Calibration, Parameters};
+use std::path::PathBuf;
+
+/// Arguments of `crosshead estimate-wear`.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+MACHINE.yaml is the healthy machine, as calibrate writes it or from the data sheet. BUNDLE is a
+folder of recordings of the same machine in one state: accelerations of the crosshead or the frame,
+with or without pressures. Clearances that the bundle states are not used. Each joint is healthy,
+worn, unclear or not identifiable, with its clearance and a 95 % interval where one holds.
+
+Examples:
+  crosshead calibrate healthy-recordings --out calibrated
+  crosshead estimate-wear new-recordings --machine calibrated/machine.yaml --out wear
+
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 interrupted.")]
+pub struct Arguments {
+    /// Folder of recordings
+    bundle: PathBuf,
+    /// The healthy machine
+    #[arg(long, value_name = "MACHINE.yaml")]
+    machine: PathBuf,
+    /// Folder to write into: wear.json, machine.yaml, report.html
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// A joint counts as worn from this many times its normal clearance
+    #[arg(long, value_name = "TIMES", default_value_t = 1.5, value_parser = times)]
+    worn_from: f64,
+    /// Do not use this run; may be repeated
+    #[arg(long, value_name = "RUN")]
+    leave_out: Vec<String>,
+    #[command(flatten)]
+    outside: AllowOutside,
+    /// Replace an earlier estimation
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// A number above 1.
+fn times(text: &str) -> Result<f64, String> {
+    let number = text
+        .parse::<f64>()
+        .ok()
+        .filter(|times| *times > 1.0 && times.is_finite());
+    number.ok_or_else(|| "a number above 1 is expected, 1.5 for example".to_owned())
+}
+
+/// Estimates the clearances, writes the page, and prints the verdicts.
+///
+/// # Errors
+/// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let out = &arguments.out;
+    if out.join(WEAR).exists() && !arguments.overwrite {
+        return Err(Failure::input(format!(
+            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
+            out.join(WEAR).display()
+        )));
+    }
+    let machine = input::machine_file::read(&arguments.machine).map_err(Failure::input)?;
+    let mut calibration = Calibration::with_defaults(vec![arguments.bundle.clone()]);
+    let offset = ::calibrate::run_condition::CRANK_ANGLE_OFFSET.to_owned();
+    calibration.parameters = Parameters(vec![(offset, None)]);
+    calibration.hold_out = Some(Vec::new());
+    calibration.leave_out.clone_from(&arguments.leave_out);
+    let asked = Asked {
+        settings: Settings {
+            calibration: &calibration,
+            base: &PathBuf::new(),
+            machine: Some(machine.to_tree()),
+            allow_outside: arguments.outside.allow_outside,
+            clearances_unknown: true,
+            locate: &|error| error,
+        },
+        worn_from: arguments.worn_from,
+    };
+    let cancel = interrupt::flag()?;
+    let prepared = prepare(&asked, out).map_err(Failure::input)?;
+    let done = prepared
+        .finish(&mut Bar::new(&cancel))
+        .map_err(Failure::work)?;
+    let page = report::write_wear(out, &out.join(report::PAGE))?;
+    summary::print(&done.results);
+    println!("{}", done.machine.display());
+    println!("{}", page.display());
+    if !done.results.complete {
+        return Err(Failure::interrupted(format!(
+            "stopped before the end: {} has the best so far",
+            out.display()
+        )));
+    }
+    Ok(())
+}
