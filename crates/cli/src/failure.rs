@@ -33,15 +33,16 @@ impl Failure {
 
 impl From<input::Error> for Failure {
     fn from(error: input::Error) -> Self {
-        Self::Input(error.to_string())
+        Self::Input(input_lines(&error))
     }
 }
 
 impl From<sweep::Error> for Failure {
     fn from(error: sweep::Error) -> Self {
-        match error.is_input() {
-            true => Self::input(error),
-            false => Self::work(error),
+        match error {
+            sweep::Error::Input(error) => error.into(),
+            error if error.is_input() => Self::input(error),
+            error => Self::work(error),
         }
     }
 }
@@ -54,6 +55,11 @@ impl From<sweep::engines::Error> for Failure {
             error => Self::work(error),
         }
     }
+}
+
+/// A line for each mistake; what is printed begins with `error: `, and so does each line after the first.
+fn input_lines(error: &input::Error) -> String {
+    error.to_string().replace('\n', "\nerror: ")
 }
 
 /// Prints the message of a failure and returns the exit status.

@@ -11,6 +11,7 @@ mod output;
 
 pub mod bundle;
 pub mod calibrate;
+pub mod check;
 pub mod explain_gap;
 pub mod failure;
 pub mod features;

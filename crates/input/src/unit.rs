@@ -41,7 +41,9 @@ pub enum UnitError {
     },
     /// A pressure over the ambient pressure, which a quantity cannot be.
     #[error(
-        "{name} counts from the ambient pressure: add that and give the absolute pressure, in {absolute}"
+        "{name} counts from the ambient pressure: add that and give the absolute pressure, in {absolute}; \
+         the pressures of a machine's cylinders may stay if the machine has the key ambient_pressure, e.g. \
+         '1.013 bar'"
     )]
     Gauge {
         /// The unit as it is written.
@@ -49,6 +51,9 @@ pub enum UnitError {
         /// The unit without the reference.
         absolute: &'static str,
     },
+    /// The word `radial` or `diametral` at a length that is no clearance.
+    #[error("only a clearance is radial or diametral")]
+    Sided,
     /// Units in a form that is not understood.
     #[error("the unit is not understood")]
     Form,
@@ -118,7 +123,12 @@ const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Di
     }
 }
 
-const UNITS: [Unit; 22] = [
+/// An inch, m; a pound, kg; a pound-force, 0.45359237 kg × 9.80665 m/s², in N (NIST Special Publication 811).
+const INCH: f64 = 0.0254;
+const POUND: f64 = 0.453_592_37;
+const POUND_FORCE: f64 = 4.448_221_615_260_5;
+
+const UNITS: [Unit; 33] = [
     unit("m", true, 0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
     unit("g", true, -3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
     unit("t", false, 3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
@@ -135,13 +145,36 @@ const UNITS: [Unit; 22] = [
     unit("W", true, 0, Dimension::of(2.0, 1.0, -3.0, 0.0)),
     unit("Pa", true, 0, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
     unit("bar", true, 5, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
-    // A pound-force (0.45359237 kg × 9.80665 m/s²) per square inch.
+    // A pound-force per square inch.
     odd(
         "psi",
-        4.448_221_615_260_5,
-        6.4516e-4,
+        POUND_FORCE,
+        INCH * INCH,
         Dimension::of(-1.0, 1.0, -2.0, 0.0),
     ),
+    odd(
+        "ksi",
+        1e3 * POUND_FORCE,
+        INCH * INCH,
+        Dimension::of(-1.0, 1.0, -2.0, 0.0),
+    ),
+    odd("in", INCH, 1.0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
+    odd("inch", INCH, 1.0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
+    // A thousandth of an inch.
+    odd("mil", INCH, 1e3, Dimension::of(1.0, 0.0, 0.0, 0.0)),
+    odd("ft", 0.3048, 1.0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
+    odd("lb", POUND, 1.0, Dimension::of(0.0, 1.0, 0.0, 0.0)),
+    odd("lbm", POUND, 1.0, Dimension::of(0.0, 1.0, 0.0, 0.0)),
+    odd("lbf", POUND_FORCE, 1.0, Dimension::of(1.0, 1.0, -2.0, 0.0)),
+    odd("kgf", GRAVITY, 1.0, Dimension::of(1.0, 1.0, -2.0, 0.0)),
+    // The mechanical one: 550 foot-pounds-force a second.
+    odd(
+        "hp",
+        550.0 * 0.3048 * POUND_FORCE,
+        1.0,
+        Dimension::of(2.0, 1.0, -3.0, 0.0),
+    ),
+    odd("atm", 101_325.0, 1.0, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
     odd("gn", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
     odd("g0", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
     unit("%", false, -2, Dimension::NONE),
@@ -176,7 +209,9 @@ const ABSOLUTE: [(&str, &str); 8] = [
 ];
 
 /// Pressure units over the ambient pressure, and the unit that each is one of.
-const GAUGE: [(&str, &str); 8] = [
+const GAUGE: [(&str, &str); 10] = [
+    ("mbarg", "mbar"),
+    ("mbar(g)", "mbar"),
     ("barg", "bar"),
     ("bar(g)", "bar"),
     ("psig", "psi"),
@@ -187,6 +222,9 @@ const GAUGE: [(&str, &str); 8] = [
     ("MPa(g)", "MPa"),
 ];
 
+/// Words that say how a clearance is measured.
+const SIDES: [&str; 2] = ["radial", "diametral"];
+
 /// A gauge pressure's unit with the unit that it is one of, if `name` is one; capitals do not count.
 pub(crate) fn gauge(name: &str) -> Option<(&'static str, &'static str)> {
     let mut units = GAUGE.into_iter();
@@ -194,10 +232,10 @@ pub(crate) fn gauge(name: &str) -> Option<(&'static str, &'static str)> {
 }
 
 /// Names that are suggested for a misspelt one.
-const COMMON: [&str; 32] = [
+const COMMON: [&str; 41] = [
     "m", "mm", "um", "cm", "kg", "g", "t", "s", "ms", "min", "h", "rad", "deg", "rpm", "Hz", "kHz",
     "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "psi",
-    "%",
+    "atm", "in", "ft", "lb", "lbf", "kgf", "hp", "mil", "ksi", "%",
 ];
 
 /// Reads a number with its unit.
@@ -219,6 +257,67 @@ pub fn parse(text: &str) -> Result<Measure, UnitError> {
         si,
         dimension: scale.dimension,
     })
+}
+
+/// Reads an acceleration with its unit: `g` is the standard acceleration of gravity, as on the data sheets of
+/// sensors, where it is a gram elsewhere.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_acceleration(text: &str) -> Result<Measure, UnitError> {
+    let gravities = text
+        .trim()
+        .strip_suffix('g')
+        .map(|rest| match rest.strip_suffix('m') {
+            Some(thousandths) => (thousandths.trim_end(), "mm/s^2"),
+            None => (rest.trim_end(), "m/s^2"),
+        });
+    match gravities {
+        Some((number, unit)) if is_number(number) => {
+            let one = parse(&format!("{number} {unit}"))?;
+            Ok(Measure {
+                si: one.si * GRAVITY,
+                ..one
+            })
+        }
+        _ => parse(text),
+    }
+}
+
+/// Reads a clearance with its unit: `0.1 mm` and `0.1 mm radial` are radial, `0.1 mm diametral` is half of that.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_clearance(text: &str) -> Result<Measure, UnitError> {
+    let text = text.trim();
+    let with = |word: &str| {
+        let length = text.strip_suffix(word)?;
+        length.ends_with(char::is_whitespace).then_some(length)
+    };
+    if let Some(length) = with("radial") {
+        return parse(length);
+    }
+    match with("diametral") {
+        Some(length) => parse(length).map(|whole| Measure {
+            si: whole.si / 2.0,
+            ..whole
+        }),
+        None => parse(text),
+    }
+}
+
+/// The pressure above the ambient one that a text such as `20 barg` states, Pa; none where its unit counts from
+/// zero.
+pub fn parse_gauge(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (_, unit) = split_number(text)?;
+    let (_, absolute) = gauge(unit.trim())?;
+    let number = &text[..text.len() - unit.len()];
+    parse(&format!("{number} {absolute}")).ok().map(|p| p.si)
+}
+
+fn is_number(text: &str) -> bool {
+    split_number(text).is_some_and(|(_, rest)| rest.is_empty())
 }
 
 /// A decimal number as it is written: the digits with their point, and the power of ten.
@@ -341,6 +440,9 @@ fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
         {
             return Ok((unit, ten));
         }
+    }
+    if SIDES.contains(&name) {
+        return Err(UnitError::Sided);
     }
     if let Some((name, absolute)) = gauge(name) {
         return Err(UnitError::Gauge { name, absolute });

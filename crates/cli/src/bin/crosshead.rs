@@ -13,6 +13,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Find all mistakes in files that you have written
+    Check(cli::check::Arguments),
     /// Simulate a sweep of cases and write a labelled dataset (the same as the program gen-dataset)
     GenDataset(cli::gen_dataset::Arguments),
     /// Make a dataset in steps, on many machines at once
@@ -42,6 +44,7 @@ fn main() -> ExitCode {
         return tried;
     }
     cli::finish(match Arguments::parse().verb {
+        Verb::Check(arguments) => cli::check::run(&arguments),
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Sweep(arguments) => cli::sweep::run(&arguments),
         Verb::Simulate(arguments) => cli::simulate::run(&arguments),

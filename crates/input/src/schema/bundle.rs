@@ -5,6 +5,9 @@ use crate::bundle_machine;
 use crate::run_settings::{Joints, Load};
 use serde_json::{Value, json};
 
+/// What the key `format` says of a file that this program reads.
+pub(crate) const BUNDLE_FORMAT: &str = "clearance recordings 1";
+
 /// The schema of a bundle's recordings.yaml.
 pub fn bundle_schema() -> Value {
     let mut machine = bundle_machine::machine_schema();
@@ -31,7 +34,7 @@ pub fn bundle_schema() -> Value {
         "properties": {
             "format": {
                 "description": "What the file is.",
-                "const": crate::bundle::FORMAT,
+                "const": BUNDLE_FORMAT,
             },
             "machine": without_heading(machine),
             "runs": {

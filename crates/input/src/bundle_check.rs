@@ -1,0 +1,56 @@
+//! Everything that can be wrong in a `recordings.yaml`, before any recording is read.
+
+use crate::bundle::Bundle;
+use crate::bundle_machine::from_bundle;
+use crate::error::Error;
+use crate::machine_file::MachineFile;
+use crate::run_settings::run_settings;
+use crate::schema::bundle_schema;
+use crate::yaml::Document;
+use crate::{paths, tree};
+use serde_json::Value;
+use std::path::Path;
+
+/// Checks the bundle in `folder` whose `recordings.yaml` has the content `document`: its machine section at the
+/// conditions of each run, the channels, and that every recording is there.
+///
+/// # Errors
+/// All mistakes, with their lines.
+pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
+    document.collect(bundle_schema, |tree| {
+        let bundle = Bundle::new(folder, Document::from_tree(tree.clone()))?;
+        let machine = match &bundle.machine {
+            Value::Null => None,
+            section => Some(from_bundle(section).map_err(|e| e.under("machine"))?),
+        };
+        for (i, run) in bundle.runs.iter().enumerate() {
+            let key = format!("runs.{i}");
+            if let Some(machine) = &machine {
+                at_run(machine, &run.section, &key)?;
+            }
+            bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
+            if !bundle.path_of(run)?.is_file() {
+                let expected = "a file that is there, in the folder of the bundle";
+                return Err(Error::clash(format!("{key}.file"), expected));
+            }
+        }
+        Ok(())
+    })
+}
+
+/// The machine at the conditions of the run at `key`.
+fn at_run(machine: &Value, run: &Value, key: &str) -> Result<(), Error> {
+    let settings = run_settings(run, machine).map_err(|e| e.under(key))?;
+    let mut conditions = machine.clone();
+    for (path, value) in settings {
+        paths::set(&mut conditions, &path, value).map_err(|e| e.under(key))?;
+    }
+    let resolved = MachineFile::from_tree(&conditions).and_then(|file| file.resolve());
+    resolved.map(|_| ()).map_err(|error| {
+        // What the machine section does not say, the run has set.
+        match tree::find(machine, error.key()) {
+            Some(_) => error.under("machine"),
+            None => error.under(key),
+        }
+    })
+}
