@@ -74,7 +74,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         let (kind, words) = KINDS[kind.unwrap_or(0)];
         match check(kind, &path, document) {
-            Ok(()) => println!("{}: {words}, no mistakes", path.display()),
+            Ok(()) => {
+                println!("{}: {words}, no mistakes", path.display());
+                tell_missing(kind, &path);
+            }
             Err(error) => {
                 let found = error.into_each();
                 found
@@ -103,6 +106,17 @@ fn check(kind: Kind, path: &Path, document: Document) -> Result<(), Error> {
         Kind::Bundle => input::check_bundle(folder, &document),
         Kind::Calibration => Calibration::of(&document).map(|_| ()),
         Kind::HiddenEffects => HiddenEffects::of(&document).map(|_| ()),
+    }
+}
+
+/// Says which recordings of a bundle are not there yet.
+fn tell_missing(kind: Kind, path: &Path) {
+    let (Kind::Bundle, Ok(bundle)) = (kind, Bundle::read(path)) else {
+        return;
+    };
+    let files = bundle.runs.iter().map(|run| bundle.folder.join(&run.file));
+    for file in files.filter(|file| !file.is_file()) {
+        println!("  {} is not there yet", file.display());
     }
 }
 

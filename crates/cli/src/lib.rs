@@ -17,6 +17,7 @@ pub mod failure;
 pub mod features;
 pub mod gen_dataset;
 pub mod hidden_effects;
+pub mod init;
 mod interrupt;
 pub mod replay;
 pub mod report;

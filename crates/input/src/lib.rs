@@ -27,6 +27,7 @@ pub mod quantity;
 mod reader;
 pub mod run_settings;
 pub mod schema;
+pub mod template;
 mod tree;
 pub mod unit;
 pub mod yaml;
@@ -42,6 +43,6 @@ pub use bundle_check::check as check_bundle;
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
 pub use machine_file::{
-    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section,
+    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section, synonyms,
 };
 pub use run_settings::run_settings;

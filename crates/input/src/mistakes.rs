@@ -137,7 +137,12 @@ impl Repair<'_> {
             true => None,
             false => Node::top(self.schema).walk(&canonical),
         };
-        place.map_or(Vec::new(), |place| place.values())
+        let mut values = place.map_or(Vec::new(), |place| place.values());
+        if canonical != key {
+            // Some synonyms are plain numbers.
+            values.extend([json!(0.1), json!(1)]);
+        }
+        values
     }
 
     /// Where `key` names the law or the quantity that its section is about, a name that nobody wrote leaves open what

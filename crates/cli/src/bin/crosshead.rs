@@ -13,6 +13,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Write a commented file to fill in: a machine, a sweep, a bundle of recordings, a calibration
+    Init(cli::init::Arguments),
     /// Find all mistakes in files that you have written
     Check(cli::check::Arguments),
     /// Simulate a sweep of cases and write a labelled dataset (the same as the program gen-dataset)
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         return tried;
     }
     cli::finish(match Arguments::parse().verb {
+        Verb::Init(arguments) => cli::init::run(&arguments),
         Verb::Check(arguments) => cli::check::run(&arguments),
         Verb::GenDataset(arguments) => cli::gen_dataset::run(&arguments),
         Verb::Sweep(arguments) => cli::sweep::run(&arguments),

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod calibrated_sweep;
+mod check;
 mod damage;
 mod dataset;
 mod dataset_bytes;
@@ -13,6 +14,7 @@ mod hidden_effects;
 mod hostile;
 mod one_run;
 mod output;
+mod own_machine;
 mod readme;
 mod recorded_sensors;
 mod recovery;

@@ -24,6 +24,7 @@ pub use normal_clearance::{NormalClearance, ThrowNormalClearance};
 pub(crate) use relation::RelationSection;
 pub use resolved::Resolved;
 pub use sensors::sensor_section;
+pub use synonyms::synonyms;
 pub(crate) use top_sections::Sections;
 pub(crate) use value::unit_of_quantity;
 
@@ -130,6 +131,14 @@ impl MachineFile {
             Err(_) => all(&self.document, |tree| Parts::read(tree)?.resolve()),
         }
     }
+}
+
+/// The key of a throw's section at the key of a throw, and of any other place this key.
+pub(crate) fn canonical_key(key: &str) -> String {
+    let throw = key
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'));
+    throw.map_or(key, |(_, rest)| rest).to_owned()
 }
 
 /// Whether a section has keys that machine files alone have.

@@ -101,6 +101,20 @@ pub(crate) const SYNONYMS: &[Synonym] = synonyms! {
     Same "joints.small_end.clearance": "joints.small_end.radial_clearance";
 };
 
+/// The names that people write for keys of a machine file: the key, the name, and what the name states of it.
+pub fn synonyms() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    SYNONYMS.iter().filter_map(|s| {
+        let states = match s.meaning {
+            Meaning::Same => "the same",
+            Meaning::Half => "twice",
+            Meaning::Rpm => "in rpm, without a unit",
+            Meaning::OfStroke => "in % of the swept volume",
+            Meaning::Si | Meaning::HalfSi => return None,
+        };
+        Some((s.key, s.name, states))
+    })
+}
+
 /// Whether `name` is a synonym that people write, and not programs.
 pub(crate) fn is_of_people(name: &str) -> bool {
     let is_of_people = |s: &Synonym| {

@@ -71,6 +71,37 @@ impl<'a> Node<'a> {
         })
     }
 
+    /// What may stand at a dotted path; here at the empty one.
+    pub(crate) fn walk_or_top(self, path: &str) -> Option<Self> {
+        if path.is_empty() {
+            Some(self)
+        } else {
+            self.walk(path)
+        }
+    }
+
+    /// What the key `key` means.
+    pub(crate) fn words(&self, key: &str) -> Option<String> {
+        let mut words = self
+            .sections()
+            .filter_map(|s| s.get(key)?["description"].as_str());
+        words.next().map(str::to_owned)
+    }
+
+    /// Whether all sections that may stand here have the same keys.
+    pub(crate) fn is_of_one_kind(&self) -> bool {
+        self.sections().count() == 1
+    }
+
+    /// A text or a number that may stand here, as the schema has it for an example.
+    pub(crate) fn example(&self) -> Option<String> {
+        let examples = self
+            .alternatives
+            .iter()
+            .filter_map(|s| s["examples"][0].as_str());
+        examples.map(str::to_owned).next()
+    }
+
     /// What belongs here, in words; none where that depends on more than the place.
     pub(crate) fn expected(&self) -> Option<String> {
         let mut texts = self

@@ -18,7 +18,7 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?\nsweep.yaml:4:7: caes: found no case at all, expected at least one",
     ),
     ("", "sweep.yaml:1:1: cases: missing"),
     (
@@ -285,10 +285,13 @@ const MISTAKES: &[(&str, &str)] = &[
 
 #[test]
 fn every_mistake_gets_its_message() {
-    for (rest, expected) in MISTAKES {
+    let wrong = MISTAKES.iter().filter_map(|(rest, expected)| {
         let found = plan(&format!("{HEAD}{rest}")).map(|plan| plan.cases());
-        assert_eq!(found.unwrap_err().to_string(), *expected, "{rest}");
-    }
+        let found = found.unwrap_err().to_string();
+        (found != *expected).then(|| format!("{rest}\n  found    {found}\n  expected {expected}"))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
 #[test]
