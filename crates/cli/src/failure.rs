@@ -33,7 +33,7 @@ impl Failure {
 
 impl From<input::Error> for Failure {
     fn from(error: input::Error) -> Self {
-        Self::Input(input_lines(&error))
+        Self::Input(error.to_string())
     }
 }
 
@@ -57,11 +57,6 @@ impl From<sweep::engines::Error> for Failure {
     }
 }
 
-/// A line for each mistake; what is printed begins with `error: `, and so does each line after the first.
-fn input_lines(error: &input::Error) -> String {
-    error.to_string().replace('\n', "\nerror: ")
-}
-
 /// Prints the message of a failure and returns the exit status.
 pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
     let (message, status) = match outcome {
@@ -70,6 +65,10 @@ pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
         Err(Failure::Work(message)) => (message, 1),
         Err(Failure::Incomplete(message)) => (message, 3),
     };
-    eprintln!("error: {message}");
+    // Several mistakes are a line each; what is indented belongs to the line above.
+    for line in message.lines() {
+        let start = if line.starts_with(' ') { "" } else { "error: " };
+        eprintln!("{start}{line}");
+    }
     ExitCode::from(status)
 }

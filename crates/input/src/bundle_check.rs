@@ -4,10 +4,10 @@ use crate::bundle::Bundle;
 use crate::bundle_machine::from_bundle;
 use crate::error::Error;
 use crate::machine_file::MachineFile;
+use crate::paths;
 use crate::run_settings::run_settings;
 use crate::schema::bundle_schema;
 use crate::yaml::Document;
-use crate::{paths, tree};
 use serde_json::Value;
 use std::path::Path;
 
@@ -39,15 +39,15 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
 fn at_run(machine: &Value, run: &Value, key: &str) -> Result<(), Error> {
     let settings = run_settings(run, machine).map_err(|e| e.under(key))?;
     let mut conditions = machine.clone();
-    for (path, value) in settings {
-        paths::set(&mut conditions, &path, value).map_err(|e| e.under(key))?;
+    for (path, value) in &settings {
+        paths::set(&mut conditions, path, value.clone()).map_err(|e| e.under(key))?;
     }
     let resolved = MachineFile::from_tree(&conditions).and_then(|file| file.resolve());
-    resolved.map(|_| ()).map_err(|error| {
-        // What the machine section does not say, the run has set.
-        match tree::find(machine, error.key()) {
-            Some(_) => error.under("machine"),
-            None => error.under(key),
-        }
-    })
+    let is_set = |key: &str| settings.iter().any(|(path, _)| path == key);
+    resolved
+        .map(|_| ())
+        .map_err(|error| match is_set(error.key()) {
+            true => error.under(key),
+            false => error.under("machine"),
+        })
 }

@@ -15,8 +15,8 @@ use crate::amount::Amount;
 use crate::choice::{Count, Or};
 use crate::error::Error;
 use crate::quantity::{AboveZero, FromZero, Number};
-use crate::reader;
 use crate::yaml::Document;
+use crate::{reader, sided};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -162,6 +162,7 @@ impl Calibration {
     pub fn of(document: &Document) -> Result<Self, Error> {
         document.collect(schema, |tree| {
             let settings: Self = reader::read(tree)?;
+            sided::check(tree)?;
             settings.check().map(|()| settings)
         })
     }

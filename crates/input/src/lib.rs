@@ -27,9 +27,11 @@ pub mod quantity;
 mod reader;
 pub mod run_settings;
 pub mod schema;
+pub mod sided;
 pub mod template;
 mod tree;
 pub mod unit;
+mod unit_table;
 pub mod yaml;
 
 /// The catalogue of effects as data.

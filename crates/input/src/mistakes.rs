@@ -4,14 +4,17 @@
 //! renamed to the nearest known one or goes, a wrong or missing value gets one that the schema allows. Then the
 //! tree is read again. What a value that nobody wrote clashes with is no mistake of the file, and is not reported.
 
-use crate::error::{Error, Problem, join};
+use crate::error::{Error, Problem, join, nearest};
 use crate::schema::Node;
-use crate::tree::{find, is_within, moved, parents, put, rename, take};
+use crate::tree::{find, is_within, moved, own_name, parents, put, rename, take};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Readings after which the rest stays unreported: a file of so many mistakes is read again anyway.
 const READINGS: usize = 600;
+
+/// Values that all readings together go through at most, so that a large file takes no longer.
+const VALUES: usize = 2_000_000;
 
 /// All mistakes that `read` finds in `tree`, whose form is that of `schema`, in the order of reading. Keys of an
 /// error, and those that it was held against, are those of the tree that was read. `canonical` gives the name that
@@ -31,7 +34,7 @@ pub(crate) fn all(
         changes: Vec::new(),
     };
     let mut found: Vec<Error> = Vec::new();
-    for _ in 0..READINGS {
+    for _ in 0..(VALUES / size(tree)).clamp(1, READINGS) {
         let Err(error) = read(&repair.tree) else {
             break;
         };
@@ -57,6 +60,15 @@ pub(crate) fn all(
     (found, repair.tree)
 }
 
+/// Number of values in a tree.
+fn size(tree: &Value) -> usize {
+    1 + match tree {
+        Value::Array(items) => items.iter().map(size).sum(),
+        Value::Object(section) => section.values().map(size).sum(),
+        _ => 0,
+    }
+}
+
 /// A tree on its way to one without mistakes.
 struct Repair<'a> {
     tree: Value,
@@ -68,6 +80,9 @@ struct Repair<'a> {
     tries: BTreeMap<String, usize>,
     changes: Vec<Change>,
 }
+
+/// Stands for an item of a list that is gone.
+const GONE: &str = "-";
 
 /// What was changed in the order of things, so that keys can be told as they were.
 enum Change {
@@ -169,11 +184,16 @@ impl Repair<'_> {
     }
 
     fn take_out_key(&mut self, key: &str, nearest: Option<&str>) -> bool {
-        let above = key.rsplit_once('.').map_or("", |(above, _)| above);
-        let to = nearest.map(|name| (name, join(above, name)));
-        match to {
-            Some((name, to))
-                if find(&self.tree, &to).is_none() && rename(&mut self.tree, key, name) =>
+        let own = own_name(&self.tree, key).unwrap_or_default();
+        let above = key
+            .strip_suffix(&own)
+            .unwrap_or_default()
+            .trim_end_matches('.');
+        let name = nearest.map(|name| corrected(&own, name));
+        let to = name.as_deref().map(|name| join(above, name));
+        match (name, to) {
+            (Some(name), Some(to))
+                if find(&self.tree, &to).is_none() && rename(&mut self.tree, key, &name) =>
             {
                 let from = key.to_owned();
                 self.changes.push(Change::Renamed { from, to });
@@ -215,6 +235,7 @@ impl Repair<'_> {
             (true, Ok(index)) => {
                 let list = item.0.to_owned();
                 self.shift_made(&list, index);
+                self.made.insert(format!("{list}.{GONE}"));
                 self.changes.push(Change::Removed { list, index });
             }
             _ => {
@@ -233,6 +254,25 @@ impl Repair<'_> {
             .map(|key| earlier(&key, list, index).unwrap_or(key))
             .collect();
         self.tries.retain(|key, _| !is_within(key, list));
+    }
+}
+
+/// A key with `name` in the place of the part that it was probably meant to be: of a path such as
+/// `joints.big_ned.clearance` one part, of another key the whole.
+fn corrected(key: &str, name: &str) -> String {
+    let mut is_open = true;
+    let part = |part: &str| {
+        let is_meant = is_open && part != name && nearest(part, [name]).is_some();
+        is_open &= !is_meant;
+        if is_meant {
+            name.to_owned()
+        } else {
+            part.to_owned()
+        }
+    };
+    match key.contains('.') {
+        true => key.split('.').map(part).collect::<Vec<_>>().join("."),
+        false => name.to_owned(),
     }
 }
 

@@ -89,6 +89,12 @@ pub(crate) fn put(tree: &mut Value, key: &str, value: Value) -> bool {
     }
 }
 
+/// The key itself, dots included, that the last part of `key` is or belongs to.
+pub(crate) fn own_name(tree: &Value, key: &str) -> Option<String> {
+    let mut copy = tree.clone();
+    holder(&mut copy, key).map(|(_, name)| name.to_owned())
+}
+
 /// Takes out what stands at `key`.
 pub(crate) fn take(tree: &mut Value, key: &str) -> Option<Value> {
     match holder(tree, key)? {

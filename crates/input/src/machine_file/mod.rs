@@ -122,11 +122,7 @@ impl MachineFile {
     /// All values that do not go together with the others, with their lines: a rod shorter than its crank, a
     /// clearance wider than its journal, ...
     pub fn resolve(&self) -> Result<Resolved, Error> {
-        let parts = Parts {
-            written: self.written.clone(),
-            sections: self.sections.clone(),
-        };
-        match parts.resolve() {
+        match resolve(&self.written, &self.sections) {
             Ok(resolved) => Ok(resolved),
             Err(_) => all(&self.document, |tree| Parts::read(tree)?.resolve()),
         }
@@ -196,9 +192,13 @@ impl Parts {
     }
 
     fn resolve(&self) -> Result<Resolved, Error> {
-        let resolved = self.sections.resolve();
-        resolved.map_err(|error| named(&self.written, error))
+        resolve(&self.written, &self.sections)
     }
+}
+
+fn resolve(written: &Written, sections: &Sections) -> Result<Resolved, Error> {
+    let resolved = sections.resolve();
+    resolved.map_err(|error| named(written, error))
 }
 
 /// `error` with the key that the file has, and with what belongs in the place of a missing one. A key of a throw

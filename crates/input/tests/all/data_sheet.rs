@@ -5,7 +5,9 @@ use input::MachineFile;
 use input::quantity::{Acceleration, Clearance, Length, NonNegative, Positive};
 use input::unit::{UnitError, parse};
 use mechanism::joints::revolute::Revolute;
+use proptest::prelude::*;
 use std::f64::consts::PI;
+use std::path::Path;
 
 /// Two throws of a US data sheet: bore, stroke, clearance in %, diametral clearances, psig.
 const SHEET: &str = "\
@@ -246,4 +248,44 @@ fn paths_say_which_key_a_synonym_stands_for() {
         message("cylinder.bore"),
         "cylinder.bore: unknown key; give cylinder.piston_radius (half of the bore)"
     );
+}
+
+/// `text` with `length` letters at `at` replaced by `insert`.
+fn damaged(text: &str, at: usize, length: usize, insert: &str) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    let at = at % letters.len();
+    let end = (at + length).min(letters.len());
+    let after: String = letters[end..].iter().collect();
+    letters[..at].iter().collect::<String>() + insert + &after
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn a_damaged_data_sheet_is_a_machine_or_its_mistakes(
+        at in 0usize..5000, length in 0usize..40, insert in "[ -~\n]{0,10}",
+    ) {
+        let text = damaged(SHEET, at, length, &insert);
+        if let Err(error) = MachineFile::from_yaml(&text, "m.yaml").and_then(|file| file.resolve()) {
+            let places: Vec<_> = error.into_each().iter().map(input::Error::place).collect();
+            prop_assert!(!places.is_empty() && places.is_sorted());
+        }
+    }
+
+    #[test]
+    fn a_damaged_bundle_or_calibration_is_right_or_its_mistakes(
+        at in 0usize..5000, length in 0usize..40, insert in "[ -~\n]{0,10}",
+    ) {
+        let bundle = input::template::bundle(&[]).unwrap();
+        let calibration = input::template::calibration("b").unwrap();
+        let sheet = SHEET.replace('\n', "\n  ");
+        let bundle = format!("{bundle}\nmachine:\n  {sheet}");
+        if let Ok(document) = input::yaml::Document::parse(&damaged(&bundle, at, length, &insert), "b.yaml") {
+            let _ = input::check_bundle(Path::new("."), &document);
+        }
+        if let Ok(document) = input::yaml::Document::parse(&damaged(&calibration, at, length, &insert), "c.yaml") {
+            let _ = input::calibration::Calibration::of(&document);
+        }
+    }
 }

@@ -138,6 +138,7 @@ impl Plan {
     /// The plan of a sweep file with this content; keys of errors are those of the file.
     fn of_tree(tree: &Value, machines: &mut Machines) -> Result<Self, Error> {
         let file: SweepFile = Document::from_tree(tree.clone()).read()?;
+        input::sided::check(tree)?;
         name::check_dataset(&file.name)?;
         if file.calibrate.is_some() {
             let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
@@ -270,7 +271,10 @@ impl Plan {
             .iter()
             .try_fold(0_u64, |n, b| n.checked_add(b.count()));
         match cases.and_then(|n| n.checked_mul(plan.repeats)) {
-            Some(0) => Err(Error::found("cases", "no case at all", "at least one")),
+            Some(0) => {
+                let none = Error::found("cases", "no case at all", "at least one");
+                Err(none.against("/cases.*.*.*.*.*.*.*.*"))
+            }
             None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
                 plan.effects = plan.find_effects();

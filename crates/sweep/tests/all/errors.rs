@@ -67,7 +67,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      sped: [500 rpm]",
-        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
+        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
     ),
     (
         "cases:\n  - grid:\n      joints.big_ned.contact.damping: [2e4 N s/m]",
