@@ -271,6 +271,18 @@ impl Error {
         self
     }
 
+    /// Looks among `others` for what an unknown key was meant to be, where none of the known keys is near.
+    pub(crate) fn suggesting<'a>(mut self, others: impl Iterator<Item = &'a str>) -> Self {
+        let name = self.key.rsplit('.').next().unwrap_or_default();
+        let near = nearest(name, others).map(str::to_owned);
+        if let Problem::UnknownKey { nearest, .. } = &mut *self.problem
+            && nearest.is_none()
+        {
+            *nearest = near;
+        }
+        self
+    }
+
     /// Fills in what belongs in the place of a missing key, if that is still open.
     pub(crate) fn expecting(mut self, expectation: impl FnOnce() -> Option<String>) -> Self {
         if let Problem::Missing { expected } = &mut *self.problem

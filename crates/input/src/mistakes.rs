@@ -6,7 +6,7 @@
 
 use crate::error::{Error, Problem, join, nearest};
 use crate::schema::Node;
-use crate::tree::{find, is_within, moved, own_name, parents, put, rename, take};
+use crate::tree::{find, first, is_within, moved, own_name, parents, put, rename, take};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -30,6 +30,7 @@ pub(crate) fn all(
         schema,
         canonical,
         made: BTreeSet::new(),
+        guessed: BTreeSet::new(),
         tries: BTreeMap::new(),
         changes: Vec::new(),
     };
@@ -76,6 +77,8 @@ struct Repair<'a> {
     canonical: &'a dyn Fn(&str) -> String,
     /// Keys of values that nobody wrote.
     made: BTreeSet<String>,
+    /// Keys of names that were misspelt, and are guessed.
+    guessed: BTreeSet<String>,
     /// How often each key was repaired.
     tries: BTreeMap<String, usize>,
     changes: Vec<Change>,
@@ -95,8 +98,10 @@ enum Change {
 impl Repair<'_> {
     /// Whether `error` comes from a value that nobody wrote.
     fn is_made(&self, error: &Error) -> bool {
-        let mut keys = error.partners().chain([error.key()]);
-        keys.any(|key| self.made.iter().any(|made| fits_within(key, made)))
+        let is_in = |key: &str, made: &BTreeSet<String>| made.iter().any(|m| fits_within(key, m));
+        let mut partners = error.partners();
+        is_in(error.key(), &self.made)
+            || partners.any(|key| is_in(key, &self.made) || is_in(key, &self.guessed))
     }
 
     /// The key that stands in the file for `key` of the tree.
@@ -138,8 +143,7 @@ impl Repair<'_> {
                         self.doubt_section(key);
                         self.make(key, value.clone())
                     }
-                    None if tries <= values.len() + 1 => self.remove(key),
-                    None => false,
+                    None => self.remove(key) || self.remove_section(key),
                 }
             }
         }
@@ -147,25 +151,28 @@ impl Repair<'_> {
 
     /// What may stand at `key`, as far as the schema says.
     fn values(&self, key: &str) -> Vec<Value> {
-        let canonical = (self.canonical)(key);
-        let place = match canonical.is_empty() {
-            true => None,
-            false => Node::top(self.schema).walk(&canonical),
-        };
-        let mut values = place.map_or(Vec::new(), |place| place.values());
-        if canonical != key {
+        let mut values = self.place(key).map_or(Vec::new(), |place| place.values());
+        if (self.canonical)(key) != key {
             // Some synonyms are plain numbers.
             values.extend([json!(0.1), json!(1)]);
         }
         values
     }
 
+    /// The place of `key` in the schema.
+    fn place(&self, key: &str) -> Option<Node<'_>> {
+        let canonical = (self.canonical)(key);
+        match canonical.as_str() {
+            "" => None,
+            other => walk(Node::top(self.schema), Some(&self.tree), other),
+        }
+    }
+
     /// Where `key` names the law or the quantity that its section is about, a name that nobody wrote leaves open what
     /// belongs in the section.
     fn doubt_section(&mut self, key: &str) {
-        let canonical = (self.canonical)(key);
-        let place = Node::top(self.schema).walk(&canonical);
-        if let (true, Some(section)) = (place.is_some_and(|p| p.is_tag()), parents(key).next()) {
+        let is_tag = self.place(key).is_some_and(|place| place.is_tag());
+        if let (true, Some(section)) = (is_tag, parents(key).next()) {
             self.made.insert(section.to_owned());
         }
     }
@@ -205,7 +212,9 @@ impl Repair<'_> {
 
     /// Puts another name in the place of a wrong one: the value itself, or the only key of a section.
     fn rename_value(&mut self, key: &str, name: &str, is_misspelt: bool) -> bool {
-        if !is_misspelt {
+        if is_misspelt {
+            self.guessed.insert(key.to_owned());
+        } else {
             self.made.insert(key.to_owned());
             self.doubt_section(key);
         }
@@ -245,14 +254,22 @@ impl Repair<'_> {
         true
     }
 
+    /// Takes out the nearest section about `key` that is there.
+    fn remove_section(&mut self, key: &str) -> bool {
+        let sections: Vec<String> = parents(key).map(str::to_owned).collect();
+        sections.iter().any(|section| self.remove(section))
+    }
+
     /// The values that nobody wrote have other keys once item `index` of a list is gone.
     fn shift_made(&mut self, list: &str, index: usize) {
-        let made = std::mem::take(&mut self.made);
         let gone = format!("{list}.{index}");
-        let stay = made.into_iter().filter(|key| !is_within(key, &gone));
-        self.made = stay
-            .map(|key| earlier(&key, list, index).unwrap_or(key))
-            .collect();
+        for keys in [&mut self.made, &mut self.guessed] {
+            let stay = std::mem::take(keys).into_iter();
+            let stay = stay.filter(|key| !is_within(key, &gone));
+            *keys = stay
+                .map(|key| earlier(&key, list, index).unwrap_or(key))
+                .collect();
+        }
         self.tries.retain(|key, _| !is_within(key, list));
     }
 }
@@ -281,6 +298,20 @@ fn fits_within(key: &str, made: &str) -> bool {
     let mut parts = key.split('.');
     let fits = |made: &str| parts.next().is_some_and(|part| part == "*" || part == made);
     made.is_empty() || made.split('.').all(fits)
+}
+
+/// The place of `key` below `place`; a key of the tree may have dots in it.
+fn walk<'a>(place: Node<'a>, tree: Option<&Value>, key: &str) -> Option<Node<'a>> {
+    if key.is_empty() {
+        return Some(place);
+    }
+    let own = tree
+        .and_then(Value::as_object)
+        .and_then(|section| first(section, key));
+    let (name, rest) = own.unwrap_or_else(|| key.split_once('.').unwrap_or((key, "")));
+    let item = name.parse::<usize>().ok().and_then(|_| place.items());
+    let below = tree.and_then(|tree| find(tree, name));
+    walk(item.or_else(|| place.key(name))?, below, rest)
 }
 
 /// The key before item `index` of `list` was taken out.

@@ -22,7 +22,7 @@ pub(crate) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
 }
 
 /// The longest key of `section` that `key` begins with, and what follows it.
-fn first<'k>(section: &Map<String, Value>, key: &'k str) -> Option<(&'k str, &'k str)> {
+pub(crate) fn first<'k>(section: &Map<String, Value>, key: &'k str) -> Option<(&'k str, &'k str)> {
     let ends = key.match_indices('.').map(|(at, _)| at).chain([key.len()]);
     let fits = ends
         .filter(|end| section.contains_key(&key[..*end]))

@@ -207,5 +207,7 @@ fn named(written: &Written, error: Error) -> Error {
     let error = error.renamed(&|key| shared::written_key(&written.tree, key).to_owned());
     let key = error.key().to_owned();
     let error = error.expecting(|| schema::machine().walk(&key)?.expected());
+    let above = key.rsplit_once('.').map_or("", |(above, _)| above);
+    let error = error.suggesting(synonyms::names_in(above));
     error.renamed(&|key| written.original(key))
 }

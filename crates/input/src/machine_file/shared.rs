@@ -73,7 +73,8 @@ pub(super) fn written_key<'a>(tree: &Value, key: &'a str) -> &'a str {
     let shared = key
         .strip_prefix("throws.")
         .and_then(|rest| rest.split_once('.'));
-    let Some((_, rest)) = shared else {
+    // A pattern stands for every throw.
+    let Some((_, rest)) = shared.filter(|(throw, _)| *throw != "*") else {
         return key;
     };
     let throw = &key[..key.len() - rest.len()];

@@ -126,6 +126,18 @@ pub(crate) fn is_of_people(name: &str) -> bool {
     SYNONYMS.iter().any(is_of_people)
 }
 
+/// The synonyms that may stand in the section at `place`.
+pub(crate) fn names_in(place: &str) -> impl Iterator<Item = &'static str> {
+    let throw = place
+        .strip_prefix("throws.")
+        .map(|rest| rest.split_once('.').unwrap_or((rest, "")));
+    let section = throw.map_or(place, |(_, section)| section).to_owned();
+    SYNONYMS.iter().filter_map(move |s| {
+        let (above, name) = s.name.rsplit_once('.').unwrap_or(("", s.name));
+        (above == section).then_some(name)
+    })
+}
+
 /// The key that a path should name in the place of the synonym `name`, and what it has of the value; none where it is
 /// no synonym.
 pub(crate) fn instead(name: &str) -> Option<String> {

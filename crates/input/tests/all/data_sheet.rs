@@ -232,6 +232,22 @@ fn a_gauge_pressure_needs_the_ambient_one() {
 }
 
 #[test]
+fn a_misspelt_synonym_is_told_its_name() {
+    let message = refusal(&METRIC.replace("STROKE", "stoke: 150 mm"));
+    assert!(
+        message.starts_with("m.yaml:3:1: stoke: unknown key; expected one of name, speed,"),
+        "{message}"
+    );
+    assert!(message.ends_with("did you mean 'stroke'?"), "{message}");
+    let message = refusal(
+        &METRIC
+            .replace("STROKE", "stroke: 150 mm")
+            .replace("piston_radius: 50", "pore: 100"),
+    );
+    assert!(message.ends_with("did you mean 'bore'?"), "{message}");
+}
+
+#[test]
 fn paths_say_which_key_a_synonym_stands_for() {
     let file =
         MachineFile::from_yaml(&METRIC.replace("STROKE", "stroke: 150 mm"), "m.yaml").unwrap();

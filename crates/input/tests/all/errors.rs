@@ -203,6 +203,32 @@ messages! {
         "m.yaml:4:4: not valid YAML: while parsing a flow mapping, did not find expected ',' or '}'";
 }
 
+/// The keys of all mistakes in `text`.
+fn keys(text: &str) -> Vec<String> {
+    let file = MachineFile::from_yaml(text, "m.yaml").and_then(|file| file.resolve());
+    let mistakes = file.unwrap_err().into_each();
+    mistakes.iter().map(|e| e.key().to_owned()).collect()
+}
+
+#[test]
+fn what_a_guess_clashes_with_is_no_mistake() {
+    let text = THROWS.replace("{measure: crank_angle}", "{measure: cylinder_pressure, throw: throw1}\n  - {measure: cylinder_pressure, throw: throw3}");
+    assert_eq!(keys(&text), ["sensors.1.throw"]);
+    let text = text
+        .replace("throw: throw3", "throw: throw2")
+        .replace("name: throw2", "name: throw 2");
+    assert_eq!(keys(&text), ["throws.1.name"]);
+    let text = THROWS
+        .replace("length: 600 mm, ", "")
+        .replace("centre_of_mass: 220 mm", "centre_of_mass: 220");
+    assert_eq!(keys(&text), ["rod.length", "rod.centre_of_mass"]);
+    let text = MACHINE
+        .replace("radius: 120 mm", "radius: 120")
+        .replace("length: 600 mm", "length: 10 mm");
+    // The centre of mass outside of the rod is one, as both values are written.
+    assert_eq!(keys(&text), ["crank.radius", "rod.centre_of_mass"]);
+}
+
 /// Two throws that share a rod.
 const THROWS: &str = "\
 name: two

@@ -295,6 +295,27 @@ fn every_mistake_gets_its_message() {
 }
 
 #[test]
+fn all_mistakes_are_told_at_once() {
+    let keys = |text: &str| {
+        let mistakes = plan(text).unwrap_err().into_each();
+        let keys = mistakes.iter().map(|e| e.key().to_owned());
+        keys.collect::<Vec<_>>()
+    };
+    let cases =
+        "cases: [{grid: {sped: [500 rpm]}}]\nvary:\n  crosshead.mass: {lognormal: {factor: 0.5}}\n";
+    assert_eq!(
+        keys(&format!("{HEAD}{cases}")),
+        ["cases.0.grid.sped", "vary.crosshead.mass.lognormal.factor"]
+    );
+    let cases =
+        "cases: [{gird: {speed: 8 kg}}]\nsplits: {train: 0.7, validation: 15 %, test: 15 %}\n";
+    assert_eq!(
+        keys(&format!("{HEAD}{cases}")),
+        ["cases.0", "cases.0.gird.speed", "splits.train"]
+    );
+}
+
+#[test]
 fn a_mistake_in_the_machine_is_told_where_it_is() {
     // In a file of its own: that file's name and line.
     let missing = plan("name: test\nmachine: none.yaml\nrun: {revolutions: 4}\ncases: []");
