@@ -99,12 +99,21 @@ impl HiddenEffects {
     /// Reads a file; the document gives the lines of mistakes that are found later.
     ///
     /// # Errors
-    /// The first mistake, with its line.
+    /// All mistakes, with their lines.
     pub fn read(path: &Path) -> Result<(Self, Document), Error> {
         let document = Document::open(path)?;
-        let settings: Self = document.read()?;
-        settings.check().map_err(|error| document.locate(error))?;
-        Ok((settings, document))
+        Ok((Self::of(&document)?, document))
+    }
+
+    /// The settings in the file with the content `document`.
+    ///
+    /// # Errors
+    /// All mistakes, with their lines.
+    pub fn of(document: &Document) -> Result<Self, Error> {
+        document.collect(schema, |tree| {
+            let settings: Self = Document::from_tree(tree.clone()).read()?;
+            settings.check().map(|()| settings)
+        })
     }
 
     /// What the types do not say: lists with entries, effects of the catalogue, machines with names of
@@ -166,10 +175,7 @@ mod tests {
     const WHOLE: &str = "machines: [{name: a, bundle: b}]\nsizes: [1]\nnoises: [2 %]\n";
 
     fn read(text: &str) -> Result<HiddenEffects, Error> {
-        let document = Document::parse(text, "h.yaml")?;
-        let settings: HiddenEffects = document.read()?;
-        settings.check().map_err(|error| document.locate(error))?;
-        Ok(settings)
+        HiddenEffects::of(&Document::parse(text, "h.yaml")?)
     }
 
     #[test]

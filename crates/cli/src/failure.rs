@@ -69,6 +69,7 @@ impl From<sweep::Error> for Failure {
             sweep::Error::Cancelled { .. } | sweep::Error::DiagramsCancelled { .. } => {
                 Self::interrupted(error)
             }
+            sweep::Error::Input(error) => error.into(),
             error if error.is_input() => Self::input(error),
             error => Self::work(error),
         }
@@ -87,11 +88,14 @@ impl From<sweep::engines::Error> for Failure {
 
 /// Prints the message of a failure and returns the exit status.
 pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("error: {}", failure.message());
-            ExitCode::from(failure.status())
-        }
+    let failure = match outcome {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(failure) => failure,
+    };
+    // Several mistakes are a line each; what is indented belongs to the line above.
+    for line in failure.message().lines() {
+        let start = if line.starts_with(' ') { "" } else { "error: " };
+        eprintln!("{start}{line}");
     }
+    ExitCode::from(failure.status())
 }

@@ -11,6 +11,7 @@ mod output;
 
 pub mod bundle;
 pub mod calibrate;
+pub mod check;
 pub mod compare;
 pub mod completions;
 pub mod console;
@@ -20,6 +21,7 @@ pub mod failure;
 pub mod features;
 pub mod gen_dataset;
 pub mod hidden_effects;
+pub mod init;
 mod interrupt;
 pub mod man;
 pub mod program;

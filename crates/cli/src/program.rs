@@ -2,8 +2,8 @@
 
 use crate::console::{Console, colour_of_clap};
 use crate::{
-    Failure, calibrate, compare, completions, estimate_wear, explain_gap, features, gen_dataset,
-    hidden_effects,
+    Failure, calibrate, check, compare, completions, estimate_wear, explain_gap, features,
+    gen_dataset, hidden_effects, init,
 };
 use crate::{man, replay, report, schema, simulate, sweep, verify};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -28,6 +28,10 @@ pub struct Crosshead {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Write a commented file to fill in: a machine, a sweep, a bundle, a calibration
+    Init(init::Arguments),
+    /// Find all mistakes in files that you have written
+    Check(check::Arguments),
     /// Simulate a sweep of cases and write a labelled dataset (as the program gen-dataset)
     GenDataset(gen_dataset::Arguments),
     /// Make a dataset in steps, on many machines at once
@@ -88,6 +92,8 @@ impl Program for Crosshead {
     fn run(&self) -> Result<(), Failure> {
         self.console.set()?;
         match &self.verb {
+            Verb::Init(arguments) => init::run(arguments),
+            Verb::Check(arguments) => check::run(arguments),
             Verb::GenDataset(arguments) => gen_dataset::run(arguments),
             Verb::Sweep(arguments) => sweep::run(arguments),
             Verb::Simulate(arguments) => simulate::run(arguments),

@@ -33,7 +33,7 @@ impl Amount {
             let dimension = None;
             return Some(Self { si, dimension });
         }
-        let Measure { si, dimension } = unit::parse(value.as_str()?).ok()?;
+        let Measure { si, dimension } = unit::parse_clearance(value.as_str()?).ok()?;
         let dimension = Some(dimension);
         Some(Self { si, dimension })
     }

@@ -10,6 +10,7 @@ use crate::bundle_channel::{Meaning, meaning};
 use crate::choice::{Ideal, Or};
 use crate::error::{Error, nearest};
 use crate::quantity::{AboveZero, FromZero, Number};
+use crate::schema::{BUNDLE_FORMAT, bundle_schema};
 use crate::yaml::Document;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -18,9 +19,6 @@ use std::path::{Component, Path, PathBuf};
 
 /// Name of the file that makes a folder a bundle.
 pub const FILE: &str = "recordings.yaml";
-
-/// What the key `format` says of a file that this program reads.
-pub(crate) const FORMAT: &str = "clearance recordings 1";
 
 /// A folder of measured runs.
 #[derive(Clone, Debug)]
@@ -116,7 +114,7 @@ impl Bundle {
     /// like a misspelt one.
     ///
     /// # Errors
-    /// The first mistake, with its line.
+    /// All mistakes, with their lines.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let (folder, file) = if path.file_name().is_some_and(|name| name == FILE) {
             (path.parent().unwrap_or(Path::new("")), path.to_owned())
@@ -129,11 +127,11 @@ impl Bundle {
     /// The bundle in `folder` whose `recordings.yaml` has the content `document`.
     ///
     /// # Errors
-    /// The first mistake, with its line.
+    /// All mistakes, with their lines.
     pub fn new(folder: &Path, document: Document) -> Result<Self, Error> {
-        let runs = known_format(&document.tree)
-            .and_then(|()| runs(&document.tree))
-            .map_err(|error| document.locate(error))?;
+        let runs = document.collect(bundle_schema, |tree| {
+            known_format(tree).and_then(|()| runs(tree))
+        })?;
         Ok(Self {
             folder: folder.to_owned(),
             machine: document.tree.get("machine").cloned().unwrap_or_default(),
@@ -214,8 +212,8 @@ fn throws(machine: &Value) -> Vec<String> {
 fn known_format(tree: &Value) -> Result<(), Error> {
     match tree.get("format") {
         None => Ok(()),
-        Some(Value::String(format)) if format == FORMAT => Ok(()),
-        Some(_) => Err(Error::clash("format", format_args!("'{FORMAT}'"))),
+        Some(Value::String(format)) if format == BUNDLE_FORMAT => Ok(()),
+        Some(_) => Err(Error::clash("format", format_args!("'{BUNDLE_FORMAT}'"))),
     }
 }
 

@@ -16,6 +16,7 @@ use crate::choice::{Count, Or};
 use crate::error::Error;
 use crate::quantity::{AboveZero, FromZero, Number};
 use crate::yaml::Document;
+use crate::{reader, sided};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::SeqAccessDeserializer;
@@ -148,12 +149,22 @@ impl Calibration {
     /// Reads a settings file; `document` gives the lines of mistakes that are found later.
     ///
     /// # Errors
-    /// The first mistake, with its line.
+    /// All mistakes, with their lines.
     pub fn read(path: &Path) -> Result<(Self, Document), Error> {
         let document = Document::open(path)?;
-        let settings: Self = document.read()?;
-        settings.check().map_err(|error| document.locate(error))?;
-        Ok((settings, document))
+        Ok((Self::of(&document)?, document))
+    }
+
+    /// The settings in the file with the content `document`.
+    ///
+    /// # Errors
+    /// All mistakes, with their lines.
+    pub fn of(document: &Document) -> Result<Self, Error> {
+        document.collect(schema, |tree| {
+            let settings: Self = reader::read(tree)?;
+            sided::check(tree)?;
+            settings.check().map(|()| settings)
+        })
     }
 
     /// What the types do not say: no list without entries, bounds in their order, a probability.
@@ -245,10 +256,7 @@ mod tests {
     use serde_json::json;
 
     fn read(text: &str) -> Result<Calibration, Error> {
-        let document = Document::parse(text, "c.yaml")?;
-        let settings: Calibration = document.read()?;
-        settings.check().map_err(|error| document.locate(error))?;
-        Ok(settings)
+        Calibration::of(&Document::parse(text, "c.yaml")?)
     }
 
     fn message(text: &str) -> String {

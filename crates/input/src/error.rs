@@ -7,18 +7,26 @@ use std::fmt;
 /// A mistake in a file that a person wrote.
 ///
 /// Shown on one line: `file:line:column: key: problem`. What is not known is left out: a tree
-/// that was built in memory has no lines, a syntax error has no key.
+/// that was built in memory has no lines, a syntax error has no key. Where a file has several mistakes, the first
+/// carries the others, and each is shown on a line of its own, in the order of the file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", self.line())]
+#[error("{}", self.lines())]
 pub struct Error {
     file: Option<String>,
     place: Option<Place>,
     key: String,
     problem: Box<Problem>,
+    /// Keys of the values that the one at `key` was held against, where there are some.
+    against: Vec<String>,
+    /// Further mistakes of the same run.
+    others: Vec<Error>,
 }
 
+/// Begins a key from the top of the file.
+const FROM_TOP: char = '/';
+
 /// Line and column in a file, both counted from 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
     /// Line.
     pub line: u64,
@@ -86,7 +94,56 @@ impl Error {
             place: None,
             key: key.into(),
             problem: Box::new(problem),
+            against: Vec::new(),
+            others: Vec::new(),
         }
+    }
+
+    /// All of `mistakes` in one; none where there is none.
+    pub fn all(mistakes: impl IntoIterator<Item = Self>) -> Option<Self> {
+        let mut each = mistakes.into_iter().flat_map(Self::into_each);
+        let mut first = each.next()?;
+        first.others = each.collect();
+        Some(first)
+    }
+
+    /// This mistake, and those of `other`.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.others.extend(other.into_each());
+        self
+    }
+
+    /// Each mistake by itself.
+    pub fn into_each(mut self) -> Vec<Self> {
+        let others = std::mem::take(&mut self.others);
+        std::iter::once(self).chain(others).collect()
+    }
+
+    /// The same mistake, which holds only as long as the value at `key` stays: it was held against that. The key is
+    /// one of the same section, or begins with `/` and is one of the file; a part may be `*`.
+    #[must_use]
+    pub fn against(mut self, key: impl Into<String>) -> Self {
+        self.against.push(key.into());
+        self
+    }
+
+    /// The keys of the values that it was held against, from the top of the file.
+    pub(crate) fn partners(&self) -> impl Iterator<Item = &str> {
+        self.against
+            .iter()
+            .map(|key| key.trim_start_matches(FROM_TOP))
+    }
+
+    /// The same mistake in a file that has other names for its keys.
+    #[must_use]
+    pub(crate) fn renamed(mut self, name: &dyn Fn(&str) -> String) -> Self {
+        self.key = name(&self.key);
+        for key in &mut self.against {
+            *key = name(key.trim_start_matches(FROM_TOP));
+        }
+        self.others = self.others.into_iter().map(|e| e.renamed(name)).collect();
+        self
     }
 
     /// `found` stands at `key` where `expected` belongs.
@@ -141,15 +198,29 @@ impl Error {
     /// The same mistake seen from one level up, where its section is called `key`.
     #[must_use]
     pub fn under(mut self, key: impl fmt::Display) -> Self {
-        self.key = join(&key.to_string(), &self.key);
+        let key = key.to_string();
+        self.key = join(&key, &self.key);
+        for name in self
+            .against
+            .iter_mut()
+            .filter(|name| !name.starts_with(FROM_TOP))
+        {
+            *name = join(&key, name);
+        }
+        self.others = self.others.into_iter().map(|e| e.under(&key)).collect();
         self
     }
 
     /// The same mistake in `file`.
     #[must_use]
     pub fn in_file(mut self, file: &str) -> Self {
-        self.file = Some(file.to_owned());
+        self.file.get_or_insert_with(|| file.to_owned());
         self
+    }
+
+    /// The file, where it is known.
+    pub fn file(&self) -> Option<&str> {
+        self.file.as_deref()
     }
 
     /// The same mistake at `place`, unless its place is known already.
@@ -200,6 +271,18 @@ impl Error {
         self
     }
 
+    /// Looks among `others` for what an unknown key was meant to be, where none of the known keys is near.
+    pub(crate) fn suggesting<'a>(mut self, others: impl Iterator<Item = &'a str>) -> Self {
+        let name = self.key.rsplit('.').next().unwrap_or_default();
+        let near = nearest(name, others).map(str::to_owned);
+        if let Problem::UnknownKey { nearest, .. } = &mut *self.problem
+            && nearest.is_none()
+        {
+            *nearest = near;
+        }
+        self
+    }
+
     /// Fills in what belongs in the place of a missing key, if that is still open.
     pub(crate) fn expecting(mut self, expectation: impl FnOnce() -> Option<String>) -> Self {
         if let Problem::Missing { expected } = &mut *self.problem
@@ -208,6 +291,11 @@ impl Error {
             *expected = expectation();
         }
         self
+    }
+
+    fn lines(&self) -> String {
+        let each = std::iter::once(self).chain(&self.others);
+        each.map(Self::line).collect::<Vec<_>>().join("\n")
     }
 
     fn line(&self) -> String {

@@ -14,6 +14,19 @@ pub trait Kind {
     const EXAMPLE: &'static str;
     /// Its dimension.
     const DIMENSION: Dimension;
+    /// How its text is read.
+    const READING: Reading = Reading::Plain;
+}
+
+/// How the text of a kind of quantity is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// A number and a unit.
+    Plain,
+    /// `g` is the standard acceleration of gravity, not a gram.
+    Gravities,
+    /// The word `radial` or `diametral` may follow.
+    Sided,
 }
 
 /// A row of the table of kinds.
@@ -24,7 +37,7 @@ pub(crate) struct KindRow {
 }
 
 macro_rules! kinds {
-    ($( $name:ident, $words:literal, $unit:literal, $example:literal, $dimension:expr; )*) => {
+    ($( $name:ident, $words:literal, $unit:literal, $example:literal, $dimension:expr $(, $reading:ident)?; )*) => {
         $(
             #[doc = concat!("Marks ", $words, ", in SI units ", $unit, ".")]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +49,7 @@ macro_rules! kinds {
                 const UNIT: &'static str = $unit;
                 const EXAMPLE: &'static str = $example;
                 const DIMENSION: Dimension = $dimension;
+                $( const READING: Reading = Reading::$reading; )?
             }
         )*
 
@@ -47,13 +61,14 @@ macro_rules! kinds {
 
 kinds! {
     Length, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0);
+    Clearance, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0), Sided;
     Mass, "a mass", "kg", "12 kg", Dimension::of(0.0, 1.0, 0.0, 0.0);
     Duration, "a duration", "s", "0.5 s", Dimension::of(0.0, 0.0, 1.0, 0.0);
     Angle, "an angle", "rad", "30 deg", Dimension::of(0.0, 0.0, 0.0, 1.0);
     Speed, "a rotational speed", "rad/s", "500 rpm", Dimension::of(0.0, 0.0, -1.0, 1.0);
     Frequency, "a frequency", "Hz", "10 kHz", Dimension::of(0.0, 0.0, -1.0, 0.0);
     Velocity, "a velocity", "m/s", "0.01 m/s", Dimension::of(1.0, 0.0, -1.0, 0.0);
-    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::of(1.0, 0.0, -2.0, 0.0);
+    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::of(1.0, 0.0, -2.0, 0.0), Gravities;
     Force, "a force", "N", "200 N", Dimension::of(1.0, 1.0, -2.0, 0.0);
     Torque, "a torque", "N m", "60 N m", Dimension::of(2.0, 1.0, -2.0, 0.0);
     TorqueSlope, "a torque per speed", "N m s", "40 N m s", Dimension::of(2.0, 1.0, -1.0, 0.0);

@@ -7,11 +7,13 @@
 //!                  (knows its lines)       (knows its paths)     (checks what must go together)
 //! ```
 //!
-//! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected.
+//! Every mistake becomes one [`Error`] with file, line, key, what was found and what was expected. All mistakes of
+//! a file are found in one reading.
 
 pub mod amount;
 pub mod bundle;
 pub mod bundle_channel;
+mod bundle_check;
 pub mod bundle_machine;
 pub mod calibration;
 pub mod choice;
@@ -19,12 +21,17 @@ mod dimension;
 pub mod error;
 mod kind;
 pub mod machine_file;
+mod mistakes;
 pub mod paths;
 pub mod quantity;
 mod reader;
 pub mod run_settings;
 pub mod schema;
+pub mod sided;
+pub mod template;
+mod tree;
 pub mod unit;
+mod unit_table;
 pub mod yaml;
 
 /// The catalogue of effects as data.
@@ -34,9 +41,10 @@ pub mod effects {
     };
 }
 
+pub use bundle_check::check as check_bundle;
 pub use bundle_machine::from_bundle;
 pub use error::{Error, Place, Problem, nearest};
 pub use machine_file::{
-    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section,
+    MachineFile, NormalClearance, Resolved, ThrowNormalClearance, sensor_section, synonyms,
 };
 pub use run_settings::run_settings;

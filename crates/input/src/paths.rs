@@ -4,9 +4,10 @@
 //! (`throws.throw1.joints.big_end.clearance`), an effect's (`effects.valve_loss.discharge`), or
 //! what a sensor measures (`sensors.cylinder_pressure.range`; the first of several).
 
-use crate::error::{Error, shown};
-use crate::schema::Node;
-use crate::yaml::find;
+use crate::error::{Error, Problem, shown};
+use crate::machine_file::synonyms;
+use crate::schema::{self, Node};
+use crate::tree::find;
 use serde_json::{Map, Value};
 
 /// Puts `value` at `path`, whether or not the file has the key.
@@ -128,7 +129,7 @@ fn walk<'a, 'p>(
     parts: impl Iterator<Item = &'p str>,
 ) -> Result<Walked<'a>, Error> {
     let mut keys: Vec<String> = Vec::new();
-    let mut schema = Node::machine();
+    let mut schema = schema::machine();
     let mut node = Some(tree);
     for part in parts {
         let here = keys.join(".");
@@ -145,8 +146,15 @@ fn walk<'a, 'p>(
             }
         }
         let Some(inner) = schema.key(part) else {
-            let error = Error::unknown_key(part, &schema.keys());
-            return Err(error.under(keys.join(".")));
+            let error = Error::unknown_key(part, &schema.keys()).under(keys.join("."));
+            return Err(
+                synonyms::instead(error.key()).map_or(error.clone(), |words| {
+                    Error::new(
+                        error.key(),
+                        Problem::Other(format!("unknown key; give {words}")),
+                    )
+                }),
+            );
         };
         keys.push(part.to_owned());
         node = node.and_then(|node| node.get(part));

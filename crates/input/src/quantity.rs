@@ -1,14 +1,14 @@
 //! Quantities as files have them: a text with a unit whose dimension and range the type fixes.
 
 pub use crate::kind::{
-    Acceleration, Angle, Area, Compliance, Damping, Duration, Force, ForcePerPressure, Frequency,
-    Inertia, Kind, Length, Mass, Pressure, Ratio, Speed, StiffnessPerRoot, Torque, TorqueSlope,
-    Velocity, Viscosity,
+    Acceleration, Angle, Area, Clearance, Compliance, Damping, Duration, Force, ForcePerPressure,
+    Frequency, Inertia, Kind, Length, Mass, Pressure, Ratio, Speed, StiffnessPerRoot, Torque,
+    TorqueSlope, Velocity, Viscosity,
 };
 
 use crate::dimension::Measure;
 use crate::error::quoted;
-use crate::kind::KINDS;
+use crate::kind::{KINDS, Reading};
 use crate::unit::{self, UnitError};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected, Visitor};
@@ -113,11 +113,20 @@ impl<K: Kind, B: Bound> Quantity<K, B> {
     /// The text, quoted, with the reason: it is no number with a unit, its unit has another dimension
     /// than the kind, or the bound forbids the value.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let measure = unit::parse(text).map_err(|error| describe_error(text, &error))?;
+        let measure = measure::<K>(text).map_err(|error| describe_error(text, &error))?;
         if measure.dimension != K::DIMENSION {
             return Err(format!("{} ({})", quoted(text), describe(&measure)));
         }
         Self::new(measure.si).ok_or_else(|| quoted(text))
+    }
+}
+
+/// Reads a text where a quantity of kind `K` belongs.
+pub(crate) fn measure<K: Kind>(text: &str) -> Result<Measure, UnitError> {
+    match K::READING {
+        Reading::Plain => unit::parse(text),
+        Reading::Gravities => unit::parse_acceleration(text),
+        Reading::Sided => unit::parse_clearance(text),
     }
 }
 

@@ -13,10 +13,11 @@ pub use crate::dimension::{Dimension, Measure};
 
 use crate::error::nearest;
 use crate::kind::KINDS;
+use crate::unit_table::{ABSOLUTE, COMMON, PREFIXES, SIDES, UNITS, Unit};
 use scalar::Scalar;
-use std::f64::consts::PI;
 use std::fmt;
 
+pub(crate) use crate::unit_table::gauge;
 pub use mechanism::GRAVITY;
 
 /// Why a text is no quantity.
@@ -41,7 +42,9 @@ pub enum UnitError {
     },
     /// A pressure over the ambient pressure, which a quantity cannot be.
     #[error(
-        "{name} counts from the ambient pressure: add that and give the absolute pressure, in {absolute}"
+        "{name} counts from the ambient pressure: add that and give the absolute pressure, in {absolute}; \
+         the pressures of a machine's cylinders may stay if the machine has the key ambient_pressure, e.g. \
+         '1.013 bar'"
     )]
     Gauge {
         /// The unit as it is written.
@@ -49,6 +52,9 @@ pub enum UnitError {
         /// The unit without the reference.
         absolute: &'static str,
     },
+    /// The word `radial` or `diametral` at a length that is no clearance.
+    #[error("only a clearance is radial or diametral")]
+    Sided,
     /// Units in a form that is not understood.
     #[error("the unit is not understood")]
     Form,
@@ -89,117 +95,6 @@ impl fmt::Display for Measure {
     }
 }
 
-struct Unit {
-    name: &'static str,
-    prefixed: bool,
-    /// Its size: 10^ten × numerator / denominator SI units.
-    ten: i32,
-    numerator: f64,
-    denominator: f64,
-    dimension: Dimension,
-}
-
-const fn unit(name: &'static str, prefixed: bool, ten: i32, dimension: Dimension) -> Unit {
-    Unit {
-        name,
-        prefixed,
-        ten,
-        numerator: 1.0,
-        denominator: 1.0,
-        dimension,
-    }
-}
-
-const fn odd(name: &'static str, numerator: f64, denominator: f64, dimension: Dimension) -> Unit {
-    Unit {
-        numerator,
-        denominator,
-        ..unit(name, false, 0, dimension)
-    }
-}
-
-const UNITS: [Unit; 22] = [
-    unit("m", true, 0, Dimension::of(1.0, 0.0, 0.0, 0.0)),
-    unit("g", true, -3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
-    unit("t", false, 3, Dimension::of(0.0, 1.0, 0.0, 0.0)),
-    unit("s", true, 0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
-    odd("min", 60.0, 1.0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
-    odd("h", 3600.0, 1.0, Dimension::of(0.0, 0.0, 1.0, 0.0)),
-    unit("rad", true, 0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
-    odd("deg", PI, 180.0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
-    odd("°", PI, 180.0, Dimension::of(0.0, 0.0, 0.0, 1.0)),
-    odd("rpm", PI, 30.0, Dimension::of(0.0, 0.0, -1.0, 1.0)),
-    unit("Hz", true, 0, Dimension::of(0.0, 0.0, -1.0, 0.0)),
-    unit("N", true, 0, Dimension::of(1.0, 1.0, -2.0, 0.0)),
-    unit("J", true, 0, Dimension::of(2.0, 1.0, -2.0, 0.0)),
-    unit("W", true, 0, Dimension::of(2.0, 1.0, -3.0, 0.0)),
-    unit("Pa", true, 0, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
-    unit("bar", true, 5, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
-    // A pound-force (0.45359237 kg × 9.80665 m/s²) per square inch.
-    odd(
-        "psi",
-        4.448_221_615_260_5,
-        6.4516e-4,
-        Dimension::of(-1.0, 1.0, -2.0, 0.0),
-    ),
-    odd("gn", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
-    odd("g0", GRAVITY, 1.0, Dimension::of(1.0, 0.0, -2.0, 0.0)),
-    unit("%", false, -2, Dimension::NONE),
-    unit("‰", false, -3, Dimension::NONE),
-    unit("1", false, 0, Dimension::NONE),
-];
-
-const PREFIXES: [(char, i32); 11] = [
-    ('n', -9),
-    ('u', -6),
-    ('µ', -6), // micro sign, U+00B5
-    ('μ', -6), // Greek mu, U+03BC
-    ('m', -3),
-    ('c', -2),
-    ('d', -1),
-    ('h', 2),
-    ('k', 3),
-    ('M', 6),
-    ('G', 9),
-];
-
-/// Pressure units that name the absolute reference, and the unit that each is.
-const ABSOLUTE: [(&str, &str); 8] = [
-    ("bara", "bar"),
-    ("bar(a)", "bar"),
-    ("psia", "psi"),
-    ("psi(a)", "psi"),
-    ("kPaa", "kPa"),
-    ("kPa(a)", "kPa"),
-    ("MPaa", "MPa"),
-    ("MPa(a)", "MPa"),
-];
-
-/// Pressure units over the ambient pressure, and the unit that each is one of.
-const GAUGE: [(&str, &str); 8] = [
-    ("barg", "bar"),
-    ("bar(g)", "bar"),
-    ("psig", "psi"),
-    ("psi(g)", "psi"),
-    ("kPag", "kPa"),
-    ("kPa(g)", "kPa"),
-    ("MPag", "MPa"),
-    ("MPa(g)", "MPa"),
-];
-
-/// A gauge pressure's unit with the unit that it is one of, if `name` is one; capitals do not count.
-pub(crate) fn gauge(name: &str) -> Option<(&'static str, &'static str)> {
-    let mut units = GAUGE.into_iter();
-    units.find(|(gauge, _)| gauge.eq_ignore_ascii_case(name))
-}
-
-/// Names that are suggested for a misspelt one.
-const COMMON: [&str; 32] = [
-    "m", "mm", "um", "cm", "kg", "g", "t", "s", "ms", "min", "h", "rad", "deg", "rpm", "Hz", "kHz",
-    "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "psi",
-    "%",
-];
-
 /// Reads a number with its unit.
 ///
 /// # Errors
@@ -219,6 +114,67 @@ pub fn parse(text: &str) -> Result<Measure, UnitError> {
         si,
         dimension: scale.dimension,
     })
+}
+
+/// Reads an acceleration with its unit: `g` is the standard acceleration of gravity, as on the data sheets of
+/// sensors, where it is a gram elsewhere.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_acceleration(text: &str) -> Result<Measure, UnitError> {
+    let gravities = text
+        .trim()
+        .strip_suffix('g')
+        .map(|rest| match rest.strip_suffix('m') {
+            Some(thousandths) => (thousandths.trim_end(), "mm/s^2"),
+            None => (rest.trim_end(), "m/s^2"),
+        });
+    match gravities {
+        Some((number, unit)) if is_number(number) => {
+            let one = parse(&format!("{number} {unit}"))?;
+            Ok(Measure {
+                si: one.si * GRAVITY,
+                ..one
+            })
+        }
+        _ => parse(text),
+    }
+}
+
+/// Reads a clearance with its unit: `0.1 mm` and `0.1 mm radial` are radial, `0.1 mm diametral` is half of that.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_clearance(text: &str) -> Result<Measure, UnitError> {
+    let text = text.trim();
+    let with = |word: &str| {
+        let length = text.strip_suffix(word)?;
+        length.ends_with(char::is_whitespace).then_some(length)
+    };
+    if let Some(length) = with("radial") {
+        return parse(length);
+    }
+    match with("diametral") {
+        Some(length) => parse(length).map(|whole| Measure {
+            si: whole.si / 2.0,
+            ..whole
+        }),
+        None => parse(text),
+    }
+}
+
+/// The pressure above the ambient one that a text such as `20 barg` states, Pa; none where its unit counts from
+/// zero.
+pub fn parse_gauge(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let (_, unit) = split_number(text)?;
+    let (_, absolute) = gauge(unit.trim())?;
+    let number = &text[..text.len() - unit.len()];
+    parse(&format!("{number} {absolute}")).ok().map(|p| p.si)
+}
+
+fn is_number(text: &str) -> bool {
+    split_number(text).is_some_and(|(_, rest)| rest.is_empty())
 }
 
 /// A decimal number as it is written: the digits with their point, and the power of ten.
@@ -341,6 +297,9 @@ fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
         {
             return Ok((unit, ten));
         }
+    }
+    if SIDES.contains(&name) {
+        return Err(UnitError::Sided);
     }
     if let Some((name, absolute)) = gauge(name) {
         return Err(UnitError::Gauge { name, absolute });

@@ -1,7 +1,9 @@
 //! YAML text becomes a tree that remembers where each key and value stands.
 
 use crate::error::{Error, Place, Problem, join};
-use crate::reader;
+use crate::tree::{find, parents};
+use crate::{mistakes, reader, schema};
+use schemars::JsonSchema;
 use serde::de::{self, Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
 use serde_saphyr::{
@@ -18,6 +20,8 @@ pub struct Document {
     pub tree: Value,
     file: Option<String>,
     places: BTreeMap<String, Places>,
+    /// Keys that stand a second time in their section, with their places; the tree has the first.
+    duplicates: Vec<Error>,
 }
 
 /// Where a key and its value stand.
@@ -33,8 +37,8 @@ struct Places {
 /// sections whose key `law` names the variant.
 ///
 /// # Errors
-/// The first mistake, with its line.
-pub fn from_str<T: DeserializeOwned>(text: &str, file_name: &str) -> Result<T, Error> {
+/// All mistakes, with their lines.
+pub fn from_str<T: DeserializeOwned + JsonSchema>(text: &str, file_name: &str) -> Result<T, Error> {
     Document::parse(text, file_name)?.read()
 }
 
@@ -69,7 +73,7 @@ impl Document {
     /// The content `text` of a file that messages call `file_name`.
     ///
     /// # Errors
-    /// Where the text is empty or not YAML, or a section has a key twice.
+    /// Where the text is empty or not YAML. A key that a section has twice is found when the content is read.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
         let options = serde_saphyr::options! {
             // Deep enough for any file of ours, and no test of the stack.
@@ -83,13 +87,10 @@ impl Document {
         };
         let root: Option<Spanned<Node>> = serde_saphyr::from_str_with_options(text, options)
             .map_err(|error| syntax(&error).in_file(file_name))?;
-        let mut places = BTreeMap::new();
+        let mut index = Index::default();
         let tree = match root {
             None => Value::Null,
-            Some(node) => node
-                .value
-                .into_tree("", &mut places)
-                .map_err(|error| error.in_file(file_name))?,
+            Some(node) => node.value.into_tree("", &mut index),
         };
         if tree.is_null() {
             return Err(Error::new("", Problem::Empty).in_file(file_name));
@@ -97,7 +98,8 @@ impl Document {
         Ok(Self {
             tree,
             file: Some(file_name.to_owned()),
-            places,
+            places: index.places,
+            duplicates: index.duplicates,
         })
     }
 
@@ -107,21 +109,98 @@ impl Document {
             tree,
             file: None,
             places: BTreeMap::new(),
+            duplicates: Vec::new(),
         }
     }
 
     /// Reads the content as a `T`.
     ///
     /// # Errors
-    /// The first mistake, with its line.
-    pub fn read<T: DeserializeOwned>(&self) -> Result<T, Error> {
-        reader::read(&self.tree).map_err(|error| self.locate(error))
+    /// All mistakes, with their lines.
+    pub fn read<T: DeserializeOwned + JsonSchema>(&self) -> Result<T, Error> {
+        self.collect(schema::generate::<T>, |tree| reader::read(tree))
+    }
+
+    /// What `read` makes of the content. Its errors have keys of the tree that it is given: this one, or one from
+    /// which mistakes have been taken out, so that the next ones are found. `schema` says what belongs where. Only
+    /// content that a person wrote is read more than once.
+    ///
+    /// # Errors
+    /// All mistakes, with their lines and in their order.
+    pub fn collect<T>(
+        &self,
+        schema: impl FnOnce() -> Value,
+        read: impl FnMut(&Value) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.collect_named(schema, &str::to_owned, read)
+    }
+
+    /// As [`Document::collect`], where `canonical` gives the name that the schema has for a key.
+    pub(crate) fn collect_named<T>(
+        &self,
+        schema: impl FnOnce() -> Value,
+        canonical: &dyn Fn(&str) -> String,
+        mut read: impl FnMut(&Value) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        match read(&self.tree) {
+            Ok(content) if self.duplicates.is_empty() => Ok(content),
+            Err(error) if self.file.is_none() => Err(self.locate(error)),
+            _ => {
+                let mut read = |tree: &Value| read(tree).map(|_| ());
+                let (error, _) = self.mistakes(&schema(), canonical, &mut read);
+                Err(error)
+            }
+        }
+    }
+
+    /// All mistakes that `read` finds, and the content without them, as far as they can be taken out.
+    pub(crate) fn mistakes(
+        &self,
+        schema: &Value,
+        canonical: &dyn Fn(&str) -> String,
+        read: &mut dyn FnMut(&Value) -> Result<(), Error>,
+    ) -> (Error, Value) {
+        let (found, tree) = mistakes::all(&self.tree, schema, canonical, read);
+        let all = self.duplicates.iter().cloned().chain(found);
+        let mut located: Vec<Error> = all.map(|error| self.locate(error)).collect();
+        let here = |error: &Error| error.file() == self.file.as_deref();
+        // What another file has wrong comes after what this one has.
+        located.sort_by_key(|error| (!here(error), error.place().filter(|_| here(error))));
+        let none = || Error::new("", Problem::Other("no mistake".to_owned()));
+        (Error::all(located).unwrap_or_else(none), tree)
+    }
+
+    /// The same file with the content `tree`: messages have the lines of what stands in both.
+    #[must_use]
+    pub fn with_tree(&self, tree: Value) -> Self {
+        Self {
+            tree,
+            ..self.clone()
+        }
+    }
+
+    /// Whether a section has a key twice.
+    pub(crate) fn has_duplicates(&self) -> bool {
+        !self.duplicates.is_empty()
+    }
+
+    /// Where the key at a dotted path stands.
+    pub fn place_of(&self, key: &str) -> Option<Place> {
+        self.places.get(key).map(|places| places.key)
     }
 
     /// `error` with the value as it is written, the file's name, and the place of its key or of the
     /// section that lacks it. A message quotes what stands at a key; of a file without keys, which is none of ours, it
     /// says what it is and not what stands in it.
     pub fn locate(&self, error: Error) -> Error {
+        let each = error.into_each().into_iter().map(|e| self.locate_one(e));
+        Error::all(each).unwrap_or_else(|| Error::new("", Problem::Empty))
+    }
+
+    fn locate_one(&self, error: Error) -> Error {
+        if error.file().is_some() {
+            return error;
+        }
         let error = match error.key().is_empty() {
             true => error.unquoted(&self.tree),
             false => error,
@@ -142,21 +221,6 @@ impl Document {
         let place = place.unwrap_or(Place { line: 1, column: 1 });
         error.in_file(file).at(place)
     }
-}
-
-/// The node at a dotted path of keys and indices; the tree itself at the empty one.
-pub(crate) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
-    let mut parts = key.split('.').filter(|_| !key.is_empty());
-    parts.try_fold(tree, |node, part| match node {
-        Value::Array(items) => items.get(part.parse::<usize>().ok()?),
-        node => node.get(part),
-    })
-}
-
-/// `a.b`, then `a`, of `a.b.c`.
-fn parents(key: &str) -> impl Iterator<Item = &str> {
-    std::iter::successors(key.rsplit_once('.'), |(parent, _)| parent.rsplit_once('.'))
-        .map(|(parent, _)| parent)
 }
 
 fn syntax(error: &serde_saphyr::Error) -> Error {
@@ -190,35 +254,47 @@ enum Node {
     Section(Vec<(Spanned<String>, Spanned<Node>)>),
 }
 
+/// Where keys and values stand.
+#[derive(Default)]
+struct Index {
+    places: BTreeMap<String, Places>,
+    duplicates: Vec<Error>,
+}
+
 impl Node {
-    /// The node without places; those go to `places` under their dotted paths.
-    fn into_tree(self, path: &str, places: &mut BTreeMap<String, Places>) -> Result<Value, Error> {
-        let mut child = |name: &str, key: Place, node: Spanned<Self>| {
-            let below = join(path, name);
-            let value = place(&node.referenced);
-            if places
-                .insert(below.clone(), Places { key, value })
-                .is_some()
-            {
-                return Err(Error::new(below, Problem::Duplicate).at(key));
-            }
-            node.value.into_tree(&below, places)
-        };
+    /// The node without places; those go to `index` under their dotted paths.
+    fn into_tree(self, path: &str, index: &mut Index) -> Value {
         match self {
-            Self::Scalar(value) => Ok(value),
+            Self::Scalar(value) => value,
             Self::List(items) => {
                 let items = items.into_iter().enumerate();
-                items
-                    .map(|(i, item)| child(&i.to_string(), place(&item.referenced), item))
-                    .collect()
+                let item = |(i, item): (usize, Spanned<Self>)| {
+                    let below = join(path, &i.to_string());
+                    let at = place(&item.referenced);
+                    index
+                        .places
+                        .insert(below.clone(), Places { key: at, value: at });
+                    item.value.into_tree(&below, index)
+                };
+                items.map(item).collect()
             }
             Self::Section(entries) => {
                 let mut section = Map::new();
-                for (key, value) in entries {
-                    let tree = child(&key.value, place(&key.referenced), value)?;
-                    section.insert(key.value, tree);
+                for (key, node) in entries {
+                    let below = join(path, &key.value);
+                    let places = Places {
+                        key: place(&key.referenced),
+                        value: place(&node.referenced),
+                    };
+                    if index.places.contains_key(&below) {
+                        let again = Error::new(below, Problem::Duplicate).at(places.key);
+                        index.duplicates.push(again);
+                        continue;
+                    }
+                    index.places.insert(below.clone(), places);
+                    section.insert(key.value, node.value.into_tree(&below, index));
                 }
-                Ok(Value::Object(section))
+                Value::Object(section)
             }
         }
     }

@@ -113,6 +113,8 @@ pub enum Quantity {
     Ratio,
     /// m.
     Length,
+    /// m, radial: half of the diametral one, which a file may state as such.
+    Clearance,
     /// rad.
     Angle,
     /// rad/s.

@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 
 use crate::Plan;
 use crate::dataset::CALIBRATION;
-use crate::sweep_file::{Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
+use crate::sweep_file::{self, Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
 
 /// A sweep file that has been read, but not planned yet.
 #[derive(Clone, Debug)]
@@ -121,13 +121,25 @@ impl Sweep {
     /// The sweep file with the content `document` in `folder`.
     ///
     /// # Errors
-    /// A mistake in it, with its line.
+    /// All mistakes in it, with their lines.
     pub fn new(document: Document, folder: &Path) -> Result<Self, Error> {
-        let file: SweepFile = document.read()?;
-        if let Some(calibrate) = &file.calibrate {
-            let checked = calibrate.settings.check();
-            checked.map_err(|error| document.locate(error.under("calibrate")))?;
-        }
+        let read = |tree: &Value| {
+            let file: SweepFile = Document::from_tree(tree.clone()).read()?;
+            if let Some(calibrate) = &file.calibrate {
+                let checked = calibrate.settings.check();
+                checked.map_err(|error| error.under("calibrate"))?;
+            }
+            Ok(file)
+        };
+        let file = document
+            .collect(sweep_file::schema, read)
+            .map_err(|error| {
+                match document.tree.get("calibrate") {
+                    Some(_) => error,
+                    // The plan finds these, and what does not go together.
+                    None => Plan::new(&document, folder).err().unwrap_or(error),
+                }
+            })?;
         Ok(Self {
             document,
             folder: folder.to_owned(),

@@ -2,6 +2,7 @@
 
 mod calibrate;
 mod calibrated_sweep;
+mod check;
 mod compare;
 mod console;
 mod damage;
@@ -17,6 +18,7 @@ mod hidden_effects;
 mod hostile;
 mod one_run;
 mod output;
+mod own_machine;
 mod readme;
 mod recorded_sensors;
 mod recovery;

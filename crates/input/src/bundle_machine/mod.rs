@@ -1,6 +1,7 @@
 //! The machine section of a bundle (`recordings.yaml`) becomes the tree of a machine file.
 //!
-//! Programs write bundles, so their values are SI with the unit at the end of the key. Beyond the
+//! Programs write bundles, so their values are SI with the unit at the end of the key. A person may write the keys of
+//! a machine file in their place (`stroke: 150 mm`, `rod: {length: 600 mm}`), all of them, with units. Beyond the
 //! values that the format prescribes a user may add, for each throw or for all:
 //!
 //! - `contact_relation` (as `relation` in a machine file) and `contact_at_clearance_m`: how contact
@@ -17,7 +18,7 @@ use crate::error::{Error, join, shown};
 use crate::quantity::{
     AboveZero, Acceleration, Any, FromZero, Inertia, Length, Number, Torque, TorqueSlope, text,
 };
-use crate::{reader, schema};
+use crate::{machine_file, reader, schema};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -104,6 +105,9 @@ pub fn from_bundle(machine: &Value) -> Result<Value, Error> {
         let expected = "a section with the machine's values";
         return Err(Error::found("", shown(machine), expected));
     };
+    if machine_file::is_machine_file(section) {
+        return of_machine_file(machine);
+    }
     let [whole, shared] = split(section)?;
     let whole: Whole = reader::read(&Value::Object(whole))?;
     let throws = match &whole.throws {
@@ -129,7 +133,8 @@ pub fn from_bundle(machine: &Value) -> Result<Value, Error> {
         tree.insert("gravity".into(), gravity);
     }
     tree.insert("crank".into(), crank(&whole.crank, throws[0].radius)?);
-    tree.insert("sensors".into(), sensors(&throws, several));
+    let names = throws.iter().map(|throw| throw.name.as_str());
+    tree.insert("sensors".into(), sensors(names, several));
     if several {
         let list: Vec<Value> = throws.into_iter().map(|t| t.sections.into()).collect();
         tree.insert("throws".into(), list.into());
@@ -137,6 +142,26 @@ pub fn from_bundle(machine: &Value) -> Result<Value, Error> {
         tree.extend(throws.into_iter().flat_map(|throw| throw.sections));
     }
     Ok(Value::Object(tree))
+}
+
+/// The tree of a machine section that has the keys of a machine file: all of them may stand there.
+fn of_machine_file(machine: &Value) -> Result<Value, Error> {
+    let mut tree = machine_file::canonical(machine)?;
+    let throws = tree["throws"].as_array().map(|throws| {
+        let names = throws
+            .iter()
+            .map(|throw| throw["name"].as_str().unwrap_or_default());
+        names.map(str::to_owned).collect::<Vec<String>>()
+    });
+    if let Value::Object(section) = &mut tree {
+        section.shift_remove("type");
+        section.entry("name").or_insert("machine".into());
+        let none = [String::new()];
+        let names = throws.as_deref().unwrap_or(&none);
+        let sensors = sensors(names.iter().map(String::as_str), throws.is_some());
+        section.entry("sensors").or_insert(sensors);
+    }
+    Ok(tree)
 }
 
 /// What holds for the machine, and what for its throws.
@@ -216,10 +241,10 @@ fn crank(crank: &Option<Crank>, radius: Number<AboveZero>) -> Result<Value, Erro
     Ok(json!({"radius": text::<Length>(radius), "drive": drive}))
 }
 
-fn sensors(throws: &[Throw], several: bool) -> Value {
+fn sensors<'a>(throws: impl Iterator<Item = &'a str> + Clone, several: bool) -> Value {
     let on = |measure: &str| {
-        let sensors = throws.iter().map(|throw| match several {
-            true => json!({"measure": measure, "throw": throw.name}),
+        let sensors = throws.clone().map(|throw| match several {
+            true => json!({"measure": measure, "throw": throw}),
             false => json!({"measure": measure}),
         });
         sensors.collect::<Vec<Value>>()

@@ -6,7 +6,7 @@ use super::value::{self, Value};
 use crate::choice::{Or, Pair};
 use crate::error::{Error, quoted};
 use crate::quantity::{
-    Contraction, FromZero, Length, NonNegative, Number, Positive, Pressure, Velocity, describe,
+    Clearance, Contraction, FromZero, NonNegative, Number, Positive, Pressure, Velocity, describe,
     describe_error, text_schema,
 };
 use crate::unit::{self, Dimension};
@@ -37,7 +37,7 @@ pub(super) struct Contact {
     /// How the parameters follow the clearance: eq5, conformal, constant, or a section of exponents.
     relation: Option<RelationSection>,
     /// Clearance at which the parameters are as they stand; needed with a relation.
-    at_clearance: Option<Positive<Length>>,
+    at_clearance: Option<Positive<Clearance>>,
 }
 
 type StiffnessSource = Or<Stiffness, Materials>;
@@ -197,8 +197,8 @@ fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Sc
     );
     add(
         AT_CLEARANCE,
-        "Clearance at which the parameters are as they stand here; needed with a relation.",
-        generator.subschema_for::<Positive<Length>>(),
+        "Radial clearance at which the parameters are as they stand here; needed with a relation.",
+        generator.subschema_for::<Positive<Clearance>>(),
     );
     json_schema!({
         "description": law.declaration.about,
@@ -311,7 +311,7 @@ impl Contact {
         // The law's exponent says what unit its stiffness has.
         let (_, exponent) = law(1.0)?.spring();
         let stiffness = resolve_stiffness(source, exponent, surfaces);
-        law(stiffness.map_err(|e| e.under("stiffness"))?)
+        law(stiffness.map_err(|e| e.under("stiffness").against("exponent").against("law"))?)
     }
 }
 
@@ -427,7 +427,9 @@ impl Friction {
                 let (low, high) = (law.stiction_speed, law.transition_speed);
                 if low.si() >= high.si() {
                     let expected = format_args!("a velocity above stiction_speed, {low}");
-                    return Err(Error::clash("transition_speed", expected));
+                    return Err(
+                        Error::clash("transition_speed", expected).against("stiction_speed")
+                    );
                 }
                 FrictionLaw::Adams(friction::Adams {
                     static_coefficient: law.static_coefficient.get(),
@@ -439,7 +441,7 @@ impl Friction {
             Friction::Ambrosio(law) => {
                 if law.slow.si() >= law.fast.si() {
                     let expected = format_args!("a velocity above slow, {}", law.slow);
-                    return Err(Error::clash("fast", expected));
+                    return Err(Error::clash("fast", expected).against("slow"));
                 }
                 FrictionLaw::Ambrosio(friction::Ambrosio {
                     coefficient: law.coefficient.get(),

@@ -4,10 +4,10 @@ use super::contact::{Contact, Friction};
 use super::surfaces::Surfaces;
 use crate::choice::{Ideal, Or};
 use crate::error::Error;
-use crate::quantity::{Length, NonNegative, Positive, text_schema};
+use crate::quantity::{Clearance, Length, NonNegative, Positive, text_schema};
 use mechanism::joints::friction::FrictionLaw;
 use mechanism::joints::guide::{Guide, GuideClearance};
-use mechanism::joints::revolute::{self, Clearance, Revolute};
+use mechanism::joints::revolute::{self, Revolute};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
 use serde::de::{Deserializer, Unexpected, Visitor};
@@ -54,13 +54,14 @@ pub(super) struct ThrowJoints {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bearing {
-    /// Radial clearance. With 0 or `ideal` the joint is ideal, and the other keys have no effect.
+    /// Radial clearance: half the difference of the diameters. `0.1 mm diametral` is 0.05 mm radial. With 0 or
+    /// `ideal` the joint is ideal, and the other keys have no effect.
     clearance: Gap,
-    /// Clearance up to which the joint counts as healthy; where it is left out, the clearance that
-    /// the joint has in this file.
+    /// Radial clearance up to which the joint counts as healthy (`0.1 mm diametral` is 0.05 mm radial); where it
+    /// is left out, the clearance that the joint has in this file.
     #[serde(default)]
-    normal_clearance: Option<NonNegative<Length>>,
-    /// Radius of the journal.
+    normal_clearance: Option<NonNegative<Clearance>>,
+    /// Radius of the journal: half the diameter of the pin.
     journal_radius: Positive<Length>,
     /// Which motions of the journal the joint distinguishes; three_mode where it is left out.
     #[serde(default)]
@@ -76,12 +77,13 @@ pub(crate) struct Bearing {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GuideFaces {
-    /// Gap to each face when the crosshead is centred. With 0 or `ideal` the guide is ideal.
+    /// Gap to each face when the crosshead is centred, half of the gaps to both together, which is `diametral`.
+    /// With 0 or `ideal` the guide is ideal.
     clearance: Gap,
-    /// Gap up to which the guide counts as healthy; where it is left out, the gap that it has in
+    /// Gap to each face up to which the guide counts as healthy; where it is left out, the gap that it has in
     /// this file.
     #[serde(default)]
-    normal_clearance: Option<NonNegative<Length>>,
+    normal_clearance: Option<NonNegative<Clearance>>,
     /// Half the length of the crosshead's shoes.
     half_length: Positive<Length>,
     /// Half the height of the crosshead.
@@ -108,7 +110,7 @@ enum JointModel {
 
 /// A clearance; 0 for the word `ideal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Gap(NonNegative<Length>);
+struct Gap(NonNegative<Clearance>);
 
 const GAP: &str = "a length of at least 0 with its unit, e.g. '0.1 mm', or 'ideal'";
 
@@ -141,7 +143,7 @@ impl Gap {
             return Ok(clearance.si());
         }
         let expected = format_args!("a length below {name}, {size}");
-        Err(Error::clash("clearance", expected))
+        Err(Error::clash("clearance", expected).against(name))
     }
 }
 
@@ -151,7 +153,7 @@ impl JsonSchema for Gap {
     }
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        let length = text_schema(GAP, false, &["0.1 mm"]);
+        let length = text_schema(GAP, false, &["0.1 mm", "0.2 mm diametral"]);
         schemars::json_schema!({
             "anyOf": [length, {"const": "ideal"}]
         })
@@ -215,7 +217,7 @@ impl Bearing {
             radius: radius.si(),
             clearance,
         };
-        let law = Clearance {
+        let law = revolute::Clearance {
             clearance,
             journal_radius: radius.si(),
             contact: self

@@ -4,6 +4,7 @@
 //! A machine of several has a list `throws`; what stands at the top then holds for every throw
 //! that does not say otherwise, key by key.
 
+mod ambient;
 mod contact;
 pub(crate) mod effects;
 mod joints;
@@ -14,33 +15,38 @@ mod sections;
 mod sensors;
 mod shared;
 mod surfaces;
+pub(crate) mod synonyms;
 mod top_sections;
 mod value;
+mod written;
 
 pub use normal_clearance::{NormalClearance, ThrowNormalClearance};
 pub(crate) use relation::RelationSection;
 pub use resolved::Resolved;
 pub use sensors::sensor_section;
+pub use synonyms::synonyms;
 pub(crate) use top_sections::Sections;
 pub(crate) use value::unit_of_quantity;
 
 use crate::error::Error;
 use crate::yaml::{self, Document};
 use crate::{reader, schema};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::path::Path;
+use written::{Mistakes, Written};
 
 /// A machine file whose keys, units and ranges have been checked one by one.
 #[derive(Clone, Debug)]
 pub struct MachineFile {
     document: Document,
+    written: Written,
     sections: Sections,
 }
 
 /// Reads the machine file at `path`.
 ///
 /// # Errors
-/// The first key, unit or value that cannot stand where it does, with its line.
+/// All mistakes, with their lines: of keys, units and values, and of what does not go together.
 pub fn read(path: &Path) -> Result<MachineFile, Error> {
     MachineFile::from_document(Document::open(path)?)
 }
@@ -62,17 +68,44 @@ impl MachineFile {
         Self::from_document(Document::from_tree(tree.clone()))
     }
 
-    fn from_document(document: Document) -> Result<Self, Error> {
-        let spread = shared::spread(&document.tree);
-        match reader::read(&spread) {
-            Ok(sections) => Ok(Self { document, sections }),
-            Err(error) => Err(locate(&document, error)),
-        }
+    /// Reads the machine file with the content `document`.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn from_document(document: Document) -> Result<Self, Error> {
+        let Parts { written, sections } = match Parts::read(&document.tree) {
+            Ok(parts) if !document.has_duplicates() => parts,
+            // A file with a wrong key may also have values that do not go together.
+            _ => all(&document, |tree| {
+                let parts = Parts::read(tree)?;
+                parts.resolve().map(|_| parts)
+            })?,
+        };
+        Ok(Self {
+            document,
+            written,
+            sections,
+        })
     }
 
-    /// The file's content, as it is written.
+    /// The machine file with the content `document` and what it describes; with mistakes, these, and what the file
+    /// says without them where that can be told: whatever refers to the machine can be checked all the same.
+    pub fn checked(document: Document) -> (Option<(Self, Resolved)>, Option<Error>) {
+        let file = Self::from_document(document.clone());
+        let error = match file.and_then(|file| file.resolve().map(|resolved| (file, resolved))) {
+            Ok(good) => return (Some(good), None),
+            Err(error) => error,
+        };
+        let mut read = |tree: &Value| Parts::read(tree)?.resolve().map(|_| ());
+        let (_, tree) = document.mistakes(&schema::MACHINE, &synonyms::canonical, &mut read);
+        let file = Self::from_tree(&tree);
+        let repaired = file.and_then(|file| file.resolve().map(|resolved| (file, resolved)));
+        (repaired.ok(), Some(error))
+    }
+
+    /// The file's content, with the keys of machine files in the place of their synonyms.
     pub fn to_tree(&self) -> &Value {
-        &self.document.tree
+        &self.written.tree
     }
 
     /// The file's content as YAML: reading it gives the same machine.
@@ -80,25 +113,101 @@ impl MachineFile {
     /// # Errors
     /// Where the content has a form that YAML cannot hold.
     pub fn to_yaml(&self) -> Result<String, Error> {
-        yaml::to_string(&self.document.tree)
+        yaml::to_string(&self.written.tree)
     }
 
     /// The machine, its sensors and its limits, in SI units.
     ///
     /// # Errors
-    /// The first value that does not go together with the others, with its line: a rod shorter
-    /// than its crank, a clearance wider than its journal, ...
+    /// All values that do not go together with the others, with their lines: a rod shorter than its crank, a
+    /// clearance wider than its journal, ...
     pub fn resolve(&self) -> Result<Resolved, Error> {
-        self.sections
-            .resolve()
-            .map_err(|error| locate(&self.document, error))
+        match resolve(&self.written, &self.sections) {
+            Ok(resolved) => Ok(resolved),
+            Err(_) => all(&self.document, |tree| Parts::read(tree)?.resolve()),
+        }
     }
 }
 
-/// `error` with its line in the file, and with what belongs in the place of a missing key. A key of a
-/// throw may stand in the section that the throws share.
-fn locate(document: &Document, error: Error) -> Error {
-    let key = shared::written_key(&document.tree, error.key()).to_owned();
-    let error = error.with_key(key.clone());
-    document.locate(error.expecting(|| schema::Node::machine().walk(&key)?.expected()))
+/// The key of a throw's section at the key of a throw, and of any other place this key.
+pub(crate) fn canonical_key(key: &str) -> String {
+    let throw = key
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'));
+    throw.map_or(key, |(_, rest)| rest).to_owned()
+}
+
+/// Whether a section has keys that machine files alone have.
+pub(crate) fn is_machine_file(section: &Map<String, Value>) -> bool {
+    let own = [
+        "rod",
+        "crosshead",
+        "cylinder",
+        "joints",
+        "sensors",
+        "speed",
+        "gravity",
+    ];
+    let is_own = |key: &String| own.contains(&key.as_str()) || synonyms::is_of_people(key);
+    section.keys().any(is_own)
+}
+
+/// The content `tree` of a machine file, with the keys of machine files in the place of their synonyms.
+///
+/// # Errors
+/// A synonym whose value cannot be, or that says what its key says, too.
+pub(crate) fn canonical(tree: &Value) -> Result<Value, Error> {
+    let mut written = Written::new(tree.clone());
+    let mut mistakes = Mistakes::default();
+    synonyms::replace(&mut written, &mut mistakes);
+    ambient::make_absolute(&mut written);
+    mistakes.into_error()?;
+    Ok(written.tree)
+}
+
+/// What `read` makes of a machine file, or all mistakes that it finds.
+fn all<T>(document: &Document, read: impl FnMut(&Value) -> Result<T, Error>) -> Result<T, Error> {
+    document.collect_named(|| schema::MACHINE.clone(), &synonyms::canonical, read)
+}
+
+/// The content of a machine file, read.
+struct Parts {
+    written: Written,
+    sections: Sections,
+}
+
+impl Parts {
+    /// Reads `tree`, whose keys errors have.
+    fn read(tree: &Value) -> Result<Self, Error> {
+        let mut written = Written::new(tree.clone());
+        let mut mistakes = Mistakes::default();
+        synonyms::replace(&mut written, &mut mistakes);
+        ambient::make_absolute(&mut written);
+        mistakes.into_error()?;
+        let spread = shared::spread(&written.tree);
+        match reader::read(&spread) {
+            Ok(sections) => Ok(Self { written, sections }),
+            Err(error) => Err(named(&written, error)),
+        }
+    }
+
+    fn resolve(&self) -> Result<Resolved, Error> {
+        resolve(&self.written, &self.sections)
+    }
+}
+
+fn resolve(written: &Written, sections: &Sections) -> Result<Resolved, Error> {
+    let resolved = sections.resolve();
+    resolved.map_err(|error| named(written, error))
+}
+
+/// `error` with the key that the file has, and with what belongs in the place of a missing one. A key of a throw
+/// may stand in the section that the throws share.
+fn named(written: &Written, error: Error) -> Error {
+    let error = error.renamed(&|key| shared::written_key(&written.tree, key).to_owned());
+    let key = error.key().to_owned();
+    let error = error.expecting(|| schema::machine().walk(&key)?.expected());
+    let above = key.rsplit_once('.').map_or("", |(above, _)| above);
+    let error = error.suggesting(synonyms::names_in(above));
+    error.renamed(&|key| written.original(key))
 }

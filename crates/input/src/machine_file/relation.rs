@@ -12,7 +12,7 @@
 use super::surfaces::Surfaces;
 use crate::choice::Or;
 use crate::error::Error;
-use crate::quantity::{Any, Length, Number, Positive};
+use crate::quantity::{Any, Clearance, Number, Positive};
 use mechanism::joints::clearance_relation::Relation;
 use mechanism::joints::contact::ContactLaw;
 use schemars::JsonSchema;
@@ -60,7 +60,7 @@ impl Stated {
     /// What the two keys of a contact say together; none where it has neither.
     pub(super) fn new(
         relation: Option<&RelationSection>,
-        at_clearance: Option<Positive<Length>>,
+        at_clearance: Option<Positive<Clearance>>,
     ) -> Result<Option<Self>, Error> {
         match (relation, at_clearance) {
             (None, None) => Ok(None),

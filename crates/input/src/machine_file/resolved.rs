@@ -8,6 +8,14 @@ use crate::error::Error;
 use mechanism::Machine;
 use simulate::{Chain, Measured, Sensor};
 
+/// What sensors and effects are held against: where they can be.
+const PLACES: [&str; 4] = [
+    "/frame",
+    "/throws.*.name",
+    "/cylinder.crank_end",
+    "/throws.*.cylinder.crank_end",
+];
+
 /// What a machine file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Resolved {
@@ -39,14 +47,15 @@ impl Resolved {
 impl Sections {
     /// The machine with its effects.
     pub(super) fn resolve(&self) -> Result<Resolved, Error> {
-        let under = |error: Error| error.under("effects");
+        let places = |error: Error| PLACES.iter().fold(error, |e, place| e.against(*place));
+        let under = |error: Error| places(error.under("effects"));
         let effects = Effects::new(&self.effects).map_err(under)?;
         let mut prepared = self.clone();
         effects.prepare(&mut prepared).map_err(under)?;
         let (mut machine, normal_clearance) = prepared.machine()?;
         effects.act(&mut machine).map_err(under)?;
         let sensors = sensors::resolve(&self.sensors, &machine);
-        let mut sensors = sensors.map_err(|e| e.under("sensors"))?;
+        let mut sensors = sensors.map_err(|e| places(e.under("sensors")))?;
         for sensor in &mut sensors {
             effects.sense(sensor, &machine.throws);
         }

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Crank {
-    /// Crank radius: half the stroke.
+    /// Crank radius: half the stroke. A data sheet's `stroke` may stand in its place at the top of the file.
     pub radius: Positive<Length>,
     /// What turns the crank; `given` where it is left out.
     #[serde(default)]
@@ -58,7 +58,7 @@ struct Motor {
 impl Crank {
     pub(super) fn crankshaft(&self, main: &Revolute) -> Result<mechanism::Crankshaft, Error> {
         if main.clear().is_some() && self.mass.is_none() {
-            return Err(Error::missing("mass"));
+            return Err(Error::missing("mass").against("/joints.main.clearance"));
         }
         Ok(mechanism::Crankshaft {
             mass: self.mass.map_or(0.0, |m| m.si()),
@@ -105,11 +105,12 @@ impl Rod {
         let length = self.length;
         if length.si() <= crank.si() {
             let expected = format_args!("a length above the crank radius, {crank}");
-            return Err(Error::clash("length", expected));
+            let error = Error::clash("length", expected).against("/crank.radius");
+            return Err(error.against("/throws.*.crank_radius"));
         }
         if self.centre_of_mass.si() > length.si() {
             let expected = format_args!("a length up to that of the rod, {length}");
-            return Err(Error::clash("centre_of_mass", expected));
+            return Err(Error::clash("centre_of_mass", expected).against("length"));
         }
         Ok(mechanism::Rod {
             length: length.si(),
@@ -120,11 +121,12 @@ impl Rod {
     }
 }
 
-/// Crosshead, piston rod and piston: one body whose centre of mass is the crosshead pin.
+/// Crosshead, crosshead pin, piston rod and piston: one body whose centre of mass is the crosshead pin.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Crosshead {
-    /// Mass.
+    /// Mass of all that moves to and fro without turning: crosshead, crosshead pin, piston rod, piston and rings. The
+    /// connecting rod is not in it. Data sheets call it reciprocating weight.
     mass: Positive<Mass>,
     /// Moment of inertia about the pin; needed where the guide has clearance.
     #[serde(default)]
@@ -134,7 +136,8 @@ pub(super) struct Crosshead {
 impl Crosshead {
     pub(super) fn resolve(&self, guide: &Guide) -> Result<mechanism::Crosshead, Error> {
         if guide.clear().is_some() && self.inertia.is_none() {
-            return Err(Error::missing("inertia"));
+            let error = Error::missing("inertia").against("/joints.guide.clearance");
+            return Err(error.against("/throws.*.joints.guide.clearance"));
         }
         Ok(mechanism::Crosshead {
             mass: self.mass.si(),
@@ -147,11 +150,11 @@ impl Crosshead {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Cylinder {
-    /// Radius of the piston.
+    /// Radius of the piston: half the bore.
     piston_radius: Positive<Length>,
-    /// Suction pressure.
+    /// Suction pressure, absolute. A gauge pressure such as `20 barg` needs the key ambient_pressure.
     suction: Positive<Pressure>,
-    /// Discharge pressure.
+    /// Discharge pressure, absolute.
     discharge: Positive<Pressure>,
     /// Pressure behind a single-acting piston, and on the end of a double-acting one's rod.
     back: NonNegative<Pressure>,
@@ -160,7 +163,8 @@ pub(super) struct Cylinder {
     /// Polytropic exponent while the gas in the clearance expands; `exponent` where it is left out.
     #[serde(default)]
     expansion_exponent: Option<Number<AboveZero>>,
-    /// Gap between piston and head at top dead centre.
+    /// Gap between piston and head at top dead centre, along the stroke. The clearance volume of a data sheet, in % of
+    /// the swept volume, may stand in its place as `clearance_volume`: the gap is that share of the stroke.
     head_clearance: Positive<Length>,
     /// The second chamber of a double-acting cylinder.
     #[serde(default)]
@@ -171,9 +175,9 @@ pub(super) struct Cylinder {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct CrankEnd {
-    /// Radius of the piston rod.
+    /// Radius of the piston rod: half its diameter.
     rod_radius: Positive<Length>,
-    /// Gap between piston and crank-end cover at bottom dead centre.
+    /// Gap between piston and crank-end cover at bottom dead centre, along the stroke; or `clearance_volume`.
     clearance: Positive<Length>,
 }
 
@@ -182,12 +186,12 @@ impl Cylinder {
         let (suction, discharge, piston) = (self.suction, self.discharge, self.piston_radius);
         if discharge.si() < suction.si() {
             let expected = format_args!("a pressure of at least suction, {suction}");
-            return Err(Error::clash("discharge", expected));
+            return Err(Error::clash("discharge", expected).against("suction"));
         }
         let crank_end = match &self.crank_end {
             Some(end) if end.rod_radius.si() >= piston.si() => {
                 let expected = format_args!("a length below piston_radius, {piston}");
-                return Err(Error::clash("crank_end.rod_radius", expected));
+                return Err(Error::clash("crank_end.rod_radius", expected).against("piston_radius"));
             }
             other => other.as_ref().map(|end| gas::CrankEnd {
                 rod_radius: end.rod_radius.si(),

@@ -1,6 +1,6 @@
 //! Sections at the top of a machine of several throws hold for each of them, key by key.
 
-use crate::yaml::find;
+use crate::tree::{find, parents};
 use serde_json::{Map, Value};
 use std::borrow::Cow;
 
@@ -68,14 +68,26 @@ fn overlay(shared: &Value, own: Value) -> Value {
     Value::Object(merged)
 }
 
-/// The key as the file has it: without its throw where only the shared section has it.
+/// The key as the file has it: without its throw where only the shared section has it, or would have it.
 pub(super) fn written_key<'a>(tree: &Value, key: &'a str) -> &'a str {
     let shared = key
         .strip_prefix("throws.")
-        .and_then(|rest| rest.split_once('.'))
-        .map(|(_, rest)| rest);
-    match shared {
-        Some(rest) if find(tree, key).is_none() && find(tree, rest).is_some() => rest,
+        .and_then(|rest| rest.split_once('.'));
+    // A pattern stands for every throw.
+    let Some((_, rest)) = shared.filter(|(throw, _)| *throw != "*") else {
+        return key;
+    };
+    let throw = &key[..key.len() - rest.len()];
+    // The nearest section that is there, in the throw or else in what the throws share.
+    let section = parents(rest).find(|section| {
+        let own = format!("{throw}{section}");
+        find(tree, &own).or_else(|| find(tree, section)).is_some()
+    });
+    let is_own = |key: &str| find(tree, &format!("{throw}{key}")).is_some();
+    match section {
+        _ if is_own(rest) => key,
+        _ if find(tree, rest).is_some() => rest,
+        Some(section) if !is_own(section) => rest,
         _ => key,
     }
 }

@@ -6,7 +6,7 @@ use super::normal_clearance::{NormalClearance, ThrowNormalClearance};
 use super::sections::{Crank, Crosshead, Cylinder, FrameSection, Gravity, Rod};
 use super::sensors::SensorSection;
 use crate::error::Error;
-use crate::quantity::{Angle, Frequency, Length, Positive, Quantity, Speed};
+use crate::quantity::{Angle, Frequency, Length, Positive, Pressure, Quantity, Speed};
 use mechanism::{Direction, Machine, Throw};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -19,6 +19,9 @@ pub(crate) struct Sections {
     pub(super) name: String,
     /// Speed of the crank; with a free crank the speed at which the motor gives its mean torque.
     pub(super) speed: Positive<Speed>,
+    /// Ambient pressure at the machine, from which its gauge pressures (`20 barg`, `300 psig`) count.
+    #[serde(default, rename = "ambient_pressure")]
+    _ambient_pressure: Option<Positive<Pressure>>,
     /// Gravity in the plane of motion.
     #[serde(default)]
     gravity: Option<Gravity>,

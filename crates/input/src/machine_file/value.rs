@@ -66,6 +66,7 @@ pub(super) fn with_kind<W: WithKind>(quantity: Quantity, then: W) -> W::Output {
         Quantity::Number => then.with_number(),
         Quantity::Ratio => then.with::<quantity::Ratio>(),
         Quantity::Length => then.with::<quantity::Length>(),
+        Quantity::Clearance => then.with::<quantity::Clearance>(),
         Quantity::Angle => then.with::<quantity::Angle>(),
         Quantity::Speed => then.with::<quantity::Speed>(),
         Quantity::Frequency => then.with::<quantity::Frequency>(),

@@ -1,9 +1,13 @@
 //! The schema of recordings.yaml.
 
 use super::generate::generate;
+use super::machine::machine_schema;
 use crate::bundle_machine;
 use crate::run_settings::{Joints, Load};
 use serde_json::{Value, json};
+
+/// What the key `format` says of a file that this program reads.
+pub(crate) const BUNDLE_FORMAT: &str = "clearance recordings 1";
 
 /// The schema of a bundle's recordings.yaml.
 pub fn bundle_schema() -> Value {
@@ -15,6 +19,10 @@ pub fn bundle_schema() -> Value {
         })
     };
     let mut defs = machine["$defs"].take();
+    let of_people = machine_file(&mut defs);
+    let mut machine = without_heading(machine);
+    let description = "The machine: SI values with the unit at the end of the key, or the keys of a machine file.";
+    machine = json!({"description": description, "anyOf": [machine, of_people]});
     let mut part = |mut part: Value| {
         if let (Value::Object(defs), Value::Object(own)) = (&mut defs, part["$defs"].take()) {
             defs.extend(own);
@@ -31,9 +39,9 @@ pub fn bundle_schema() -> Value {
         "properties": {
             "format": {
                 "description": "What the file is.",
-                "const": crate::bundle::FORMAT,
+                "const": BUNDLE_FORMAT,
             },
-            "machine": without_heading(machine),
+            "machine": machine,
             "runs": {
                 "description": "The runs.",
                 "type": "array",
@@ -60,6 +68,53 @@ pub fn bundle_schema() -> Value {
         "required": ["runs"],
         "$defs": defs,
     })
+}
+
+/// A machine section with the keys of a machine file, none of which is needed: a run may set it. Its definitions go to
+/// `defs` under names of their own.
+fn machine_file(defs: &mut Value) -> Value {
+    let mut schema = optional(machine_schema());
+    let own = schema["$defs"].take();
+    if let (Value::Object(defs), Value::Object(own)) = (defs, own) {
+        defs.extend(
+            own.into_iter()
+                .map(|(name, schema)| (format!("{PREFIX}{name}"), schema)),
+        );
+    }
+    schema["properties"]["type"] = text_of("What kind of machine it is, in words.");
+    without_heading(schema)
+}
+
+/// Begins the names of definitions of the machine file.
+const PREFIX: &str = "MachineFile";
+
+/// `schema` without keys that are needed.
+fn optional(schema: Value) -> Value {
+    match schema {
+        Value::Array(items) => items.into_iter().map(optional).collect(),
+        Value::Object(keywords) => {
+            let kept = keywords
+                .into_iter()
+                .filter(|(keyword, value)| match keyword.as_str() {
+                    "required" | "allOf" => !value.is_array(),
+                    "if" | "else" => false,
+                    _ => true,
+                });
+            let kept = kept.map(|(keyword, value)| match (keyword.as_str(), value) {
+                ("$ref", Value::String(target)) => (
+                    keyword,
+                    target
+                        .replace("#/$defs/", &format!("#/$defs/{PREFIX}"))
+                        .into(),
+                ),
+                // Without needed keys several alternatives fit.
+                ("oneOf", value) => ("anyOf".to_owned(), optional(value)),
+                (_, value) => (keyword, optional(value)),
+            });
+            Value::Object(kept.collect())
+        }
+        other => other,
+    }
 }
 
 fn channels() -> Value {

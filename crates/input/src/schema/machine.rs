@@ -1,8 +1,19 @@
 //! The schema of machine.yaml.
 
 use super::generate::generate;
+use super::node::Node;
+use super::synonyms;
 use crate::machine_file::Sections;
 use serde_json::{Map, Value, json};
+use std::sync::LazyLock;
+
+/// The schema of the sections of a machine file, each of them whole.
+pub(crate) static MACHINE: LazyLock<Value> = LazyLock::new(generate::<Sections>);
+
+/// The top of the machine file.
+pub(crate) fn machine() -> Node<'static> {
+    Node::top(&MACHINE)
+}
 
 /// The schema of machine.yaml.
 ///
@@ -12,6 +23,7 @@ pub fn machine_schema() -> Value {
     let mut schema = generate::<Sections>();
     schema["title"] = "machine.yaml".into();
     let mut defs = schema["$defs"].take();
+    synonyms::add(&mut schema, &mut defs);
     let mut parts = Map::new();
     let mut strict = Map::new();
     for section in ["rod", "crosshead", "cylinder", "joints"] {
@@ -27,7 +39,7 @@ pub fn machine_schema() -> Value {
     }
     schema["if"] = json!({"required": ["throws"]});
     schema["else"] = json!({
-        "required": ["rod", "crosshead", "cylinder"],
+        "allOf": synonyms::needed(),
         "properties": strict,
     });
     schema["$defs"] = defs;

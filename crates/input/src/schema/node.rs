@@ -1,11 +1,6 @@
-//! A place in the schema of the machine file: what may stand there.
+//! A place in a schema: what may stand there.
 
-use super::generate::generate;
-use crate::machine_file::Sections;
-use serde_json::{Map, Value};
-use std::sync::LazyLock;
-
-static MACHINE: LazyLock<Value> = LazyLock::new(generate::<Sections>);
+use serde_json::{Map, Value, json};
 
 /// A place in a schema: the alternatives that may stand there, references followed.
 pub(crate) struct Node<'a> {
@@ -13,14 +8,12 @@ pub(crate) struct Node<'a> {
     alternatives: Vec<&'a Value>,
 }
 
-impl Node<'static> {
-    /// The top of the machine file.
-    pub(crate) fn machine() -> Self {
-        Node::expand(&MACHINE, [&*MACHINE])
-    }
-}
-
 impl<'a> Node<'a> {
+    /// The top of what the schema `root` describes.
+    pub(crate) fn top(root: &'a Value) -> Self {
+        Self::expand(root, [root])
+    }
+
     fn expand(root: &'a Value, schemas: impl IntoIterator<Item = &'a Value>) -> Self {
         let mut alternatives: Vec<&Value> = Vec::new();
         let mut open: Vec<&Value> = schemas.into_iter().collect();
@@ -52,7 +45,14 @@ impl<'a> Node<'a> {
 
     /// What may stand at `key`.
     pub(crate) fn key(&self, key: &str) -> Option<Self> {
-        let schemas: Vec<&Value> = self.sections().filter_map(|s| s.get(key)).collect();
+        let mut schemas: Vec<&Value> = self.sections().filter_map(|s| s.get(key)).collect();
+        if schemas.is_empty() {
+            // Keys that people choose, such as paths.
+            let free = self.alternatives.iter();
+            schemas = free
+                .filter_map(|s| s.get("additionalProperties").filter(|s| s.is_object()))
+                .collect();
+        }
         (!schemas.is_empty()).then(|| Self::expand(self.root, schemas))
     }
 
@@ -69,6 +69,37 @@ impl<'a> Node<'a> {
             let index = part.parse::<usize>().is_ok();
             if index { node.items() } else { node.key(part) }
         })
+    }
+
+    /// What may stand at a dotted path; here at the empty one.
+    pub(crate) fn walk_or_top(self, path: &str) -> Option<Self> {
+        if path.is_empty() {
+            Some(self)
+        } else {
+            self.walk(path)
+        }
+    }
+
+    /// What the key `key` means.
+    pub(crate) fn words(&self, key: &str) -> Option<String> {
+        let mut words = self
+            .sections()
+            .filter_map(|s| s.get(key)?["description"].as_str());
+        words.next().map(str::to_owned)
+    }
+
+    /// Whether all sections that may stand here have the same keys.
+    pub(crate) fn is_of_one_kind(&self) -> bool {
+        self.sections().count() == 1
+    }
+
+    /// A text or a number that may stand here, as the schema has it for an example.
+    pub(crate) fn example(&self) -> Option<String> {
+        let examples = self
+            .alternatives
+            .iter()
+            .filter_map(|s| s["examples"][0].as_str());
+        examples.map(str::to_owned).next()
     }
 
     /// What belongs here, in words; none where that depends on more than the place.
@@ -98,9 +129,69 @@ impl<'a> Node<'a> {
         })
     }
 
+    /// Whether what stands here names the kind of its section.
+    pub(crate) fn is_tag(&self) -> bool {
+        let mut alternatives = self.alternatives.iter();
+        alternatives.len() > 1
+            && alternatives.all(|schema| schema.get("const").is_some_and(Value::is_string))
+    }
+
+    /// Values that may stand here as far as the schema says, the likeliest first: examples, and their multiples,
+    /// which may get along better with the rest of a file.
+    pub(crate) fn values(&self) -> Vec<Value> {
+        let each = self.alternatives.iter().map(|schema| values(schema));
+        each.collect::<Vec<_>>().concat()
+    }
+
     fn sections(&self) -> impl Iterator<Item = &'a Map<String, Value>> + '_ {
         self.alternatives
             .iter()
             .filter_map(|schema| schema["properties"].as_object())
     }
+}
+
+/// Values that may stand where `schema` holds.
+fn values(schema: &Value) -> Vec<Value> {
+    if let Some(only) = schema.get("const") {
+        return vec![only.clone()];
+    }
+    if let Some(names) = schema["enum"].as_array() {
+        return names.clone();
+    }
+    if schema.get("pattern").is_some() {
+        let examples = schema["examples"].as_array().into_iter().flatten();
+        let examples = examples.filter_map(Value::as_str);
+        return examples.flat_map(multiples).collect();
+    }
+    match schema["type"].as_str() {
+        Some("object") => vec![json!({})],
+        Some("array") => {
+            let least = schema["minItems"].as_u64().unwrap_or(0).min(9);
+            vec![json!([]), Value::Array(vec![Value::Null; least as usize])]
+        }
+        Some("number") => [1.0, 0.5, 0.1, 2.0, 10.0].map(Value::from).into(),
+        Some("integer") => {
+            let least = schema["minimum"].as_u64().unwrap_or(0);
+            let most = schema["maximum"].as_u64().unwrap_or(u64::MAX);
+            let whole = [least, 1, 2, 4, 16, 100];
+            let whole = whole.into_iter().filter(|n| (least..=most).contains(n));
+            whole.map(Value::from).collect()
+        }
+        Some("boolean") => vec![json!(false), json!(true)],
+        Some("string") => vec![json!("x"), json!("x1")],
+        _ => Vec::new(),
+    }
+}
+
+/// A quantity, and powers of ten of it.
+fn multiples(example: &str) -> Vec<Value> {
+    let Some((number, unit)) = example.split_once(' ') else {
+        return vec![example.into()];
+    };
+    let times = |power: i32| format!("{number}e{power} {unit}").into();
+    let text = |power| match (power, number.contains('e')) {
+        (0, _) | (_, true) => example.into(),
+        (power, false) => times(power),
+    };
+    [0, 3, -3, 6, -6].map(text).into()
 }

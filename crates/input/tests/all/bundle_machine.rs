@@ -6,7 +6,7 @@ use mechanism::Machine;
 use mechanism::joints::revolute::Revolute;
 use serde_json::{Value, json};
 use simulate::sensor::{ChamberEnd, Measured};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
@@ -280,4 +280,74 @@ fn wrong_runs_are_told() {
     ] {
         assert_eq!(found, expected);
     }
+}
+
+/// The machine of a bundle in the words of a machine file.
+const IN_WORDS: &str = "
+name: small
+stroke: 150 mm
+rod: {length: 400 mm, mass: 12 kg, centre_of_mass: 150 mm, inertia: 0.3 kg m^2}
+reciprocating_mass: 18 kg
+cylinder: {bore: 100 mm, head_clearance: 15 mm, exponent: 1.4, back: 1 bar}
+";
+
+/// The same as programs write it.
+const IN_SI: &str = "
+name: small
+crank_radius_m: 0.075
+rod_length_m: 0.4
+rod_mass_kg: 12
+rod_big_end_to_cg_m: 0.15
+rod_inertia_cg_kg_m2: 0.3
+crosshead_mass_kg: 18
+piston_radius_m: 0.05
+head_clearance_m: 0.015
+polytropic_exponent: 1.4
+back_pressure_pa: 100000
+";
+
+fn parsed(text: &str) -> Value {
+    Document::parse(text, "m.yaml").unwrap().tree
+}
+
+#[test]
+fn a_machine_section_and_a_machine_file_have_the_same_keys() {
+    let run = json!({"speed_rpm": 740, "load": {"suction_pressure_pa": 1e5, "discharge_pressure_pa": 4e5}});
+    let of_bundle = |text: &str| at_run(from_bundle(&parsed(text)).unwrap(), &run);
+    assert_eq!(of_bundle(IN_WORDS), of_bundle(IN_SI));
+    // Half and half.
+    let mixed = IN_WORDS.replace("stroke: 150 mm", "stroke_m: 0.15");
+    let mixed = mixed.replace("reciprocating_mass: 18 kg", "crosshead_mass_kg: 18");
+    assert_eq!(of_bundle(&mixed), of_bundle(IN_SI));
+    // A machine file as programs write a bundle.
+    let rest = "speed_rpm: 740\nsuction_pressure_pa: 1.0e5\ndischarge_pressure_pa: 4.0e5\n";
+    let file = |text: &str| MachineFile::from_tree(&parsed(&format!("{text}{rest}"))).unwrap();
+    let machine = file(IN_SI).resolve().unwrap().machine;
+    assert_eq!(machine, of_bundle(IN_SI).machine);
+    assert_eq!(machine, file(IN_WORDS).resolve().unwrap().machine);
+}
+
+#[test]
+fn mistakes_in_the_words_of_a_machine_file_are_told_together() {
+    let text = format!(
+        "machine:{}runs:\n  - {{id: a, file: a.csv, speed_rpm: 740, load: {{suction_pressure_pa: 1e5, \
+         discharge_pressure_pa: 4e5}}, channels: [{{column: t_s, unit: s}}]}}\n",
+        IN_WORDS
+            .replace('\n', "\n  ")
+            .trim_end_matches(' ')
+            .replace("mass: 12 kg", "mass: 12")
+            .replace("stroke: 150 mm", "stroke: 150 kg")
+            .replace("back: 1 bar", "bck: 1 bar")
+    );
+    let document = Document::parse(&text, "recordings.yaml").unwrap();
+    let error = input::check_bundle(Path::new("."), &document).unwrap_err();
+    let keys: Vec<String> = error
+        .into_each()
+        .iter()
+        .map(|e| e.key().to_owned())
+        .collect();
+    assert_eq!(
+        keys,
+        ["machine.stroke", "machine.rod.mass", "machine.cylinder.bck"]
+    );
 }

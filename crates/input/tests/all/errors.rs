@@ -104,9 +104,9 @@ messages! {
     unknown_key: "  length: 600 mm" => "  lenght: 600 mm",
         "m.yaml:5:3: rod.lenght: unknown key; expected one of length, mass, centre_of_mass, inertia; did you mean 'length'?";
     unknown_key_far_from_any: "name: small" => "name: small\ncolour: red",
-        "m.yaml:2:1: colour: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
+        "m.yaml:2:1: colour: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
     key_with_a_line_break: "name: small" => "name: small\n\"a\\nb\": 1",
-        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
+        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
     misspelt_joint: "  big_end:" => "  big_ned:",
         "m.yaml:18:3: joints.big_ned: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?";
     misspelt_contact_law: "law: impact" => "law: impct",
@@ -122,7 +122,7 @@ messages! {
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
         "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle, crank_speed";
     key_of_another_law: "law: impact" => "law: hertz",
-        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance";
+        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance\nm.yaml:21:71: joints.big_end.contact.depth: unknown key; expected one of stiffness, exponent, relation, at_clearance";
     misspelt_relation: "depth: 10 um" => "depth: 10 um, relation: conformel, at_clearance: 0.1 mm",
         "m.yaml:21:96: joints.big_end.contact.relation: found 'conformel', expected one of eq5, conformal, constant; did you mean 'conformal'?";
     misspelt_exponent: "depth: 10 um" => "depth: 10 um, relation: {stifness: -0.5}, at_clearance: 0.1 mm",
@@ -136,7 +136,7 @@ messages! {
     relation_at_no_clearance: "depth: 10 um" => "depth: 10 um, relation: eq5, at_clearance: 0 mm",
         "m.yaml:21:115: joints.big_end.contact.at_clearance: found '0 mm', expected a length greater than 0 with its unit, e.g. '0.1 mm'";
     radii_of_flat_faces: "  big_end:" => "  guide: {clearance: 0.1 mm, half_length: 9 cm, half_height: 7 cm, contact: {law: hertz, stiffness: 1 GN/m^1.5, relation: eq5, at_clearance: 1 mm}}\n  big_end:",
-        "m.yaml:18:123: joints.guide.contact.relation: found 'eq5', expected constant, or exponents: the guide's faces have no radius";
+        "m.yaml:9:1: crosshead.inertia: missing; expected a moment of inertia greater than 0 with its unit, e.g. '0.6 kg m^2'\nm.yaml:18:123: joints.guide.contact.relation: found 'eq5', expected constant, or exponents: the guide's faces have no radius";
     missing_key: "  mass: 12 kg\n" => "",
         "m.yaml:4:1: rod.mass: missing; expected a mass greater than 0 with its unit, e.g. '12 kg'";
     missing_section: "crosshead: {mass: 18 kg}\n" => "",
@@ -194,13 +194,39 @@ messages! {
     sensor_twice: "effects:" => "  - {measure: crosshead_acceleration}\neffects:",
         "m.yaml:25:5: sensors.1: found what sensors.0 measures already, expected each quantity at most once";
     drive_without_parameters: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm, drive: {free: {inertia: 8 kg m^2}}}",
-        "m.yaml:3:33: crank.drive.free.mean_torque: missing; expected a torque with its unit, e.g. '60 N m'";
+        "m.yaml:3:33: crank.drive.free.mean_torque: missing; expected a torque with its unit, e.g. '60 N m'\nm.yaml:3:33: crank.drive.free.slope: missing; expected a torque per speed of at least 0 with its unit, e.g. '40 N m s'";
     misspelt_drive: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm, drive: fre}",
         "m.yaml:3:32: crank.drive: found 'fre', expected one of given, free; did you mean 'free'?";
     tab_for_indentation: "  mass: 12 kg" => "\tmass: 12 kg",
         "m.yaml:5:11: not valid YAML: while scanning a plain scalar, found a tab";
     unclosed_bracket: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm",
         "m.yaml:4:4: not valid YAML: while parsing a flow mapping, did not find expected ',' or '}'";
+}
+
+/// The keys of all mistakes in `text`.
+fn keys(text: &str) -> Vec<String> {
+    let file = MachineFile::from_yaml(text, "m.yaml").and_then(|file| file.resolve());
+    let mistakes = file.unwrap_err().into_each();
+    mistakes.iter().map(|e| e.key().to_owned()).collect()
+}
+
+#[test]
+fn what_a_guess_clashes_with_is_no_mistake() {
+    let text = THROWS.replace("{measure: crank_angle}", "{measure: cylinder_pressure, throw: throw1}\n  - {measure: cylinder_pressure, throw: throw3}");
+    assert_eq!(keys(&text), ["sensors.1.throw"]);
+    let text = text
+        .replace("throw: throw3", "throw: throw2")
+        .replace("name: throw2", "name: throw 2");
+    assert_eq!(keys(&text), ["throws.1.name"]);
+    let text = THROWS
+        .replace("length: 600 mm, ", "")
+        .replace("centre_of_mass: 220 mm", "centre_of_mass: 220");
+    assert_eq!(keys(&text), ["rod.length", "rod.centre_of_mass"]);
+    let text = MACHINE
+        .replace("radius: 120 mm", "radius: 120")
+        .replace("length: 600 mm", "length: 10 mm");
+    // The centre of mass outside of the rod is one, as both values are written.
+    assert_eq!(keys(&text), ["crank.radius", "rod.centre_of_mass"]);
 }
 
 /// Two throws that share a rod.
@@ -235,7 +261,7 @@ throw_messages! {
     mistake_of_a_throw: "{name: throw1}" => "{name: throw1, rod: {length: 10 mm}}",
         "m.yaml:8:34: throws.0.rod.length: found '10 mm', expected a length above the crank radius, 0.12 m";
     key_that_neither_has: "mass: 12 kg, " => "",
-        "m.yaml:8:5: throws.0.rod.mass: missing; expected a mass greater than 0 with its unit, e.g. '12 kg'";
+        "m.yaml:4:1: rod.mass: missing; expected a mass greater than 0 with its unit, e.g. '12 kg'";
     same_name_twice: "name: throw2" => "name: throw1",
         "m.yaml:9:12: throws.1.name: found 'throw1', expected a name that no other throw has";
     name_that_is_none: "name: throw2" => "name: throw 2",
@@ -264,8 +290,8 @@ fn files_that_hold_nothing() {
         [
             "m.yaml: the file is empty",
             "m.yaml: the file is empty",
-            "m.yaml:1:1: found a list, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
-            "m.yaml:1:1: found text, expected a section with the keys name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found a list, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found text, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
             "m.yaml:3:1: not valid YAML: only single YAML document expected but multiple found"
         ]
     );
@@ -316,7 +342,7 @@ fn paths_that_lead_nowhere() {
             "effects.valve_los: found 'valve_los', expected valve_loss; did you mean 'valve_loss'?",
             "sensors.7: found '7', expected crosshead_acceleration",
             "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, high_pass, mounting, gain, axis, end; did you mean 'range'?",
-            "unknown key; expected one of name, speed, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects"
+            "unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects"
         ]
     );
 }

@@ -3,10 +3,12 @@
 mod bundle;
 mod bundle_machine;
 mod clearance_relation;
+mod data_sheet;
 mod effects;
 mod errors;
 mod machine_file;
 mod quantities;
 mod schema;
 mod tables;
+mod template;
 mod two_stage;

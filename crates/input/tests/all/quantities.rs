@@ -197,7 +197,7 @@ proptest! {
     #[test]
     fn numbers_round_trip_through_yaml(value in finite()) {
         let text = yaml::to_string(&json!({"x": value})).unwrap();
-        #[derive(serde::Deserialize)]
+        #[derive(serde::Deserialize, schemars::JsonSchema)]
         struct File { x: Number }
         let file: File = yaml::from_str(&text, "n.yaml").unwrap();
         prop_assert_eq!(file.x.get(), value);
@@ -251,19 +251,24 @@ proptest! {
             prop_assert_eq!(paths::get(&tree, &path).unwrap(), Some(&value));
         }
         if let Err(error) = MachineFile::from_tree(&tree).and_then(|file| file.resolve()) {
-            prop_assert!(!error.to_string().contains('\n'));
+            let lines = error.to_string().lines().count();
+            prop_assert_eq!(lines, error.into_each().len());
         }
     }
 }
 
 fn one_line(text: &str) {
     if let Err(error) = MachineFile::from_yaml(text, "m.yaml").and_then(|file| file.resolve()) {
+        // A line for each mistake, in the order of the file.
         let message = error.to_string();
+        let mistakes = error.into_each();
+        assert_eq!(message.lines().count(), mistakes.len(), "{message:?}");
         assert!(
-            message.starts_with("m.yaml: ") || message.starts_with("m.yaml:"),
+            message.lines().all(|line| line.starts_with("m.yaml:")),
             "{message}"
         );
-        assert!(!message.contains('\n'), "{message:?}");
+        let places: Vec<_> = mistakes.iter().map(input::Error::place).collect();
+        assert!(places.is_sorted(), "{message}");
     }
 }
 

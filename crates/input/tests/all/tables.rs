@@ -55,6 +55,23 @@ fn the_table_of_sensors_is_current() {
     check("crates/simulate/README.md", "sensors", &table);
 }
 
+#[test]
+fn the_table_of_synonyms_is_current() {
+    let mut rows: Vec<((&str, &str), Vec<String>)> = Vec::new();
+    for (key, name, states) in input::synonyms() {
+        let name = format!("`{name}`");
+        match rows.iter_mut().find(|(row, _)| *row == (key, states)) {
+            Some((_, names)) => names.push(name),
+            None => rows.push(((key, states), vec![name])),
+        }
+    }
+    let mut table = String::from("| key | names | which state |\n|---|---|---|\n");
+    for ((key, states), names) in rows {
+        table.push_str(&format!("| `{key}` | {} | {states} |\n", names.join(", ")));
+    }
+    check("crates/input/README.md", "synonyms", &table);
+}
+
 fn row(entry: &Entry) -> String {
     let keys = |amplitude: bool| {
         let keys = entry.parameters.iter();

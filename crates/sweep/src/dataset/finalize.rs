@@ -256,7 +256,7 @@ fn card(
     DatasetCard {
         title: plan.name.clone(),
         summary: format!(
-            "Simulated recordings of a reciprocating compressor, labelled with the clearance of \
+            "Simulated recordings of a reciprocating compressor, labelled with the radial clearance of \
              its joints: {} cases, {} revolutions each at {} Hz. A joint counts as faulty where \
              its clearance exceeds the machine's normal one.{} Splits are by group: cases that \
              differ in noise and sensors alone are in the same split.{}",

@@ -85,7 +85,10 @@ fn about(plan: &Plan) -> Vec<Column> {
         integer("faulty_joints", "how many joints those are").role(Role::Label),
     ];
     columns.extend(plan.joints.iter().map(|joint| {
-        let meaning = format!("clearance of the joint {}; 0 where it is ideal", joint.name);
+        let meaning = format!(
+            "radial clearance of the joint {}; 0 where it is ideal",
+            joint.name
+        );
         let column = real(format!("clearance_{}_m", joint.name), "m", meaning);
         column.role(Role::Label)
     }));

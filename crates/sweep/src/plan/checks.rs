@@ -1,6 +1,5 @@
 //! A plan is checked before anything is run.
 
-use input::yaml::Document;
 use input::{Error, Problem};
 
 use super::case::Case;
@@ -22,14 +21,14 @@ impl Plan {
 
     /// Tries cases that between them have every value that the file names, so that a mistake is
     /// found before anything is run.
-    pub(super) fn try_cases(&self, document: &Document) -> Result<(), Error> {
+    pub(super) fn try_cases(&self) -> Result<(), Error> {
         let mut start = 0;
         for (position, block) in self.blocks.iter().enumerate() {
             for inside in block.probes() {
                 let case = self.case_before_splits((start + inside) * self.repeats);
                 if let Err(error) = case.and_then(|case| self.check_columns(&case)) {
                     let keys = block.keys(inside, &self.frame());
-                    return Err(document.locate(self.blame(error, keys, position, inside)));
+                    return Err(self.blame(error, keys, position, inside));
                 }
             }
             start += block.count();

@@ -12,6 +12,7 @@ mod estimate;
 mod labelled_effects;
 mod levels;
 mod listed;
+mod machines;
 mod name;
 mod parameter;
 mod sampler;
@@ -46,10 +47,11 @@ use crate::design::hash::unit;
 use crate::effects::{VariedEffect, completed};
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
+use crate::sweep_file::{self, Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use census::Survey;
+use machines::Machines;
 use settings::{check_windows, judgement, settings, shares};
 use together::Together;
 use varied::Varied;
@@ -111,7 +113,7 @@ impl Plan {
     /// Reads the sweep file at `path`, and the machine file that it names.
     ///
     /// # Errors
-    /// The first mistake in either file, with its line; also a sweep without cases or with more than 2^64.
+    /// All mistakes in both files, with their lines; also a sweep without cases or with more than 2^64.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::new(&Document::open(path)?, folder)
@@ -122,34 +124,43 @@ impl Plan {
     /// # Errors
     /// As [`Plan::read`].
     pub fn new(document: &Document, folder: &Path) -> Result<Self, Error> {
-        let file: SweepFile = document.read()?;
-        name::check_dataset(&file.name).map_err(|error| document.locate(error))?;
+        let mut machines = Machines::new(folder);
+        document.collect(sweep_file::schema, |tree| {
+            let plan = Self::of_tree(tree, &mut machines);
+            match (plan, machines.mistakes()) {
+                (plan, None) => plan,
+                (Ok(_), Some(of_machine)) => Err(of_machine),
+                (Err(error), Some(of_machine)) => Err(error.and(of_machine)),
+            }
+        })
+    }
+
+    /// The plan of a sweep file with this content; keys of errors are those of the file.
+    fn of_tree(tree: &Value, machines: &mut Machines) -> Result<Self, Error> {
+        let file: SweepFile = Document::from_tree(tree.clone()).read()?;
+        input::sided::check(tree)?;
+        name::check_dataset(&file.name)?;
         if file.calibrate.is_some() {
             let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
-            return Err(document.locate(Error::found(
+            return Err(Error::found(
                 "calibrate",
                 "a calibration to be made",
                 expected,
-            )));
+            ));
         }
-        let machine = file
-            .machine
-            .as_ref()
-            .ok_or_else(|| Error::missing("machine"));
-        let (machine, resolved) = match machine.map_err(|e| document.locate(e))? {
-            Or::Scalar(path) => {
-                let machine = input::machine_file::read(&folder.join(path))?;
-                let resolved = machine.resolve()?;
-                (machine, resolved)
-            }
-            Or::Section(_) => MachineFile::from_tree(&document.tree["machine"])
+        let (machine, resolved) = match &file.machine {
+            None => return Err(Error::missing("machine")),
+            Some(Or::Scalar(path)) => machines.at(path)?,
+            Some(Or::Section(_)) => MachineFile::from_tree(&tree["machine"])
                 .and_then(|machine| Ok((machine.clone(), machine.resolve()?)))
-                .map_err(|e| document.locate(e.under("machine")))?,
+                .map_err(|e| e.under("machine"))?,
         };
-        let plan = Self::build(&file, machine.to_tree(), resolved, &document.tree);
-        let mut plan = plan.map_err(|error| document.locate(error))?;
-        plan.calibrated = file.calibrated.as_ref().map(|path| folder.join(path));
-        plan.try_cases(document)?;
+        let mut plan = Self::build(&file, machine.to_tree(), resolved, tree)?;
+        plan.calibrated = file
+            .calibrated
+            .as_ref()
+            .map(|path| machines.folder.join(path));
+        plan.try_cases()?;
         Ok(plan)
     }
 
@@ -261,7 +272,10 @@ impl Plan {
             .iter()
             .try_fold(0_u64, |n, b| n.checked_add(b.count()));
         match cases.and_then(|n| n.checked_mul(plan.repeats)) {
-            Some(0) => Err(Error::found("cases", "no case at all", "at least one")),
+            Some(0) => {
+                let none = Error::found("cases", "no case at all", "at least one");
+                Err(none.against("/cases.*.*.*.*.*.*.*.*"))
+            }
             None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
                 plan.effects = plan.find_effects();

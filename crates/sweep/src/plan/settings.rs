@@ -66,7 +66,8 @@ pub(super) fn shares(file: &SweepFile) -> Result<[f64; 3], Error> {
     let total: f64 = shares.iter().sum();
     if (total - 1.0).abs() > 1e-9 {
         let found = format_args!("{} % together", (total * 1e9).round() / 1e7);
-        return Err(Error::found("splits", found, "shares that add up to 100 %"));
+        let error = Error::found("splits", found, "shares that add up to 100 %");
+        return Err(error.against("/splits.*"));
     }
     Ok(shares)
 }
@@ -83,5 +84,6 @@ pub(super) fn check_windows(file: &SweepFile) -> Result<(), Error> {
     }
     let found = format_args!("{count} windows of {each} revolutions");
     let expected = format_args!("no more than run.revolutions, {recorded}");
-    Err(Error::found("windows", found, expected))
+    let error = Error::found("windows", found, expected);
+    Err(error.against("/windows.*").against("/run.revolutions"))
 }

@@ -116,7 +116,7 @@ impl<T: JsonSchema> JsonSchema for Axes<T> {
         let values = generator.subschema_for::<T>();
         json_schema!({
             "type": "object",
-            "description": "joints, clearance, load, keys of the joints such as contact.damping, or paths of the machine file, and their values",
+            "description": "joints, clearance (radial; 0.1 mm diametral is 0.05 mm), load, keys of the joints such as contact.damping, or paths of the machine file, and their values",
             "additionalProperties": values,
         })
     }

@@ -17,6 +17,7 @@
 pub mod axes;
 pub mod bifurcation;
 pub mod calibrate;
+mod template;
 pub mod together;
 pub mod values;
 
@@ -29,6 +30,7 @@ use serde_json::{Map, Value};
 pub use axes::{Axes, Block, Design, Random};
 pub use bifurcation::{Bifurcation, Directions};
 pub use calibrate::{Calibrate, Uncertainty, Undetermined};
+pub use template::template;
 pub use together::{Gaussian, Together};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
 

@@ -18,7 +18,7 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?\nsweep.yaml:4:7: caes: found no case at all, expected at least one",
     ),
     ("", "sweep.yaml:1:1: cases: missing"),
     (
@@ -67,7 +67,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      sped: [500 rpm]",
-        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
+        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
     ),
     (
         "cases:\n  - grid:\n      joints.big_ned.contact.damping: [2e4 N s/m]",
@@ -285,10 +285,34 @@ const MISTAKES: &[(&str, &str)] = &[
 
 #[test]
 fn every_mistake_gets_its_message() {
-    for (rest, expected) in MISTAKES {
+    let wrong = MISTAKES.iter().filter_map(|(rest, expected)| {
         let found = plan(&format!("{HEAD}{rest}")).map(|plan| plan.cases());
-        assert_eq!(found.unwrap_err().to_string(), *expected, "{rest}");
-    }
+        let found = found.unwrap_err().to_string();
+        (found != *expected).then(|| format!("{rest}\n  found    {found}\n  expected {expected}"))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+#[test]
+fn all_mistakes_are_told_at_once() {
+    let keys = |text: &str| {
+        let mistakes = plan(text).unwrap_err().into_each();
+        let keys = mistakes.iter().map(|e| e.key().to_owned());
+        keys.collect::<Vec<_>>()
+    };
+    let cases =
+        "cases: [{grid: {sped: [500 rpm]}}]\nvary:\n  crosshead.mass: {lognormal: {factor: 0.5}}\n";
+    assert_eq!(
+        keys(&format!("{HEAD}{cases}")),
+        ["cases.0.grid.sped", "vary.crosshead.mass.lognormal.factor"]
+    );
+    let cases =
+        "cases: [{gird: {speed: 8 kg}}]\nsplits: {train: 0.7, validation: 15 %, test: 15 %}\n";
+    assert_eq!(
+        keys(&format!("{HEAD}{cases}")),
+        ["cases.0", "cases.0.gird.speed", "splits.train"]
+    );
 }
 
 #[test]

@@ -15,7 +15,7 @@ declaration! {
     "The joint has more play than was believed."
     law "c + Δc; an ideal joint becomes clear" after "" {
         /// By how much the radial clearance is larger.
-        clearance: Length(FromZero), 2e-6 to 5e-4, start 5e-5, absent 0.0;
+        clearance: Clearance(FromZero), 2e-6 to 5e-4, start 5e-5, absent 0.0;
     }
 }
 

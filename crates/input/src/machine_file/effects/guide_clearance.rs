@@ -19,7 +19,7 @@ declaration! {
     "The crosshead has play in its guide: it knocks from one slide to the other."
     law "crosshead between two faces, IMPACT at its corners" after "Flores, Leine and Glocker 2010" {
         /// Gap to each face when the crosshead is centred.
-        clearance: Length(FromZero), 5e-6 to 5e-4, start 1e-4, absent 0.0;
+        clearance: Clearance(FromZero), 5e-6 to 5e-4, start 1e-4, absent 0.0;
         /// Half the length of the crosshead's shoes; 90 mm where it is left out.
         half_length: Length(AboveZero), 0.03 to 0.3, start 0.09;
         /// Half the height of the crosshead; 70 mm where it is left out.

@@ -47,7 +47,8 @@ impl Effects {
             if let Some(first) = sections[..i].iter().position(alike) {
                 let found = format_args!("the effect of effects.{first} again");
                 let expected = "each effect at most once at its place";
-                return Err(Error::found(i.to_string(), found, expected));
+                let error = Error::found(i.to_string(), found, expected);
+                return Err(error.against("/effects.*.*.*"));
             }
         }
         let present = sections.iter().cloned().enumerate();

@@ -23,7 +23,7 @@ declaration! {
     "The bearing grows warm, and its play changes with the speed at which the machine runs."
     law "c + Δc (speed/speed₀)ⁿ" after "Petroff 1883 for n = 2" {
         /// Change of the radial clearance at at_speed.
-        change: Length(Any), -2e-4 to 2e-4, start 3e-5, absent 0.0;
+        change: Clearance(Any), -2e-4 to 2e-4, start 3e-5, absent 0.0;
         /// Speed at which it changes by that much; 500 rpm where it is left out.
         at_speed: Speed(AboveZero), 10.0 to 200.0, start 52.359_877_559_829_88;
         /// Power of the speed: 1 for dry friction (where it is left out), 2 for oil.

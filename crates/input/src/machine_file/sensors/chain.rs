@@ -5,9 +5,9 @@ use crate::error::quoted;
 use crate::machine_file::sections::Resonance;
 use crate::quantity::{
     Any, Duration, Frequency, Kind, NonNegative, Number, Part, Positive, Quantity, Ratio, describe,
-    describe_error, text_schema,
+    describe_error, measure, text_schema,
 };
-use crate::unit::{self, Dimension};
+use crate::unit::Dimension;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::value::StrDeserializer;
@@ -181,7 +181,7 @@ impl<'de, K: Kind> Deserialize<'de> for Level<K> {
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Level<K>, E> {
                 let wrong = |found: &str| E::invalid_value(Unexpected::Other(found), &self);
                 let measure =
-                    unit::parse(text).map_err(|error| wrong(&describe_error(text, &error)))?;
+                    measure::<K>(text).map_err(|error| wrong(&describe_error(text, &error)))?;
                 let level = match measure.dimension {
                     _ if measure.si < 0.0 => return Err(wrong(&quoted(text))),
                     d if d == Dimension::NONE => NoiseLevel::OfSignal(measure.si),

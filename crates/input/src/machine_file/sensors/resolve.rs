@@ -19,11 +19,8 @@ pub(crate) fn resolve(sections: &[SensorSection], machine: &Machine) -> Result<V
         let sensor = section.resolve(machine, &names).map_err(|e| e.under(i))?;
         if let Some(first) = sensors.iter().position(|s| s.measured == sensor.measured) {
             let found = format_args!("what sensors.{first} measures already");
-            return Err(Error::found(
-                i.to_string(),
-                found,
-                "each quantity at most once",
-            ));
+            let error = Error::found(i.to_string(), found, "each quantity at most once");
+            return Err(error.against("/sensors.*.*"));
         }
         sensors.push(sensor);
     }
