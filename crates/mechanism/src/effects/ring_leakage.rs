@@ -9,7 +9,7 @@
 //! the square of `gas_speed`, taken where the gas comes from as in the suction line. The second
 //! equation is the first law for a chamber that loses gas of its own state. At equal pressures the
 //! root is smoothed over 2 % of the suction pressure. One throttle alone, whose flow chokes, and a narrow
-//! gap have other laws ([`ChamberAt::leaks_to`]). Near a dead centre gas may leak faster than the piston
+//! gap have other laws ([`ChamberAt::leaks_to`]). Under the piston of a single-acting cylinder no less than `behind` is left. Near a dead centre gas may leak faster than the piston
 //! compresses; then the suction valve stays open (`gas`). Signature: compression too low, expansion too
 //! steep; the slower the machine the more; as a polytrope with other exponents, but for its speed.
 
@@ -29,6 +29,8 @@ parameters! {
         pub critical_ratio: S,
         /// Share of the flow that is laminar.
         pub laminar: S,
+        /// Pressure below which that behind the rings does not fall, Pa.
+        pub behind: S,
     }
 }
 
@@ -48,6 +50,9 @@ declaration! {
         @shape critical_ratio: Number(FromZero), 0.0 to 0.6, start 0.0;
         /// Share of the flow that is laminar, as in a narrow gap, 0 to 1; 0 where it is left out.
         @shape laminar: Number(FromZero), 0.0 to 1.0, start 0.0;
+        /// Pressure below which that behind the rings does not fall, as of a crankcase that breathes; 0 Pa where it is left out: the
+        /// pressure on the other side of the piston, which data sheets of single-acting cylinders seldom state.
+        @shape behind: Pressure(FromZero), 0.0 to 2e5, start 0.0;
     } as RingLeakage
 }
 
@@ -63,6 +68,6 @@ impl<S: Scalar> Acts<S> for RingLeakage<S> {
             critical_ratio: self.critical_ratio,
             laminar: self.laminar,
         };
-        -(self.area * self.gas_speed * at.leaks_to(at.across, gap)) * at.loss_of_flow()
+        -(self.area * self.gas_speed * at.leaks_to(at.across.max(self.behind), gap)) * at.loss_of_flow()
     }
 }

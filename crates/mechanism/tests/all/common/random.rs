@@ -220,6 +220,7 @@ pub fn catalogue() -> Vec<Effect> {
                 gas_speed: 290.0,
                 critical_ratio: 0.4,
                 laminar: 0.3,
+                behind: 0.0,
             }),
             None,
             None,
