@@ -4,6 +4,7 @@ use crate::output::{hint, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::{Failure, console};
+use ::features::recorded::counted;
 use ::report::{comparison_page, text, write_page};
 use clap::Args;
 use std::path::PathBuf;
@@ -75,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn summary(comparison: &Comparison) {
     for (name, side) in ["A", "B"].iter().zip(&comparison.sides) {
-        println!("{name}: {}, {} windows", side.name, side.windows);
+        println!("{name}: {}, {}", side.name, counted(side.windows, "window"));
     }
     for feature in comparison.most_different().into_iter().take(PRINTED) {
         println!("  {}", line(feature));

@@ -78,7 +78,7 @@ proptest! {
         for ((definition, a), b) in defined(&one).iter().zip(row(&one)).zip(row(&scaled)) {
             let factor = match definition.unit.as_str() {
                 "1" | "Hz" => 1.0,
-                "m/s^2" | "m/s" => scale,
+                "m/s^2" | "m/s" | "m" => scale,
                 "m^2/s^4" | "m^2/s^3" => scale * scale,
                 unit => panic!("{unit}"),
             };
@@ -120,7 +120,7 @@ proptest! {
                 1e-6 * a
             } else if definition.name.contains(".portrait_area") {
                 1e-4 * a
-            } else if definition.unit == "m/s" {
+            } else if ["m/s", "m"].contains(&definition.unit.as_str()) {
                 1e-3 * a
             } else {
                 1e-3 * rms
