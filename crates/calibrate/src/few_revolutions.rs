@@ -7,6 +7,8 @@ use std::f64::consts::{LN_2, TAU};
 
 /// Fewer revolutions have no noise of their own between the orders.
 const ENOUGH: f64 = 3.0;
+/// Share of a single revolution that may be missing.
+const MISSING: f64 = 0.01;
 /// Orders up to this share of half the samples per revolution are used.
 const USED_ORDERS: f64 = 0.8;
 /// The upper part of them is taken for noise.
@@ -26,7 +28,11 @@ pub(crate) fn is_short(angle: &CrankAngle) -> bool {
 /// noise are distributed exponentially, so that their median is ln 2 times the mean. The noise is at least the
 /// rounding to the channel's own resolution, q²/12 per sample.
 pub(crate) fn lines(angle: &CrankAngle, samples: &[f64]) -> Option<OrderLines> {
-    let revolutions = (angle.revolutions() + 0.01).floor();
+    let whole = (angle.revolutions() + 0.5 / angle.samples_per_revolution()).floor();
+    let revolutions = match whole < 1.0 {
+        true => (angle.revolutions() + MISSING).floor(),
+        false => whole,
+    };
     let period = revolutions * TAU;
     let start = angle.angles()[0];
     // Half a sample decides whether the last one is the first of the next revolution.
