@@ -16,6 +16,8 @@ use crate::problem::Problem;
 /// Greatest size of a discrepancy that still has a range, rad: beyond it high orders say nothing, and clearances far from
 /// each other explain what is left.
 const GREATEST: f64 = 0.003;
+/// Misfit beyond which no range is given: descents in wrong minima leave as much.
+const FAR: f64 = 5.0;
 /// Relative change of the sum of squares at which the descent ends.
 const CHANGE: f64 = 1e-4;
 /// Most evaluations of it.
@@ -41,6 +43,12 @@ pub(super) fn discrepancy(
     effort: &mut Effort,
 ) -> Result<Option<Discrepancy>, Error> {
     let x = fit.coordinates();
+    if fit
+        .misfit(false, |run| run.calibrated)
+        .is_none_or(|left| left > FAR)
+    {
+        return Ok(None);
+    }
     let (timing, _) = Likelihood::new(problem).likeliest(&x, &TIMINGS)?;
     if timing == 0.0 || timing > GREATEST {
         return Ok(None);

@@ -6,6 +6,7 @@ use super::effort::Effort;
 use super::joint::Joint;
 use super::results::{Contact, Interval, Misfits, Results, RunMisfit, WEAR};
 use super::selection::{Found, selected};
+use super::tolerance::widen;
 use super::verdict::{Grounds, together};
 use crate::comparison::compare_models;
 use crate::error::Error;
@@ -101,7 +102,7 @@ impl Prepared {
             &healthy,
             &x,
             &self.joints,
-            &found,
+            &mut found,
             self.worn_from,
             &mut effort,
         )?;
@@ -154,8 +155,8 @@ pub fn estimate(
 ) -> Result<Results, Error> {
     let mut effort = Effort::new(watcher);
     let joints = Joint::of_machine(&healthy.tree)?;
-    let found = selected(healthy, &joints, x, &mut effort)?;
-    let concluded = conclude(healthy, x, &joints, &found, worn_from, &mut effort)?;
+    let mut found = selected(healthy, &joints, x, &mut effort)?;
+    let concluded = conclude(healthy, x, &joints, &mut found, worn_from, &mut effort)?;
     Ok(concluded.results)
 }
 
@@ -175,10 +176,11 @@ fn conclude(
     healthy: &Problem,
     x: &[f64],
     joints: &[Joint],
-    found: &Found,
+    found: &mut Found,
     worn_from: f64,
     effort: &mut Effort,
 ) -> Result<Concluded, Error> {
+    widen(healthy, joints, found)?;
     let fit = &found.fit;
     let problem = &found.model.problem;
     let whole = fit.complete && !effort.stopped;

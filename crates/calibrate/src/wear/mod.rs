@@ -11,7 +11,7 @@
 //!    best points start descents that compare energies first, and waveforms last.
 //! 3. Where more than noise is left, one joint that is ideal in the file becomes clear, or the contact parameters are
 //!    fitted too. What lowers Schwarz's criterion (1978) most is kept, until nothing does.
-//! 4. Intervals follow as those of a calibration. Where the model is wrong, the size of its discrepancy is estimated as
+//! 4. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the model is wrong, the size of its discrepancy is estimated as
 //!    an error of timing, and what follows is a range that includes it.
 
 mod descent;
@@ -23,6 +23,7 @@ mod model;
 mod results;
 mod screen;
 mod selection;
+mod tolerance;
 mod verdict;
 
 pub use estimation::{Asked, Estimated, Prepared, estimate, prepare};

@@ -40,7 +40,7 @@ impl WearPage {
         let html = view.render()?;
         Ok(Rendered {
             html,
-            figures: numbered_files("wear", view.runs),
+            figures: numbered_files("wear", view.runs.into_iter()),
         })
     }
 }
