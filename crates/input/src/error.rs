@@ -16,9 +16,15 @@ pub struct Error {
     place: Option<Place>,
     key: String,
     problem: Box<Problem>,
-    /// Keys of the values that the one at `key` was held against, where there are some.
+    company: Box<Company>,
+}
+
+/// What comes with a mistake.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Company {
+    /// Keys of the values that the wrong one was held against, where there are some.
     against: Vec<String>,
-    /// Further mistakes of the same run.
+    /// Further mistakes.
     others: Vec<Error>,
 }
 
@@ -94,8 +100,7 @@ impl Error {
             place: None,
             key: key.into(),
             problem: Box::new(problem),
-            against: Vec::new(),
-            others: Vec::new(),
+            company: Box::default(),
         }
     }
 
@@ -103,20 +108,20 @@ impl Error {
     pub fn all(mistakes: impl IntoIterator<Item = Self>) -> Option<Self> {
         let mut each = mistakes.into_iter().flat_map(Self::into_each);
         let mut first = each.next()?;
-        first.others = each.collect();
+        first.company.others = each.collect();
         Some(first)
     }
 
     /// This mistake, and those of `other`.
     #[must_use]
     pub fn and(mut self, other: Self) -> Self {
-        self.others.extend(other.into_each());
+        self.company.others.extend(other.into_each());
         self
     }
 
     /// Each mistake by itself.
     pub fn into_each(mut self) -> Vec<Self> {
-        let others = std::mem::take(&mut self.others);
+        let others = std::mem::take(&mut self.company.others);
         std::iter::once(self).chain(others).collect()
     }
 
@@ -124,13 +129,14 @@ impl Error {
     /// one of the same section, or begins with `/` and is one of the file; a part may be `*`.
     #[must_use]
     pub fn against(mut self, key: impl Into<String>) -> Self {
-        self.against.push(key.into());
+        self.company.against.push(key.into());
         self
     }
 
     /// The keys of the values that it was held against, from the top of the file.
     pub(crate) fn partners(&self) -> impl Iterator<Item = &str> {
-        self.against
+        self.company
+            .against
             .iter()
             .map(|key| key.trim_start_matches(FROM_TOP))
     }
@@ -139,10 +145,11 @@ impl Error {
     #[must_use]
     pub(crate) fn renamed(mut self, name: &dyn Fn(&str) -> String) -> Self {
         self.key = name(&self.key);
-        for key in &mut self.against {
+        for key in &mut self.company.against {
             *key = name(key.trim_start_matches(FROM_TOP));
         }
-        self.others = self.others.into_iter().map(|e| e.renamed(name)).collect();
+        let others = std::mem::take(&mut self.company.others).into_iter();
+        self.company.others = others.map(|e| e.renamed(name)).collect();
         self
     }
 
@@ -201,13 +208,15 @@ impl Error {
         let key = key.to_string();
         self.key = join(&key, &self.key);
         for name in self
+            .company
             .against
             .iter_mut()
             .filter(|name| !name.starts_with(FROM_TOP))
         {
             *name = join(&key, name);
         }
-        self.others = self.others.into_iter().map(|e| e.under(&key)).collect();
+        let others = std::mem::take(&mut self.company.others).into_iter();
+        self.company.others = others.map(|e| e.under(&key)).collect();
         self
     }
 
@@ -294,7 +303,7 @@ impl Error {
     }
 
     fn lines(&self) -> String {
-        let each = std::iter::once(self).chain(&self.others);
+        let each = std::iter::once(self).chain(&self.company.others);
         each.map(Self::line).collect::<Vec<_>>().join("\n")
     }
 

@@ -23,10 +23,9 @@ pub(crate) fn find<'a>(tree: &'a Value, key: &str) -> Option<&'a Value> {
 
 /// The longest key of `section` that `key` begins with, and what follows it.
 pub(crate) fn first<'k>(section: &Map<String, Value>, key: &'k str) -> Option<(&'k str, &'k str)> {
-    let ends = key.match_indices('.').map(|(at, _)| at).chain([key.len()]);
-    let fits = ends
-        .filter(|end| section.contains_key(&key[..*end]))
-        .last()?;
+    let ends = key.match_indices('.').map(|(at, _)| at);
+    let mut longest_first = std::iter::once(key.len()).chain(ends.rev());
+    let fits = longest_first.find(|end| section.contains_key(&key[..*end]))?;
     Some((&key[..fits], key[fits..].trim_start_matches('.')))
 }
 
