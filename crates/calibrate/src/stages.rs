@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 /// Local fits before the search proper, which a wrong zero of the crank angle would send far away. After each of
 /// them, runs without a recorded zero are aligned anew.
-const ALIGNMENTS: usize = 3;
+pub(crate) const ALIGNMENTS: usize = 3;
 
 /// A stage of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -30,7 +30,7 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Difference of the criterion from which it counts as strong (Kass and Raftery 1995).
-const STRONG: f64 = 6.0;
+pub(crate) const STRONG: f64 = 6.0;
 /// What the relations between clearances come to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Transfer {

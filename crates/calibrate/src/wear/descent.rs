@@ -40,7 +40,7 @@ const FOLLOWED: usize = 3;
 /// One of so many starts goes on after a stage.
 const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
-const CHANGE: f64 = 1e-2;
+const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Most evaluations of the last descent.
@@ -118,7 +118,7 @@ fn descend(problem: &Problem, led: &mut Led, stage: Stage, effort: &mut Effort) 
 }
 
 fn secants(compared: &impl LeastSquares, x: &[f64], most: u64, effort: &mut Effort) -> Vec<f64> {
-    let found = secant(compared, x, CHANGE, most, &mut |progress: &Progress| {
+    let found = secant(compared, x, ENDED, most, &mut |progress: &Progress| {
         effort.shown(progress.evaluations)
     });
     effort.spent += found.evaluations;

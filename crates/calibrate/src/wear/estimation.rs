@@ -15,14 +15,11 @@ use crate::likelihood::{Likelihood, misfit};
 use crate::pictures;
 use crate::problem::Problem;
 use crate::results::{Estimate, MACHINE};
-use crate::stages::{Stage, Watcher};
+use crate::stages::{ALIGNMENTS, Stage, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
 use recordings::WholeFile;
 use std::path::{Path, PathBuf};
-
-/// Rounds in which runs without a recorded zero of the crank angle are aligned with the worn machine.
-const ALIGNMENTS: usize = 3;
 
 /// What is asked for.
 pub struct Asked<'a> {

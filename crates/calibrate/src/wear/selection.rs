@@ -11,9 +11,8 @@ use crate::likelihood::Likelihood;
 use crate::optimiser::LeastSquares;
 use crate::problem::Problem;
 use crate::stages::Stage;
+use crate::transfer::STRONG;
 
-/// Difference of Schwarz's criterion from which it is strong evidence (Raftery 1995).
-const STRONG: f64 = 6.0;
 /// Points from which descents with the contact parameters of the machine file start. All points are followed only where
 /// these do not lead to the noise.
 const FIRST: usize = 12;

@@ -11,7 +11,7 @@ use crate::likelihood::Likelihood;
 use crate::problem::Problem;
 
 /// Correlation from which two clearances are hardly told apart.
-const TOGETHER: f64 = 0.95;
+const CORRELATED: f64 = 0.95;
 /// Difference of the deviance from which recordings show a clearance: odds of twenty to one.
 const SHOWN: f64 = 6.0;
 
@@ -158,7 +158,7 @@ pub(super) fn together(joints: &[Joint], found: &Found) -> Vec<Together> {
     for a in 0..model.clear.len() {
         for b in a + 1..model.clear.len() {
             let correlation = correlations[(a, b)];
-            if correlation.abs() >= TOGETHER {
+            if correlation.abs() >= CORRELATED {
                 pairs.push(Together {
                     joints: [a, b].map(|place| joints[model.clear[place]].path.clone()),
                     correlation,
