@@ -7,10 +7,16 @@ use simulate::{Chamber, IndicatorCard, RodLoad, Settings, Trace, Transient, simu
 use std::f64::consts::TAU;
 use std::path::Path;
 
+/// A shipped machine with ideal joints, and its speed, rad/s.
 fn machine(name: &str) -> (Machine, f64) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
     let file = input::machine_file::read(&path.join(name)).unwrap();
-    let resolved = MachineFile::from_tree(file.to_tree()).unwrap().resolve();
+    let mut tree = file.to_tree().clone();
+    for joint in ["main", "big_end", "small_end", "guide"] {
+        let path = format!("joints.{joint}.clearance");
+        input::paths::set(&mut tree, &path, "ideal".into()).unwrap();
+    }
+    let resolved = MachineFile::from_tree(&tree).unwrap().resolve();
     let resolved = resolved.unwrap();
     (resolved.machine, resolved.speed)
 }
@@ -49,7 +55,14 @@ fn ideal_cycles_have_the_power_of_their_closed_form() {
             let closed = taken(compression) * full - taken(expansion) * expanded;
             let error = card.work / closed - 1.0;
             assert!(error.abs() < 1e-3, "{}: {error:.1e}", chamber.column);
-            assert!((card.power / (card.work * speed / TAU) - 1.0).abs() < 1e-6);
+            // A free crank turns at its own speed, near the stated one.
+            let within = if name.starts_with("single") {
+                1e-6
+            } else {
+                1e-2
+            };
+            let error = card.power / (card.work * speed / TAU) - 1.0;
+            assert!(error.abs() < within, "{name}: {error:.1e}");
             let mean = card.work / chamber.swept_volume();
             assert!((card.mean_pressure / mean - 1.0).abs() < 1e-12);
         }
