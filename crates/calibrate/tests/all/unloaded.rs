@@ -65,6 +65,7 @@ runs:
         base: folder.path(),
         machine: None,
         allow_outside: false,
+        clearances_unknown: false,
         locate: &|error| error,
     })
 }
