@@ -87,23 +87,8 @@ enum Format {
 /// A wrong machine file or argument, an integration that fails, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (machine, settings, mut noise) = what_to_run(arguments)?;
-    let out = arguments.out.clone().unwrap_or_else(|| {
-        let stem = arguments.machine.file_stem().unwrap_or_default();
-        let name = arguments
-            .case
-            .clone()
-            .map_or(stem.to_string_lossy(), Into::into);
-        PathBuf::from(format!("{name}-run"))
-    });
-    let signals = out.join(match arguments.format {
-        Format::Parquet => "signals.parquet",
-        Format::Csv => "signals.csv",
-    });
-    let [picture, summary] = ["picture.svg", "summary.json"].map(|name| out.join(name));
-    let figures = FIGURES.map(|name| out.join(name));
-    let mut files: Vec<&Path> = vec![&signals, &picture, &summary];
-    files.extend(figures.iter().map(PathBuf::as_path));
-    refuse_existing(&files, arguments.overwrite)?;
+    let files = Files::new(arguments);
+    refuse_existing(&files.all(), arguments.overwrite)?;
 
     let recordable = settings.check(machine.speed);
     recordable.map_err(|e| Failure::input(format!("{}: {e}", machine.name)))?;
@@ -125,31 +110,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .collect();
     let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
 
-    std::fs::create_dir_all(&out).map_err(|e| Failure::input(format!("{}: {e}", out.display())))?;
+    files.make_folder()?;
     let trace = record.trace.as_ref().filter(|_| arguments.trace);
     let table = run_table(&record, &channels, trace, &throws).map_err(Failure::work)?;
-    write_whole(&signals, |file| match arguments.format {
+    write_whole(&files.signals, |file| match arguments.format {
         Format::Parquet => parquet::write_table(file, &table, ROWS_PER_GROUP),
         Format::Csv => csv::write_table(file, &table),
     })?;
-    write_file(&picture, picture_of(&machine, &record).as_bytes())?;
-    let analysis = RunAnalysis::new(&machine.machine, &record, &channels);
+    write_file(&files.picture, picture_of(&machine, &record).as_bytes())?;
     summary::print(&machine, &record, &channels);
-    match &analysis {
-        Ok(analysis) => {
-            let numbers = analysis.summary(&machine.name, record.mean_speed);
-            let text = serde_json::to_string_pretty(&numbers).map_err(Failure::work)?;
-            write_file(&summary, text.as_bytes())?;
-            write_figures(&machine, &record, &channels, analysis, &figures)?;
-            summary::print_analysis(&numbers);
-        }
-        // A record of less than a revolution has its signals all the same.
-        Err(error) => {
-            eprintln!("warning: no p-V card and no rod load: {error}");
-            files.truncate(2);
-        }
-    }
-    for file in &files {
+    for file in analyse(&machine, &record, &channels, &files)? {
         println!("{}", file.display());
     }
     if arguments.motion {
@@ -167,9 +137,76 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     hint(format_args!(
         "crosshead features {}{of_machine} --out features.parquet",
-        signals.display()
+        files.signals.display()
     ));
     Ok(())
+}
+
+/// Where the run is written to.
+struct Files {
+    folder: PathBuf,
+    signals: PathBuf,
+    picture: PathBuf,
+    summary: PathBuf,
+    figures: [PathBuf; 3],
+}
+
+impl Files {
+    fn new(arguments: &Arguments) -> Self {
+        let folder = arguments.out.clone().unwrap_or_else(|| {
+            let stem = arguments.machine.file_stem().unwrap_or_default();
+            let name = arguments
+                .case
+                .clone()
+                .map_or(stem.to_string_lossy(), Into::into);
+            PathBuf::from(format!("{name}-run"))
+        });
+        let signals = match arguments.format {
+            Format::Parquet => "signals.parquet",
+            Format::Csv => "signals.csv",
+        };
+        Self {
+            signals: folder.join(signals),
+            picture: folder.join("picture.svg"),
+            summary: folder.join("summary.json"),
+            figures: FIGURES.map(|name| folder.join(name)),
+            folder,
+        }
+    }
+
+    fn all(&self) -> Vec<&Path> {
+        let mut all: Vec<&Path> = vec![&self.signals, &self.picture, &self.summary];
+        all.extend(self.figures.iter().map(PathBuf::as_path));
+        all
+    }
+
+    fn make_folder(&self) -> Result<(), Failure> {
+        let made = std::fs::create_dir_all(&self.folder);
+        made.map_err(|e| Failure::input(format!("{}: {e}", self.folder.display())))
+    }
+}
+
+/// Writes and prints what the user of a machine looks at first; returns all files of the run.
+fn analyse<'a>(
+    machine: &Resolved,
+    record: &Record,
+    channels: &[Channel],
+    files: &'a Files,
+) -> Result<Vec<&'a Path>, Failure> {
+    let analysis = match RunAnalysis::new(&machine.machine, record, channels) {
+        Ok(analysis) => analysis,
+        // A record of less than a revolution has its signals all the same.
+        Err(error) => {
+            eprintln!("warning: no p-V card and no rod load: {error}");
+            return Ok(vec![&files.signals, &files.picture]);
+        }
+    };
+    let numbers = analysis.summary(&machine.name, record.mean_speed);
+    let text = serde_json::to_string_pretty(&numbers).map_err(Failure::work)?;
+    write_file(&files.summary, text.as_bytes())?;
+    write_figures(machine, record, channels, &analysis, &files.figures)?;
+    summary::print_analysis(&numbers);
+    Ok(files.all())
 }
 
 /// The machine, how it is run, and the random numbers of its noise.
