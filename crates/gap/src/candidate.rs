@@ -478,12 +478,12 @@ mod tests {
         problem.parameters.clear();
         let throws = throws(&problem.tree);
         let all = Candidate::all(&problem);
-        let friction = all.iter().filter(|c| c.entry.name == "ring_friction");
+        let mut friction = all.iter().filter(|c| c.entry.name == "ring_friction");
         let places: Vec<Vec<String>> = friction.clone().map(Candidate::places).collect();
         let alone = throws.iter().map(|throw| vec![throw.clone()]);
         let expected: Vec<Vec<String>> = alone.chain([throws.clone()]).collect();
         assert_eq!(places, expected);
-        let every = friction.last().unwrap();
+        let every = friction.next_back().unwrap();
         let added = every.added(&problem, &every.usual()).unwrap();
         assert_eq!((every.items().len(), added.parameters.len()), (2, 4));
         assert!(added.parameters.iter().all(|p| p.places.len() == 2));
