@@ -335,6 +335,20 @@ mod tests {
     }
 
     #[test]
+    fn all_mistakes_are_told_at_once() {
+        let text = "bundle: b\nparameters: {rod.mass: {bounds: [5 kg, 4 kg]}, crosshead.mass: {bounds: [1 kg, 2 m]}}\n\
+                    optimiser: defalt\n";
+        let mistakes = read(text).unwrap_err().into_each();
+        let keys: Vec<&str> = mistakes.iter().map(Error::key).collect();
+        let expected = [
+            "parameters.rod.mass.bounds",
+            "parameters.crosshead.mass.bounds",
+            "optimiser",
+        ];
+        assert_eq!(keys, expected);
+    }
+
+    #[test]
     fn the_schema_takes_what_is_read() {
         let schema = schema();
         assert_eq!(

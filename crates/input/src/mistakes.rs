@@ -270,7 +270,8 @@ impl Repair<'_> {
                 .map(|key| earlier(&key, list, index).unwrap_or(key))
                 .collect();
         }
-        self.tries.retain(|key, _| !is_within(key, list));
+        self.tries
+            .retain(|key, _| key == list || !is_within(key, list));
     }
 }
 

@@ -158,10 +158,12 @@ fn values(schema: &Value) -> Vec<Value> {
     if let Some(names) = schema["enum"].as_array() {
         return names.clone();
     }
-    if schema.get("pattern").is_some() {
-        let examples = schema["examples"].as_array().into_iter().flatten();
-        let examples = examples.filter_map(Value::as_str);
-        return examples.flat_map(multiples).collect();
+    if let Some(examples) = schema["examples"].as_array() {
+        let values = examples.iter().flat_map(|example| match example {
+            Value::String(text) => multiples(text),
+            other => vec![other.clone()],
+        });
+        return values.collect();
     }
     match schema["type"].as_str() {
         Some("object") => vec![json!({})],
