@@ -321,9 +321,8 @@ fn write_figures(
         crank_angle_rad: &angles.copied().collect::<Vec<_>>(),
         channels,
     };
-    let made = figures.files().into_iter().zip(files);
-    made.map(|(figure, file)| write_file(file, figure.svg.as_bytes()))
-        .collect()
+    let mut made = figures.files().into_iter().zip(files);
+    made.try_for_each(|(figure, file)| write_file(file, figure.svg.as_bytes()))
 }
 
 /// The machine and its operating point.
