@@ -39,30 +39,38 @@ fn loss(coefficient: f64) -> serde_json::Value {
     json!([entry.item(&[], &[coefficient, coefficient])])
 }
 
-#[test]
-fn a_gap_between_the_noise_and_twice_of_it_is_explained() {
+fn is_explained(gap: f64) {
     // What the effect leaves by itself grows in proportion to it.
     let without_noise = problem(machine(), runs(&loss(LOSS)).to_vec());
     let alone = misfit(&Likelihood::new(&without_noise).residuals(&[0.0]));
-    for gap in [1.4_f64, 1.75] {
-        let coefficient = LOSS * (gap * gap - 1.0).sqrt() / alone;
-        let problem = problem(machine(), with_noise(runs(&loss(coefficient))).to_vec());
-        let explanation = explained_of(&problem);
-        let before = explanation.baseline.fitted;
-        assert!((1.25..1.85).contains(&before), "{gap}: {before}");
-        let found: Vec<String> = explanation
-            .found
-            .iter()
-            .map(|found| found.candidate().label())
-            .collect();
-        let tried: Vec<(String, f64)> = explanation
-            .refused
-            .iter()
-            .map(|tried| (tried.candidate.label(), tried.probability))
-            .collect();
-        assert_eq!(found, ["valve_loss"], "{gap}, {before}: {tried:?}");
-        assert_eq!(explanation.verdict, Verdict::Explained);
-    }
+    let coefficient = LOSS * (gap * gap - 1.0).sqrt() / alone;
+    let problem = problem(machine(), with_noise(runs(&loss(coefficient))).to_vec());
+    let explanation = explained_of(&problem);
+    let before = explanation.baseline.fitted;
+    assert!((1.25..1.85).contains(&before), "{gap}: {before}");
+    let found: Vec<String> = explanation
+        .found
+        .iter()
+        .map(|found| found.candidate().label())
+        .collect();
+    let tried: Vec<(String, f64)> = explanation
+        .refused
+        .iter()
+        .map(|tried| (tried.candidate.label(), tried.probability))
+        .collect();
+    assert_eq!(found, ["valve_loss"], "{gap}, {before}: {tried:?}");
+    assert_eq!(explanation.verdict, Verdict::Explained);
+}
+
+#[test]
+fn a_gap_of_1_4_times_the_noise_is_explained() {
+    is_explained(1.4);
+}
+
+#[test]
+#[ignore = "minutes"]
+fn a_gap_of_1_75_times_the_noise_is_explained() {
+    is_explained(1.75);
 }
 
 #[test]
