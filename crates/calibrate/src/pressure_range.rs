@@ -23,7 +23,7 @@ const UNITS: [(&str, f64); 6] = [
 /// Standard atmosphere, from which gauge pressures count, Pa.
 const ATMOSPHERE: f64 = 101_325.0;
 /// Logarithms of factors that differ by less are the same.
-const SAME: f64 = 1e-6;
+const SAME_FACTOR: f64 = 1e-6;
 /// A valve that is open holds the pressure within this share while the chamber's volume changes by this factor. With
 /// both valves shut the pressure changes at least as much as the volume.
 const STEADY: f64 = 0.1;
@@ -167,7 +167,7 @@ fn refuse_unit(range: [f64; 2], lines: [f64; 2]) -> Result<(), String> {
     let nearest = found.iter().map(|(off, _)| *off).min_by(f64::total_cmp);
     if let Some(nearest) = nearest {
         // Pairs of units that differ by the same factor are equally near.
-        found.retain(|(off, _)| *off - nearest < SAME);
+        found.retain(|(off, _)| *off - nearest < SAME_FACTOR);
         let said: Vec<String> = found.into_iter().map(|(_, said)| said).collect();
         return Err(format!(
             "its values, {:.4} to {:.4} Pa, fit the stated pressures, {:.4} to {:.4} Pa, if they {}: check its unit and the \

@@ -4,7 +4,7 @@
 //! renamed to the nearest known one or goes, a wrong or missing value gets one that the schema allows. Then the
 //! tree is read again. What a value that nobody wrote clashes with is no mistake of the file, and is not reported.
 
-use crate::error::{Error, Problem, join, nearest};
+use crate::error::{Error, Problem, join, nearest as similar};
 use crate::schema::Node;
 use crate::tree::{find, first, is_within, moved, own_name, parents, put, rename, take};
 use serde_json::{Value, json};
@@ -196,7 +196,9 @@ impl Repair<'_> {
             .strip_suffix(&own)
             .unwrap_or_default()
             .trim_end_matches('.');
-        let name = nearest.map(|name| corrected(&own, name));
+        // The name of a value may be wrong in the place of that of its key.
+        let is_key = |name: &&str| own.contains('.') || similar(&own, [*name]).is_some();
+        let name = nearest.filter(is_key).map(|name| corrected(&own, name));
         let to = name.as_deref().map(|name| join(above, name));
         match (name, to) {
             (Some(name), Some(to))
@@ -280,7 +282,7 @@ impl Repair<'_> {
 fn corrected(key: &str, name: &str) -> String {
     let mut is_open = true;
     let part = |part: &str| {
-        let is_meant = is_open && part != name && nearest(part, [name]).is_some();
+        let is_meant = is_open && part != name && similar(part, [name]).is_some();
         is_open &= !is_meant;
         if is_meant {
             name.to_owned()

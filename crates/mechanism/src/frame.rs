@@ -14,7 +14,7 @@ use crate::plane::Vec2;
 use scalar::{Scalar, inlined};
 
 /// Displacement at which the hardening of the springs is stated, m.
-const HARDENED: f64 = 1e-4;
+const STATED_AT: f64 = 1e-4;
 
 parameters! {
     /// An elastically mounted frame.
@@ -29,7 +29,7 @@ parameters! {
         pub damping_x: S,
         /// Damping along y, N s/m.
         pub damping_y: S,
-        /// By what share q the springs are stiffer at [`HARDENED`].
+        /// By what share q the springs are stiffer at [`STATED_AT`].
         pub hardening: S,
         fixed {
             /// True where sensors on the crossheads feel the frame's motion.
@@ -45,7 +45,7 @@ impl<S: Scalar> Frame<S> {
         let hardened = inlined(
             #[inline(always)]
             |stiffness: S, place: S| {
-                let strain = place / HARDENED;
+                let strain = place / STATED_AT;
                 stiffness * (S::one() + self.hardening * strain * strain)
             },
         );

@@ -21,7 +21,7 @@ const FAR: f64 = 5.0;
 /// Relative change of the sum of squares at which the descent ends.
 const CHANGE: f64 = 1e-4;
 /// Most evaluations of it.
-const MOST: u64 = 60;
+const MOST_STEPS: u64 = 60;
 
 /// What is known of the parameters with a model that is wrong.
 pub(super) struct Discrepancy {
@@ -60,7 +60,8 @@ pub(super) fn discrepancy(
     let likelihood = Likelihood::coarse(&part, timing);
     let start: Vec<f64> = known.iter().map(|i| x[*i]).collect();
     let mut watch = |progress: &optimiser::Progress| effort.shown(progress.evaluations);
-    let found = optimiser::levenberg_marquardt(&likelihood, &start, CHANGE, MOST, &mut watch)?;
+    let found =
+        optimiser::levenberg_marquardt(&likelihood, &start, CHANGE, MOST_STEPS, &mut watch)?;
     let left = misfit(&likelihood.residuals(&found.x));
     if effort.stopped || left > ADEQUATE {
         return Ok(None);

@@ -8,7 +8,7 @@ use askama::Template;
 use calibrate::wear::{Contact, Interval, JointWear, Results, Together, Verdict};
 
 /// Digits of a clearance in mm.
-const DIGITS: usize = 4;
+const DECIMALS: usize = 4;
 
 #[derive(Template)]
 #[template(path = "wear_page.html")]
@@ -111,7 +111,7 @@ fn joint_name(path: &str) -> String {
 }
 
 fn millimetres(metres: Option<f64>) -> String {
-    metres.map_or("–".to_owned(), |c| text::number(1e3 * c, DIGITS))
+    metres.map_or("–".to_owned(), |c| text::number(1e3 * c, DECIMALS))
 }
 
 /// What the template asks for, formatted.

@@ -259,7 +259,10 @@ impl Plan {
             plan.together.push(together);
         }
         for (position, file) in file.bifurcations.iter().enumerate() {
-            let diagram = Diagram::new(file, position, &plan.frame())?;
+            // Its values go together: one that was guessed makes no mistake of another.
+            let whole = format!("/bifurcations.{position}.*.*.*.*.*.*");
+            let diagram = Diagram::new(file, position, &plan.frame());
+            let diagram = diagram.map_err(|e| e.against(whole))?;
             if plan.diagrams.iter().any(|other| other.name == diagram.name) {
                 let key = format!("bifurcations.{position}.name");
                 let expected = "another name than the diagrams before";

@@ -38,10 +38,12 @@ impl Together {
             .iter()
             .map(|row| row.iter().map(|number| number.get()).collect())
             .collect();
-        check(&rows, parameters.len()).map_err(|e| e.under("correlations"))?;
+        // They are those of the parameters as they stand.
+        let wrong = |e: Error| e.under("correlations").against("parameters.*.*.*.*.*.*");
+        check(&rows, parameters.len()).map_err(wrong)?;
         Ok(Self {
             parameters,
-            root: root(&rows).map_err(|e| e.under("correlations"))?,
+            root: root(&rows).map_err(wrong)?,
         })
     }
 
