@@ -17,8 +17,8 @@ Examples:
   crosshead check machine.yaml sweep.yaml
   crosshead check recordings/
 
-Every mistake is a line on standard error: file, line, key, what was found, what was expected. The kind of a
-file is told by its keys. Nothing is written and nothing is simulated.
+Every mistake is a line on standard error: file, line, key, what was found, what was expected. The
+keys of a file show its kind. Nothing is written and nothing is simulated.
 
 Exit status: 0 no mistakes; 1 there are some; 2 a file cannot be read.")]
 pub struct Arguments {

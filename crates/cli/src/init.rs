@@ -17,7 +17,10 @@ Examples:
   crosshead init sweep --machine compressor.yaml
   crosshead init bundle --out recordings/recordings.yaml
 
-The file has a comment at every key and is right as it stands: `crosshead check FILE` finds no mistakes in it.")]
+The file has a comment at every key and is right as it stands: `crosshead check FILE` finds no
+mistakes in it.
+
+Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
     /// Which file
     file: File,

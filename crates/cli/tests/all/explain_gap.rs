@@ -23,6 +23,7 @@ fn where_nothing_is_hidden_it_says_so() {
         machine.to_str().unwrap(),
         "--out",
         out.to_str().unwrap(),
+        "--quiet",
     ];
     let told = crosshead(&arguments);
     assert!(told.status.success(), "{}", said(&told));

@@ -72,7 +72,9 @@ fn datasets_give_the_features_that_they_have() {
     // In MCAP a case is one recording: its windows are cut again.
     for (input, window) in [("parquet", None), ("mcap", Some("2 revolutions"))] {
         let window = window.map_or(vec![], |w| vec!["--window", w]);
-        let computed = features(folder.path(), &[&[input], &window[..]].concat());
+        let machine = machine.display().to_string();
+        let geometry = ["--machine", &machine];
+        let computed = features(folder.path(), &[&[input], &geometry[..], &window].concat());
         let mut compared = 0;
         for split in ["train", "validation", "test"] {
             let path = format!("{input}/features/{split}-00000-of-00001.parquet");
