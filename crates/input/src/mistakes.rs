@@ -100,7 +100,10 @@ impl Repair<'_> {
     fn is_made(&self, error: &Error) -> bool {
         let is_in = |key: &str, made: &BTreeSet<String>| made.iter().any(|m| fits_within(key, m));
         let mut partners = error.partners();
+        // What is wrong with a section may be wrong with a value in it.
+        let has_made = |key: &str| !key.is_empty() && self.made.iter().any(|m| is_within(m, key));
         is_in(error.key(), &self.made)
+            || has_made(error.key())
             || partners.any(|key| is_in(key, &self.made) || is_in(key, &self.guessed))
     }
 

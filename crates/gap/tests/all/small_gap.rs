@@ -68,7 +68,7 @@ fn a_gap_of_1_4_times_the_noise_is_explained() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: tests/nightly/run pressures"]
 fn a_gap_of_1_75_times_the_noise_is_explained() {
     is_explained(1.75);
 }

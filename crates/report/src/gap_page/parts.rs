@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(super::own(&loss, 0), "0.181 ± 0.0041");
         assert_eq!(heading(&loss), "suction");
         let held = values("effects.1.suction_unloading.held", Some(own(1.0, 0.1)));
-        assert_eq!(super::own(&held, 0), "57.3 ± 5.7");
+        assert_eq!(super::own(&held, 0), "57 ± 5.7");
         assert_eq!(heading(&held), "held of effect 2 (deg)");
         assert_eq!(super::own(&held, 1), "–");
     }

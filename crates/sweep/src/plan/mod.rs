@@ -124,7 +124,7 @@ impl Plan {
     /// # Errors
     /// As [`Plan::read`].
     pub fn new(document: &Document, folder: &Path) -> Result<Self, Error> {
-        let mut machines = Machines::new(folder);
+        let mut machines = Machines::new(folder, &document.tree["machine"]);
         document.collect(sweep_file::schema, |tree| {
             let plan = Self::of_tree(tree, &mut machines);
             match (plan, machines.mistakes()) {

@@ -187,7 +187,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid: {speed: 500 rpm}\nsplits: {train: 0.8, test: 0.2}",
-        "sweep.yaml:6:17: splits.train: found 0.8, expected a percentage from 0 to 100 % with its unit, e.g. '5 %'",
+        "sweep.yaml:6:17: splits.train: found 0.8, expected a percentage from 0 to 100 % with its unit, e.g. '5 %'\nsweep.yaml:6:28: splits.test: found 0.2, expected a percentage from 0 to 100 % with its unit, e.g. '5 %'",
     ),
     (
         "cases:\n  - grid: {speed: 500 rpm}\nwindows: {count: 3, revolutions: 2}",

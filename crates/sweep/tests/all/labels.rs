@@ -260,8 +260,8 @@ fn an_effect_that_a_case_names_and_the_machine_lacks_is_absent_elsewhere() {
     assert_eq!(faults(&plan), expected);
     let columns = [
         "effects.ring_leakage.area_m2",
-        "effects.sensor_gain.error",
         "effects.valve_leakage.suction_m2",
+        "effects.sensor_gain.error",
     ];
     assert_eq!(sizes(&plan), columns);
     // Written out, it is the same sweep.
