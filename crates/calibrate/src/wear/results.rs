@@ -71,7 +71,7 @@ pub enum Verdict {
     Healthy,
     /// It is above.
     Worn,
-    /// The interval includes the clearance from which the joint counts as worn.
+    /// The interval includes the clearance from which the joint counts as worn, or there is none.
     Unclear,
     /// The recordings do not determine the clearance.
     NotIdentifiable,

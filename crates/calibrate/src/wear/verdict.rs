@@ -74,8 +74,14 @@ impl Grounds<'_> {
                 Verdict::Unclear,
                 "the interval includes the clearance from which the joint counts as worn",
             ),
-            None if value > limit => (Verdict::Worn, "the best fit, without an interval"),
-            None => (Verdict::Healthy, "the best fit, without an interval"),
+            None if !self.found.fit.complete => (
+                Verdict::Unclear,
+                "the search was stopped: this is the best so far",
+            ),
+            None => (
+                Verdict::Unclear,
+                "the best fit is far from the recordings, and may be another minimum than that of the machine",
+            ),
         };
         self.wear(index, verdict, reason.to_owned(), Some(value), interval)
     }
