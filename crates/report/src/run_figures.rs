@@ -98,7 +98,7 @@ impl RunFigures<'_> {
     fn rod_load(&self, throw: usize, load: &RodLoad) -> Panel {
         let reversal = load.reversal();
         let title = format!(
-            "{}rod load: reversed for {}° (API 618: {}°), peak {} % of the other",
+            "{}rod load reversed for {}° (API 618: {}°), peak {} %",
             self.of_throw(throw),
             text::number(reversal.angle.to_degrees(), 3),
             text::number(SHORTEST_REVERSAL.to_degrees(), 2),
