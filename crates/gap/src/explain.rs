@@ -120,12 +120,7 @@ pub fn explain(
         correlations,
         ..
     } = fitter.bounds(&model)?;
-    // A parameter that is not identifiable has the value with which the model was found.
-    for (estimate, x) in estimates.iter_mut().zip(&model.x) {
-        if estimate.interval.is_none() {
-            estimate.value = estimate.parameter.value(*x);
-        }
-    }
+    as_in_model(&mut estimates, &model.x);
     let corrections = corrections(&estimates, &probabilities);
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
     let calibrated = baseline.gap();
@@ -151,6 +146,21 @@ pub fn explain(
         refused,
         missing_force,
     })
+}
+
+/// Where a parameter is not identifiable, the others were estimated beside its start value. All get the values with which the
+/// model was found, coordinates `x`, as the machine file has them; their intervals include both.
+fn as_in_model(estimates: &mut [Estimate], x: &[f64]) {
+    if estimates.iter().all(|estimate| estimate.interval.is_some()) {
+        return;
+    }
+    for (estimate, x) in estimates.iter_mut().zip(x) {
+        estimate.value = estimate.parameter.value(*x);
+        if let Some([low, high]) = &mut estimate.interval {
+            *low = low.min(estimate.value);
+            *high = high.max(estimate.value);
+        }
+    }
 }
 
 /// The machine without effects, calibrated as if the zero of the crank angle were at top dead centre.
@@ -327,4 +337,35 @@ fn corrections(estimates: &[Estimate], probabilities: &[(String, f64)]) -> Vec<C
         })
     };
     probabilities.iter().filter_map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::problem;
+
+    #[test]
+    fn beside_a_value_that_is_not_identifiable_all_are_those_of_the_machine_file() {
+        let problem = problem();
+        let estimate = |parameter: &calibrate::Parameter, known: bool| Estimate {
+            parameter: parameter.clone(),
+            value: parameter.value(0.1),
+            interval: known.then(|| [parameter.value(0.05), parameter.value(0.15)]),
+        };
+        let [first, second] = &problem.parameters[..2] else {
+            panic!("{}", problem.parameters.len());
+        };
+        let mut known = [estimate(first, true), estimate(second, true)];
+        let before = known.clone();
+        as_in_model(&mut known, &[0.3, 0.2]);
+        assert_eq!(known, before);
+        let mut open = [estimate(first, true), estimate(second, false)];
+        as_in_model(&mut open, &[0.3, 0.2]);
+        assert_eq!(open[0].value, first.value(0.3));
+        assert_eq!(
+            open[0].interval,
+            Some([first.value(0.05), first.value(0.3)])
+        );
+        assert_eq!((open[1].value, open[1].interval), (second.value(0.2), None));
+    }
 }

@@ -32,7 +32,7 @@ impl Joint {
     /// The joints of a machine file that have the parameters of a clear joint.
     ///
     /// # Errors
-    /// A length that is none.
+    /// A value that is not a length where one belongs.
     pub fn of_machine(tree: &Value) -> Result<Vec<Self>, Error> {
         let mut patterns = vec!["joints.*.clearance"];
         if tree["throws"].is_array() {

@@ -8,6 +8,9 @@ use crate::results::{ByName, Estimate};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
+/// Decimals of a millimetre that are shown at most.
+const MOST_DECIMALS: f64 = 7.0;
+
 /// Name of the file of results.
 pub const WEAR: &str = "wear.json";
 
@@ -61,6 +64,19 @@ pub struct JointWear {
     pub healthy_m: Option<f64>,
     /// The clearance from which it counts as worn.
     pub worn_from_m: f64,
+}
+
+impl JointWear {
+    /// Decimals of a millimetre in which the ends of the interval differ by two digits; four where it is wider, or there
+    /// is none.
+    pub fn decimals_mm(&self) -> usize {
+        let width_mm = self
+            .low_m
+            .zip(self.high_m)
+            .map(|(low, high)| 1e3 * (high - low));
+        let decimals = width_mm.map_or(0.0, |width| 1.0 - width.log10().floor());
+        decimals.clamp(4.0, MOST_DECIMALS) as usize
+    }
 }
 
 /// The verdict on a joint.
@@ -159,5 +175,32 @@ impl Results {
         let joints = self.joints.iter();
         let worn = joints.filter(|(_, joint)| joint.verdict == Verdict::Worn);
         worn.map(|(path, _)| path).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_show_the_width_of_the_interval() {
+        let decimals = |interval: Option<[f64; 2]>| {
+            let joint = JointWear {
+                verdict: Verdict::Worn,
+                reason: String::new(),
+                clearance_m: Some(3e-4),
+                low_m: interval.map(|[low, _]| low),
+                high_m: interval.map(|[_, high]| high),
+                diametral_clearance_m: Some(6e-4),
+                healthy_m: None,
+                worn_from_m: 1.5e-4,
+            };
+            joint.decimals_mm()
+        };
+        assert_eq!(decimals(None), 4);
+        assert_eq!(decimals(Some([2e-4, 4e-4])), 4);
+        // 0.00008 mm wide: 0.299 96 to 0.300 04 would be its first digit.
+        assert_eq!(decimals(Some([2.9996e-4, 3.0004e-4])), 6);
+        assert_eq!(decimals(Some([3e-4, 3e-4])), 7);
     }
 }

@@ -33,17 +33,19 @@ impl Watcher for Bar<'_> {
                 "{spinner} the model is wrong: values of the data sheet, {pos} evaluations, {elapsed}, {msg}",
             ),
             Stage::Screen => (
-                "evaluations at most to screen clearances",
+                "evaluations to screen clearances",
                 "{spinner} clearances are screened, {pos} evaluations, {elapsed}",
             ),
             Stage::Clearances => (
-                "evaluations at most to fit clearances",
+                "evaluations to fit clearances",
                 "{spinner} clearances are fitted, {pos} evaluations, {elapsed}, {msg}",
             ),
             Stage::Relations => return,
         };
         self.shown = Shown::hidden();
-        self.shown = Shown::new(what, Some(evaluations), template);
+        // How many the clearances take follows from the evidence.
+        let most = (evaluations > 0).then_some(evaluations);
+        self.shown = Shown::new(what, most, template);
     }
 
     fn progress(&mut self, progress: &Progress) -> ControlFlow<()> {

@@ -41,12 +41,17 @@ fn clearance(joint: &JointWear) -> String {
     let Some(clearance) = joint.clearance_m else {
         return String::new();
     };
+    let decimals = joint.decimals_mm();
     let interval = match joint.low_m.zip(joint.high_m) {
-        Some((low, high)) => format!(" ({:.4} to {:.4} mm)", 1e3 * low, 1e3 * high),
+        Some((low, high)) => format!(
+            " ({:.decimals$} to {:.decimals$} mm)",
+            1e3 * low,
+            1e3 * high
+        ),
         None => String::new(),
     };
     format!(
-        ", radial clearance {:.4} mm{interval}, diametral {:.4} mm",
+        ", radial clearance {:.decimals$} mm{interval}, diametral {:.decimals$} mm",
         1e3 * clearance,
         2e3 * clearance
     )

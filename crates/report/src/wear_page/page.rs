@@ -114,6 +114,13 @@ fn millimetres(metres: Option<f64>) -> String {
     metres.map_or("–".to_owned(), |c| text::number(1e3 * c, DECIMALS))
 }
 
+/// A clearance of a joint in as many decimals as it is known to.
+fn as_close(joint: &JointWear, metres: Option<f64>) -> String {
+    metres.map_or("–".to_owned(), |c| {
+        text::decimal(1e3 * c, joint.decimals_mm())
+    })
+}
+
 /// What the template asks for, formatted.
 impl View<'_> {
     fn name(path: &str) -> String {
@@ -136,17 +143,18 @@ impl View<'_> {
     }
 
     fn radial(joint: &JointWear) -> String {
-        millimetres(joint.clearance_m)
+        as_close(joint, joint.clearance_m)
     }
 
     fn diametral(joint: &JointWear) -> String {
-        millimetres(joint.diametral_clearance_m)
+        as_close(joint, joint.diametral_clearance_m)
     }
 
     fn interval(joint: &JointWear) -> String {
         match joint.low_m.zip(joint.high_m) {
             Some((low, high)) => {
-                format!("{} to {}", millimetres(Some(low)), millimetres(Some(high)))
+                let [low, high] = [low, high].map(|end| as_close(joint, Some(end)));
+                format!("{low} to {high}")
             }
             None => "–".to_owned(),
         }
