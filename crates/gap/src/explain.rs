@@ -255,7 +255,7 @@ fn at_their_ends(
     problem: &Problem,
     mut known: Vec<Amended>,
 ) -> Result<Vec<Amended>, Error> {
-    let few = fitter.few(problem);
+    let few = fitter.few(problem)?;
     let deviance = |known: &[Amended]| -> Result<f64, Error> {
         let with = added(&few, known)?;
         let start = vec![0.0; with.parameters.len()];
@@ -352,20 +352,21 @@ mod tests {
             value: parameter.value(0.1),
             interval: known.then(|| [parameter.value(0.05), parameter.value(0.15)]),
         };
-        let [first, second] = &problem.parameters[..2] else {
-            panic!("{}", problem.parameters.len());
-        };
-        let mut known = [estimate(first, true), estimate(second, true)];
+        let parameter = &problem.parameters[0];
+        let mut known = [estimate(parameter, true), estimate(parameter, true)];
         let before = known.clone();
         as_in_model(&mut known, &[0.3, 0.2]);
         assert_eq!(known, before);
-        let mut open = [estimate(first, true), estimate(second, false)];
+        let mut open = [estimate(parameter, true), estimate(parameter, false)];
         as_in_model(&mut open, &[0.3, 0.2]);
-        assert_eq!(open[0].value, first.value(0.3));
+        assert_eq!(open[0].value, parameter.value(0.3));
         assert_eq!(
             open[0].interval,
-            Some([first.value(0.05), first.value(0.3)])
+            Some([parameter.value(0.05), parameter.value(0.3)])
         );
-        assert_eq!((open[1].value, open[1].interval), (second.value(0.2), None));
+        assert_eq!(
+            (open[1].value, open[1].interval),
+            (parameter.value(0.2), None)
+        );
     }
 }

@@ -5,6 +5,7 @@
 //! the catalogue is quite a machine's: where a descent allows less than the law is off by, the likelihood falls again.
 //! The allowance with which it is greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
 
+use crate::conditions::{conditions_of, most_different};
 use crate::criteria::NOISE;
 use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
 use crate::error::{Error, possible};
@@ -248,19 +249,22 @@ impl Fitter<'_> {
         Ok(fit)
     }
 
-    /// The problem with a few of the runs that are fitted to, of speeds as different as there are.
-    pub fn few(&self, problem: &Problem) -> Problem {
+    /// The problem with a few of the runs that are fitted to, which differ as much as there are: effects differ by how they grow
+    /// with speed, load and clearance.
+    ///
+    /// # Errors
+    /// An invalid machine.
+    pub fn few(&self, problem: &Problem) -> Result<Problem, Error> {
         let runs = problem.runs.iter();
         let mut runs: Vec<_> = runs.filter(|run| self.effort.fits(&run.id)).collect();
         runs.sort_by(|a, b| a.crank.speed.total_cmp(&b.crank.speed));
-        let last = runs.len().saturating_sub(1);
-        let parts = FEW.saturating_sub(1).max(1);
-        let chosen: Vec<&str> = (0..FEW)
-            .filter_map(|i| runs.get(i * last / parts))
-            .map(|r| r.id.as_str())
-            .collect();
+        let nominal = vec![0.0; problem.parameters.len()];
+        let conditions = runs.iter().map(|run| conditions_of(problem, run, &nominal));
+        let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
+        let chosen = most_different(&conditions, FEW);
+        let chosen: Vec<&str> = chosen.into_iter().map(|i| runs[i].id.as_str()).collect();
         let chosen = |run: &Observation| chosen.contains(&run.id.as_str());
-        problem.with_runs(chosen)
+        Ok(problem.with_runs(chosen))
     }
 
     /// Whether a model fits the recordings within their noise.

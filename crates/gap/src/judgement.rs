@@ -52,7 +52,7 @@ pub(crate) fn judged(
             others: Vec::new(),
         });
     }
-    let few = fitter.few(problem);
+    let few = fitter.few(problem)?;
     let own = problem.parameters.len();
     let first = match fitter.settled(&(few.clone(), nothing.model.x.clone()))? {
         Some(model) => Hypothesis::new(Vec::new(), model, own),

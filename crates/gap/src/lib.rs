@@ -10,6 +10,7 @@
 
 pub mod amendment;
 pub mod candidate;
+mod conditions;
 pub mod criteria;
 pub mod effort;
 pub mod error;

@@ -6,15 +6,13 @@
 //! ln residual = constant + a ln speed + b ln load + c ln clearance
 //! ```
 
+use crate::conditions::{Conditions, conditions_of, varied};
 use crate::model::Model;
 use crate::residual_map::ResidualMap;
 use calibrate::Error;
-use mechanism::Machine;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Conditions that differ by less than this factor between the runs determine no exponent.
-const VARIED: f64 = 1.1;
 /// A residual counts where its mean square is this many times that of the noise.
 const ABOVE: f64 = 2.0;
 
@@ -38,9 +36,6 @@ pub struct Exponent {
     pub standard_error: Option<f64>,
 }
 
-/// What a run was recorded under.
-type Conditions = [(&'static str, f64); 3];
-
 /// The scaling of each channel whose residual stands out of the noise in enough runs; `maps` are
 /// those of `model`.
 ///
@@ -49,11 +44,8 @@ type Conditions = [(&'static str, f64); 3];
 pub fn scaling(model: &Model, maps: &[ResidualMap]) -> Result<Vec<Scaling>, Error> {
     let mut conditions = Vec::new();
     for run in &model.problem.runs {
-        let machine = model.problem.machine(run, &model.x)?;
-        conditions.push((
-            run.id.as_str(),
-            conditions_of(&machine.machine, machine.speed),
-        ));
+        let of_run = conditions_of(&model.problem, run, &model.x)?;
+        conditions.push((run.id.as_str(), of_run));
     }
     let mut channels: Vec<&str> = maps.iter().map(|map| map.channel.as_str()).collect();
     channels.sort_unstable();
@@ -76,34 +68,10 @@ pub fn scaling(model: &Model, maps: &[ResidualMap]) -> Result<Vec<Scaling>, Erro
     Ok(channels.into_iter().filter_map(of_channel).collect())
 }
 
-fn conditions_of(machine: &Machine, speed: f64) -> Conditions {
-    let load = |throw: &mechanism::Throw| throw.cylinder.discharge - throw.cylinder.suction;
-    let clearance = |throw: &mechanism::Throw| {
-        let joints = [&throw.big_end, &throw.small_end];
-        let clear = joints.into_iter().filter_map(|joint| joint.clear());
-        clear.map(|clear| clear.clearance).sum::<f64>()
-    };
-    let main = machine.main.clear().map_or(0.0, |clear| clear.clearance);
-    let throws = &machine.throws;
-    [
-        ("speed", speed.abs()),
-        ("load", throws.iter().map(load).sum()),
-        (
-            "clearance",
-            main + throws.iter().map(clearance).sum::<f64>(),
-        ),
-    ]
-}
-
 /// The exponents of the power law through these residuals.
 fn exponents(points: &[(Conditions, f64)]) -> Vec<Exponent> {
-    let values = |i: usize| points.iter().map(move |(conditions, _)| conditions[i].1);
-    let varied = |i: &usize| {
-        let least = values(*i).fold(f64::INFINITY, f64::min);
-        let greatest = values(*i).fold(0.0, f64::max);
-        least > 0.0 && greatest > VARIED * least
-    };
-    let varied: Vec<usize> = (0..3).filter(varied).collect();
+    let conditions: Vec<Conditions> = points.iter().map(|(conditions, _)| *conditions).collect();
+    let varied = varied(&conditions);
     let unknowns = varied.len() + 1;
     if varied.is_empty() || points.len() < unknowns {
         return Vec::new();

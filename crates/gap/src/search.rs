@@ -2,13 +2,14 @@
 //!
 //! A set is a node. From the best node that was not looked at further, every amendment is tried beside those that it has:
 //! an effect that shows only in a worn joint is found beside the wear, although wear by itself leaves much. A set of which
-//! one amendment is exchanged for another is reached from the set without it.
+//! one amendment is exchanged for another is reached from it, and from the set without it.
 
 use crate::amendment::Amendment;
 use crate::criteria::left;
-use crate::error::Error;
+use crate::error::{Error, possible};
 use crate::fitter::{Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, start};
+use crate::model::Model;
 use crate::screen::{Screened, screen};
 use calibrate::Problem;
 use calibrate::parameter::Scale;
@@ -28,6 +29,8 @@ const BESIDE: usize = 8;
 /// halving, Jamieson and Talwalkar 2016).
 const REFINED: usize = 8;
 const REFINED_BESIDE: usize = 4;
+/// Other kinds that are fitted in the place of an amendment, the most promising first.
+const EXCHANGED: usize = 3;
 /// Share of the gap with which no more is looked for: less than the law of an effect is usually off by.
 const LITTLE: f64 = 0.2;
 /// Nodes that are looked at further.
@@ -71,11 +74,13 @@ impl Search<'_> {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-            let varied = self.varied(&nodes[0])?;
-            for set in varied {
-                add(&mut nodes, set);
+            for moved in [Self::varied, Self::exchanged] {
+                let sets = moved(self, &nodes[0])?;
+                for set in sets {
+                    add(&mut nodes, set);
+                }
+                nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             }
-            nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         }
         Ok(nodes)
     }
@@ -86,11 +91,44 @@ impl Search<'_> {
         let own = self.few.parameters.len();
         let mut varied = node.at_places_alone(self.few)?;
         varied.extend(node.of_each_place(self.few)?);
-        varied.extend(node.without_one(self.few)?);
+        if node.set.len() > 1 {
+            varied.extend(node.without_one(self.few)?);
+        }
         let fitted = varied.into_par_iter().map(|(set, start)| {
             (self.fitter.say)(&words(node, "variations"), node.model.fitted);
             let model = self.fitter.explored(&[start])?;
             Ok(model.map(|(model, _)| Hypothesis::new(set, model, own)))
+        });
+        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+        Ok(fitted.into_iter().flatten().collect())
+    }
+
+    /// The node with one of its amendments exchanged for the most promising of other kinds, which are looked at in the machine
+    /// as the node has it: without what is missing a fit goes astray, and what two kinds have in common does not show there.
+    fn exchanged(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
+        let own = self.few.parameters.len();
+        let mut trials = Vec::new();
+        for (one, (set, (problem, x))) in node.set.iter().zip(node.without_one(self.few)?) {
+            let timing = node.model.timing;
+            let Some(model) = possible(Model::at(problem, &x, timing, self.fitter.effort))? else {
+                continue;
+            };
+            let without = Hypothesis::new(set, model, own);
+            let of_other_kind =
+                |other: &&Amendment| other.kind() != one.amendment.kind() && !without.has(other);
+            let others = self.amendments.iter().filter(of_other_kind).cloned();
+            (self.fitter.say)(&words(node, "rivals"), node.model.fitted);
+            let screened = screen(self.fitter, &without.model, false, others.collect())?;
+            let screened = best_of_each_kind(screened, 1);
+            let screened = screened.into_iter().take(EXCHANGED);
+            trials.extend(screened.map(|screened| (without.clone(), screened)));
+        }
+        let fitted = trials.into_par_iter().map(|(without, screened)| {
+            let Some(trial) = self.roughly(&without, &screened)? else {
+                return Ok(None);
+            };
+            let model = self.fitter.settled(&trial.start)?;
+            Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         Ok(fitted.into_iter().flatten().collect())
@@ -109,17 +147,8 @@ impl Search<'_> {
             node.set.is_empty(),
             others.cloned().collect(),
         )?;
-        let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
-        let of_a_kind = |screened: &Screened| {
-            let count = kinds
-                .entry(screened.amendment.kind().to_owned())
-                .or_default();
-            *count += 1;
-            *count <= if node.set.is_empty() { OF_A_KIND } else { 1 }
-        };
-        let mut chosen: Vec<Screened> = screened;
-        let mut of_a_kind = of_a_kind;
-        chosen.retain(|screened| of_a_kind(screened));
+        let of_a_kind = if node.set.is_empty() { OF_A_KIND } else { 1 };
+        let mut chosen = best_of_each_kind(screened, of_a_kind);
         chosen.truncate(if node.set.is_empty() { ALONE } else { BESIDE });
         (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
         let rough = chosen
@@ -184,6 +213,18 @@ impl Search<'_> {
             start: (with, rough.x),
         }))
     }
+}
+
+/// No more than `most` of a kind, the first ones.
+fn best_of_each_kind(mut screened: Vec<Screened>, most: usize) -> Vec<Screened> {
+    let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
+    screened.retain(|screened| {
+        let kind = screened.amendment.kind().to_owned();
+        let count = kinds.entry(kind).or_default();
+        *count += 1;
+        *count <= most
+    });
+    screened
 }
 
 /// Adds a set to others, or puts it in the place of the same one that was fitted worse.
