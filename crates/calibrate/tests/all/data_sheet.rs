@@ -156,6 +156,7 @@ fn assert_found(fit: &Fit, corrected: &Corrected, path: &str, value: f64, within
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
 fn a_wrong_mass_is_found() {
     let runs = recorded(&truth(&[]));
     let (fit, corrected) = corrected(runs, &[("crosshead.mass", json!("18.54 kg"))]);
@@ -208,6 +209,7 @@ fn a_late_channel_is_found() {
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
 fn a_wrong_gain_is_found() {
     let gain = json!([{"measure": "crosshead_acceleration", "gain": 1.03}]);
     let runs = recorded(&truth(&[("sensors", gain)]));
