@@ -65,8 +65,8 @@ pub fn prepare(asked: &Asked, out: &Path) -> Result<Prepared, Error> {
         if run.channels.iter().all(|c| c.quantity().is_pressure()) {
             return Err(Error::unusable(
                 &run.id,
-                "no channel shows clearances: an acceleration of the crosshead or the frame is needed, in a channel \
-                 that `sensors` of the machine file has",
+                "no channel shows clearances: an acceleration is needed. That of the crosshead needs no more; for one of the \
+                 frame or of a guide the machine file has a section frame or housing",
             ));
         }
     }
