@@ -19,6 +19,8 @@ const REFINEMENTS: usize = 8;
 /// Angles at which the zero is looked for, and refinements of the best.
 const ZEROS: usize = 720;
 const NEWTON: usize = 8;
+/// Squares in units of the noise by which another zero must leave more: four standard deviations.
+const DETERMINED: f64 = 16.0;
 
 /// The speed, rpm, at which the orders of a run's channels have most power, near the stated one.
 ///
@@ -94,15 +96,27 @@ impl Windowed {
     }
 }
 
+/// Where the zero of recorded crank angles is, as the machine shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zero {
+    /// By how much to raise the recorded crank angles so that they agree with the machine, rad in (−π, π].
+    pub raised: f64,
+    /// Another angle that recordings and machine allow as well; none where they determine the zero.
+    pub rival: Option<f64>,
+}
+
 /// By how much to raise the crank angle of an observed run so that it agrees with the prediction, rad in (−π, π].
 /// Least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
-    common_phase(&[(observed, predicted)])
+    zero(&[(observed, predicted)]).raised
 }
 
-/// The same of all these runs together.
-pub fn common_phase(runs: &[(&Observation, &Prediction)]) -> f64 {
+/// The same of all these runs together, with what else it may be. The whole turn is searched. What the best angle leaves is
+/// the scale of the noise, as the machine may not be that of the recordings in all: another angle is a rival where it leaves
+/// less than four standard deviations more.
+pub fn zero(runs: &[(&Observation, &Prediction)]) -> Zero {
     let mut products = Vec::new();
+    let mut power = 0.0;
     let channels = runs
         .iter()
         .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
@@ -114,27 +128,59 @@ pub fn common_phase(runs: &[(&Observation, &Prediction)]) -> f64 {
                 continue;
             };
             let variance = channel.lines.variance[k] + lines.variance[k] + floor;
-            products.push((
-                k as f64,
-                channel.lines.amplitude[k].conj() * model / variance,
-            ));
+            let seen = channel.lines.amplitude[k];
+            products.push((k as f64, seen.conj() * model / variance));
+            power += (seen.norm_sqr() + model.norm_sqr()) / variance;
         }
     }
-    // Raising the angle by φ turns an amplitude c_k by −kφ: the sum below is what is left of the
-    // squares that depends on φ.
-    let turned = |k: f64, product: &Complex64, at: f64| product * Complex64::cis(k * at);
-    let agreement = |at: f64| -> f64 { products.iter().map(|(k, p)| turned(*k, p, at).re).sum() };
-    let angles = (0..ZEROS).map(|i| TAU * i as f64 / ZEROS as f64 - PI);
-    let mut at = greatest(angles, agreement);
+    let step = TAU / ZEROS as f64;
+    let angles: Vec<f64> = (0..ZEROS).map(|i| step * i as f64 - PI).collect();
+    let agreements: Vec<f64> = angles.iter().map(|at| agreement(&products, *at)).collect();
+    let peaks = (0..ZEROS).filter(|i| {
+        let beside = [(i + ZEROS - 1) % ZEROS, (i + 1) % ZEROS];
+        beside.iter().all(|j| agreements[*i] >= agreements[*j])
+    });
+    let mut peaks: Vec<usize> = peaks.collect();
+    peaks.sort_by(|a, b| agreements[*b].total_cmp(&agreements[*a]));
+    let best = peaks.first().map_or(0, |i| *i);
+    let raised = refined(&products, angles[best]);
+    let agreed = agreement(&products, raised);
+    // What is left of the squares is the power of both less twice the agreement.
+    let left = (power - 2.0 * agreed) / (2.0 * products.len() as f64).max(1.0);
+    let beyond = 0.5 * DETERMINED * left.max(1.0);
+    let apart = |i: &&usize| (**i + ZEROS - best) % ZEROS > 1 && (best + ZEROS - **i) % ZEROS > 1;
+    let rival = peaks
+        .iter()
+        .find(apart)
+        .map(|i| refined(&products, angles[*i]));
+    Zero {
+        raised,
+        rival: rival.filter(|at| agreed - agreement(&products, *at) < beyond),
+    }
+}
+
+/// The order, and the observed line conjugate times the predicted one, over their variance.
+type Product = (f64, Complex64);
+
+/// What of the squares depends on the angle: raising it by `at` turns an amplitude c_k by −k times that.
+fn agreement(products: &[Product], at: f64) -> f64 {
+    let turned = products
+        .iter()
+        .map(|(k, product)| product * Complex64::cis(k * at));
+    turned.map(|product| product.re).sum()
+}
+
+/// The angle of greatest agreement near `at`, by Newton's method.
+fn refined(products: &[Product], mut at: f64) -> f64 {
     for _ in 0..NEWTON {
-        let slope: f64 = products
+        let turned = products
             .iter()
-            .map(|(k, p)| -k * turned(*k, p, at).im)
-            .sum();
-        let bend: f64 = products
-            .iter()
-            .map(|(k, p)| -k * k * turned(*k, p, at).re)
-            .sum();
+            .map(|(k, product)| (k, product * Complex64::cis(k * at)));
+        let (mut slope, mut bend) = (0.0, 0.0);
+        for (k, product) in turned {
+            slope -= k * product.im;
+            bend -= k * k * product.re;
+        }
         if bend < 0.0 {
             at -= (slope / bend).clamp(-PI / ZEROS as f64, PI / ZEROS as f64);
         }
@@ -174,38 +220,61 @@ mod tests {
         assert!((found - speed).abs() < 2e-3, "{found}");
     }
 
-    #[test]
-    fn the_zero_is_found_by_what_the_model_shows() {
-        let model: Vec<Complex64> = (0..40)
-            .map(|k| Complex64::from_polar(1.0 / (1.0 + f64::from(k)), 0.3 * f64::from(k * k)))
-            .collect();
+    /// A run that has the lines of `model` over an angle that is to be raised by `shift`, and a prediction of the model.
+    fn shifted(model: &[Complex64], shift: f64) -> (Observation, Prediction) {
         let lines = |amplitude: Vec<Complex64>| OrderLines {
             variance: vec![1e-6; amplitude.len()],
             amplitude,
             revolutions: 10,
         };
+        // x(θ) = m(θ + shift).
+        let turned = model.iter().enumerate();
+        let turned = turned.map(|(k, c)| c * Complex64::cis(k as f64 * shift));
+        let observed = Observation {
+            id: "run".into(),
+            settings: Vec::new(),
+            crank: mechanism::drive::GivenSpeed {
+                speed: 50.0,
+                fluctuation: Vec::new(),
+            },
+            channels: vec![Observed {
+                column: "x".into(),
+                lines: lines(turned.collect()),
+                orders: (0..model.len()).collect(),
+            }],
+        };
+        let predicted = Prediction {
+            lines: vec![lines(model.to_vec())],
+            derivatives: Vec::new(),
+            periodic: true,
+        };
+        (observed, predicted)
+    }
+
+    #[test]
+    fn another_zero_is_named_where_the_recordings_allow_it() {
+        // Even orders alone are the same after half a turn. A first order of four standard deviations tells the two apart.
+        for (first, determined) in [(0.0, false), (2e-3, false), (6e-3, true)] {
+            let model = [0.0, first, 1.0, 0.0, 0.3].map(Complex64::from);
+            let (observed, predicted) = shifted(&model, 0.7);
+            let found = zero(&[(&observed, &predicted)]);
+            assert_eq!(found.rival.is_none(), determined, "{first}: {found:?}");
+            if let Some(rival) = found.rival {
+                let half = (rival - found.raised).abs();
+                assert!((half - PI).abs() < 1e-6, "{found:?}");
+            }
+        }
+        let (observed, predicted) = shifted(&[Complex64::ZERO; 5], 0.0);
+        assert!(zero(&[(&observed, &predicted)]).rival.is_some());
+    }
+
+    #[test]
+    fn the_zero_is_found_by_what_the_model_shows() {
+        let model: Vec<Complex64> = (0..40)
+            .map(|k| Complex64::from_polar(1.0 / (1.0 + f64::from(k)), 0.3 * f64::from(k * k)))
+            .collect();
         for shift in [-3.0, -0.5, 1e-4, 2.2] {
-            // x(θ) = m(θ + shift): the angle is to be raised by `shift`.
-            let turned = model.iter().enumerate();
-            let turned = turned.map(|(k, c)| c * Complex64::cis(k as f64 * shift));
-            let observed = Observation {
-                id: "run".into(),
-                settings: Vec::new(),
-                crank: mechanism::drive::GivenSpeed {
-                    speed: 50.0,
-                    fluctuation: Vec::new(),
-                },
-                channels: vec![Observed {
-                    column: "x".into(),
-                    lines: lines(turned.collect()),
-                    orders: (0..40).collect(),
-                }],
-            };
-            let predicted = Prediction {
-                lines: vec![lines(model.clone())],
-                derivatives: Vec::new(),
-                periodic: true,
-            };
+            let (observed, predicted) = shifted(&model, shift);
             let found = phase(&observed, &predicted);
             assert!((found - shift).abs() < 1e-9, "{found} for {shift}");
         }
