@@ -19,6 +19,8 @@ const REFINEMENTS: usize = 8;
 /// Angles at which the zero is looked for, and refinements of the best.
 const ZEROS: usize = 720;
 const NEWTON: usize = 8;
+/// Share by which a machine that is not fitted has a line wrong.
+const OFF: f64 = 0.3;
 /// Squares in units of the noise by which another zero must leave more: four standard deviations.
 const DETERMINED: f64 = 16.0;
 
@@ -108,84 +110,118 @@ pub struct Zero {
 /// By how much to raise the crank angle of an observed run so that it agrees with the prediction, rad in (−π, π].
 /// Least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
-    zero(&[(observed, predicted)]).raised
+    Products::new(&[(observed, predicted)], 0.0).zero().raised
 }
 
-/// The same of all these runs together, with what else it may be. The whole turn is searched. What the best angle leaves is
-/// the scale of the noise, as the machine may not be that of the recordings in all: another angle is a rival where it leaves
-/// less than four standard deviations more.
+/// The same of all these runs together, with what else it may be, where the machine may not be that of the recordings in all:
+/// each line is taken to be wrong by a share of itself beside its noise. Worn joints and a structure that is not quite known
+/// change single lines by as much, and what most lines agree about remains.
 pub fn zero(runs: &[(&Observation, &Prediction)]) -> Zero {
-    let mut products = Vec::new();
-    let mut power = 0.0;
-    let channels = runs
-        .iter()
-        .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
-    for (channel, lines) in channels {
-        let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
-        let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
-        for &k in channel.orders.iter().filter(|k| **k > 0) {
-            let Some(model) = lines.amplitude.get(k) else {
-                continue;
-            };
-            let variance = channel.lines.variance[k] + lines.variance[k] + floor;
-            let seen = channel.lines.amplitude[k];
-            products.push((k as f64, seen.conj() * model / variance));
-            power += (seen.norm_sqr() + model.norm_sqr()) / variance;
-        }
-    }
-    let step = TAU / ZEROS as f64;
-    let angles: Vec<f64> = (0..ZEROS).map(|i| step * i as f64 - PI).collect();
-    let agreements: Vec<f64> = angles.iter().map(|at| agreement(&products, *at)).collect();
-    let peaks = (0..ZEROS).filter(|i| {
-        let beside = [(i + ZEROS - 1) % ZEROS, (i + 1) % ZEROS];
-        beside.iter().all(|j| agreements[*i] >= agreements[*j])
-    });
-    let mut peaks: Vec<usize> = peaks.collect();
-    peaks.sort_by(|a, b| agreements[*b].total_cmp(&agreements[*a]));
-    let best = peaks.first().map_or(0, |i| *i);
-    let raised = refined(&products, angles[best]);
-    let agreed = agreement(&products, raised);
-    // What is left of the squares is the power of both less twice the agreement.
-    let left = (power - 2.0 * agreed) / (2.0 * products.len() as f64).max(1.0);
-    let beyond = 0.5 * DETERMINED * left.max(1.0);
-    let apart = |i: &&usize| (**i + ZEROS - best) % ZEROS > 1 && (best + ZEROS - **i) % ZEROS > 1;
-    let rival = peaks
-        .iter()
-        .find(apart)
-        .map(|i| refined(&products, angles[*i]));
-    Zero {
-        raised,
-        rival: rival.filter(|at| agreed - agreement(&products, *at) < beyond),
+    let (loose, strict) = (Products::new(runs, OFF), Products::new(runs, 0.0));
+    let found = loose.zero();
+    // The noise alone tells the angle more closely, where it tells the same one.
+    let closer = strict.refined(found.raised);
+    match loose.allows(closer, found.raised) {
+        true => Zero {
+            raised: closer,
+            ..found
+        },
+        false => found,
     }
 }
 
-/// The order, and the observed line conjugate times the predicted one, over their variance.
-type Product = (f64, Complex64);
-
-/// What of the squares depends on the angle: raising it by `at` turns an amplitude c_k by −k times that.
-fn agreement(products: &[Product], at: f64) -> f64 {
-    let turned = products
-        .iter()
-        .map(|(k, product)| product * Complex64::cis(k * at));
-    turned.map(|product| product.re).sum()
+/// What of the squares between lines observed and predicted depends on the angle.
+struct Products {
+    /// The order, and the observed line conjugate times the predicted one, over their variance.
+    each: Vec<(f64, Complex64)>,
+    /// The squares of both, over the variance.
+    power: f64,
 }
 
-/// The angle of greatest agreement near `at`, by Newton's method.
-fn refined(products: &[Product], mut at: f64) -> f64 {
-    for _ in 0..NEWTON {
-        let turned = products
+impl Products {
+    /// Those of all lines of runs, which the machine has wrong by the share `off` of each.
+    fn new(runs: &[(&Observation, &Prediction)], off: f64) -> Self {
+        let mut products = Self {
+            each: Vec::new(),
+            power: 0.0,
+        };
+        let channels = runs
             .iter()
-            .map(|(k, product)| (k, product * Complex64::cis(k * at)));
-        let (mut slope, mut bend) = (0.0, 0.0);
-        for (k, product) in turned {
-            slope -= k * product.im;
-            bend -= k * k * product.re;
+            .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
+        for (channel, lines) in channels {
+            let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
+            let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
+            for &k in channel.orders.iter().filter(|k| **k > 0) {
+                let Some(model) = lines.amplitude.get(k) else {
+                    continue;
+                };
+                let seen = channel.lines.amplitude[k];
+                let power = seen.norm_sqr() + model.norm_sqr();
+                let noise = channel.lines.variance[k] + lines.variance[k] + floor;
+                let variance = noise + 0.5 * off * off * power;
+                products
+                    .each
+                    .push((k as f64, seen.conj() * model / variance));
+                products.power += power / variance;
+            }
         }
-        if bend < 0.0 {
-            at -= (slope / bend).clamp(-PI / ZEROS as f64, PI / ZEROS as f64);
+        products
+    }
+
+    /// The angle at which they agree best in the whole turn, and another one that they allow.
+    fn zero(&self) -> Zero {
+        let step = TAU / ZEROS as f64;
+        let angles: Vec<f64> = (0..ZEROS).map(|i| step * i as f64 - PI).collect();
+        let agreements: Vec<f64> = angles.iter().map(|at| self.agreement(*at)).collect();
+        let peaks = (0..ZEROS).filter(|i| {
+            let beside = [(i + ZEROS - 1) % ZEROS, (i + 1) % ZEROS];
+            beside.iter().all(|j| agreements[*i] >= agreements[*j])
+        });
+        let mut peaks: Vec<usize> = peaks.collect();
+        peaks.sort_by(|a, b| agreements[*b].total_cmp(&agreements[*a]));
+        let best = peaks.first().map_or(0, |i| *i);
+        let raised = self.refined(angles[best]);
+        let apart = |i: &&usize| {
+            let ahead = (**i + ZEROS - best) % ZEROS;
+            ahead.min(ZEROS - ahead) > 1
+        };
+        let rival = peaks.iter().find(apart).map(|i| self.refined(angles[*i]));
+        Zero {
+            raised,
+            rival: rival.filter(|at| self.allows(*at, raised)),
         }
     }
-    at
+
+    /// Whether an angle leaves less than four standard deviations more than the `best` one. The scale is what that one
+    /// leaves, but no less than the noise.
+    fn allows(&self, at: f64, best: f64) -> bool {
+        let agreed = self.agreement(best);
+        // What is left of the squares is the power of both less twice the agreement.
+        let left = (self.power - 2.0 * agreed) / (2.0 * self.each.len() as f64).max(1.0);
+        agreed - self.agreement(at) < 0.5 * DETERMINED * left.max(1.0)
+    }
+
+    /// How well they agree where the crank angle is raised by `at`: that turns an amplitude c_k by −k times it.
+    fn agreement(&self, at: f64) -> f64 {
+        let turned = self.each.iter().map(|(k, c)| c * Complex64::cis(k * at));
+        turned.map(|c| c.re).sum()
+    }
+
+    /// The angle of greatest agreement near `at`, by Newton's method.
+    fn refined(&self, mut at: f64) -> f64 {
+        for _ in 0..NEWTON {
+            let (mut slope, mut bend) = (0.0, 0.0);
+            for (k, c) in &self.each {
+                let turned = c * Complex64::cis(k * at);
+                slope -= k * turned.im;
+                bend -= k * k * turned.re;
+            }
+            if bend < 0.0 {
+                at -= (slope / bend).clamp(-PI / ZEROS as f64, PI / ZEROS as f64);
+            }
+        }
+        at
+    }
 }
 
 #[cfg(test)]

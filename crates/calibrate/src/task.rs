@@ -165,10 +165,10 @@ impl Task {
     fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Error> {
         let is_offset = Parameter::is_crank_angle_offset;
         if !self.problem.parameters.iter().any(is_offset) {
-            let mut offset =
+            let offset =
                 Parameter::named(&self.problem.tree, &self.runs, CRANK_ANGLE_OFFSET, None)?;
             let seen = zero::crank_angle_offset(&self.problem, |_| true)?;
-            if !seen.is_some_and(|seen| offset.open_for_offset(seen)) {
+            if !seen.is_some_and(|seen| offset.clone().open_for_offset(seen)) {
                 return Ok(None);
             }
             self.problem.parameters.push(offset);
@@ -197,23 +197,41 @@ impl Task {
 
     /// Aligns the runs whose zero was not recorded with the nominal machine, where they show it.
     fn align_first(&mut self, nominal: &[f64]) -> Result<(), Error> {
-        for (run, _) in (self.problem.runs.iter().zip(&self.zeroed)).filter(|(_, zeroed)| !**zeroed)
-        {
+        for i in 0..self.runs.len() {
+            if self.zeroed[i] {
+                continue;
+            }
+            let run = &self.problem.runs[i];
             let predicted = predict(&self.problem, run, nominal)?;
             let found = alignment::zero(&[(run, &predicted)]);
-            if let Some(rival) = found.rival {
-                let [one, other] = [found.raised, rival].map(|at| at.to_degrees());
-                return Err(Error::unusable(
-                    &run.id,
-                    format!(
-                        "its channels do not show the zero of the crank angle: the machine explains them as well with \
-                         {one:.0}° as with {other:.0}° at the pulse (or at the first sample, without one). Give the \
-                         channel of the tacho its crank_angle_rad, or record a cylinder pressure"
-                    ),
-                ));
-            }
+            let Some(rival) = found.rival else {
+                self.raise(i, found.raised)?;
+                continue;
+            };
+            let at = [found.raised, rival].map(|at| at.to_degrees().rem_euclid(360.0));
+            let where_to = match self.pulsed[i] {
+                true => "the pulse of the tacho",
+                false => "the first sample",
+            };
+            return Err(Error::unusable(
+                &run.id,
+                format!(
+                    "its channels do not show where the crank stands: {where_to} may be at {:.0}° or at {:.0}° after top dead \
+                     centre. A cylinder pressure shows it, or crank_angle_rad at the channel of a tacho",
+                    at[0], at[1]
+                ),
+            ));
         }
-        self.align(nominal)?;
+        Ok(())
+    }
+
+    /// Raises the crank angle of a run, rad, and looks at it anew.
+    fn raise(&mut self, i: usize, shift: f64) -> Result<(), Error> {
+        for angle in self.runs[i].crank_angle.iter_mut().flatten() {
+            *angle = (*angle + shift).rem_euclid(TAU);
+        }
+        self.turned[i] += shift;
+        self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
         Ok(())
     }
 
@@ -242,11 +260,7 @@ impl Task {
                 continue;
             }
             moved = true;
-            for angle in self.runs[i].crank_angle.iter_mut().flatten() {
-                *angle = (*angle + shift).rem_euclid(TAU);
-            }
-            self.turned[i] += shift;
-            self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
+            self.raise(i, shift)?;
         }
         Ok(moved)
     }
