@@ -1,7 +1,7 @@
 //! Speed and zero of the crank angle of a recording without one.
 //! The speed is that at which the recording repeats itself. The zero is that of the model's prediction.
 
-use crate::observation::{Observation, Run};
+use crate::observation::{Observation, Observed, Run};
 use crate::prediction::Prediction;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -110,18 +110,27 @@ pub struct Zero {
 /// By how much to raise the crank angle of an observed run so that it agrees with the prediction, rad in (−π, π].
 /// Least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
-    Products::new(&[(observed, predicted)], 0.0).zero().raised
+    Products::new(&[(observed, predicted)], 0.0, |_| true)
+        .zero()
+        .raised
 }
 
 /// The same of all these runs together, with what else it may be, where the machine may not be that of the recordings in all:
 /// each line is taken to be wrong by a share of itself beside its noise. Worn joints and a structure that is not quite known
-/// change single lines by as much, and what most lines agree about remains.
+/// change single lines by as much, and what most lines agree about remains. They hardly change pressures, which tell the zero
+/// alone where there are any.
 pub fn zero(runs: &[(&Observation, &Prediction)]) -> Zero {
-    let (loose, strict) = (Products::new(runs, OFF), Products::new(runs, 0.0));
+    let channels = runs.iter().flat_map(|(observed, _)| &observed.channels);
+    let pressures = channels.filter(|c| c.quantity().is_pressure()).count();
+    let tells = |channel: &Observed| pressures == 0 || channel.quantity().is_pressure();
+    let (loose, strict) = (
+        Products::new(runs, OFF, tells),
+        Products::new(runs, 0.0, tells),
+    );
     let found = loose.zero();
     // The noise alone tells the angle more closely, where it tells the same one.
     let closer = strict.refined(found.raised);
-    match loose.allows(closer, found.raised) {
+    match loose.allows(closer, found.raised, 1.0) {
         true => Zero {
             raised: closer,
             ..found
@@ -139,8 +148,12 @@ struct Products {
 }
 
 impl Products {
-    /// Those of all lines of runs, which the machine has wrong by the share `off` of each.
-    fn new(runs: &[(&Observation, &Prediction)], off: f64) -> Self {
+    /// Those of the channels that `tells`, which the machine has wrong by the share `off` of each line.
+    fn new(
+        runs: &[(&Observation, &Prediction)],
+        off: f64,
+        tells: impl Fn(&Observed) -> bool,
+    ) -> Self {
         let mut products = Self {
             each: Vec::new(),
             power: 0.0,
@@ -148,7 +161,7 @@ impl Products {
         let channels = runs
             .iter()
             .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
-        for (channel, lines) in channels {
+        for (channel, lines) in channels.filter(|(channel, _)| tells(channel)) {
             let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
             let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
             for &k in channel.orders.iter().filter(|k| **k > 0) {
@@ -188,17 +201,17 @@ impl Products {
         let rival = peaks.iter().find(apart).map(|i| self.refined(angles[*i]));
         Zero {
             raised,
-            rival: rival.filter(|at| self.allows(*at, raised)),
+            rival: rival.filter(|at| self.allows(*at, raised, DETERMINED)),
         }
     }
 
-    /// Whether an angle leaves less than four standard deviations more than the `best` one. The scale is what that one
-    /// leaves, but no less than the noise.
-    fn allows(&self, at: f64, best: f64) -> bool {
+    /// Whether an angle leaves fewer than so many `squares` more than the `best` one. Their unit is what that one leaves of a
+    /// line, but no less than the noise.
+    fn allows(&self, at: f64, best: f64, squares: f64) -> bool {
         let agreed = self.agreement(best);
         // What is left of the squares is the power of both less twice the agreement.
         let left = (self.power - 2.0 * agreed) / (2.0 * self.each.len() as f64).max(1.0);
-        agreed - self.agreement(at) < 0.5 * DETERMINED * left.max(1.0)
+        agreed - self.agreement(at) < 0.5 * squares * left.max(1.0)
     }
 
     /// How well they agree where the crank angle is raised by `at`: that turns an amplitude c_k by −k times it.
@@ -227,7 +240,7 @@ impl Products {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observation::{Channel, Observed};
+    use crate::observation::Channel;
     use signal::order_lines::OrderLines;
 
     #[test]
