@@ -1,7 +1,7 @@
 //! Speed and zero of the crank angle of a recording without one.
 //! The speed is that at which the recording repeats itself. The zero is that of the model's prediction.
 
-use crate::observation::{Observation, Run};
+use crate::observation::{Observation, Observed, Run};
 use crate::prediction::Prediction;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -19,6 +19,10 @@ const REFINEMENTS: usize = 8;
 /// Angles at which the zero is looked for, and refinements of the best.
 const ZEROS: usize = 720;
 const NEWTON: usize = 8;
+/// Share by which a machine that is not fitted has a line wrong.
+const OFF: f64 = 0.3;
+/// Squares in units of the noise by which another zero must leave more: four standard deviations.
+const DETERMINED: f64 = 16.0;
 
 /// The speed, rpm, at which the orders of a run's channels have most power, near the stated one.
 ///
@@ -94,58 +98,149 @@ impl Windowed {
     }
 }
 
+/// Where the zero of recorded crank angles is, as the machine shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zero {
+    /// By how much to raise the recorded crank angles so that they agree with the machine, rad in (−π, π].
+    pub raised: f64,
+    /// Another angle that recordings and machine allow as well; none where they determine the zero.
+    pub rival: Option<f64>,
+}
+
 /// By how much to raise the crank angle of an observed run so that it agrees with the prediction, rad in (−π, π].
 /// Least squares over all lines, weighted by the noise of both.
 pub fn phase(observed: &Observation, predicted: &Prediction) -> f64 {
-    common_phase(&[(observed, predicted)])
+    Products::new(&[(observed, predicted)], 0.0, |_| true)
+        .zero()
+        .raised
 }
 
-/// The same of all these runs together.
-pub fn common_phase(runs: &[(&Observation, &Prediction)]) -> f64 {
-    let mut products = Vec::new();
-    let channels = runs
-        .iter()
-        .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
-    for (channel, lines) in channels {
-        let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
-        let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
-        for &k in channel.orders.iter().filter(|k| **k > 0) {
-            let Some(model) = lines.amplitude.get(k) else {
-                continue;
-            };
-            let variance = channel.lines.variance[k] + lines.variance[k] + floor;
-            products.push((
-                k as f64,
-                channel.lines.amplitude[k].conj() * model / variance,
-            ));
+/// The same of all these runs together, with what else it may be, where the machine may not be that of the recordings in all:
+/// each line is taken to be wrong by a share of itself beside its noise. Worn joints and a structure that is not quite known
+/// change single lines by as much, and what most lines agree about remains. They hardly change pressures, which tell the zero
+/// alone where there are any.
+pub fn zero(runs: &[(&Observation, &Prediction)]) -> Zero {
+    let channels = runs.iter().flat_map(|(observed, _)| &observed.channels);
+    let pressures = channels.filter(|c| c.quantity().is_pressure()).count();
+    let tells = |channel: &Observed| pressures == 0 || channel.quantity().is_pressure();
+    let (loose, strict) = (
+        Products::new(runs, OFF, tells),
+        Products::new(runs, 0.0, tells),
+    );
+    let found = loose.zero();
+    // The noise alone tells the angle more closely, where it tells the same one.
+    let closer = strict.refined(found.raised);
+    match loose.allows(closer, found.raised, 1.0) {
+        true => Zero {
+            raised: closer,
+            ..found
+        },
+        false => found,
+    }
+}
+
+/// What of the squares between lines observed and predicted depends on the angle.
+struct Products {
+    /// The order, and the observed line conjugate times the predicted one, over their variance.
+    each: Vec<(f64, Complex64)>,
+    /// The squares of both, over the variance.
+    power: f64,
+}
+
+impl Products {
+    /// Those of the channels that `tells`, which the machine has wrong by the share `off` of each line.
+    fn new(
+        runs: &[(&Observation, &Prediction)],
+        off: f64,
+        tells: impl Fn(&Observed) -> bool,
+    ) -> Self {
+        let mut products = Self {
+            each: Vec::new(),
+            power: 0.0,
+        };
+        let channels = runs
+            .iter()
+            .flat_map(|(observed, predicted)| observed.channels.iter().zip(&predicted.lines));
+        for (channel, lines) in channels.filter(|(channel, _)| tells(channel)) {
+            let greatest = channel.lines.amplitude.iter().map(|c| c.norm());
+            let floor = (1e-4 * greatest.fold(0.0, f64::max)).powi(2);
+            for &k in channel.orders.iter().filter(|k| **k > 0) {
+                let Some(model) = lines.amplitude.get(k) else {
+                    continue;
+                };
+                let seen = channel.lines.amplitude[k];
+                let power = seen.norm_sqr() + model.norm_sqr();
+                let noise = channel.lines.variance[k] + lines.variance[k] + floor;
+                let variance = noise + 0.5 * off * off * power;
+                products
+                    .each
+                    .push((k as f64, seen.conj() * model / variance));
+                products.power += power / variance;
+            }
+        }
+        products
+    }
+
+    /// The angle at which they agree best in the whole turn, and another one that they allow.
+    fn zero(&self) -> Zero {
+        let step = TAU / ZEROS as f64;
+        let angles: Vec<f64> = (0..ZEROS).map(|i| step * i as f64 - PI).collect();
+        let agreements: Vec<f64> = angles.iter().map(|at| self.agreement(*at)).collect();
+        let peaks = (0..ZEROS).filter(|i| {
+            let beside = [(i + ZEROS - 1) % ZEROS, (i + 1) % ZEROS];
+            beside.iter().all(|j| agreements[*i] >= agreements[*j])
+        });
+        let mut peaks: Vec<usize> = peaks.collect();
+        peaks.sort_by(|a, b| agreements[*b].total_cmp(&agreements[*a]));
+        let best = peaks.first().map_or(0, |i| *i);
+        let raised = self.refined(angles[best]);
+        let apart = |i: &&usize| {
+            let ahead = (**i + ZEROS - best) % ZEROS;
+            ahead.min(ZEROS - ahead) > 1
+        };
+        let rival = peaks.iter().find(apart).map(|i| self.refined(angles[*i]));
+        Zero {
+            raised,
+            rival: rival.filter(|at| self.allows(*at, raised, DETERMINED)),
         }
     }
-    // Raising the angle by φ turns an amplitude c_k by −kφ: the sum below is what is left of the
-    // squares that depends on φ.
-    let turned = |k: f64, product: &Complex64, at: f64| product * Complex64::cis(k * at);
-    let agreement = |at: f64| -> f64 { products.iter().map(|(k, p)| turned(*k, p, at).re).sum() };
-    let angles = (0..ZEROS).map(|i| TAU * i as f64 / ZEROS as f64 - PI);
-    let mut at = greatest(angles, agreement);
-    for _ in 0..NEWTON {
-        let slope: f64 = products
-            .iter()
-            .map(|(k, p)| -k * turned(*k, p, at).im)
-            .sum();
-        let bend: f64 = products
-            .iter()
-            .map(|(k, p)| -k * k * turned(*k, p, at).re)
-            .sum();
-        if bend < 0.0 {
-            at -= (slope / bend).clamp(-PI / ZEROS as f64, PI / ZEROS as f64);
-        }
+
+    /// Whether an angle leaves fewer than so many `squares` more than the `best` one. Their unit is what that one leaves of a
+    /// line, but no less than the noise.
+    fn allows(&self, at: f64, best: f64, squares: f64) -> bool {
+        let agreed = self.agreement(best);
+        // What is left of the squares is the power of both less twice the agreement.
+        let left = (self.power - 2.0 * agreed) / (2.0 * self.each.len() as f64).max(1.0);
+        agreed - self.agreement(at) < 0.5 * squares * left.max(1.0)
     }
-    at
+
+    /// How well they agree where the crank angle is raised by `at`: that turns an amplitude c_k by −k times it.
+    fn agreement(&self, at: f64) -> f64 {
+        let turned = self.each.iter().map(|(k, c)| c * Complex64::cis(k * at));
+        turned.map(|c| c.re).sum()
+    }
+
+    /// The angle of greatest agreement near `at`, by Newton's method.
+    fn refined(&self, mut at: f64) -> f64 {
+        for _ in 0..NEWTON {
+            let (mut slope, mut bend) = (0.0, 0.0);
+            for (k, c) in &self.each {
+                let turned = c * Complex64::cis(k * at);
+                slope -= k * turned.im;
+                bend -= k * k * turned.re;
+            }
+            if bend < 0.0 {
+                at -= (slope / bend).clamp(-PI / ZEROS as f64, PI / ZEROS as f64);
+            }
+        }
+        at
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observation::{Channel, Observed};
+    use crate::observation::Channel;
     use signal::order_lines::OrderLines;
 
     #[test]
@@ -174,38 +269,61 @@ mod tests {
         assert!((found - speed).abs() < 2e-3, "{found}");
     }
 
-    #[test]
-    fn the_zero_is_found_by_what_the_model_shows() {
-        let model: Vec<Complex64> = (0..40)
-            .map(|k| Complex64::from_polar(1.0 / (1.0 + f64::from(k)), 0.3 * f64::from(k * k)))
-            .collect();
+    /// A run that has the lines of `model` over an angle that is to be raised by `shift`, and a prediction of the model.
+    fn shifted(model: &[Complex64], shift: f64) -> (Observation, Prediction) {
         let lines = |amplitude: Vec<Complex64>| OrderLines {
             variance: vec![1e-6; amplitude.len()],
             amplitude,
             revolutions: 10,
         };
+        // x(θ) = m(θ + shift).
+        let turned = model.iter().enumerate();
+        let turned = turned.map(|(k, c)| c * Complex64::cis(k as f64 * shift));
+        let observed = Observation {
+            id: "run".into(),
+            settings: Vec::new(),
+            crank: mechanism::drive::GivenSpeed {
+                speed: 50.0,
+                fluctuation: Vec::new(),
+            },
+            channels: vec![Observed {
+                column: "x".into(),
+                lines: lines(turned.collect()),
+                orders: (0..model.len()).collect(),
+            }],
+        };
+        let predicted = Prediction {
+            lines: vec![lines(model.to_vec())],
+            derivatives: Vec::new(),
+            periodic: true,
+        };
+        (observed, predicted)
+    }
+
+    #[test]
+    fn another_zero_is_named_where_the_recordings_allow_it() {
+        // Even orders alone are the same after half a turn. A first order of four standard deviations tells the two apart.
+        for (first, determined) in [(0.0, false), (2e-3, false), (6e-3, true)] {
+            let model = [0.0, first, 1.0, 0.0, 0.3].map(Complex64::from);
+            let (observed, predicted) = shifted(&model, 0.7);
+            let found = zero(&[(&observed, &predicted)]);
+            assert_eq!(found.rival.is_none(), determined, "{first}: {found:?}");
+            if let Some(rival) = found.rival {
+                let half = (rival - found.raised).abs();
+                assert!((half - PI).abs() < 1e-6, "{found:?}");
+            }
+        }
+        let (observed, predicted) = shifted(&[Complex64::ZERO; 5], 0.0);
+        assert!(zero(&[(&observed, &predicted)]).rival.is_some());
+    }
+
+    #[test]
+    fn the_zero_is_found_by_what_the_model_shows() {
+        let model: Vec<Complex64> = (0..40)
+            .map(|k| Complex64::from_polar(1.0 / (1.0 + f64::from(k)), 0.3 * f64::from(k * k)))
+            .collect();
         for shift in [-3.0, -0.5, 1e-4, 2.2] {
-            // x(θ) = m(θ + shift): the angle is to be raised by `shift`.
-            let turned = model.iter().enumerate();
-            let turned = turned.map(|(k, c)| c * Complex64::cis(k as f64 * shift));
-            let observed = Observation {
-                id: "run".into(),
-                settings: Vec::new(),
-                crank: mechanism::drive::GivenSpeed {
-                    speed: 50.0,
-                    fluctuation: Vec::new(),
-                },
-                channels: vec![Observed {
-                    column: "x".into(),
-                    lines: lines(turned.collect()),
-                    orders: (0..40).collect(),
-                }],
-            };
-            let predicted = Prediction {
-                lines: vec![lines(model.clone())],
-                derivatives: Vec::new(),
-                periodic: true,
-            };
+            let (observed, predicted) = shifted(&model, shift);
             let found = phase(&observed, &predicted);
             assert!((found - shift).abs() < 1e-9, "{found} for {shift}");
         }

@@ -260,9 +260,9 @@ pub(crate) fn angle(run: &Run, first: &Channel) -> Result<CrankAngle, Error> {
     Ok(angle)
 }
 
-/// A pressure may stay at its greatest value while a valve is open; an acceleration never does.
+/// A pressure may stay at its greatest value while a valve is open; a vibration never does.
 fn not_clipped(run: &Run, channel: &Channel) -> Result<(), Error> {
-    if !channel.quantity().is_acceleration() {
+    if !channel.quantity().is_vibration() {
         return Ok(());
     }
     let samples = || channel.samples.iter().copied();

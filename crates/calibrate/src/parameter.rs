@@ -274,7 +274,7 @@ fn quantity(tree: &Value, path: &str) -> Result<(f64, Option<Dimension>), Error>
     let none = || refusal(path, "its value is no quantity");
     match paths::get(tree, path)? {
         Some(Value::Number(number)) => Ok((number.as_f64().ok_or_else(none)?, None)),
-        Some(Value::String(text)) => match unit::parse(text) {
+        Some(Value::String(text)) => match unit::parse_clearance(text) {
             Ok(measure) => Ok((measure.si, Some(measure.dimension))),
             Err(error) => Err(refusal(path, format!("'{text}': {error}"))),
         },

@@ -9,7 +9,7 @@ use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::high_pass::HighPass;
 use signal::order_lines::OrderLines;
-use simulate::{Sensor, Settings, Transient, sensitivities};
+use simulate::{Sensor, Settings, Structure, Transient, sensitivities};
 use std::f64::consts::TAU;
 
 /// Relative local error of the integration; far below the noise of any sensor.
@@ -178,6 +178,7 @@ struct Slow {
     delay: f64,
     /// Hz.
     high_pass: Option<f64>,
+    structure: Option<Structure>,
 }
 
 impl Slow {
@@ -188,6 +189,7 @@ impl Slow {
             .map(|chain| Self {
                 delay: std::mem::take(&mut chain.delay),
                 high_pass: chain.high_pass.take(),
+                structure: chain.structure.take(),
             })
             .collect()
     }
@@ -197,7 +199,10 @@ impl Slow {
         let frequency = order as f64 * speed;
         let coupled = |cutoff: f64| HighPass::response(frequency / (TAU * cutoff));
         let passed = self.high_pass.map_or(Complex64::ONE, coupled);
-        passed * Complex64::cis(-frequency * self.delay)
+        let carried = self
+            .structure
+            .map_or(Complex64::ONE, |s| s.response(frequency));
+        carried * passed * Complex64::cis(-frequency * self.delay)
     }
 
     /// Lines behind it.

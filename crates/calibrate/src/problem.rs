@@ -10,7 +10,7 @@ use input::Resolved;
 use input::paths;
 use mechanism::drive::Drive;
 use serde_json::Value;
-use simulate::{ChamberEnd, Measured, Moved, Sensor};
+use simulate::{Axis, ChamberEnd, Measured, Moved, Sensor};
 use std::fmt;
 
 /// A machine file, the values of it that are free, and the runs that they must explain.
@@ -209,9 +209,27 @@ pub(crate) fn measurable(machine: &Resolved) -> Vec<Measured> {
         ]
     };
     let mut all: Vec<Measured> = throws.flat_map(of_throw).collect();
+    all.extend(on_structures(machine));
     for sensor in &machine.sensors {
         if !all.contains(&sensor.measured) && sensor.measured != Measured::CrankAngle {
             all.push(sensor.measured);
+        }
+    }
+    all
+}
+
+/// What sensors on the frame and on the housings of the guides would see, where the machine has these.
+fn on_structures(machine: &Resolved) -> Vec<Measured> {
+    let mut all = Vec::new();
+    let axes = [Axis::X, Axis::Y];
+    if machine.machine.frame.is_some() {
+        all.extend(axes.map(|axis| Measured::FrameAcceleration { axis }));
+        all.extend(axes.map(|axis| Measured::FrameVelocity { axis }));
+    }
+    for (throw, of_throw) in machine.machine.throws.iter().enumerate() {
+        if of_throw.housing.is_some() {
+            all.extend(axes.map(|axis| Measured::HousingAcceleration { throw, axis }));
+            all.extend(axes.map(|axis| Measured::HousingVelocity { throw, axis }));
         }
     }
     all

@@ -210,7 +210,7 @@ fn clearance(
 
 /// The length that stands at `key`, m.
 fn length(key: &str, text: &str) -> Result<f64, Error> {
-    let measure = unit::parse(text).map_err(|error| Error::Parameter {
+    let measure = unit::parse_clearance(text).map_err(|error| Error::Parameter {
         path: key.to_owned(),
         reason: format!("'{text}': {error}"),
     })?;

@@ -96,7 +96,7 @@ pub fn unit(tree: &Value, path: &str) -> String {
         .next();
     let measure = value
         .and_then(Value::as_str)
-        .and_then(|text| unit::parse(text).ok());
+        .and_then(|text| unit::parse_clearance(text).ok());
     match measure {
         Some(measure) if measure.dimension != Dimension::NONE => measure.dimension.to_string(),
         _ => String::new(),

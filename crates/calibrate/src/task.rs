@@ -18,6 +18,7 @@ use crate::observation::{Observation, Run};
 use crate::parameter::Parameter;
 use crate::prediction::predict;
 use crate::problem::{Problem, columns};
+use crate::run_condition::CRANK_ANGLE_OFFSET;
 use crate::shut_valve::ShutValve;
 use crate::{alignment, bundle, contradiction, zero};
 use input::bundle_channel::Meaning;
@@ -43,6 +44,10 @@ pub struct Task {
     pub settings: FitSettings,
     /// For each run whether the zero of its crank angle was recorded.
     pub zeroed: Vec<bool>,
+    /// For each run by how much the crank angle was raised to align it, rad.
+    turned: Vec<f64>,
+    /// For each run whether a tacho of unknown place gave the crank angle.
+    pulsed: Vec<bool>,
     /// For each run whether an encoder gave the crank angle.
     pub encoded: Vec<bool>,
     /// The valves that recorded pressures do not open.
@@ -66,6 +71,7 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
     let mut runs = Vec::new();
     let mut zeroed = Vec::new();
     let mut encoded = Vec::new();
+    let mut pulsed = Vec::new();
     for listed in &bundles {
         for (run, meanings) in listed.runs(settings, &tree)? {
             let any = |wanted: fn(&Meaning) -> bool| meanings.iter().any(wanted);
@@ -73,6 +79,8 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
                 matches!(m, Meaning::CrankAngle(_) | Meaning::Tacho { at: Some(_) })
             }));
             encoded.push(any(|m| matches!(m, Meaning::CrankAngle(_))));
+            let is_pulsed = any(|m| matches!(m, Meaning::Tacho { at: None }));
+            pulsed.push(is_pulsed && zeroed.last() == Some(&false));
             runs.push(run);
         }
     }
@@ -112,8 +120,10 @@ pub fn task(settings: &Settings) -> Result<Task, Error> {
             crank: CrankMotion::Driven,
             meter: Meter::default(),
         },
+        turned: vec![0.0; runs.len()],
         runs,
         zeroed,
+        pulsed,
         encoded,
         shut_valves: Vec::new(),
         columns: columns(&resolved),
@@ -131,7 +141,7 @@ impl Task {
         let seen = self.runs.iter().map(|run| observe(run, &self.columns));
         self.problem.runs = seen.collect::<Result<_, _>>()?;
         let nominal = vec![0.0; self.problem.parameters.len()];
-        self.align(&nominal)?;
+        self.align_first(&nominal)?;
         let start = self.start_at_zero()?;
         self.shut_valves = contradiction::check(&self.problem, start.as_ref().unwrap_or(&nominal))?;
         self.settings.start = start;
@@ -151,26 +161,85 @@ impl Task {
     }
 
     /// Where the search starts if the recorded zero of the crank angle is nowhere near top dead centre. The bounds of
-    /// the offset are opened that far.
+    /// the offset are opened that far. Pressures alone have no offset among what is fitted: they get one then.
     fn start_at_zero(&mut self) -> Result<Option<Vec<f64>>, Error> {
-        let parameters = self.problem.parameters.iter();
-        let mut offsets = parameters
-            .clone()
-            .enumerate()
-            .filter(|(_, p)| p.is_crank_angle_offset());
-        let (Some((i, _)), None) = (offsets.next(), offsets.next()) else {
-            return Ok(None);
-        };
-        let Some(offset) = zero::crank_angle_offset(&self.problem)? else {
-            return Ok(None);
-        };
-        let parameter = &mut self.problem.parameters[i];
-        if parameter.run.is_some() || !parameter.open_for_offset(offset) {
-            return Ok(None);
+        let is_offset = Parameter::is_crank_angle_offset;
+        if !self.problem.parameters.iter().any(is_offset) {
+            let offset =
+                Parameter::named(&self.problem.tree, &self.runs, CRANK_ANGLE_OFFSET, None)?;
+            let seen = zero::crank_angle_offset(&self.problem, |_| true)?;
+            if !seen.is_some_and(|seen| offset.clone().open_for_offset(seen)) {
+                return Ok(None);
+            }
+            self.problem.parameters.push(offset);
         }
         let mut start = vec![0.0; self.problem.parameters.len()];
-        start[i] = self.problem.parameters[i].coordinate(offset);
-        Ok(Some(start))
+        let mut starts = false;
+        let of_all = |p: &Parameter| is_offset(p) && p.run.is_none();
+        let has_common = self.problem.parameters.iter().any(of_all);
+        for (i, start) in start.iter_mut().enumerate() {
+            let parameter = &self.problem.parameters[i];
+            if !is_offset(parameter) || has_common && parameter.run.is_some() {
+                continue;
+            }
+            let holds = |run: &Observation| parameter.holds_in(&run.id);
+            let Some(offset) = zero::crank_angle_offset(&self.problem, holds)? else {
+                continue;
+            };
+            let parameter = &mut self.problem.parameters[i];
+            if parameter.open_for_offset(offset) {
+                *start = parameter.coordinate(offset);
+                starts = true;
+            }
+        }
+        Ok(starts.then_some(start))
+    }
+
+    /// Aligns the runs whose zero was not recorded with the nominal machine, where they show it.
+    fn align_first(&mut self, nominal: &[f64]) -> Result<(), Error> {
+        for i in 0..self.runs.len() {
+            if self.zeroed[i] {
+                continue;
+            }
+            let run = &self.problem.runs[i];
+            let predicted = predict(&self.problem, run, nominal)?;
+            let found = alignment::zero(&[(run, &predicted)]);
+            let Some(rival) = found.rival else {
+                self.raise(i, found.raised)?;
+                continue;
+            };
+            let at = [found.raised, rival].map(|at| at.to_degrees().rem_euclid(360.0));
+            let where_to = match self.pulsed[i] {
+                true => "the pulse of the tacho",
+                false => "the first sample",
+            };
+            return Err(Error::unusable(
+                &run.id,
+                format!(
+                    "its channels do not show where the crank stands: {where_to} may be at {:.0}° or at {:.0}° after top dead \
+                     centre. A cylinder pressure shows it, or crank_angle_rad at the channel of a tacho",
+                    at[0], at[1]
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    /// Raises the crank angle of a run, rad, and looks at it anew.
+    fn raise(&mut self, i: usize, shift: f64) -> Result<(), Error> {
+        for angle in self.runs[i].crank_angle.iter_mut().flatten() {
+            *angle = (*angle + shift).rem_euclid(TAU);
+        }
+        self.turned[i] += shift;
+        self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
+        Ok(())
+    }
+
+    /// The crank angle, rad in [0, 2π), at which the pulse of each tacho comes whose place was not known, by run.
+    pub fn pulse_angles(&self) -> impl Iterator<Item = (&str, f64)> {
+        let runs = self.runs.iter().zip(&self.pulsed).zip(&self.turned);
+        let pulsed = runs.filter(|((_, pulsed), _)| **pulsed);
+        pulsed.map(|((run, _), turned)| (run.id.as_str(), turned.rem_euclid(TAU)))
     }
 
     /// Aligns the crank angle of every run whose zero was not recorded with the prediction of the machine, with the
@@ -191,10 +260,7 @@ impl Task {
                 continue;
             }
             moved = true;
-            for angle in self.runs[i].crank_angle.iter_mut().flatten() {
-                *angle = (*angle + shift).rem_euclid(TAU);
-            }
-            self.problem.runs[i] = observe(&self.runs[i], &self.columns)?;
+            self.raise(i, shift)?;
         }
         Ok(moved)
     }

@@ -3,9 +3,10 @@
 //! The low orders of every channel show it, for they hardly depend on the calibrated parameters. The angle at which
 //! all runs together agree best with the machine is searched over the whole turn.
 
-use crate::alignment::common_phase;
+use crate::alignment::zero;
 use crate::error::Error;
 use crate::likelihood::Likelihood;
+use crate::observation::Observation;
 use crate::problem::Problem;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -18,16 +19,21 @@ const COUNTS: f64 = 0.1;
 /// Phases further apart than this do not agree, rad: contacts and losses of valves turn low orders by much less.
 const APART: f64 = PI / 4.0;
 
-/// By how much the recorded crank angles are ahead of the crank, rad, where all channels agree about it. None
-/// where no offset brings them together.
+/// By how much the recorded crank angles of the runs that `holds` are ahead of the crank, rad, where all channels agree about
+/// it. None where no offset brings them together, or where several do.
 ///
 /// # Errors
 /// A machine that cannot be simulated.
-pub fn crank_angle_offset(problem: &Problem) -> Result<Option<f64>, Error> {
+pub fn crank_angle_offset(
+    problem: &Problem,
+    holds: impl Fn(&Observation) -> bool,
+) -> Result<Option<f64>, Error> {
     let nominal = vec![0.0; problem.parameters.len()];
     let predictions = Likelihood::new(problem).predictions(&nominal)?;
-    let pairs: Vec<_> = problem.runs.iter().zip(&predictions).collect();
-    let raised = common_phase(&pairs);
+    let pairs = problem.runs.iter().zip(&predictions);
+    let pairs: Vec<_> = pairs.filter(|(run, _)| holds(run)).collect();
+    let found = zero(&pairs);
+    let raised = found.raised;
     let agrees = pairs.iter().all(|(observed, predicted)| {
         let channels = observed.channels.iter().zip(&predicted.lines);
         channels
@@ -35,7 +41,8 @@ pub fn crank_angle_offset(problem: &Problem) -> Result<Option<f64>, Error> {
             .all(|(seen, shown)| ORDERS.iter().all(|k| agree(seen, shown, *k, raised)))
     });
     let offset = -raised;
-    Ok(agrees.then(|| offset - TAU * ((offset + PI) / TAU).floor()))
+    let determined = found.rival.is_none();
+    Ok((agrees && determined).then(|| offset - TAU * ((offset + PI) / TAU).floor()))
 }
 
 /// Whether the lines `seen` have, over an angle that is raised, the phase of those `shown` in an order.

@@ -48,7 +48,12 @@ pub fn features(window: &Window) -> Vec<Result<f64, Reason>> {
         let sectors = LazyCell::new(|| spectral::sectors(held(&revolutions)?, window));
         let overall = LazyCell::new(|| {
             let rate = window.sample_rate;
-            Ok(spectral::overall_vibration(&x, rate, held(&grid)?)?)
+            Ok(spectral::overall_vibration(
+                &x,
+                &channel.unit,
+                rate,
+                held(&grid)?,
+            )?)
         });
         let card = LazyCell::new(|| {
             spectral::card(&channel.name, held(&revolutions)?, held(&grid)?, window)

@@ -8,9 +8,10 @@
 //! | channel | features |
 //! |---|---|
 //! | all but the crank angle | statistics of the samples |
-//! | accelerations (m/s^2), pressures (Pa) | orders 1 to 20 of the shaft |
+//! | vibrations (m/s^2, m/s), pressures (Pa) | orders 1 to 20 of the shaft |
 //! | pressures | indicated power and mean pressure, where the chamber is known |
-//! | accelerations | frequency bands, velocity-acceleration portrait, spectral shape, overall velocity and displacement, envelope, synchronous residual, crank-angle sectors, cepstrum |
+//! | vibrations | frequency bands, overall acceleration, velocity and displacement |
+//! | accelerations | velocity-acceleration portrait, spectral shape, envelope, synchronous residual, crank-angle sectors, cepstrum |
 //!
 //! A new feature is a function where its signal processing lives, and a line in the table.
 

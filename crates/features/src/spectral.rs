@@ -149,7 +149,7 @@ pub(crate) fn shape(
     Ok(spectral_shape(&spectrum.up_to(highest))?)
 }
 
-/// Overall vibration of an acceleration over the whole revolutions of `grid`, from 2 to 1000 Hz or up to
+/// Overall vibration of an acceleration or a velocity, which its `unit` tells, over the whole revolutions of `grid`, from 2 to 1000 Hz or up to
 /// what the sample rate (Hz) resolves: the values of the features `acceleration_rms`, `velocity_rms` and
 /// `displacement_rms`.
 ///
@@ -157,13 +157,17 @@ pub(crate) fn shape(
 /// A channel whose length is not that of the grid, or one with a sample that is not finite.
 pub fn overall_vibration(
     x: &[f64],
+    unit: &str,
     sample_rate: f64,
     grid: &AngleGrid,
 ) -> Result<OverallVibration, signal::Error> {
     let [low, high] = OVERALL_HZ;
     let (x, at_equal_times) = grid.at_equal_times(x, sample_rate)?;
     let band = [low, high.min(PASSED * sample_rate)];
-    OverallVibration::new(&x, at_equal_times, band)
+    match unit {
+        "m/s" => OverallVibration::of_velocity(&x, at_equal_times, band),
+        _ => OverallVibration::new(&x, at_equal_times, band),
+    }
 }
 
 /// The p-V card of the channel of this name, where its chamber and top dead centre are known.

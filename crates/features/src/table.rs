@@ -15,13 +15,16 @@ use signal::phase_portrait::PhasePortrait;
 use std::sync::LazyLock;
 
 /// The features of a channel of this unit, in the order of their columns: statistics of every
-/// channel, orders of accelerations and pressures, the p-V card of pressures, all others of accelerations.
+/// channel, orders of vibrations and pressures, bands and overall values of vibrations, the p-V card of pressures, all others
+/// of accelerations.
 pub(crate) fn lines(unit: &str) -> impl Iterator<Item = &'static Line> + use<> {
     let acceleration = unit == "m/s^2";
+    let velocity = unit == "m/s";
     let pressure = unit == "Pa";
     TABLE.iter().filter(move |line| match line.value {
         Value::Statistic(_) => true,
-        Value::Order(_) | Value::OrderRms(_) => acceleration || pressure,
+        Value::Order(_) | Value::OrderRms(_) => acceleration || velocity || pressure,
+        Value::Band(_) | Value::Overall(_) => acceleration || velocity,
         Value::Indicated(_) => pressure,
         _ => acceleration,
     })

@@ -445,7 +445,9 @@ fn included(
 fn written(tree: &Value, path: &str) -> Option<f64> {
     match input::paths::get(tree, path).ok()?? {
         Value::Number(number) => number.as_f64(),
-        Value::String(text) => input::unit::parse(text).ok().map(|measure| measure.si),
+        Value::String(text) => input::unit::parse_clearance(text)
+            .ok()
+            .map(|measure| measure.si),
         _ => None,
     }
 }

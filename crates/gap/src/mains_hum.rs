@@ -54,7 +54,7 @@ struct Tone {
 pub fn remove_hum(problem: &mut Problem, runs: &mut [Run]) -> Result<Vec<Hum>, Error> {
     let mut columns: Vec<String> = Vec::new();
     for channel in runs.iter().flat_map(|run| &run.channels) {
-        if channel.quantity().is_acceleration() && !columns.contains(&channel.column) {
+        if channel.quantity().is_vibration() && !columns.contains(&channel.column) {
             columns.push(channel.column.clone());
         }
     }

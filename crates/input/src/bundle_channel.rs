@@ -81,12 +81,14 @@ impl ToSi {
 const SLIPS: usize = 2;
 
 const ACCELERATION: Dimension = Dimension::of(1.0, 0.0, -2.0, 0.0);
+const VELOCITY: Dimension = Dimension::of(1.0, 0.0, -1.0, 0.0);
 const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 /// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
-const RECORDED: [(&str, Dimension, f64); 5] = [
+const RECORDED: [(&str, Dimension, f64); 6] = [
     ("g", ACCELERATION, GRAVITY),
     ("mg", ACCELERATION, 1e-3 * GRAVITY),
+    ("ips", VELOCITY, 0.0254),
     ("degree", ANGLE, TAU / 360.0),
     ("degrees", ANGLE, TAU / 360.0),
     ("rev", ANGLE, TAU),
@@ -193,6 +195,7 @@ fn unit_of(quantity: Quantity) -> (Dimension, String) {
     let (dimension, unit) = unit_of_quantity(quantity);
     let examples = match quantity {
         Quantity::Acceleration => "m/s2 or g",
+        Quantity::Velocity => "mm/s or in/s",
         Quantity::Pressure => "Pa, bar or psi",
         Quantity::Angle => "rad or deg",
         _ => unit,
@@ -215,9 +218,9 @@ pub fn unit_of_column(column: &str) -> &'static str {
 
 /// Lower case, words apart, without a unit in brackets or at the end of a column's name.
 fn words(text: &str) -> String {
-    const ENDINGS: [&str; 13] = [
-        " m s2", " kpa", " mpa", " pa", " mbar", " bar", " psig", " psia", " psi", " rad", " deg",
-        " g", " s",
+    const ENDINGS: [&str; 17] = [
+        " m s2", " mm s", " in s", " m s", " ips", " kpa", " mpa", " pa", " mbar", " bar", " psig",
+        " psia", " psi", " rad", " deg", " g", " s",
     ];
     let text = text.split(['[', '(']).next().unwrap_or(text);
     let apart = |c: char| c.is_whitespace() || "_-.,:/".contains(c);
@@ -360,6 +363,54 @@ mod tests {
                 &two,
                 "throw1.cylinder_pressure_pa",
                 1e6,
+            ),
+            (
+                "throw1 guide acceleration",
+                "a2",
+                "g",
+                &two,
+                "throw1.housing_acceleration_y_m_s2",
+                GRAVITY,
+            ),
+            (
+                "Guide vibration",
+                "a3",
+                "mm/s2",
+                &one,
+                "housing_acceleration_y_m_s2",
+                1e-3,
+            ),
+            (
+                "throw2 housing acceleration x",
+                "a4",
+                "m/s2",
+                &two,
+                "throw2.housing_acceleration_x_m_s2",
+                1.0,
+            ),
+            (
+                "",
+                "throw2 guide velocity [in/s]",
+                "in/s",
+                &two,
+                "throw2.housing_velocity_y_m_s",
+                0.0254,
+            ),
+            (
+                "casing velocity",
+                "v",
+                "ips",
+                &two,
+                "frame_velocity_x_m_s",
+                0.0254,
+            ),
+            (
+                "",
+                "frame_velocity_y_mm_s",
+                "mm/s",
+                &one,
+                "frame_velocity_y_m_s",
+                1e-3,
             ),
             (
                 "frame acceleration x",

@@ -27,6 +27,8 @@ pub struct Evaluation<S> {
     pub throws: Vec<ThrowEvaluation<S>>,
     /// Acceleration of the frame against its springs, m/s²; 0 without one.
     pub frame: Vec2<S>,
+    /// Place of the frame, m, and its rate, m/s: on its springs, and as effects shake it. Found for sensors alone.
+    pub frame_motion: [Vec2<S>; 2],
     /// Acceleration that effects give the frame and everything on it, m/s².
     pub(crate) shaken: Option<Vec2<S>>,
     /// Force of the machine on the frame, N.
@@ -58,6 +60,9 @@ pub struct ThrowEvaluation<S> {
     /// Acceleration of what the throw stands on, m/s²: what a sensor on the crosshead feels beside
     /// the crosshead's own. 0 where the frame does not carry.
     pub carried: Vec2<S>,
+    /// What drives the housing of the guide, m/s²; see [`Housing`](crate::housing::Housing). Found for sensors alone, 0
+    /// without a housing.
+    pub housing: Vec2<S>,
     pub(crate) loads: Loads<S>,
 }
 
@@ -86,6 +91,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             loads: Loads::none(false),
             accelerations: Accelerations::none(),
             carried: origin(),
+            housing: origin(),
         }
     }
 

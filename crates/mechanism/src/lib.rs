@@ -3,7 +3,7 @@
 //!
 //! - [`machine`]: the parameters, as plain data;
 //! - [`joints`]: the four places with clearance, their contact and friction laws;
-//! - [`gas`], [`drive`], [`frame`], [`effects`]: what else acts; [`declaration`](mod@declaration): what an effect says
+//! - [`gas`], [`drive`], [`frame`], [`housing`], [`effects`]: what else acts; [`declaration`](mod@declaration): what an effect says
 //!   of itself;
 //! - [`throw`] and [`shaft`]: forces and accelerations of one throw, and what couples them;
 //! - [`state`] and [`mode`]: what is integrated, and what switches;
@@ -18,6 +18,7 @@ pub mod energy;
 mod evaluation;
 pub mod frame;
 pub mod gas;
+pub mod housing;
 mod impact;
 pub mod joints;
 pub mod lift;

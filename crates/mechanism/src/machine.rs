@@ -7,6 +7,7 @@ use crate::drive::Drive;
 use crate::effects::Effect;
 use crate::frame::Frame;
 use crate::gas::Cylinder;
+use crate::housing::Housing;
 use crate::joints::guide::Guide;
 use crate::joints::revolute::{JointModel, Revolute};
 use crate::lift::parameters;
@@ -65,6 +66,8 @@ parameters! {
         pub small_end: Revolute<S>,
         /// Joint between crosshead and guide.
         pub guide: Guide<S>,
+        /// The housing of the guide, where sensors sit on it.
+        pub housing: Option<Housing<S>>,
         fixed {
             /// Name that prefixes this throw's channels and labels; empty in a machine of one.
             pub name: String,

@@ -3,7 +3,7 @@
 use crate::error::{Error, positive};
 use std::f64::consts::PI;
 
-/// A recursive low-pass filter with gain 1 at rest.
+/// A recursive filter: a low-pass with gain 1 at rest, or an oscillator's response, with gain 0 there.
 ///
 /// Made from the analogue filter by the bilinear transform, pre-warped so that the response is
 /// exact at the given frequency (and at 0 Hz). Elsewhere the frequency axis is bent. The filter
@@ -55,12 +55,36 @@ impl Filter {
         })
     }
 
+    /// Acceleration of a damped oscillator over the force per mass on it, H(s) = s² / (s² + 2ζωs + ω²): its
+    /// accelerance times its mass (ISO 7626-1). Natural frequency in Hz, damping ratio ζ.
+    ///
+    /// # Errors
+    /// As [`Filter::resonance`].
+    pub fn accelerance(
+        frequency: f64,
+        damping_ratio: f64,
+        sample_rate: f64,
+    ) -> Result<Self, Error> {
+        let oscillator = Section::oscillator(frequency, damping_ratio, sample_rate)?;
+        let scale = oscillator.scale;
+        Ok(oscillator.shows([scale, -2.0 * scale, scale]))
+    }
+
+    /// Velocity of a damped oscillator over the force per mass on it, H(s) = s / (s² + 2ζωs + ω²), s: its mobility
+    /// times its mass (ISO 7626-1).
+    ///
+    /// # Errors
+    /// As [`Filter::resonance`].
+    pub fn mobility(frequency: f64, damping_ratio: f64, sample_rate: f64) -> Result<Self, Error> {
+        let oscillator = Section::oscillator(frequency, damping_ratio, sample_rate)?;
+        let scale = oscillator.scale * oscillator.g / (2.0 * PI * frequency);
+        Ok(oscillator.shows([scale, 0.0, -scale]))
+    }
+
     /// Puts the filter where a constant input `x0` would have brought it, so that it starts
-    /// without a transient. A new filter is settled at 0.
-    pub fn settle(&mut self, x0: f64) {
-        for section in &mut self.sections {
-            section.settle(x0);
-        }
+    /// without a transient, and returns what it shows of it. A new filter is settled at 0.
+    pub fn settle(&mut self, x0: f64) -> f64 {
+        (self.sections.iter_mut()).fold(x0, |x, section| section.settle(x))
     }
 
     /// Takes the next sample and returns the filtered one.
@@ -89,10 +113,47 @@ fn prewarped(frequency: f64, sample_rate: f64) -> Result<f64, Error> {
 struct Section {
     b: [f64; 3],
     a: [f64; 2],
+    /// Gain at rest.
+    gain: f64,
     state: [f64; 2],
 }
 
+/// A damped oscillator under the bilinear transform: the denominator of its responses.
+struct Oscillator {
+    g: f64,
+    scale: f64,
+    a: [f64; 2],
+}
+
+impl Oscillator {
+    /// The response with this numerator, which shows nothing of a constant.
+    fn shows(self, b: [f64; 3]) -> Filter {
+        Filter {
+            sections: vec![Section {
+                b,
+                a: self.a,
+                gain: 0.0,
+                state: [0.0; 2],
+            }],
+        }
+    }
+}
+
 impl Section {
+    fn oscillator(
+        frequency: f64,
+        damping_ratio: f64,
+        sample_rate: f64,
+    ) -> Result<Oscillator, Error> {
+        positive("damping ratio", damping_ratio)?;
+        let g = prewarped(frequency, sample_rate)?;
+        Ok(Oscillator {
+            g,
+            scale: 1.0 / (1.0 + 2.0 * damping_ratio * g + g * g),
+            a: Self::second_order(g, damping_ratio).a,
+        })
+    }
+
     fn second_order(g: f64, damping_ratio: f64) -> Self {
         let scale = 1.0 / (1.0 + 2.0 * damping_ratio * g + g * g);
         let b = g * g * scale;
@@ -102,6 +163,7 @@ impl Section {
                 2.0 * (g * g - 1.0) * scale,
                 (1.0 - 2.0 * damping_ratio * g + g * g) * scale,
             ],
+            gain: 1.0,
             state: [0.0; 2],
         }
     }
@@ -111,12 +173,15 @@ impl Section {
         Self {
             b: [b, b, 0.0],
             a: [(g - 1.0) / (g + 1.0), 0.0],
+            gain: 1.0,
             state: [0.0; 2],
         }
     }
 
-    fn settle(&mut self, x0: f64) {
-        self.state = [(1.0 - self.b[0]) * x0, (self.b[2] - self.a[1]) * x0];
+    fn settle(&mut self, x0: f64) -> f64 {
+        let gain = self.gain;
+        self.state = [(gain - self.b[0]) * x0, (self.b[2] - self.a[1] * gain) * x0];
+        gain * x0
     }
 
     fn run(&mut self, x: f64) -> f64 {
@@ -170,6 +235,31 @@ mod tests {
                 let r = bent(f, 0.05) / 0.05;
                 let expected = Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv();
                 assert!((response(&filter, f) - expected).norm() < 1e-10 * expected.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn an_oscillator_has_its_closed_forms() {
+        let (of, omega) = (0.05, 2.0 * PI * 0.05);
+        for zeta in [0.02, 0.3] {
+            let [acceleration, velocity] = [
+                Filter::accelerance(of, zeta, 1.0).unwrap(),
+                Filter::mobility(of, zeta, 1.0).unwrap(),
+            ];
+            for f in [0.01, 0.05, 0.1] {
+                let r = bent(f, of) / of;
+                let moved = Complex64::new(1.0 - r * r, 2.0 * zeta * r).inv();
+                let expected = [-r * r * moved, Complex64::I * r / omega * moved];
+                for (filter, expected) in [&acceleration, &velocity].into_iter().zip(expected) {
+                    let apart = (response(filter, f) - expected).norm();
+                    assert!(apart < 1e-10 * moved.norm(), "{zeta} at {f}: {apart}");
+                }
+            }
+            // A constant force moves nothing, from the first sample on.
+            for mut filter in [acceleration, velocity] {
+                assert_eq!(filter.settle(-178.4), 0.0);
+                assert!((0..1000).all(|_| filter.run(-178.4).abs() < 1e-9));
             }
         }
     }

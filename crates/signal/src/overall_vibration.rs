@@ -33,6 +33,19 @@ impl OverallVibration {
     /// Fewer than two samples, one that is not finite, a sample rate that is not positive, or a band
     /// that does not begin above 0.
     pub fn new(x: &[f64], sample_rate: f64, band: [f64; 2]) -> Result<Self, Error> {
+        Self::integrated(x, sample_rate, band, 0)
+    }
+
+    /// The same of a velocity, m/s: its acceleration has 2πf_k times its amplitude, its displacement that over 2πf_k.
+    ///
+    /// # Errors
+    /// As [`OverallVibration::new`].
+    pub fn of_velocity(x: &[f64], sample_rate: f64, band: [f64; 2]) -> Result<Self, Error> {
+        Self::integrated(x, sample_rate, band, 1)
+    }
+
+    /// Of a signal that is an acceleration integrated so many times.
+    fn integrated(x: &[f64], sample_rate: f64, band: [f64; 2], times: i32) -> Result<Self, Error> {
         check(x, sample_rate)?;
         let [low, high] = band;
         if !(low > 0.0 && low < high) {
@@ -56,6 +69,7 @@ impl OverallVibration {
             }
             let integral = (TAU * frequency).powi(-2);
             let mut mean_square = sides(k, n) * scale * c.norm_sqr();
+            mean_square *= (TAU * frequency).powi(2 * times);
             for square in &mut squares {
                 *square += mean_square;
                 mean_square *= integral;
@@ -105,6 +119,19 @@ mod tests {
         );
         let displacement = (10.0 / slow.powi(2)).hypot(3.0 / fast.powi(2));
         near(found.displacement, displacement / SQRT_2, 1e-9);
+        // As velocities the same sines have these.
+        let found = OverallVibration::of_velocity(&x, 5000.0, BAND).unwrap();
+        near(
+            found.acceleration,
+            (10.0 * slow).hypot(3.0 * fast) / SQRT_2,
+            1e-9,
+        );
+        near(found.velocity, 10.0_f64.hypot(3.0) / SQRT_2, 1e-9);
+        near(
+            found.displacement,
+            (10.0 / slow).hypot(3.0 / fast) / SQRT_2,
+            1e-9,
+        );
     }
 
     #[test]

@@ -21,6 +21,8 @@ const MOST_FACTOR: f64 = 4096.0;
 #[derive(Clone)]
 pub(crate) struct Sampling {
     decimator: Decimator,
+    /// Inner samples before those of the decimator, in which structures settle.
+    settling: usize,
     /// Inner samples per recorded one.
     pub factor: usize,
     /// Samples per second before decimation.
@@ -30,11 +32,20 @@ pub(crate) struct Sampling {
 }
 
 impl Sampling {
-    /// `length` seconds as `settings` say.
-    pub(crate) fn new(settings: &Settings, length: f64) -> Result<Self, Error> {
+    /// `length` seconds of what `sensors` see, as `settings` say.
+    pub(crate) fn new(sensors: &[Sensor], settings: &Settings, length: f64) -> Result<Self, Error> {
         let rate = settings.sample_rate;
         let factor = (settings.inner_rate / rate).clamp(LEAST_FACTOR, MOST_FACTOR);
-        Self::by(factor.ceil(), rate, length)
+        let mut sampling = Self::by(factor.ceil(), rate, length)?;
+        let structures = sensors.iter().filter_map(|s| s.chain.structure);
+        let longest = structures.map(|s| s.settling()).fold(0.0, f64::max);
+        sampling.settling = (longest * sampling.inner_rate).ceil() as usize;
+        Ok(sampling)
+    }
+
+    /// How long structures settle before the record, s.
+    pub(crate) fn settling(&self) -> f64 {
+        self.settling as f64 / self.inner_rate
     }
 
     /// The same for these sensors: contacts hardly move the gas, so that pressures by themselves need
@@ -46,7 +57,7 @@ impl Sampling {
     ) -> Result<Self, Error> {
         match sensors.iter().all(Sensor::is_smooth) {
             true => Self::by(1.0, settings.sample_rate, length),
-            false => Self::new(settings, length),
+            false => Self::new(sensors, settings, length),
         }
     }
 
@@ -57,6 +68,7 @@ impl Sampling {
         })?;
         Ok(Self {
             decimator,
+            settling: 0,
             factor: factor as usize,
             inner_rate: rate * factor,
             // A sample that falls on the end of the last revolution belongs to the next.
@@ -66,7 +78,12 @@ impl Sampling {
 
     /// Inner samples before the first recorded one.
     pub(crate) fn lead(&self) -> usize {
-        self.decimator.half_length()
+        self.settling + self.decimator.half_length()
+    }
+
+    /// All inner samples.
+    fn count(&self) -> usize {
+        self.settling + self.decimator.input_length(self.samples)
     }
 
     /// The inner samples of a record that begins at `start`, s.
@@ -74,7 +91,7 @@ impl Sampling {
         Instants {
             first: start - self.lead() as f64 / self.inner_rate,
             rate: self.inner_rate,
-            count: self.decimator.input_length(self.samples),
+            count: self.count(),
         }
     }
 
@@ -92,7 +109,7 @@ impl Sampling {
     pub(crate) fn repeated(&self, cycle: &[f64], first: usize) -> Vec<f64> {
         let count = cycle.len();
         let before = (first + self.lead()).div_ceil(count) * count - first - self.lead();
-        let samples = 0..self.decimator.input_length(self.samples);
+        let samples = 0..self.count();
         samples.map(|i| cycle[(i + before) % count]).collect()
     }
 
@@ -180,9 +197,12 @@ impl UnderWay {
     fn filter(&mut self, x: f64) {
         let x = self.delay.run(x * self.sensor.chain.gain);
         if self.seen == 0 {
-            self.filters.iter_mut().for_each(|f| f.settle(x));
+            self.filters.iter_mut().fold(x, |x, f| f.settle(x));
         }
         let x = self.filters.iter_mut().fold(x, |x, f| f.run(x));
+        if self.seen < self.sampling.settling {
+            return;
+        }
         self.waiting.push(x);
         if self.waiting.len() >= self.sampling.decimator.input_length(AT_A_TIME) {
             self.decimate();
@@ -232,6 +252,9 @@ fn shifted(angle: f64, offset: f64) -> f64 {
 fn filters(sensor: &Sensor, rate: f64) -> Result<Vec<Filter>, signal::Error> {
     let chain = &sensor.chain;
     let mut filters = Vec::new();
+    if let Some(structure) = chain.structure {
+        filters.push(structure.filter(rate)?);
+    }
     if let Some(mounting) = chain.mounting {
         filters.push(Filter::resonance(
             mounting.frequency,

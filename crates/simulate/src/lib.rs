@@ -41,6 +41,7 @@ pub mod settings;
 mod simulate;
 mod slider_crank;
 mod strobes;
+pub mod structure;
 mod tangents;
 mod task;
 pub mod trace;
@@ -62,6 +63,7 @@ pub use rod_load::RodLoad;
 pub use sensitivity::{Moved, Sensitivities, sensitivities};
 pub use sensor::{
     Axis, Chain, ChamberEnd, Hum, LowPass, Measured, Noise, NoiseLevel, Range, Resonance, Sensor,
+    Structure,
 };
 pub use settings::{Settings, Transient, Unrecordable};
 pub use simulate::{simulate, simulate_later, simulate_watched};

@@ -1,6 +1,7 @@
 //! A sensor: what it measures, and what the measuring chain does to it.
 
 pub use crate::sensors::{Axis, ChamberEnd, Measured};
+pub use crate::structure::{Resonance, Structure};
 
 /// One sensor of the machine file: a measured quantity seen through a measuring chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,8 @@ impl Sensor {
 pub enum Quantity {
     /// An acceleration, m/s². Sensors of it do not see its mean.
     Acceleration,
+    /// A velocity of what vibrates, m/s. Sensors of it do not see its mean.
+    Velocity,
     /// A gas pressure, Pa.
     Pressure,
     /// Anything else.
@@ -45,6 +48,8 @@ impl Quantity {
         let name = column.rsplit('.').next().unwrap_or(column);
         if name.contains("acceleration") {
             Self::Acceleration
+        } else if name.contains("velocity") {
+            Self::Velocity
         } else if name.contains("pressure") {
             Self::Pressure
         } else {
@@ -54,12 +59,17 @@ impl Quantity {
 
     /// Whether the mean of a recording says something of the quantity.
     pub fn has_mean(self) -> bool {
-        self != Self::Acceleration
+        !self.is_vibration()
     }
 
     /// Whether it is an acceleration.
     pub fn is_acceleration(self) -> bool {
         self == Self::Acceleration
+    }
+
+    /// Whether it is an acceleration or a velocity.
+    pub fn is_vibration(self) -> bool {
+        matches!(self, Self::Acceleration | Self::Velocity)
     }
 
     /// Whether it is a pressure.
@@ -68,10 +78,11 @@ impl Quantity {
     }
 }
 
-/// What happens between the quantity and the recorded number, in this order: delay, mounting resonance,
-/// low-pass, gain, high-pass, hum, offset, noise, range, quantisation; of an encoder the offset of its zero alone.
+/// What happens between the quantity and the recorded number, in this order: structure, delay, mounting resonance, low-pass, gain, high-pass, hum, offset, noise, range, quantisation; of an encoder the offset of its zero alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
+    /// What carries the sensor, where that swings: the machine's, not the sensor's.
+    pub structure: Option<Structure>,
     /// By how much the recorded number is late, s.
     pub delay: f64,
     /// Resonance of the sensor on its mount.
@@ -99,6 +110,7 @@ pub struct Chain {
 impl Default for Chain {
     fn default() -> Self {
         Self {
+            structure: None,
             delay: 0.0,
             mounting: None,
             low_pass: None,
@@ -121,15 +133,6 @@ pub enum Range {
     Fixed(f64),
     /// Set to each record: its own largest magnitude.
     Auto,
-}
-
-/// A damped second-order resonance with gain 1 at rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Resonance {
-    /// Natural frequency, Hz.
-    pub frequency: f64,
-    /// Damping ratio ζ.
-    pub damping_ratio: f64,
 }
 
 /// A sine whose frequency is independent of the machine.

@@ -122,8 +122,12 @@ impl<'a> Task<'a> {
             settings,
         } = self.asked;
         let length = f64::from(settings.revolutions) * self.run.revolution();
-        let sampling = Sampling::new(settings, length)?;
+        let sampling = Sampling::new(sensors, settings, length)?;
         let lead = sampling.lead();
+        // Structures swing themselves in for whole revolutions.
+        let more = (sampling.settling() / self.run.revolution()).ceil();
+        let mut left = left;
+        left.transient += more as u32;
         let planned = f64::from(left.transient) * self.run.revolution() + self.delay;
         // A free crank that is slow may have taken longer for its transient.
         let start = match self.run.is_free() {

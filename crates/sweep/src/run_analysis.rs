@@ -20,7 +20,7 @@ pub struct RunAnalysis {
     pub cards: Vec<IndicatorCard>,
     /// The rod load of each throw.
     pub rod_loads: Vec<RodLoad>,
-    /// Overall vibration of the recorded accelerations, with the names of their channels.
+    /// Overall vibration of the recorded accelerations and velocities, with the names of their channels.
     pub vibrations: Vec<(String, OverallVibration)>,
 }
 
@@ -35,7 +35,7 @@ pub struct RunSummary {
     pub chambers: Vec<ChamberSummary>,
     /// The combined rod load of each throw.
     pub rod_load: Vec<RodLoadSummary>,
-    /// Overall vibration of each acceleration.
+    /// Overall vibration of each acceleration and velocity.
     pub vibration: Vec<VibrationSummary>,
 }
 
@@ -106,17 +106,18 @@ impl RunAnalysis {
         let recorded = trace.crank_angle.iter().step_by(trace.stride.max(1));
         let angle = CrankAngle::from_encoder(&recorded.copied().collect::<Vec<_>>())?;
         let grid = AngleGrid::as_fine_as_recorded(&angle)?;
-        let accelerations = channels.iter().filter(|channel| channel.unit == "m/s^2");
+        let vibrations = ["m/s^2", "m/s"];
+        let vibrating = (channels.iter()).filter(|c| vibrations.contains(&c.unit.as_str()));
         let vibration = |channel: &Channel| {
             let x: Vec<f64> = channel.samples.iter().map(|x| f64::from(*x)).collect();
-            let overall = overall_vibration(&x, record.sample_rate, &grid)?;
+            let overall = overall_vibration(&x, &channel.unit, record.sample_rate, &grid)?;
             Ok((channel.name.clone(), overall))
         };
         Ok(Self {
             throws: machine.throws.iter().map(|t| t.name.clone()).collect(),
             cards: IndicatorCard::of_run(&chambers, trace, rate)?,
             rod_loads: RodLoad::of_run(machine, trace)?,
-            vibrations: accelerations.map(vibration).collect::<Result<_, _>>()?,
+            vibrations: vibrating.map(vibration).collect::<Result<_, _>>()?,
         })
     }
 

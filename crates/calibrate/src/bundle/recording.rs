@@ -76,8 +76,8 @@ pub(super) fn read(
         (None, Some(rate), Some(samples)) => (60.0 * rate / samples, rate),
         // Over the crank angle alone: as if it turned evenly.
         (speed, None, Some(samples)) => {
-            if speed.is_none() && channels.iter().any(|c| c.quantity().is_acceleration()) {
-                return Err("an acceleration needs speed_rpm, or times or sample_rate_hz".into());
+            if speed.is_none() && channels.iter().any(|c| c.quantity().is_vibration()) {
+                return Err("a vibration needs speed_rpm, or times or sample_rate_hz".into());
             }
             let speed = speed.unwrap_or(ANY_SPEED);
             (speed, samples * speed / 60.0)

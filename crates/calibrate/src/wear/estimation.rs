@@ -14,7 +14,7 @@ use crate::fit::{Optimiser, RunFit};
 use crate::likelihood::{Likelihood, misfit};
 use crate::pictures;
 use crate::problem::Problem;
-use crate::results::{Estimate, MACHINE};
+use crate::results::{ByName, Estimate, MACHINE};
 use crate::stages::{ALIGNMENTS, Stage, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
@@ -65,8 +65,8 @@ pub fn prepare(asked: &Asked, out: &Path) -> Result<Prepared, Error> {
         if run.channels.iter().all(|c| c.quantity().is_pressure()) {
             return Err(Error::unusable(
                 &run.id,
-                "no channel shows clearances: an acceleration of the crosshead or the frame is needed, in a channel \
-                 that `sensors` of the machine file has",
+                "no channel shows clearances: an acceleration is needed. That of the crosshead needs no more; for one of the \
+                 frame or of a guide the machine file has a section frame or housing",
             ));
         }
     }
@@ -95,7 +95,7 @@ impl Prepared {
             runs: found.model.problem.runs.clone(),
             ..healthy
         };
-        let concluded = conclude(
+        let mut concluded = conclude(
             &healthy,
             &x,
             &self.joints,
@@ -104,6 +104,7 @@ impl Prepared {
             &mut effort,
         )?;
         let problem = &found.model.problem;
+        concluded.results.pulse_angles_rad = pulses(&self.task);
         let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
         pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
         let machine = self.out.join(MACHINE);
@@ -232,6 +233,7 @@ fn conclude(
             estimated: found.misfit(),
         },
         runs: runs.collect(),
+        pulse_angles_rad: ByName::default(),
         channels: channels(problem),
         parameters: others
             .map(|e| (e.parameter.path.clone(), Estimate::from_fit(e, adequate)))
@@ -239,6 +241,12 @@ fn conclude(
     };
     let x = discrepancy.map_or_else(|| fit.coordinates(), |d: &Discrepancy| d.x.clone());
     Ok(Concluded { results, x })
+}
+
+/// Where the pulses of tachos of unknown place were found.
+fn pulses(task: &Task) -> ByName<f64> {
+    let found = task.pulse_angles();
+    found.map(|(run, angle)| (run.to_owned(), angle)).collect()
 }
 
 /// The columns that were compared, each once.

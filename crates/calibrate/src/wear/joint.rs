@@ -96,7 +96,7 @@ fn length(tree: &Value, path: &str) -> Result<Option<f64>, Error> {
     else {
         return Ok(None);
     };
-    let measure = unit::parse(text).map_err(|error| Error::Parameter {
+    let measure = unit::parse_clearance(text).map_err(|error| Error::Parameter {
         path: path.to_owned(),
         reason: format!("'{text}': {error}"),
     })?;
@@ -148,5 +148,7 @@ mod tests {
         assert!((of(&tree).normal - 5e-5).abs() < 1e-18);
         tree["joints"]["big_end"]["clearance"] = "0.02 mm".into();
         assert_eq!((of(&tree).normal, of(&tree).start()), (2e-5, 2e-5));
+        tree["joints"]["big_end"]["normal_clearance"] = "0.003 in diametral".into();
+        assert!((of(&tree).normal - 0.0015 * 0.0254).abs() < 1e-15);
     }
 }

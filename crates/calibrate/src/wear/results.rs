@@ -39,6 +39,9 @@ pub struct Results {
     pub fit: Misfits,
     /// The runs.
     pub runs: ByName<RunMisfit>,
+    /// The crank angle at which the pulse of a tacho was found to come, by run, where its place was not known, rad.
+    #[serde(default)]
+    pub pulse_angles_rad: ByName<f64>,
     /// Columns of the channels that were compared.
     pub channels: Vec<String>,
     /// What was fitted beside the clearances, by path.

@@ -44,6 +44,11 @@ fn problem_of(tree: Value) -> Problem {
 
 /// The lines of the acceleration in 20 recorded revolutions of the machine.
 fn recorded(tree: &Value) -> OrderLines {
+    recorded_of(tree, "crosshead_acceleration")
+}
+
+/// The lines of the first channel whose column begins with `name`.
+fn recorded_of(tree: &Value, name: &str) -> OrderLines {
     let machine = MachineFile::from_tree(tree).unwrap().resolve().unwrap();
     let settings = Settings {
         transient: Transient::Revolutions(15),
@@ -66,7 +71,7 @@ fn recorded(tree: &Value) -> OrderLines {
         .collect();
     let angle = CrankAngle::from_encoder(&angle).unwrap();
     let grid = AngleGrid::new(&angle, 1024).unwrap();
-    let samples = grid.resample(of("crosshead_acceleration")).unwrap();
+    let samples = grid.resample(of(name)).unwrap();
     order_lines(&samples, ORDERS).unwrap()
 }
 
@@ -107,4 +112,40 @@ fn derivatives_are_the_limits_of_differences() {
         let error = apart(&found.derivatives[i][0], &expected);
         assert!(error < 1e-3, "{i}: {error:.1e}");
     }
+}
+
+/// A worn machine whose guide swings on its frame.
+fn housed() -> Value {
+    let mut tree = machine(["0.1 mm", "0 mm"]);
+    tree["speed"] = json!(format!("{RPM} rpm"));
+    let swing = |frequency: &str| json!({"frequency": frequency, "damping_ratio": "6 %"});
+    tree["housing"] = json!({"mass": "150 kg", "x": swing("300 Hz"), "y": swing("180 Hz")});
+    tree["sensors"] = json!([{"measure": "housing_acceleration", "axis": "y"}]);
+    tree
+}
+
+#[test]
+fn the_housing_of_a_guide_is_predicted_as_it_is_recorded() {
+    let tree = housed();
+    let mut problem = problem(
+        tree.clone(),
+        &[("housing.y.frequency", 0.0)],
+        &[RPM],
+        ORDERS,
+        1e-4,
+    );
+    problem.runs[0].channels[0].column = "housing_acceleration_y_m_s2".into();
+    let at = |x: f64| predict(&problem, &problem.runs[0], &[x]).unwrap();
+    let lines = recorded_of(&tree, "housing_acceleration");
+    let shown = at(0.0);
+    let error = apart(&shown.lines[0].amplitude, &lines.amplitude);
+    assert!(error < 2e-3, "{error:.1e}");
+    // The derivative has a part of the structure and one of what drives it.
+    let found = predict_with_derivatives(&problem, &problem.runs[0], &[0.0]).unwrap();
+    let step = 1e-3;
+    let (more, less) = (at(step), at(-step));
+    let pairs = more.lines[0].amplitude.iter().zip(&less.lines[0].amplitude);
+    let expected: Vec<_> = pairs.map(|(a, b)| (a - b) / (2.0 * step)).collect();
+    let error = apart(&found.derivatives[0][0], &expected);
+    assert!(error < 1e-3, "{error:.1e}");
 }

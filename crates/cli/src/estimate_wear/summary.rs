@@ -19,6 +19,12 @@ pub(super) fn print(results: &Results) {
             pair.correlation
         );
     }
+    for (run, angle) in results.pulse_angles_rad.iter() {
+        println!(
+            "{run}: the pulse of the tacho comes at a crank angle of {:.2}°",
+            angle.to_degrees()
+        );
+    }
     let contact = match results.contact {
         Contact::MachineFile => "contact parameters of the machine file",
         Contact::Fitted => "contact parameters fitted",

@@ -19,6 +19,7 @@ mod hostile;
 mod one_run;
 mod output;
 mod own_machine;
+mod plant;
 mod readme;
 mod recorded_sensors;
 mod recovery;

@@ -24,7 +24,7 @@ pub(super) fn lines() -> impl Iterator<Item = Line> {
     [
         line(
             "acceleration",
-            Unit::OfChannel,
+            Unit::Of("m/s^2"),
             "acceleration",
             "√Σ|A_k|²/2, A_k the amplitude at f_k",
             |overall| overall.acceleration,

@@ -9,8 +9,10 @@ use mechanism::Machine;
 use simulate::{Chain, Measured, Sensor};
 
 /// What sensors and effects are held against: where they can be.
-const PLACES: [&str; 4] = [
+const PLACES: [&str; 6] = [
     "/frame",
+    "/housing",
+    "/throws.*.housing",
     "/throws.*.name",
     "/cylinder.crank_end",
     "/throws.*.cylinder.crank_end",
@@ -37,7 +39,10 @@ pub struct Resolved {
 impl Resolved {
     /// A sensor that is perfect but for what the effects make of it.
     pub fn perfect_sensor(&self, measured: Measured) -> Sensor {
-        let chain = Chain::default();
+        let chain = Chain {
+            structure: measured.structure(&self.machine),
+            ..Chain::default()
+        };
         let mut sensor = Sensor { measured, chain };
         self.effects.sense(&mut sensor, &self.machine.throws);
         sensor

@@ -8,6 +8,7 @@ use crate::quantity::{
 use mechanism::drive::{Drive, GivenSpeed, MotorLine};
 use mechanism::frame::Frame;
 use mechanism::gas;
+use mechanism::housing;
 use mechanism::joints::guide::Guide;
 use mechanism::joints::revolute::Revolute;
 use scalar::Scalar;
@@ -271,6 +272,43 @@ impl FrameSection {
             damping_y: damping(&self.y),
             hardening: 0.0,
             carries: false,
+        }
+    }
+}
+
+/// The housing of the crosshead guide with distance piece and cylinder, as sensors on it feel it. The throw shakes it, and it
+/// stands on the frame. It does not act back.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HousingSection {
+    /// Effective mass: that of a body which the force of the guide accelerates as the housing where the sensor sits.
+    mass: Positive<Mass>,
+    /// How it swings along the cylinder.
+    x: Swing,
+    /// How it swings across the guide.
+    y: Swing,
+}
+
+/// A mass on a spring and a damper that swings itself out.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Swing {
+    /// Natural frequency without damping.
+    frequency: Positive<Frequency>,
+    /// Damping as a share of the critical one.
+    damping_ratio: Positive<Ratio>,
+}
+
+impl HousingSection {
+    pub(super) fn resolve(&self) -> housing::Housing {
+        let swing = |swing: &Swing| housing::Swing {
+            frequency: TAU * swing.frequency.si(),
+            damping_ratio: swing.damping_ratio.si(),
+        };
+        housing::Housing {
+            mass: self.mass.si(),
+            x: swing(&self.x),
+            y: swing(&self.y),
         }
     }
 }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use std::borrow::Cow;
 
 /// The sections that a throw shares.
-const SECTIONS: [&str; 3] = ["rod", "crosshead", "cylinder"];
+const SECTIONS: [&str; 4] = ["rod", "crosshead", "cylinder", "housing"];
 /// The joints that a throw shares.
 const JOINTS: [&str; 3] = ["big_end", "small_end", "guide"];
 

@@ -3,7 +3,7 @@
 use super::effects::{self, Draft, EffectSection};
 use super::joints::{self, Bearing, Joints, ThrowJoints};
 use super::normal_clearance::{NormalClearance, ThrowNormalClearance};
-use super::sections::{Crank, Crosshead, Cylinder, FrameSection, Gravity, Rod};
+use super::sections::{Crank, Crosshead, Cylinder, FrameSection, Gravity, HousingSection, Rod};
 use super::sensors::SensorSection;
 use crate::error::Error;
 use crate::quantity::{Angle, Frequency, Length, Positive, Pressure, Quantity, Speed};
@@ -36,6 +36,9 @@ pub(crate) struct Sections {
     /// Cylinder, piston and gas.
     #[serde(default)]
     cylinder: Option<Cylinder>,
+    /// The housing of the crosshead guide, for sensors on it.
+    #[serde(default)]
+    housing: Option<HousingSection>,
     /// The joints, ideal or with clearance.
     #[serde(default)]
     joints: Option<Joints>,
@@ -77,6 +80,9 @@ struct ThrowSection {
     crosshead: Crosshead,
     /// Cylinder, piston and gas.
     cylinder: Cylinder,
+    /// The housing of the crosshead guide, for sensors on it.
+    #[serde(default)]
+    housing: Option<HousingSection>,
     /// The joints, ideal or with clearance.
     #[serde(default)]
     joints: ThrowJoints,
@@ -156,6 +162,7 @@ impl Sections {
                 .cylinder
                 .clone()
                 .ok_or_else(|| Error::missing("cylinder"))?,
+            housing: self.housing.clone(),
             joints: ThrowJoints {
                 big_end: top.big_end,
                 small_end: top.small_end,
@@ -214,6 +221,7 @@ impl ThrowSection {
             big_end: big_end.joint,
             small_end: small_end.joint,
             guide: guide.joint,
+            housing: self.housing.as_ref().map(HousingSection::resolve),
             name: self.name.clone(),
             direction: match self.direction {
                 Lie::Forward => Direction::Forward,

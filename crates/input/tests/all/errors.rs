@@ -104,9 +104,9 @@ messages! {
     unknown_key: "  length: 600 mm" => "  lenght: 600 mm",
         "m.yaml:5:3: rod.lenght: unknown key; expected one of length, mass, centre_of_mass, inertia; did you mean 'length'?";
     unknown_key_far_from_any: "name: small" => "name: small\ncolour: red",
-        "m.yaml:2:1: colour: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
+        "m.yaml:2:1: colour: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, joints, throws, frame, sensors, sample_rate, effects";
     key_with_a_line_break: "name: small" => "name: small\n\"a\\nb\": 1",
-        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects";
+        "m.yaml:2:1: a\\nb: unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, joints, throws, frame, sensors, sample_rate, effects";
     misspelt_joint: "  big_end:" => "  big_ned:",
         "m.yaml:18:3: joints.big_ned: unknown key; expected one of main, big_end, small_end, guide; did you mean 'big_end'?";
     misspelt_contact_law: "law: impact" => "law: impct",
@@ -118,9 +118,9 @@ messages! {
     misspelt_effect: "valve_loss" => "valve_los",
         "m.yaml:26:5: effects.0: found 'valve_los', expected one of EFFECTS; did you mean 'valve_loss'?";
     misspelt_sensor: "crosshead_acceleration" => "crosshead_aceleration",
-        "m.yaml:24:15: sensors.0.measure: found 'crosshead_aceleration', expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle, crank_speed; did you mean 'crosshead_acceleration'?";
+        "m.yaml:24:15: sensors.0.measure: found 'crosshead_aceleration', expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, frame_velocity, housing_acceleration, housing_velocity, cylinder_pressure, crank_angle, crank_speed; did you mean 'crosshead_acceleration'?";
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
-        "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, cylinder_pressure, crank_angle, crank_speed";
+        "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, frame_velocity, housing_acceleration, housing_velocity, cylinder_pressure, crank_angle, crank_speed";
     key_of_another_law: "law: impact" => "law: hertz",
         "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance\nm.yaml:21:71: joints.big_end.contact.depth: unknown key; expected one of stiffness, exponent, relation, at_clearance";
     misspelt_relation: "depth: 10 um" => "depth: 10 um, relation: conformel, at_clearance: 0.1 mm",
@@ -290,8 +290,8 @@ fn files_that_hold_nothing() {
         [
             "m.yaml: the file is empty",
             "m.yaml: the file is empty",
-            "m.yaml:1:1: found a list, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
-            "m.yaml:1:1: found text, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found a list, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, joints, throws, frame, sensors, sample_rate, effects",
+            "m.yaml:1:1: found text, expected a section with the keys name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, joints, throws, frame, sensors, sample_rate, effects",
             "m.yaml:3:1: not valid YAML: only single YAML document expected but multiple found"
         ]
     );
@@ -342,7 +342,7 @@ fn paths_that_lead_nowhere() {
             "effects.valve_los: found 'valve_los', expected valve_loss; did you mean 'valve_loss'?",
             "sensors.7: found '7', expected crosshead_acceleration",
             "sensors.0.rang: unknown key; expected one of measure, throw, range, bits, noise, delay, low_pass, high_pass, mounting, gain, axis, end; did you mean 'range'?",
-            "unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, joints, throws, frame, sensors, sample_rate, effects"
+            "unknown key; expected one of name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, joints, throws, frame, sensors, sample_rate, effects"
         ]
     );
 }

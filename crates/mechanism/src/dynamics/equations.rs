@@ -4,6 +4,7 @@ use super::Dynamics;
 use crate::drive::Drive;
 use crate::effects::{Acting, AtJoint, Joint};
 use crate::evaluation::{Evaluation, Standing, along_x, direction, find_joint, pair};
+use crate::machine::Throw;
 use crate::plane::{Vec2, moment, origin, turned};
 use crate::shaft::{Shaft, Turning};
 use crate::throw::{Response, following_target};
@@ -34,6 +35,7 @@ impl<S: Scalar> Dynamics<S> {
         self.turn_shaft(t);
         self.follow_apart();
         self.shake_frame(y);
+        self.drive_housings(y);
         &self.evaluation
     }
 
@@ -42,6 +44,7 @@ impl<S: Scalar> Dynamics<S> {
         // Effects may shake the frame.
         if self.machine.effects.is_empty() {
             self.evaluate_rates(t, y);
+            self.drive_housings(y);
         } else {
             self.evaluate(t, y);
         }
@@ -300,6 +303,36 @@ impl<S: Scalar> Dynamics<S> {
                 if let Some(carried) = carried {
                     for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
                         at.carried = throw.local(carried);
+                    }
+                }
+            },
+        )
+    }
+
+    /// Where the frame is, and what drives the housings of the guides: nothing depends on them but sensors.
+    #[inline(never)]
+    fn drive_housings(&mut self, y: &[S]) {
+        let stands = self.machine.frame.is_none() && self.machine.effects.is_empty();
+        let is_bare = |throw: &Throw<S>| throw.housing.is_none();
+        if stands && self.machine.throws.iter().all(is_bare) {
+            return;
+        }
+        S::vectorised(
+            #[inline(always)]
+            || {
+                let evaluation = &mut self.evaluation;
+                let [mut place, mut rate] = pair(y, self.layout.frame);
+                let on_shaft = Acting::on_shaft(&self.machine.effects);
+                if let Some(shift) = on_shaft.frame_motion(evaluation.angle, evaluation.speed) {
+                    place += shift[0];
+                    rate += shift[1];
+                }
+                evaluation.frame_motion = [place, rate];
+                for (throw, at) in self.machine.throws.iter().zip(&mut evaluation.throws) {
+                    if let Some(housing) = &throw.housing {
+                        let along = Vec2::new(at.gas.force + at.gas.effects, S::zero());
+                        let force = -(along + at.joints.guide.force);
+                        at.housing = housing.drive(force, [throw.local(place), throw.local(rate)]);
                     }
                 }
             },

@@ -50,6 +50,7 @@ impl<S: Scalar> Dynamics<S> {
             frame: origin(),
             shaken: None,
             frame_force: origin(),
+            frame_motion: [origin(); 2],
         };
         let mut dynamics = Self {
             scales: scales(&machine, &layout),

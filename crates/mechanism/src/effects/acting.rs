@@ -84,6 +84,21 @@ impl<'a, S: Scalar> Acting<'a, S> {
         sum
     }
 
+    /// Place, m, and rate, m/s, of the frame that effects shake; none where they leave it alone.
+    #[inline(always)]
+    pub fn frame_motion(self, angle: S, speed: S) -> Option<[Vec2<S>; 2]> {
+        let mut sum: Option<[Vec2<S>; 2]> = None;
+        for effect in self.all() {
+            if let Some(more) = effect.frame_motion(angle, speed) {
+                sum = Some(match sum {
+                    Some(sum) => [sum[0] + more[0], sum[1] + more[1]],
+                    None => more,
+                });
+            }
+        }
+        sum
+    }
+
     /// Those that act at a joint.
     #[inline(always)]
     pub fn at_joint(self, joint: Joint) -> impl Iterator<Item = &'a Law<S>> {

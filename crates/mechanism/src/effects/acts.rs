@@ -46,6 +46,13 @@ pub(crate) trait Acts<S: Scalar> {
         None
     }
 
+    /// Place, m, and rate, m/s, of the frame in the motion that has
+    /// [`frame_acceleration`](Self::frame_acceleration) at an even speed; none where the law moves no frame.
+    #[inline(always)]
+    fn frame_motion(&self, _angle: S, _speed: S) -> Option<[Vec2<S>; 2]> {
+        None
+    }
+
     /// The spring that a connecting rod is along its axis; none where it is rigid.
     #[inline(always)]
     fn rod(&self) -> Option<RodSpring<S>> {

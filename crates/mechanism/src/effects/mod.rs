@@ -71,6 +71,7 @@ macro_rules! catalogue {
                 drift(at: &ChamberAt<S>) -> S;
                 piston_force(at: &PistonAt<S>) -> S;
                 frame_acceleration(angle: S, speed: S) -> Option<Vec2<S>>;
+                frame_motion(angle: S, speed: S) -> Option<[Vec2<S>; 2]>;
                 rod() -> Option<RodSpring<S>>;
                 shape(bearing: Vec2<S>, journal: Vec2<S>, clearance: S) -> Option<Shape<S>>;
                 film_force(at: &JointAt<S>) -> S;

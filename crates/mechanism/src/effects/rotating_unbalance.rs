@@ -16,7 +16,7 @@ use super::acts::{Acts, PistonAt};
 use super::alternatives::{Alternatives, Shaken};
 use crate::declaration;
 use crate::lift::parameters;
-use crate::plane::Vec2;
+use crate::plane::{Vec2, turned};
 use scalar::Scalar;
 
 parameters! {
@@ -72,6 +72,13 @@ impl<S: Scalar> Acts<S> for RotatingUnbalance<S> {
     #[inline(always)]
     fn frame_acceleration(&self, angle: S, speed: S) -> Option<Vec2<S>> {
         (self.body == Shaken::Frame).then(|| self.acceleration(angle, speed))
+    }
+
+    #[inline(always)]
+    fn frame_motion(&self, angle: S, speed: S) -> Option<[Vec2<S>; 2]> {
+        let (sine, cosine) = (angle + self.phase).sin_cos();
+        let place = Vec2::new(cosine, sine) * -self.eccentricity;
+        (self.body == Shaken::Frame).then(|| [place, turned(place) * speed])
     }
 
     #[inline(always)]

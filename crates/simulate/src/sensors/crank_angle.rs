@@ -1,6 +1,6 @@
 //! An encoder on the crankshaft.
 
-use super::declaration::{Channel, Declaration, always};
+use super::declaration::{Channel, Declaration, always, rigid};
 use mechanism::Evaluation;
 use mechanism::declaration::Quantity;
 use scalar::Scalar;
@@ -15,6 +15,7 @@ pub(super) const DECLARATION: Declaration = Declaration {
         words: &["crank angle", "angle", "encoder", "crankshaft angle"],
     }],
     check: always,
+    structure: rigid,
 };
 
 /// The angle since the start; what is recorded is where it stands in its turn.

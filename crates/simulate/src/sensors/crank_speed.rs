@@ -1,6 +1,6 @@
 //! An encoder on the crankshaft, read as a speed: how evenly the crank turns.
 
-use super::declaration::{Channel, Declaration, always};
+use super::declaration::{Channel, Declaration, always, rigid};
 use mechanism::Evaluation;
 use mechanism::declaration::Quantity;
 use scalar::Scalar;
@@ -15,6 +15,7 @@ pub(super) const DECLARATION: Declaration = Declaration {
         words: &["crank speed", "crankshaft speed", "instantaneous speed"],
     }],
     check: always,
+    structure: rigid,
 };
 
 /// The rate of the crank angle.

@@ -1,6 +1,6 @@
 //! An accelerometer on the crosshead, along the cylinder.
 
-use super::declaration::{Channel, Declaration, always};
+use super::declaration::{Channel, Declaration, always, rigid};
 use mechanism::Evaluation;
 use mechanism::declaration::Quantity;
 use scalar::Scalar;
@@ -21,6 +21,7 @@ pub(super) const DECLARATION: Declaration = Declaration {
         ],
     }],
     check: always,
+    structure: rigid,
 };
 
 /// The crosshead's own acceleration, and that of what the throw stands on.

@@ -1,6 +1,6 @@
 //! An accelerometer on the crosshead, across the guide.
 
-use super::declaration::{Channel, Declaration, always};
+use super::declaration::{Channel, Declaration, always, rigid};
 use mechanism::Evaluation;
 use mechanism::declaration::Quantity;
 use scalar::Scalar;
@@ -15,6 +15,7 @@ pub(super) const DECLARATION: Declaration = Declaration {
         words: &["crosshead lateral acceleration", "lateral acceleration"],
     }],
     check: always,
+    structure: rigid,
 };
 
 /// The shift's acceleration in the guide, and that of what the throw stands on.

@@ -1,6 +1,6 @@
 //! A pressure sensor in a chamber of a cylinder.
 
-use super::declaration::{Channel, Declaration};
+use super::declaration::{Channel, Declaration, rigid};
 use super::place::{ChamberEnd, Place};
 use mechanism::declaration::{Clash, Quantity};
 use mechanism::{Evaluation, Machine};
@@ -32,6 +32,7 @@ pub(super) const DECLARATION: Declaration = Declaration {
         },
     ],
     check,
+    structure: rigid,
 };
 
 fn check(machine: &Machine, place: &Place) -> Result<(), Clash> {

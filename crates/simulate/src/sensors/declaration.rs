@@ -1,6 +1,7 @@
 //! What a sensor says of itself, for machine files, schemas, bundles and tables.
 
 use super::place::Place;
+use crate::structure::Structure;
 use mechanism::Machine;
 use mechanism::declaration::{Clash, Quantity};
 
@@ -19,6 +20,8 @@ pub struct Declaration {
     pub channels: &'static [Channel],
     /// Whether a machine can have it at a place.
     pub check: fn(&Machine, &Place) -> Result<(), Clash>,
+    /// What carries it, where that swings: it then records the response to what it reads of the motion.
+    pub structure: fn(&Machine, &Place) -> Option<Structure>,
 }
 
 /// A channel of a recording.
@@ -43,4 +46,20 @@ impl Channel {
 /// The check of a sensor that every machine can have.
 pub(super) fn always(_: &Machine, _: &Place) -> Result<(), Clash> {
     Ok(())
+}
+
+/// What carries a sensor that sits on what it measures.
+pub(super) fn rigid(_: &Machine, _: &Place) -> Option<Structure> {
+    None
+}
+
+/// The check of a sensor on the frame.
+pub(super) fn framed(machine: &Machine, _: &Place) -> Result<(), Clash> {
+    match machine.frame {
+        Some(_) => Ok(()),
+        None => Err(Clash {
+            key: "measure",
+            expected: "a section frame in the machine".to_owned(),
+        }),
+    }
 }

@@ -1,9 +1,9 @@
 //! An accelerometer on the elastically mounted frame.
 
-use super::declaration::{Channel, Declaration};
-use super::place::{Axis, Place};
-use mechanism::declaration::{Clash, Quantity};
-use mechanism::{Evaluation, Machine};
+use super::declaration::{Channel, Declaration, framed, rigid};
+use super::place::Axis;
+use mechanism::Evaluation;
+use mechanism::declaration::Quantity;
 use scalar::Scalar;
 
 pub(super) const DECLARATION: Declaration = Declaration {
@@ -21,18 +21,9 @@ pub(super) const DECLARATION: Declaration = Declaration {
             words: &["frame acceleration y", "y frame acceleration"],
         },
     ],
-    check,
+    check: framed,
+    structure: rigid,
 };
-
-fn check(machine: &Machine, _: &Place) -> Result<(), Clash> {
-    match machine.frame {
-        Some(_) => Ok(()),
-        None => Err(Clash {
-            key: "measure",
-            expected: "a section frame in the machine".to_owned(),
-        }),
-    }
-}
 
 /// The frame's acceleration on its springs, and as effects shake it.
 #[inline(always)]

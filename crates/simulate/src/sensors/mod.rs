@@ -5,14 +5,16 @@
 //! schema, channels of bundles and tables follow from these.
 
 mod declaration;
+mod housing;
 mod place;
 
 pub use declaration::{Channel, Declaration};
 pub use place::{Axis, ChamberEnd, Place, PlaceKey};
 
+use crate::structure::Structure;
 use integrate::Real;
-use mechanism::Evaluation;
 use mechanism::declaration::Quantity;
+use mechanism::{Evaluation, Machine};
 use scalar::Scalar;
 use std::f64::consts::TAU;
 
@@ -91,6 +93,9 @@ sensors! {
     crosshead_acceleration::CrossheadAcceleration { throw: usize },
     crosshead_lateral_acceleration::CrossheadLateralAcceleration { throw: usize },
     frame_acceleration::FrameAcceleration { axis: Axis },
+    frame_velocity::FrameVelocity { axis: Axis },
+    housing_acceleration::HousingAcceleration { throw: usize, axis: Axis },
+    housing_velocity::HousingVelocity { throw: usize, axis: Axis },
     cylinder_pressure::CylinderPressure { throw: usize, end: ChamberEnd },
     crank_angle::CrankAngle,
     crank_speed::CrankSpeed,
@@ -141,6 +146,11 @@ impl Measured {
     /// The throw whose quantity this is; none for the frame and the crank.
     pub fn throw(&self) -> Option<usize> {
         (self.entry().is_of_throw()).then_some(self.place().throw)
+    }
+
+    /// What carries a sensor of it on `machine`, where that swings.
+    pub fn structure(&self, machine: &Machine) -> Option<Structure> {
+        (self.entry().declaration.structure)(machine, &self.place())
     }
 
     /// Unit of the recorded numbers, as in the column name's ending but written out.

@@ -6,6 +6,7 @@ mod common;
 mod effects;
 mod ensemble;
 mod first_look;
+mod housing;
 mod joint_models;
 mod known_flows;
 mod lyapunov;

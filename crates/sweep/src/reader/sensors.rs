@@ -4,8 +4,8 @@ use crate::Plan;
 use simulate::sensor::Measured;
 
 /// The accelerometers that judge the faults of a dataset. A joint is judged by the first of these
-/// that exists: the one on the crosshead of its own throw, the first on the frame, that of another
-/// crosshead. What belongs to no throw, as the main bearing does, is judged by all of them.
+/// that exists: the one on the crosshead of its own throw, the first on the housing of its guide, the first on the frame,
+/// that of another crosshead. What belongs to no throw, as the main bearing does, is judged by all of them.
 pub struct Sensors {
     channels: Vec<String>,
     /// The name of each throw and the place of its sensor among the channels.
@@ -18,6 +18,9 @@ impl Sensors {
         let measured: Vec<Measured> = plan.base.sensors.iter().map(|s| s.measured).collect();
         let first = |wanted: &dyn Fn(&Measured) -> bool| measured.iter().copied().find(wanted);
         let own = |throw: usize| first(&|m| *m == Measured::CrossheadAcceleration { throw });
+        let guide = |own: usize| {
+            first(&|m| matches!(m, Measured::HousingAcceleration { throw, .. } if *throw == own))
+        };
         let frame = first(&|m| matches!(m, Measured::FrameAcceleration { .. }));
         let other = first(&|m| matches!(m, Measured::CrossheadAcceleration { .. }));
         let mut sensors = Self {
@@ -25,7 +28,7 @@ impl Sensors {
             throws: Vec::new(),
         };
         for (throw, name) in names.iter().enumerate() {
-            let Some(sensor) = own(throw).or(frame).or(other) else {
+            let Some(sensor) = own(throw).or_else(|| guide(throw)).or(frame).or(other) else {
                 continue;
             };
             let column = sensor.column(&names);

@@ -79,6 +79,85 @@ fn a_keyphasor_anywhere_on_the_shaft_is_found() {
     );
 }
 
+/// The columns of these names alone, with the pulses of a tacho at a crank angle, rad, in place of the crank angle.
+fn pulsed(names: [&str; 2], at: f64) -> Vec<Column> {
+    let mut columns = plain();
+    let angle = columns[1].2.clone();
+    columns.retain(|column| names.contains(&column.0));
+    // An edge of 2° is as steep as the samples resolve.
+    let edge = |a: f64| {
+        let since = (a - at + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+        (since / 2.0_f64.to_radians() + 0.5).clamp(0.0, 1.0)
+            * f64::from(u8::from(since < 0.3))
+            * 5.0
+    };
+    let pulses = angle.iter().map(|a| edge(*a)).collect();
+    columns.push((
+        "trigger",
+        "{name: keyphasor, column: trigger, unit: V}",
+        pulses,
+    ));
+    columns
+}
+
+#[test]
+fn a_pulse_anywhere_is_found_by_pressure_or_acceleration_alone() {
+    for name in ["cylinder_pressure_pa", "crosshead_acceleration_m_s2"] {
+        for degrees in [137.0_f64, -90.0] {
+            let at = degrees.to_radians();
+            // A tacho of unknown place.
+            let task = task_of(
+                written(&pulsed(["t_s", name], at)).path(),
+                "bundle: bundle\n",
+            );
+            let (run, found) = task.pulse_angles().next().unwrap();
+            let apart = (found - at + TAU / 2.0).rem_euclid(TAU) - TAU / 2.0;
+            println!(
+                "{name}, pulse at {degrees} deg: {:.2} deg",
+                found.to_degrees()
+            );
+            assert!(apart.abs() < 0.02 && run == "run03", "{degrees}: {found}");
+            // An encoder whose zero is there.
+            let mut columns = plain();
+            for angle in &mut columns[1].2 {
+                *angle = (*angle + at).rem_euclid(TAU);
+            }
+            columns.retain(|column| ["t_s", "crank_angle_rad", name].contains(&column.0));
+            let task = task_of(written(&columns).path(), "bundle: bundle\n");
+            let start = task.settings.start.as_ref().unwrap();
+            let last = task.problem.parameters.last().unwrap();
+            let found = last.value(*start.last().unwrap());
+            println!(
+                "{name}, zero at {degrees} deg: {:.2} deg",
+                found.to_degrees()
+            );
+            assert!((found - at).abs() < 0.02, "{degrees}: {found}");
+        }
+    }
+}
+
+#[test]
+fn a_pulse_whose_place_the_recordings_do_not_show_is_refused() {
+    // Twice a revolution the same: half a turn changes nothing.
+    let mut columns = pulsed(["t_s", "crosshead_acceleration_m_s2"], 0.5);
+    let [_, angle, ..] = recorded();
+    for (x, angle) in columns[1].2.iter_mut().zip(&angle) {
+        *x = 40.0 * (2.0 * angle).cos() + 1e-2 * (1e3 * angle).sin();
+    }
+    let folder = written(&columns);
+    let (status, message) = calibrate(folder.path(), &["bundle", "--out", "out"]);
+    assert_eq!(status, 2, "{message}");
+    assert!(
+        message.contains("do not show where the crank stands") && message.contains("run03"),
+        "{message}"
+    );
+    // With its place told the recordings are held against the machine.
+    let told = yaml(&columns).replace("unit: V}", "unit: V, crank_angle_rad: 0.5}");
+    let folder = write(&told, &csv(&columns));
+    let (status, message) = calibrate(folder.path(), &["bundle", "--out", "out"]);
+    assert!(status == 2 && message.contains("first order"), "{message}");
+}
+
 #[test]
 fn runs_whose_loads_are_swapped_are_told() {
     let columns = plain();

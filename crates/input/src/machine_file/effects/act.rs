@@ -38,6 +38,8 @@ pub(crate) enum Measure {
     CrossheadAcceleration,
     /// Acceleration of the frame.
     FrameAcceleration,
+    /// Acceleration of the housing of the crosshead guide.
+    HousingAcceleration,
     /// Gas pressure.
     CylinderPressure,
 }
@@ -123,6 +125,9 @@ impl Place {
                 matches!(measured, Measured::CrossheadAcceleration { .. })
             }
             Measure::FrameAcceleration => matches!(measured, Measured::FrameAcceleration { .. }),
+            Measure::HousingAcceleration => {
+                matches!(measured, Measured::HousingAcceleration { .. })
+            }
             Measure::CylinderPressure => matches!(measured, Measured::CylinderPressure { .. }),
         };
         let named = measured

@@ -42,10 +42,9 @@ impl SensorSection {
             let found = format_args!("{bits} without a range");
             return Err(Error::found("bits", found, "a key range beside it"));
         }
-        Ok(Sensor {
-            measured: (entry.measured)(place),
-            chain,
-        })
+        let measured = (entry.measured)(place);
+        chain.structure = measured.structure(machine);
+        Ok(Sensor { measured, chain })
     }
 
     fn place(&self, names: &[&str]) -> Result<Place, Error> {

@@ -76,6 +76,7 @@ pub fn single_stage() -> Machine {
             big_end: Revolute::Ideal,
             small_end: Revolute::Ideal,
             guide: Guide::Ideal,
+            housing: None,
             name: String::new(),
             direction: Direction::Forward,
         }],

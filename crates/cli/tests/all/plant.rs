@@ -1,0 +1,87 @@
+//! Plant data from file to features, wear and page, by the four commands of pipelines/README.md.
+
+use crate::one_run::{crosshead, said};
+use ::calibrate::wear::{Results, Verdict};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The diametral clearance of the worn crosshead pin, m, and the crank angle of the pulse, rad: the folder's README.md.
+const WORN: f64 = 0.012 * 0.0254;
+const HEALTHY: f64 = 0.005 * 0.0254;
+const PULSE: f64 = 137.0 / 180.0 * std::f64::consts::PI;
+
+fn example() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/recordings/example-plant")
+}
+
+/// Runs a command that must succeed, and returns what it prints.
+fn run(arguments: &[&str]) -> String {
+    let done = crosshead(arguments);
+    assert!(done.status.success(), "{arguments:?}: {}", said(&done));
+    String::from_utf8(done.stdout).unwrap()
+}
+
+#[test]
+fn a_worn_crosshead_pin_is_found_in_plant_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let plant = example();
+    let of_plant = |name: &str| plant.join(name).to_str().unwrap().to_owned();
+    let (bundle, machine) = (of_plant(""), of_plant("machine.yaml"));
+    run(&["check", &machine, &of_plant("recordings.yaml")]);
+
+    let table = path("features.csv");
+    run(&["features", &bundle, "--out", &table]);
+    let features = fs::read_to_string(&table).unwrap();
+    let rows: Vec<Vec<&str>> = features
+        .lines()
+        .map(|row| row.split(',').collect())
+        .collect();
+    let column = rows[0]
+        .iter()
+        .position(|name| name.ends_with("acceleration.peak_m_s2"));
+    let peaks = rows[1..]
+        .iter()
+        .map(|row| row[column.unwrap()].parse::<f64>().unwrap());
+    let peaks: Vec<f64> = peaks.collect();
+    // Some g, read from a column in g.
+    assert!(
+        peaks.len() == 2 && peaks.iter().all(|peak| (20.0..100.0).contains(peak)),
+        "{peaks:?}"
+    );
+
+    let wear = path("wear");
+    let estimate = [
+        "estimate-wear",
+        &bundle,
+        "--machine",
+        &machine,
+        "--out",
+        &wear,
+    ];
+    let printed = run(&estimate);
+    let results = Results::read(&folder.path().join("wear/wear.json")).unwrap();
+    assert_eq!(results.worn(), ["joints.small_end"], "{printed}");
+    for (joint, verdict, expected) in [
+        ("joints.small_end", Verdict::Worn, WORN),
+        ("joints.big_end", Verdict::Healthy, HEALTHY),
+    ] {
+        let found = results.joints.get(joint).unwrap();
+        assert_eq!(found.verdict, verdict, "{joint}");
+        let diametral = found.diametral_clearance_m.unwrap();
+        assert!(
+            (diametral / expected - 1.0).abs() < 0.02,
+            "{joint}: {diametral}"
+        );
+        let [low, high] = [found.low_m, found.high_m].map(|bound| 2.0 * bound.unwrap());
+        assert!((low..high).contains(&expected), "{joint}: {low} to {high}");
+    }
+    assert_eq!(results.pulse_angles_rad.len(), 2);
+    for (run, angle) in results.pulse_angles_rad.iter() {
+        assert!((angle - PULSE).abs() < 0.01, "{run}: {angle}");
+    }
+
+    run(&["report", &wear]);
+    let page = fs::read_to_string(folder.path().join("wear/report.html")).unwrap();
+    assert!(page.contains("Worn: small end."), "no verdict on the page");
+}
