@@ -97,6 +97,12 @@ const KEYS: [&str; 10] = [
     "channels",
 ];
 
+/// The keys at the top of the file.
+const TOP: [&str; 3] = ["format", "machine", "runs"];
+
+/// The keys of a channel.
+const CHANNEL: [&str; 5] = ["name", "column", "unit", "offset", "crank_angle_rad"];
+
 /// The keys of a throw's load.
 const LOAD: [&str; 2] = ["suction_pressure_pa", "discharge_pressure_pa"];
 
@@ -210,6 +216,7 @@ fn throws(machine: &Value) -> Vec<String> {
 
 /// Checks that the file is of the format that is read here; one that does not say is taken for it.
 fn known_format(tree: &Value) -> Result<(), Error> {
+    known_keys(tree, &TOP)?;
     match tree.get("format") {
         None => Ok(()),
         Some(Value::String(format)) if format == BUNDLE_FORMAT => Ok(()),
@@ -250,14 +257,35 @@ fn is_by_throw(section: &Value, own: &[&str]) -> bool {
     throws.is_some_and(|throws| throws.values().any(of_throw))
 }
 
+/// Refuses a key that is probably a misspelt one of `known`. Others are passed over: a format may grow.
+fn known_keys(section: &Value, known: &[&str]) -> Result<(), Error> {
+    let keys = section.as_object().into_iter().flat_map(Map::keys);
+    let is_misspelt = |key: &&String| {
+        let near = nearest(key, known.iter().copied());
+        !known.contains(&key.as_str()) && near.is_some_and(|near| !key.starts_with(near))
+    };
+    let begins =
+        |key: &&String| key.len() >= 4 && known.iter().any(|known| known.starts_with(key.as_str()));
+    let is_misspelt =
+        |key: &&String| is_misspelt(key) || !known.contains(&key.as_str()) && begins(key);
+    match keys.into_iter().find(is_misspelt) {
+        Some(key) => Err(Error::unknown_key(key, known)),
+        None => Ok(()),
+    }
+}
+
 fn read_run(section: &Value) -> Result<Run, Error> {
     let mut tree = section.clone();
+    known_keys(section, &KEYS)?;
+    for (i, channel) in section["channels"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .enumerate()
+    {
+        known_keys(channel, &CHANNEL).map_err(|error| error.under(format!("channels.{i}")))?;
+    }
     if let Value::Object(section) = &mut tree {
-        for key in section.keys().filter(|key| !KEYS.contains(&key.as_str())) {
-            if nearest(key, KEYS).is_some() {
-                return Err(Error::unknown_key(key, &KEYS));
-            }
-        }
         for (key, own) in [("load", &LOAD[..]), ("joints", &JOINTS[..])] {
             if let Some(value) = section
                 .get_mut(key)

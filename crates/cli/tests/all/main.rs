@@ -30,3 +30,4 @@ mod transcripts;
 #[path = "../../../../tests/readers/venv.rs"]
 mod venv;
 mod verdicts;
+mod wrong_files;

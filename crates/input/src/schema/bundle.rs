@@ -127,7 +127,7 @@ fn channels() -> Value {
             "properties": {
                 "name": text_of("What it is, in words."),
                 "column": text_of("Its column in the file."),
-                "unit": text_of("Its unit, e.g. `m/s2`."),
+                "unit": {"description": "Its unit, e.g. `m/s2`.", "type": "string", "examples": ["m/s2"]},
                 "offset": number(
                     "Added to its numbers, in its unit: the ambient pressure of a gauge."),
                 "crank_angle_rad": number("Crank angle at which the pulse of a tacho comes."),

@@ -25,7 +25,7 @@ pub fn bundle(files: &[String]) -> Result<String, Error> {
         schema: &bundle_schema(),
         head: HEAD,
         note: &note,
-        shows_optional: false,
+        optional: &|_| false,
     })
 }
 
