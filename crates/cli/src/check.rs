@@ -207,7 +207,8 @@ fn missing(kind: Kind, path: &Path) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = match kind {
         Kind::Bundle => Bundle::read(path).map_or(Vec::new(), |bundle| {
             let runs = bundle.runs.iter();
-            runs.map(|run| bundle.folder.join(&run.file)).collect()
+            let files = runs.flat_map(|run| run.recordings());
+            files.map(|(file, _)| bundle.folder.join(file)).collect()
         }),
         Kind::Calibration => Calibration::read(path).map_or(Vec::new(), |(settings, _)| {
             let bundles = settings.bundles().iter();

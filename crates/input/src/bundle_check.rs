@@ -29,7 +29,9 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
                 at_run(machine, &run.section, &key)?;
             }
             bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
-            bundle.path_of(run)?;
+            for file in 0..run.recordings().count() {
+                bundle.path_of_file(run, file)?;
+            }
         }
         Ok(())
     })
