@@ -1,6 +1,7 @@
 //! A bundle of recordings becomes the runs that a machine is held against.
 
 mod recording;
+mod series;
 
 use crate::error::Error;
 use crate::observation::Run;

@@ -12,7 +12,7 @@ use serde_json::Value;
 pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
 /// Without bounds of its own it is searched over 5° to either side, of 0 and of where it is seen.
 const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
-const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
+pub(crate) const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
 
 impl Parameter {
     /// Opens the bounds of an offset of the crank angle that has no bounds of its own, so that they hold `seen`, rad.

@@ -3,6 +3,7 @@
 use crate::output::{hint, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
+use crate::told::Told;
 use crate::{Failure, console};
 use ::features::recorded::counted;
 use ::report::{comparison_page, text, write_page};
@@ -40,6 +41,8 @@ pub struct Arguments {
     /// Replace a comparison that is there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    told: Told,
 }
 
 /// Compares the two and writes what differs.
@@ -67,9 +70,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_file(&json, text.as_bytes())?;
     let rendered = comparison_page::render(&comparison).map_err(Failure::work)?;
     write_page(&page, &rendered.html).map_err(Failure::work)?;
-    summary(&comparison);
-    println!("{}", json.display());
-    println!("{}", page.display());
+    arguments.told.tell(&comparison, |comparison| {
+        summary(comparison);
+        println!("{}", json.display());
+        println!("{}", page.display());
+    })?;
     hint(format_args!("open {} in a browser", page.display()));
     Ok(())
 }

@@ -3,12 +3,14 @@
 use crate::output::hint;
 use crate::progress::Progress;
 use crate::reading::Reading;
+use crate::told::Told;
 use crate::{Failure, console, interrupt};
 use ::features::recorded::{Input, Summary, Table, counted, inputs, row};
 use clap::Args;
 use recordings::WholeFile;
 use recordings::formats::table_file::{TableFile, TableFormat};
 use recordings::measured::LONGEST_BRIDGED;
+use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use sweep::in_order::in_order;
@@ -51,6 +53,51 @@ pub struct Arguments {
     /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
+    #[command(flatten)]
+    told: Told,
+}
+
+/// What was written.
+#[derive(Serialize)]
+struct Written<'a> {
+    /// The table.
+    table: &'a Path,
+    windows: u64,
+    columns: usize,
+    files: usize,
+    /// Why columns are empty, a line per reason.
+    empty: Vec<String>,
+    warnings: Vec<String>,
+    bridged_samples: usize,
+    /// Time that was too short for a window, s.
+    left_out_s: f64,
+}
+
+impl Written<'_> {
+    fn print(&self) {
+        println!(
+            "{}: {}, {}, {}",
+            self.table.display(),
+            counted(self.windows, "window"),
+            counted(self.columns as u64, "column"),
+            counted(self.files as u64, "file"),
+        );
+        for line in &self.empty {
+            println!("{line}");
+        }
+        if self.bridged_samples > 0 {
+            println!(
+                "  {} bridged by lines (gaps of up to {LONGEST_BRIDGED})",
+                counted(self.bridged_samples as u64, "missing sample")
+            );
+        }
+        if self.left_out_s > 0.0 {
+            println!(
+                "  {:.3} s were too short for a window and are left out",
+                self.left_out_s
+            );
+        }
+    }
 }
 
 /// Computes the features and writes them.
@@ -107,29 +154,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )?;
     drop(progress);
     output.commit().map_err(Failure::work)?;
-    for line in note.into_iter().chain(summary.warnings()) {
-        eprintln!("{line}");
-    }
-    println!(
-        "{}: {}, {}, {}",
-        out.display(),
-        counted(summary.rows(), "window"),
-        counted(columns as u64, "column"),
-        counted(inputs.len() as u64, "file"),
-    );
-    for line in summary.empty(&schema) {
-        println!("{line}");
-    }
-    if summary.bridged() > 0 {
-        println!(
-            "  {} bridged by lines (gaps of up to {LONGEST_BRIDGED})",
-            counted(summary.bridged() as u64, "missing sample")
-        );
-    }
-    let left_out = windows.left_out_s();
-    if left_out > 0.0 {
-        println!("  {left_out:.3} s were too short for a window and are left out");
-    }
+    let warnings: Vec<String> = note.into_iter().chain(summary.warnings()).collect();
+    warnings.iter().for_each(|line| eprintln!("{line}"));
+    let written = Written {
+        table: out,
+        windows: summary.rows(),
+        columns,
+        files: inputs.len(),
+        empty: summary.empty(&schema),
+        warnings,
+        bridged_samples: summary.bridged(),
+        left_out_s: windows.left_out_s(),
+    };
+    arguments.told.tell(&written, Written::print)?;
     if format == TableFormat::Parquet {
         hint(format_args!(
             "python3 -c 'import pandas; print(pandas.read_parquet(\"{}\").T)'",

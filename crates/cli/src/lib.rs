@@ -32,6 +32,7 @@ pub mod report;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;
+mod told;
 pub mod try_case;
 pub mod verify;
 

@@ -3,6 +3,7 @@
 use crate::Failure;
 use crate::output::hint;
 use crate::progress::Progress;
+use crate::told::Told;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::verify;
@@ -25,6 +26,8 @@ pub struct Arguments {
     /// The dataset, or s3://BUCKET/PREFIX
     #[arg(value_name = "DIR|URL")]
     dataset: PathBuf,
+    #[command(flatten)]
+    told: Told,
 }
 
 /// Compares every file.
@@ -44,18 +47,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !found.has_sums {
         eprintln!("warning: {dataset} has no SHA256SUMS: nothing vouches for manifest.json itself");
     }
-    for fault in &found.faults {
-        println!("{fault}");
-    }
+    let megabytes = found.bytes as f64 / 1e6;
+    arguments
+        .told
+        .tell(&found, |found| match found.faults[..] {
+            [] => println!(
+                "{dataset}: {} files, {megabytes:.1} MB, all as they were written",
+                found.files
+            ),
+            ref faults => faults.iter().for_each(|fault| println!("{fault}")),
+        })?;
     if !found.faults.is_empty() {
         let faults = found.faults.len();
         return Err(Failure::work(format!("{dataset}: {faults} faults")));
     }
-    let megabytes = found.bytes as f64 / 1e6;
-    println!(
-        "{dataset}: {} files, {megabytes:.1} MB, all as they were written",
-        found.files
-    );
     hint(format_args!("crosshead report {dataset}"));
     Ok(())
 }

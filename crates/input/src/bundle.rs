@@ -6,9 +6,9 @@
 
 pub use crate::bundle_channel::Channel;
 
-use crate::bundle_channel::{Meaning, meaning};
+use crate::bundle_channel::{Meaning, is_time, meaning};
 use crate::choice::{Ideal, Or};
-use crate::error::{Error, nearest};
+use crate::error::{Error, Problem, nearest};
 use crate::quantity::{AboveZero, FromZero, Number};
 use crate::schema::{BUNDLE_FORMAT, bundle_schema};
 use crate::yaml::Document;
@@ -39,8 +39,12 @@ pub struct Bundle {
 pub struct Run {
     /// Its name.
     pub id: String,
-    /// Its recording, a path from the folder on.
+    /// Its recording, a path from the folder on; the first one where it has several.
+    #[serde(default)]
     pub file: PathBuf,
+    /// Its recordings where it has several, each with channels of its own.
+    #[serde(default)]
+    pub files: Vec<Or<PathBuf, FileOfRun>>,
     /// Measured mean speed, rpm.
     pub speed_rpm: Option<Number<AboveZero>>,
     /// Speed at which a free crank's torque is the mean torque, rpm.
@@ -64,6 +68,18 @@ pub struct Run {
     pub section: Value,
 }
 
+/// One of several recordings of a run.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FileOfRun {
+    /// The recording, a path from the folder on.
+    pub file: PathBuf,
+    /// Time of its first sample on the clock that the files of the run share, s; where it is left out, as its column
+    /// of time has it.
+    #[serde(default)]
+    pub start_s: Option<Number>,
+}
+
 /// The gas pressures of a throw, absolute.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Load {
@@ -84,9 +100,10 @@ pub struct Clear {
 }
 
 /// The keys of a run, to find slips of the keyboard among those that are unknown.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "id",
     "file",
+    "files",
     "speed_rpm",
     "speed_reference_rpm",
     "load",
@@ -97,11 +114,45 @@ const KEYS: [&str; 10] = [
     "channels",
 ];
 
+/// The keys at the top of the file.
+const TOP: [&str; 3] = ["format", "machine", "runs"];
+
+/// The keys of a channel.
+const CHANNEL: [&str; 6] = [
+    "name",
+    "column",
+    "unit",
+    "file",
+    "offset",
+    "crank_angle_rad",
+];
+
 /// The keys of a throw's load.
 const LOAD: [&str; 2] = ["suction_pressure_pa", "discharge_pressure_pa"];
 
 /// The joints of a throw.
 const JOINTS: [&str; 3] = ["big_end", "small_end", "guide"];
+
+impl Run {
+    /// Its recordings, with the time of the first sample where the bundle states it, s.
+    pub fn recordings(&self) -> impl Iterator<Item = (&Path, Option<f64>)> {
+        let only = self.files.is_empty().then_some((self.file.as_path(), None));
+        let several = self.files.iter().map(|file| match file {
+            Or::Scalar(file) => (file.as_path(), None),
+            Or::Section(of_run) => (
+                of_run.file.as_path(),
+                of_run.start_s.map(|start| start.get()),
+            ),
+        });
+        only.into_iter().chain(several)
+    }
+
+    /// The channels that stand in this one of its recordings, with their places in the list.
+    pub fn channels_of(&self, file: &Path) -> impl Iterator<Item = (usize, &Channel)> {
+        let channels = self.channels.iter().enumerate();
+        channels.filter(move |(_, channel)| channel.file.as_deref().unwrap_or(&self.file) == file)
+    }
+}
 
 impl Bundle {
     /// Whether `path` is a folder with a `recordings.yaml`, or that file itself.
@@ -147,9 +198,20 @@ impl Bundle {
     /// # Errors
     /// A recording that lies elsewhere: an absolute path, one with `..`, or one through a link that leads out.
     pub fn path_of(&self, run: &Run) -> Result<PathBuf, Error> {
-        let path = self.folder.join(&run.file);
-        let within = run
-            .file
+        self.path_of_file(run, 0)
+    }
+
+    /// Where recording `index` of a run lies.
+    ///
+    /// # Errors
+    /// As [`Bundle::path_of`].
+    pub fn path_of_file(&self, run: &Run, index: usize) -> Result<PathBuf, Error> {
+        let file = run
+            .recordings()
+            .nth(index)
+            .map_or(run.file.as_path(), |(file, _)| file);
+        let path = self.folder.join(file);
+        let within = file
             .components()
             .all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
         // The caller that opens it reports one that is missing.
@@ -161,7 +223,12 @@ impl Bundle {
             return Ok(path);
         }
         let i = self.runs.iter().position(|other| other.id == run.id);
-        let key = format!("runs.{}.file", i.unwrap_or(0));
+        let key = match run.files.get(index) {
+            None => "file".to_owned(),
+            Some(Or::Scalar(_)) => format!("files.{index}"),
+            Some(Or::Section(_)) => format!("files.{index}.file"),
+        };
+        let key = format!("runs.{}.{key}", i.unwrap_or(0));
         let expected = "a file in the folder of the bundle; --allow-outside reads others";
         Err(self.locate(Error::clash(key, expected)))
     }
@@ -210,6 +277,7 @@ fn throws(machine: &Value) -> Vec<String> {
 
 /// Checks that the file is of the format that is read here; one that does not say is taken for it.
 fn known_format(tree: &Value) -> Result<(), Error> {
+    known_keys(tree, &TOP)?;
     match tree.get("format") {
         None => Ok(()),
         Some(Value::String(format)) if format == BUNDLE_FORMAT => Ok(()),
@@ -250,14 +318,74 @@ fn is_by_throw(section: &Value, own: &[&str]) -> bool {
     throws.is_some_and(|throws| throws.values().any(of_throw))
 }
 
+/// Refuses a key that is probably a misspelt one of `known`. Others are passed over: a format may grow.
+fn known_keys(section: &Value, known: &[&str]) -> Result<(), Error> {
+    let keys = section.as_object().into_iter().flat_map(Map::keys);
+    let is_misspelt = |key: &&String| {
+        let near = nearest(key, known.iter().copied());
+        !known.contains(&key.as_str()) && near.is_some_and(|near| !key.starts_with(near))
+    };
+    let begins =
+        |key: &&String| key.len() >= 4 && known.iter().any(|known| known.starts_with(key.as_str()));
+    let is_misspelt =
+        |key: &&String| is_misspelt(key) || !known.contains(&key.as_str()) && begins(key);
+    match keys.into_iter().find(is_misspelt) {
+        Some(key) => Err(Error::unknown_key(key, known)),
+        None => Ok(()),
+    }
+}
+
+/// Checks that the run has one recording or several, and that each channel says in which it stands.
+fn check_files(run: &Run, section: &Value) -> Result<(), Error> {
+    match (section.get("file"), section.get("files")) {
+        (None, None) => return Err(Error::missing("file")),
+        (Some(_), Some(_)) => return Err(Error::clash("files", "it or file, not both")),
+        (None, Some(_)) if run.files.is_empty() => {
+            return Err(Error::clash("files", "a list of one file or more"));
+        }
+        _ => {}
+    }
+    let names: Vec<&str> = run
+        .recordings()
+        .filter_map(|(file, _)| file.to_str())
+        .collect();
+    for (i, channel) in run.channels.iter().enumerate() {
+        let key = format!("channels.{i}.file");
+        match channel.file.as_deref().and_then(Path::to_str) {
+            Some(name) if !names.contains(&name) => {
+                return Err(Error::unknown_name(key, name, &names).against("files"));
+            }
+            None if names.len() > 1 => {
+                let expected = Some(format!("the file that has it, one of {}", names.join(", ")));
+                return Err(Error::new(key, Problem::Missing { expected }));
+            }
+            _ => {}
+        }
+    }
+    for (i, name) in names.iter().enumerate() {
+        if names[..i].contains(name) {
+            return Err(Error::clash(format!("files.{i}"), "each file once"));
+        }
+        if names.len() > 1 && run.channels_of(Path::new(name)).next().is_none() {
+            let expected = "a file in which a channel stands";
+            return Err(Error::clash(format!("files.{i}"), expected).against("channels"));
+        }
+    }
+    Ok(())
+}
+
 fn read_run(section: &Value) -> Result<Run, Error> {
     let mut tree = section.clone();
+    known_keys(section, &KEYS)?;
+    for (i, channel) in section["channels"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .enumerate()
+    {
+        known_keys(channel, &CHANNEL).map_err(|error| error.under(format!("channels.{i}")))?;
+    }
     if let Value::Object(section) = &mut tree {
-        for key in section.keys().filter(|key| !KEYS.contains(&key.as_str())) {
-            if nearest(key, KEYS).is_some() {
-                return Err(Error::unknown_key(key, &KEYS));
-            }
-        }
         for (key, own) in [("load", &LOAD[..]), ("joints", &JOINTS[..])] {
             if let Some(value) = section
                 .get_mut(key)
@@ -270,12 +398,17 @@ fn read_run(section: &Value) -> Result<Run, Error> {
     }
     let mut run: Run = crate::reader::read(&tree)?;
     run.section = section.clone();
+    check_files(&run, section)?;
+    let first = run.recordings().next().map(|(file, _)| file.to_owned());
+    run.file = first.unwrap_or_default();
     if run.channels.is_empty() {
         return Err(Error::clash("channels", "a list of one channel or more"));
     }
     let mut columns = BTreeSet::new();
     for (i, channel) in run.channels.iter().enumerate() {
-        if !columns.insert(&channel.column) {
+        // Each file has times of its own.
+        let of = channel.file.as_ref().filter(|_| is_time(channel));
+        if !columns.insert((of, &channel.column)) {
             let key = format!("channels.{i}.column");
             return Err(Error::clash(key, "a column of its own for every channel"));
         }

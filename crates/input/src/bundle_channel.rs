@@ -13,6 +13,7 @@ use mechanism::declaration::Quantity;
 use serde::Deserialize;
 use simulate::sensors::{Entry, SENSORS};
 use std::f64::consts::TAU;
+use std::path::PathBuf;
 
 /// A channel of a run.
 #[derive(Clone, Debug, Deserialize)]
@@ -24,6 +25,9 @@ pub struct Channel {
     pub column: String,
     /// Its unit, e.g. `m/s2`.
     pub unit: String,
+    /// Its file, where the run has several.
+    #[serde(default)]
+    pub file: Option<PathBuf>,
     /// What is added to its numbers, in its unit: the ambient pressure of a gauge.
     #[serde(default)]
     pub offset: Option<Number>,
@@ -131,6 +135,11 @@ pub fn meaning(channel: &Channel, throws: &[&str]) -> Result<Meaning, Error> {
             to_si: to_si(channel, *quantity)?,
         },
     })
+}
+
+/// Whether a channel has the time of each sample.
+pub(crate) fn is_time(channel: &Channel) -> bool {
+    matches!(meaning(channel, &[]), Ok(Meaning::Time))
 }
 
 #[derive(Clone, Copy)]
@@ -282,6 +291,7 @@ mod tests {
             name: name.into(),
             column: column.into(),
             unit: unit.into(),
+            file: None,
             offset: None,
             crank_angle_rad: None,
         }

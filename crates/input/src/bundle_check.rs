@@ -2,7 +2,7 @@
 
 use crate::bundle::Bundle;
 use crate::bundle_machine::from_bundle;
-use crate::error::Error;
+use crate::error::{Error, Problem};
 use crate::machine_file::MachineFile;
 use crate::paths;
 use crate::run_settings::run_settings;
@@ -29,25 +29,74 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
                 at_run(machine, &run.section, &key)?;
             }
             bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
-            bundle.path_of(run)?;
+            for file in 0..run.recordings().count() {
+                bundle.path_of_file(run, file)?;
+            }
         }
         Ok(())
     })
 }
 
-/// The machine at the conditions of the run at `key`.
+/// The machine at the conditions of the run at `key`. What a run sets, or should, is wrong in the run.
 fn at_run(machine: &Value, run: &Value, key: &str) -> Result<(), Error> {
     let settings = run_settings(run, machine).map_err(|e| e.under(key))?;
     let mut conditions = machine.clone();
+    let mut set = Vec::new();
     for (path, value) in &settings {
         paths::set(&mut conditions, path, value.clone()).map_err(|e| e.under(key))?;
+        set.push(paths::keys(&conditions, path)?.join("."));
     }
     let resolved = MachineFile::from_tree(&conditions).and_then(|file| file.resolve());
-    let is_set = |key: &str| settings.iter().any(|(path, _)| path == key);
-    resolved
-        .map(|_| ())
-        .map_err(|error| match is_set(error.key()) {
-            true => error.under(key),
-            false => error.under("machine"),
+    let each = resolved.err().map_or(Vec::new(), Error::into_each);
+    let each = each.into_iter().map(|error| {
+        let is_set = set.iter().any(|path| path == error.key());
+        let is_missing = matches!(error.problem(), Problem::Missing { .. });
+        match key_of_run(&conditions, error.key()).filter(|_| is_set || is_missing) {
+            Some(own) => in_run(&error, &own, key, &conditions),
+            None => error.under("machine"),
+        }
+    });
+    Error::all(each).map_or(Ok(()), Err)
+}
+
+/// The mistake of a machine at the key `own` of the run at `key`, which sets the value.
+fn in_run(error: &Error, own: &str, key: &str, machine: &Value) -> Error {
+    let own = format!("{key}.{own}");
+    let moved = match error.problem() {
+        Problem::Found { expected, .. } => Error::clash(own, expected),
+        problem => Error::new(own, problem.clone()),
+    };
+    error.partners().fold(moved, |moved, partner| {
+        moved.against(match key_of_run(machine, partner) {
+            Some(other) => format!("/{key}.{other}"),
+            None => format!("/machine.{partner}"),
         })
+    })
+}
+
+/// The key of a run that sets `path` of its machine.
+fn key_of_run(machine: &Value, path: &str) -> Option<String> {
+    let (throw, rest) = match path
+        .strip_prefix("throws.")
+        .and_then(|rest| rest.split_once('.'))
+    {
+        Some((index, rest)) => {
+            let throw = &machine["throws"][index.parse::<usize>().ok()?];
+            (throw["name"].as_str()?, rest)
+        }
+        None => ("", path),
+    };
+    let of_throw = |section: &str, key: &str| {
+        let parts = [section, throw, key]
+            .into_iter()
+            .filter(|part| !part.is_empty());
+        Some(parts.collect::<Vec<_>>().join("."))
+    };
+    match rest.split('.').collect::<Vec<_>>()[..] {
+        ["speed"] => Some("speed_rpm".to_owned()),
+        ["cylinder", "suction"] => of_throw("load", "suction_pressure_pa"),
+        ["cylinder", "discharge"] => of_throw("load", "discharge_pressure_pa"),
+        ["joints", joint, "clearance"] => of_throw("joints", &format!("{joint}.clearance_m")),
+        _ => None,
+    }
 }

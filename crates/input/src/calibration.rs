@@ -36,6 +36,7 @@ pub struct Calibration {
     /// The machine file, from the folder of this file; the bundle's machine section where it is
     /// left out.
     #[serde(default)]
+    #[schemars(example = "machine.yaml")]
     pub machine: Option<PathBuf>,
     /// What is fitted: a list of paths of the machine file, or a section of paths with their
     /// bounds. Where it is left out, contact stiffness, contact damping and friction of every joint
@@ -49,19 +50,23 @@ pub struct Calibration {
     /// it; where a bundle's machine section says nothing, fitted if the fitted runs have several
     /// clearances, else eq5.
     #[serde(default)]
+    #[schemars(example = &"conformal")]
     pub relation: Option<Relation>,
     /// Runs that are predicted and not fitted to. Where it is left out, of every four the last whose
     /// clearances a fitted run has.
     #[serde(default)]
+    #[schemars(example = &vec!("run04"))]
     pub hold_out: Option<Vec<String>>,
     /// Runs that are not used at all.
     #[serde(default)]
+    #[schemars(example = &vec!("run07"))]
     pub leave_out: Vec<String>,
     /// What the random numbers of the search follow from; 0 where it is left out.
     #[serde(default)]
     pub seed: Option<Count<0, { u32::MAX }>>,
     /// Most evaluations of the model, all runs being one; 5000 where it is left out.
     #[serde(default)]
+    #[schemars(example = 5000)]
     pub evaluations: Option<Count<1, { u32::MAX }>>,
 }
 
@@ -160,10 +165,23 @@ impl Calibration {
     /// # Errors
     /// All mistakes, with their lines.
     pub fn of(document: &Document) -> Result<Self, Error> {
+        Self::checked(document, |_, _| Ok(()))
+    }
+
+    /// As [`Calibration::of`], where `further` finds further mistakes in the settings and the content that they were
+    /// read from; their keys are those of the file.
+    ///
+    /// # Errors
+    /// All mistakes, with their lines.
+    pub fn checked(
+        document: &Document,
+        further: impl Fn(&Self, &Value) -> Result<(), Error>,
+    ) -> Result<Self, Error> {
         document.collect(schema, |tree| {
             let settings: Self = reader::read(tree)?;
             sided::check(tree)?;
-            settings.check().map(|()| settings)
+            settings.check()?;
+            further(&settings, tree).map(|()| settings)
         })
     }
 
@@ -310,7 +328,7 @@ mod tests {
             ),
             (
                 "bundle: []\n",
-                "c.yaml:1:9: bundle: found a list, expected a folder",
+                "c.yaml:1:9: bundle: found an empty list, expected a folder",
             ),
             (
                 "bundle: b\nparameters: {rod.mass: {bounds: [5 kg, 4 kg]}}\n",

@@ -1,5 +1,8 @@
 //! One message per mistake: where it is, which key, what was found, what was expected.
 
+pub use crate::nearest::nearest;
+use crate::nearest::slipped;
+
 use serde::de::Unexpected;
 use serde_json::Value;
 use std::fmt;
@@ -52,12 +55,14 @@ pub enum Problem {
         expected: String,
     },
     /// A key that does not exist.
-    #[error("unknown key; expected {}", choices(.known, .nearest))]
+    #[error("unknown key; {}", .belongs.clone().unwrap_or_else(|| format!("expected {}", choices(.known, .nearest))))]
     UnknownKey {
         /// The keys that do exist there.
         known: Vec<String>,
         /// The one that was probably meant.
         nearest: Option<String>,
+        /// Where it, or what stands in it, belongs, if that is elsewhere.
+        belongs: Option<String>,
     },
     /// A name that is not in the list that the place allows.
     #[error("found {}, expected {}", quoted(.found), choices(.known, .nearest))]
@@ -187,6 +192,7 @@ impl Error {
             Problem::UnknownKey {
                 nearest: nearest(name, known.iter().copied()).map(str::to_owned),
                 known: owned(known),
+                belongs: None,
             },
         )
     }
@@ -283,11 +289,20 @@ impl Error {
     /// Looks among `others` for what an unknown key was meant to be, where none of the known keys is near.
     pub(crate) fn suggesting<'a>(mut self, others: impl Iterator<Item = &'a str>) -> Self {
         let name = self.key.rsplit('.').next().unwrap_or_default();
-        let near = nearest(name, others).map(str::to_owned);
+        let others: Vec<&str> = others.collect();
+        let near = slipped(name, &others).map(str::to_owned);
         if let Problem::UnknownKey { nearest, .. } = &mut *self.problem
             && nearest.is_none()
         {
             *nearest = near;
+        }
+        self
+    }
+
+    /// Says where an unknown key belongs.
+    pub(crate) fn belonging(mut self, words: &str) -> Self {
+        if let Problem::UnknownKey { belongs, .. } = &mut *self.problem {
+            *belongs = Some(words.to_owned());
         }
         self
     }
@@ -329,30 +344,6 @@ pub(crate) fn join(head: &str, tail: &str) -> String {
         ("", tail) => tail.to_owned(),
         (head, tail) => format!("{head}.{tail}"),
     }
-}
-
-/// The candidate that `name` was probably meant to be: the one with the fewest slips of the
-/// keyboard (Damerau 1964), if they are few for its length. Case counts less than letters.
-pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let lower = name.to_lowercase();
-    let slips = |c: &str| {
-        (
-            strsim::damerau_levenshtein(&lower, &c.to_lowercase()),
-            strsim::damerau_levenshtein(name, c),
-        )
-    };
-    // One letter can be anything.
-    let letters = name.chars().count();
-    let allowed = (letters / 3).max(usize::from(letters > 1));
-    // As many slips as the lengths differ by are needed at least: a name may be as long as a file.
-    let near = |c: &&str| c.chars().count().abs_diff(letters) <= allowed;
-    candidates
-        .into_iter()
-        .filter(near)
-        .map(|c| (slips(c), c))
-        .filter(|((distance, _), _)| *distance <= allowed)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
 }
 
 fn owned(names: &[&str]) -> Vec<String> {
@@ -423,7 +414,11 @@ fn words(found: &Unexpected) -> String {
 
 /// A value of the tree, as its author would recognise it.
 pub(crate) fn shown(value: &Value) -> String {
-    words(&unexpected(value))
+    match value {
+        Value::Array(items) if items.is_empty() => "an empty list".to_owned(),
+        Value::Object(section) if section.is_empty() => "an empty section".to_owned(),
+        value => words(&unexpected(value)),
+    }
 }
 
 /// A value of the tree in serde's terms.
@@ -462,19 +457,4 @@ fn one_line(text: &str) -> String {
         }
     }
     line
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_name_is_the_one_with_the_fewest_slips() {
-        let joints = ["main", "big_end", "small_end", "guide"];
-        assert_eq!(nearest("big_ned", joints), Some("big_end"));
-        assert_eq!(nearest("Main", joints), Some("main"));
-        assert_eq!(nearest("valve", joints), None);
-        // "MPa" and "mPa" differ from "mpa" only in case: fewer capitals win.
-        assert_eq!(nearest("mpa", ["MPa", "mPa"]), Some("mPa"));
-    }
 }

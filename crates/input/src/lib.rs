@@ -19,9 +19,11 @@ pub mod calibration;
 pub mod choice;
 mod dimension;
 pub mod error;
+mod form;
 mod kind;
 pub mod machine_file;
 mod mistakes;
+mod nearest;
 pub mod paths;
 pub mod quantity;
 mod reader;
@@ -33,6 +35,7 @@ mod tree;
 pub mod unit;
 mod unit_table;
 pub mod yaml;
+mod yaml_repair;
 
 /// The catalogue of effects as data.
 pub mod effects {

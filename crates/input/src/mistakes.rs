@@ -5,6 +5,7 @@
 //! tree is read again. What a value that nobody wrote clashes with is no mistake of the file, and is not reported.
 
 use crate::error::{Error, Problem, join, nearest as similar};
+use crate::form::{Reshaped, reshaped};
 use crate::schema::Node;
 use crate::tree::{find, first, is_within, moved, own_name, parents, put, rename, take};
 use serde_json::{Value, json};
@@ -41,11 +42,12 @@ pub(crate) fn all(
         };
         let mut goes_on = false;
         for error in error.into_each() {
+            let changes = repair.changes.len();
             let is_mine = error.file().is_none();
             let original = repair.original(error.key());
             if !(is_mine && repair.is_made(&error)) {
                 let error = match is_mine {
-                    true => error.clone().with_key(original),
+                    true => repair.placed(error.clone()).with_key(original),
                     false => error.clone(),
                 };
                 if !found.contains(&error) {
@@ -53,6 +55,10 @@ pub(crate) fn all(
                 }
             }
             goes_on |= is_mine && repair.take_out(&error);
+            // The keys of the other mistakes may have changed; they are found again.
+            if repair.changes.len() > changes {
+                break;
+            }
         }
         if !goes_on {
             break;
@@ -82,6 +88,27 @@ struct Repair<'a> {
     /// How often each key was repaired.
     tries: BTreeMap<String, usize>,
     changes: Vec<Change>,
+}
+
+/// Where a key belongs that is unknown where it stands.
+enum Home {
+    /// What stands in it belongs in the section about it.
+    Above(String),
+    /// In the section of this name; at the top where that is empty.
+    In(String),
+}
+
+impl Home {
+    fn words(&self) -> String {
+        match self {
+            Self::Above(above) if above.is_empty() => {
+                "its keys belong at the top of the file".to_owned()
+            }
+            Self::Above(above) => format!("its keys belong in {above}"),
+            Self::In(place) if place.is_empty() => "it belongs at the top of the file".to_owned(),
+            Self::In(place) => format!("it belongs in {place}"),
+        }
+    }
 }
 
 /// Stands for an item of a list that is gone.
@@ -119,12 +146,107 @@ impl Repair<'_> {
         key
     }
 
+    /// An unknown key with the words for where it belongs.
+    fn placed(&self, error: Error) -> Error {
+        let home = match error.problem() {
+            Problem::UnknownKey { nearest: None, .. } => self.home(error.key()),
+            _ => None,
+        };
+        match home {
+            Some(home) => error.belonging(&home.words()),
+            None => error,
+        }
+    }
+
+    /// Where the unknown `key`, or what stands in it, belongs.
+    fn home(&self, key: &str) -> Option<Home> {
+        let own = own_name(&self.tree, key)?;
+        let above = above(key, &own).to_owned();
+        let schema = Node::top(self.schema);
+        let parent = walk(
+            Node::top(self.schema),
+            Some(&self.tree),
+            &(self.canonical)(&above),
+        )?;
+        let content = find(&self.tree, key).and_then(Value::as_object);
+        let mut inner = content.into_iter().flat_map(|content| content.keys());
+        if content.is_some_and(|content| !content.is_empty()) && inner.all(|name| parent.has(name))
+        {
+            return Some(Home::Above(above));
+        }
+        // An item of a list has its keys in its own section.
+        if above.split('.').any(|part| part.parse::<usize>().is_ok()) {
+            return None;
+        }
+        let sections = schema.keys().into_iter();
+        let sections = sections.filter(|name| schema.key(name).is_some_and(|s| s.has(&own)));
+        let top = schema.has(&own).then_some("");
+        let mut places = top
+            .into_iter()
+            .chain(sections)
+            .filter(|place| *place != above);
+        let only = places.next()?.to_owned();
+        let is_only = places.next().is_none();
+        let is_there = find(&self.tree, &only).is_some();
+        (is_only && is_there && self.is_free(&join(&only, &own))).then_some(Home::In(only))
+    }
+
+    /// Whether nobody wrote something at `key`.
+    fn is_free(&self, key: &str) -> bool {
+        find(&self.tree, key).is_none() || self.made.contains(key)
+    }
+
+    /// Puts an unknown key, or what stands in it, where it belongs.
+    fn bring(&mut self, key: &str, home: &Home) -> bool {
+        let own = own_name(&self.tree, key).unwrap_or_default();
+        let Some(content) = take(&mut self.tree, key) else {
+            return false;
+        };
+        let moves: Vec<(String, String, Value)> = match (home, content) {
+            (Home::Above(above), Value::Object(content)) => content
+                .into_iter()
+                .map(|(name, value)| (join(key, &name), join(above, &name), value))
+                .collect(),
+            (Home::In(place), content) => vec![(key.to_owned(), join(place, &own), content)],
+            (Home::Above(_), _) => Vec::new(),
+        };
+        for (from, to, value) in moves {
+            if self.is_free(&to) && put(&mut self.tree, &to, value) {
+                self.made.remove(&to);
+                self.changes.push(Change::Renamed { from, to });
+            }
+        }
+        true
+    }
+
+    /// Gives what stands at `key` the form that belongs there: see [`reshaped`].
+    fn reshape(&mut self, key: &str) -> bool {
+        let (Some(place), Some(value)) = (self.place(key), find(&self.tree, key)) else {
+            return false;
+        };
+        match reshaped(&place, value) {
+            None => false,
+            Some(Reshaped::Guess(value)) => self.make(key, value),
+            Some(Reshaped::Parts(value, parts)) => {
+                let moves = parts.into_iter().map(|(from, to)| Change::Renamed {
+                    from: join(key, &from),
+                    to: join(key, &to),
+                });
+                self.changes.extend(moves);
+                put(&mut self.tree, key, value)
+            }
+        }
+    }
+
     /// Takes the mistake out of the tree; false where that cannot be done.
     fn take_out(&mut self, error: &Error) -> bool {
         let key = error.key();
         let tries = self.tries.entry(key.to_owned()).or_default();
         *tries += 1;
         let tries = *tries;
+        if tries == 1 && matches!(error.problem(), Problem::Found { .. }) && self.reshape(key) {
+            return true;
+        }
         match error.problem() {
             Problem::UnknownKey { nearest, .. } => self.take_out_key(key, nearest.as_deref()),
             Problem::UnknownName { nearest, known, .. } => {
@@ -180,8 +302,14 @@ impl Repair<'_> {
         }
     }
 
-    fn make(&mut self, key: &str, value: Value) -> bool {
+    /// Notes that nobody wrote what stands at `key`, under its name in the schema, too.
+    fn note_made(&mut self, key: &str) {
         self.made.insert(key.to_owned());
+        self.made.insert((self.canonical)(key));
+    }
+
+    fn make(&mut self, key: &str, value: Value) -> bool {
+        self.note_made(key);
         if put(&mut self.tree, key, value.clone()) {
             return true;
         }
@@ -194,18 +322,20 @@ impl Repair<'_> {
     }
 
     fn take_out_key(&mut self, key: &str, nearest: Option<&str>) -> bool {
+        if let Some(home) = nearest.is_none().then(|| self.home(key)).flatten() {
+            return self.bring(key, &home);
+        }
         let own = own_name(&self.tree, key).unwrap_or_default();
-        let above = key
-            .strip_suffix(&own)
-            .unwrap_or_default()
-            .trim_end_matches('.');
+        let above = above(key, &own);
         // The name of a value may be wrong in the place of that of its key.
         let is_key = |name: &&str| own.contains('.') || similar(&own, [*name]).is_some();
         let name = nearest.filter(is_key).map(|name| corrected(&own, name));
         let to = name.as_deref().map(|name| join(above, name));
         match (name, to) {
             (Some(name), Some(to))
-                if find(&self.tree, &to).is_none() && rename(&mut self.tree, key, &name) =>
+                if find(&self.tree, &to).is_none()
+                    && find(&self.tree, &(self.canonical)(&to)).is_none()
+                    && rename(&mut self.tree, key, &name) =>
             {
                 let from = key.to_owned();
                 self.changes.push(Change::Renamed { from, to });
@@ -252,9 +382,7 @@ impl Repair<'_> {
                 self.made.insert(format!("{list}.{GONE}"));
                 self.changes.push(Change::Removed { list, index });
             }
-            _ => {
-                self.made.insert(key.to_owned());
-            }
+            _ => self.note_made(key),
         }
         true
     }
@@ -278,6 +406,12 @@ impl Repair<'_> {
         self.tries
             .retain(|key, _| key == list || !is_within(key, list));
     }
+}
+
+/// The section of a key whose last part, which may have dots in it, is `own`.
+fn above<'k>(key: &'k str, own: &str) -> &'k str {
+    let above = key.strip_suffix(own).unwrap_or_default();
+    above.trim_end_matches('.')
 }
 
 /// A key with `name` in the place of the part that it was probably meant to be: of a path such as

@@ -4,6 +4,7 @@
 //! (`throws.throw1.joints.big_end.clearance`), an effect's (`effects.valve_loss.discharge`), or
 //! what a sensor measures (`sensors.cylinder_pressure.range`; the first of several).
 
+use crate::amount::Amount;
 use crate::error::{Error, Problem, shown};
 use crate::machine_file::synonyms;
 use crate::schema::{self, Node};
@@ -146,21 +147,53 @@ fn walk<'a, 'p>(
             }
         }
         let Some(inner) = schema.key(part) else {
-            let error = Error::unknown_key(part, &schema.keys()).under(keys.join("."));
-            return Err(
-                synonyms::instead(error.key()).map_or(error.clone(), |words| {
-                    Error::new(
-                        error.key(),
-                        Problem::Other(format!("unknown key; give {words}")),
-                    )
-                }),
-            );
+            return Err(unknown(part, &schema, &keys));
         };
         keys.push(part.to_owned());
         node = node.and_then(|node| node.get(part));
         schema = inner;
     }
     Ok(Walked { keys, schema, node })
+}
+
+/// `part` is no key of `schema`, which describes what stands at `keys`.
+fn unknown(part: &str, schema: &Node, keys: &[String]) -> Error {
+    let error = Error::unknown_key(part, &schema.keys()).under(keys.join("."));
+    match synonyms::instead(error.key()) {
+        Some(words) => {
+            let words = format!("unknown key; give {words}");
+            Error::new(error.key(), Problem::Other(words))
+        }
+        None => error,
+    }
+}
+
+/// The number that belongs at `path` of a machine file, whatever throws, sensors and effects that has: in words, and
+/// as an example. None where the path has a `*`, or leads to something else.
+///
+/// # Errors
+/// Where the format has no such path.
+pub fn expected(path: &str) -> Result<Option<(String, Amount)>, Error> {
+    let mut keys: Vec<String> = Vec::new();
+    let mut schema = schema::machine();
+    for part in path.split('.') {
+        if part == "*" {
+            return Ok(None);
+        }
+        schema = match schema.items() {
+            // An effect has its name as a key, other items are named within.
+            Some(items) => items.key(part).unwrap_or(items),
+            None => schema
+                .key(part)
+                .ok_or_else(|| unknown(part, &schema, &keys))?,
+        };
+        keys.push(part.to_owned());
+    }
+    let example = schema.values().iter().find_map(Amount::of);
+    Ok(example.map(|example| {
+        let words = || format!("a value of its kind, e.g. {}", example.to_value());
+        (schema.expected().unwrap_or_else(words), example)
+    }))
 }
 
 /// The index of the item that `part` is the index or the name of, and whether its name is a key

@@ -293,6 +293,15 @@ impl<'de, B: Bound> Deserialize<'de> for Number<B> {
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 write!(f, "a plain number{}", B::WORDS)
             }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
+                let found = match unit::parse(text) {
+                    Err(error @ (UnitError::Comma | UnitError::Thousands | UnitError::Number)) => {
+                        describe_error(text, &error)
+                    }
+                    _ => quoted(text),
+                };
+                Err(E::invalid_value(Unexpected::Other(&found), &self))
+            }
             fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
                 Number::new(value)
                     .ok_or_else(|| E::invalid_value(Unexpected::Other(&value.to_string()), &self))

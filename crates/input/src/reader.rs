@@ -6,7 +6,7 @@
 //! `tag:measure` the key is required. serde's own `tag` attribute would lose the path. That of schemars
 //! stays, for the schema.
 
-use crate::error::{Error, unexpected};
+use crate::error::{Error, nearest, shown, unexpected};
 use serde::de::value::StrDeserializer;
 use serde::de::{
     DeserializeSeed, EnumAccess, Error as _, IntoDeserializer, MapAccess, SeqAccess, Unexpected,
@@ -34,7 +34,7 @@ impl<'de> Reader<'de> {
     }
 
     fn mismatch(&self, expected: &str) -> Error {
-        Error::invalid_type(unexpected(self.node), &expected)
+        Error::found("", shown(self.node), expected)
     }
 
     /// The variant of an enum that a section's key `tag` names.
@@ -51,7 +51,10 @@ impl<'de> Reader<'de> {
             Some(other) => {
                 return Err(Reader::new(other).mismatch("a name, as text").under(tag));
             }
-            None => default.ok_or_else(|| Error::missing(tag))?,
+            None => match section.keys().find(|key| nearest(key, [tag]).is_some()) {
+                Some(misspelt) => return Err(Error::unknown_key(misspelt, &[tag])),
+                None => default.ok_or_else(|| Error::missing(tag))?,
+            },
         };
         let content = Reader {
             node: self.node,
@@ -79,9 +82,15 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 _ => Err(self.mismatch("a number")),
             },
             Value::String(text) => visitor.visit_borrowed_str(text),
-            Value::Array(items) => visitor.visit_seq(Items {
-                items: items.iter().enumerate(),
-            }),
+            Value::Array(all) => {
+                let items = all.iter().enumerate();
+                let mut items = Items { items };
+                let read = visitor.visit_seq(&mut items)?;
+                match items.items.len() {
+                    0 => Ok(read),
+                    left => Err(of_length(all.len(), all.len() - left)),
+                }
+            }
             Value::Object(section) => visitor.visit_map(Entries {
                 entries: section.iter(),
                 skip: self.skip,
@@ -121,6 +130,18 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         match self.node {
             Value::Array(_) => self.deserialize_any(visitor),
             _ => Err(self.mismatch("a list")),
+        }
+    }
+
+    fn deserialize_tuple<V: Visitor<'de>>(
+        self,
+        length: usize,
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        match self.node {
+            Value::Array(items) if items.len() == length => self.deserialize_any(visitor),
+            Value::Array(items) => Err(of_length(items.len(), length)),
+            _ => Err(self.mismatch(&format!("a list of {length}"))),
         }
     }
 
@@ -172,8 +193,13 @@ impl<'de> Deserializer<'de> for Reader<'de> {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str bytes byte_buf unit
-        unit_struct tuple tuple_struct identifier ignored_any
+        unit_struct tuple_struct identifier ignored_any
     }
+}
+
+/// A list of `found` items where `length` belong.
+fn of_length(found: usize, length: usize) -> Error {
+    Error::invalid_length(found, &format!("a list of {length}").as_str())
 }
 
 fn single(section: &Map<String, Value>) -> Option<(&String, &Value)> {

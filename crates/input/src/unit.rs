@@ -29,6 +29,12 @@ pub enum UnitError {
     /// A decimal comma.
     #[error("the decimal sign is a point")]
     Comma,
+    /// Thousands that are set apart.
+    #[error("thousands are not set apart, and the decimal sign is a point")]
+    Thousands,
+    /// A number that goes on in an odd way.
+    #[error("the number is not understood")]
+    Number,
     /// Nothing follows the number.
     #[error("no unit")]
     NoUnit,
@@ -105,8 +111,8 @@ pub fn parse(text: &str) -> Result<Measure, UnitError> {
     if rest.trim().is_empty() {
         return Err(UnitError::NoUnit);
     }
-    if rest.starts_with(',') {
-        return Err(UnitError::Comma);
+    if let Some(error) = odd_end(rest) {
+        return Err(error);
     }
     let scale = Scale::parse(rest)?;
     let si = scale.apply(number).ok_or(UnitError::NoNumber)?;
@@ -171,6 +177,19 @@ pub fn parse_gauge(text: &str) -> Option<f64> {
     let (_, absolute) = gauge(unit.trim())?;
     let number = &text[..text.len() - unit.len()];
     parse(&format!("{number} {absolute}")).ok().map(|p| p.si)
+}
+
+/// What is wrong with a number after which `rest` stands.
+fn odd_end(rest: &str) -> Option<UnitError> {
+    let mut signs = rest.chars();
+    let sign = signs.next()?;
+    let digits = signs.take_while(char::is_ascii_digit).count();
+    match (sign, digits) {
+        (',' | '\'' | '’' | '_', 3) => Some(UnitError::Thousands),
+        (',', _) => Some(UnitError::Comma),
+        ('.' | '\'' | '’' | '_', _) => Some(UnitError::Number),
+        _ => None,
+    }
 }
 
 fn is_number(text: &str) -> bool {
@@ -306,7 +325,7 @@ fn find(name: &str) -> Result<(&'static Unit, i32), UnitError> {
     }
     Err(UnitError::Unknown {
         name: name.chars().take(20).collect(),
-        nearest: nearest(name, COMMON),
+        nearest: nearest(name, COMMON.into_iter().chain(SIDES)),
     })
 }
 

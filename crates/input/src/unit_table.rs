@@ -147,8 +147,8 @@ pub(crate) fn gauge(name: &str) -> Option<(&'static str, &'static str)> {
 }
 
 /// Names that are suggested for a misspelt one.
-pub(crate) const COMMON: [&str; 41] = [
+pub(crate) const COMMON: [&str; 42] = [
     "m", "mm", "um", "cm", "kg", "g", "t", "s", "ms", "min", "h", "rad", "deg", "rpm", "Hz", "kHz",
     "N", "kN", "MN", "GN", "J", "kJ", "W", "kW", "Pa", "kPa", "MPa", "GPa", "bar", "mbar", "psi",
-    "atm", "in", "ft", "lb", "lbf", "kgf", "hp", "mil", "ksi", "%",
+    "atm", "in", "inch", "ft", "lb", "lbf", "kgf", "hp", "mil", "ksi", "%",
 ];

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Place, Problem, join};
 use crate::tree::{find, parents};
-use crate::{mistakes, reader, schema};
+use crate::{mistakes, reader, schema, yaml_repair};
 use schemars::JsonSchema;
 use serde::de::{self, Deserialize, DeserializeOwned, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Number, Value};
@@ -20,8 +20,11 @@ pub struct Document {
     pub tree: Value,
     file: Option<String>,
     places: BTreeMap<String, Places>,
-    /// Keys that stand a second time in their section, with their places; the tree has the first.
-    duplicates: Vec<Error>,
+    /// Mistakes of the text itself, with their places: lines that are not YAML, of which the tree has what was
+    /// probably meant, and keys that stand a second time in their section, of which it has the first.
+    faults: Vec<Error>,
+    /// Whether lines were passed over: a key that is missing may have stood there.
+    has_lost_lines: bool,
 }
 
 /// Where a key and its value stand.
@@ -73,33 +76,32 @@ impl Document {
     /// The content `text` of a file that messages call `file_name`.
     ///
     /// # Errors
-    /// Where the text is empty or not YAML. A key that a section has twice is found when the content is read.
+    /// Where the text is empty, or is not YAML and cannot be taken for it line by line. Lines that are not, and keys
+    /// that a section has twice, are found when the content is read.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
-        let options = serde_saphyr::options! {
-            // Deep enough for any file of ours, and no test of the stack.
-            budget: serde_saphyr::budget! { max_depth: 20 },
-            strict_booleans: true,
-            with_snippet: false,
-            reject_unsupported_tags: true,
-            // Both are reported with their dotted path, which only the tree knows.
-            duplicate_keys: DuplicateKeyPolicy::PassThrough,
-            non_finite_float_policy: NonFiniteFloatPolicy::AsString,
-        };
-        let root: Option<Spanned<Node>> = serde_saphyr::from_str_with_options(text, options)
-            .map_err(|error| syntax(&error).in_file(file_name))?;
+        let read = yaml_repair::parse(text, &nodes).map_err(|error| {
+            let each = error.into_each().into_iter();
+            let each = each.map(|error| error.in_file(file_name));
+            Error::all(each).unwrap_or_else(|| Error::new("", Problem::Empty))
+        })?;
         let mut index = Index::default();
-        let tree = match root {
+        let tree = match read.content {
             None => Value::Null,
             Some(node) => node.value.into_tree("", &mut index),
         };
+        let mut faults = read.mistakes;
         if tree.is_null() {
-            return Err(Error::new("", Problem::Empty).in_file(file_name));
+            let empty = || Error::new("", Problem::Empty);
+            let error = Error::all(faults).unwrap_or_else(empty);
+            return Err(error.in_file(file_name));
         }
+        faults.extend(index.duplicates);
         Ok(Self {
             tree,
             file: Some(file_name.to_owned()),
             places: index.places,
-            duplicates: index.duplicates,
+            faults,
+            has_lost_lines: read.has_lost_lines,
         })
     }
 
@@ -109,7 +111,8 @@ impl Document {
             tree,
             file: None,
             places: BTreeMap::new(),
-            duplicates: Vec::new(),
+            faults: Vec::new(),
+            has_lost_lines: false,
         }
     }
 
@@ -143,7 +146,7 @@ impl Document {
         mut read: impl FnMut(&Value) -> Result<T, Error>,
     ) -> Result<T, Error> {
         match read(&self.tree) {
-            Ok(content) if self.duplicates.is_empty() => Ok(content),
+            Ok(content) if self.faults.is_empty() => Ok(content),
             Err(error) if self.file.is_none() => Err(self.locate(error)),
             _ => {
                 let mut read = |tree: &Value| read(tree).map(|_| ());
@@ -161,7 +164,17 @@ impl Document {
         read: &mut dyn FnMut(&Value) -> Result<(), Error>,
     ) -> (Error, Value) {
         let (found, tree) = mistakes::all(&self.tree, schema, canonical, read);
-        let all = self.duplicates.iter().cloned().chain(found);
+        let is_lost = |error: &Error| {
+            let is_missing = matches!(error.problem(), Problem::Missing { .. });
+            self.has_lost_lines && is_missing && error.file().is_none()
+        };
+        let found = found.into_iter().filter(|error| !is_lost(error));
+        let expected = |key: &str| schema::expected(schema, &canonical(key));
+        let found = found.map(|error| {
+            let key = error.key().to_owned();
+            error.expecting(|| expected(&key))
+        });
+        let all = self.faults.iter().cloned().chain(found);
         let mut located: Vec<Error> = all.map(|error| self.locate(error)).collect();
         let here = |error: &Error| error.file() == self.file.as_deref();
         // What another file has wrong comes after what this one has.
@@ -179,9 +192,9 @@ impl Document {
         }
     }
 
-    /// Whether a section has a key twice.
-    pub(crate) fn has_duplicates(&self) -> bool {
-        !self.duplicates.is_empty()
+    /// Mistakes of the text itself.
+    pub(crate) fn faults(&self) -> &[Error] {
+        &self.faults
     }
 
     /// Where the key at a dotted path stands.
@@ -221,6 +234,21 @@ impl Document {
         let place = place.unwrap_or(Place { line: 1, column: 1 });
         error.in_file(file).at(place)
     }
+}
+
+/// The nodes of a YAML text; none of an empty one.
+fn nodes(text: &str) -> Result<Option<Spanned<Node>>, Error> {
+    let options = serde_saphyr::options! {
+        // Deep enough for any file of ours, and no test of the stack.
+        budget: serde_saphyr::budget! { max_depth: 20 },
+        strict_booleans: true,
+        with_snippet: false,
+        reject_unsupported_tags: true,
+        // Both are reported with their dotted path, which only the tree knows.
+        duplicate_keys: DuplicateKeyPolicy::PassThrough,
+        non_finite_float_policy: NonFiniteFloatPolicy::AsString,
+    };
+    serde_saphyr::from_str_with_options(text, options).map_err(|error| syntax(&error))
 }
 
 fn syntax(error: &serde_saphyr::Error) -> Error {
@@ -279,8 +307,12 @@ impl Node {
                 items.map(item).collect()
             }
             Self::Section(entries) => {
-                let mut section = Map::new();
+                let mut section: Map<String, Value> = Map::new();
                 for (key, node) in entries {
+                    if let Some(whole) = cut_by_comma(&section, &key.value, &node.value) {
+                        section.extend([whole]);
+                        continue;
+                    }
                     let below = join(path, &key.value);
                     let places = Places {
                         key: place(&key.referenced),
@@ -298,6 +330,16 @@ impl Node {
             }
         }
     }
+}
+
+/// A number that its decimal comma has cut in two, whose end stands as a key without a value: the last entry of
+/// `section` as it was meant. No key of ours begins with a digit.
+fn cut_by_comma(section: &Map<String, Value>, key: &str, node: &Node) -> Option<(String, Value)> {
+    let (last, number) = section.iter().next_back()?;
+    let is_end =
+        matches!(node, Node::Scalar(Value::Null)) && key.starts_with(|c: char| c.is_ascii_digit());
+    let is_whole = number.is_i64() || number.is_u64();
+    (is_end && is_whole).then(|| (last.clone(), format!("{number},{key}").into()))
 }
 
 impl<'de> Deserialize<'de> for Node {

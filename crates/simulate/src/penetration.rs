@@ -37,8 +37,8 @@ impl std::fmt::Display for Penetration {
         write!(
             f,
             "{}: the surfaces penetrate each other by {:.3} µm, {:.2} times the clearance of {:.3} µm; the \
-             contact law does not hold there: enter a stiffer contact (stiffness: {{from: conformal}}, or a \
-             measured value), or a load that the joint can bear",
+             contact law does not hold there: enter a stiffer contact (materials: {{pin: steel, bush: bronze}}, or a \
+             measured stiffness), or a load that the joint can bear",
             self.joint,
             um(self.deepest),
             self.deepest / self.clearance,

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::bundle::AllowOutside;
+use crate::told::Told;
 use ::calibrate::Existing;
 use clap::{Args, ValueEnum};
 use input::bundle::Bundle;
@@ -70,6 +71,8 @@ pub struct Arguments {
     /// Replace a calibration that is there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    told: Told,
 }
 
 /// How the best fit is searched.
@@ -176,6 +179,10 @@ impl Arguments {
 
     pub(super) fn allow_outside(&self) -> bool {
         self.outside.allow_outside
+    }
+
+    pub(super) fn told(&self) -> Told {
+        self.told
     }
 
     pub(super) fn out(&self) -> &Path {

@@ -33,12 +33,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out();
     let prepared = prepare(&settings, out, arguments.existing()).map_err(Failure::input)?;
     let done = finish(prepared, &cancel)?;
-    if done.reused {
-        println!("nothing has changed since this was found:");
-    }
-    summary::print(&done.results);
-    println!("{}", done.machine.display());
-    println!("{}", out.join(report::PAGE).display());
+    arguments.told().tell(&done.results, |results| {
+        if done.reused {
+            println!("nothing has changed since this was found:");
+        }
+        summary::print(results);
+        println!("{}", done.machine.display());
+        println!("{}", out.join(report::PAGE).display());
+    })?;
     if !done.results.complete {
         return Err(Failure::interrupted(format!(
             "stopped before the end: {} has the best so far; --resume continues from there",

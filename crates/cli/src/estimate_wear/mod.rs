@@ -4,6 +4,7 @@ mod summary;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::progress::Bar;
+use crate::told::Told;
 use crate::{Failure, interrupt, report};
 use ::calibrate::Settings;
 use ::calibrate::wear::{Asked, WEAR, prepare};
@@ -44,6 +45,8 @@ pub struct Arguments {
     /// Replace an earlier estimation
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    told: Told,
 }
 
 /// A number above 1.
@@ -90,9 +93,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .finish(&mut Bar::new(&cancel))
         .map_err(Failure::work)?;
     let page = report::write_wear(out, &out.join(report::PAGE))?;
-    summary::print(&done.results);
-    println!("{}", done.machine.display());
-    println!("{}", page.display());
+    arguments.told.tell(&done.results, |results| {
+        summary::print(results);
+        println!("{}", done.machine.display());
+        println!("{}", page.display());
+    })?;
     if !done.results.complete {
         return Err(Failure::interrupted(format!(
             "stopped before the end: {} has the best so far",

@@ -6,6 +6,7 @@ mod summary;
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
 use crate::output::hint;
+use crate::told::Told;
 use crate::{Failure, interrupt, report};
 use clap::Args;
 use gap::folder::MACHINE;
@@ -54,6 +55,8 @@ pub struct Arguments {
     /// Replace an explanation that is there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    told: Told,
 }
 
 /// Explains the gap and prints the results.
@@ -87,9 +90,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
     };
     let results = into_folder(&asked, out, &cancel)?;
-    summary::print(&results);
-    println!("{}", out.join(MACHINE).display());
-    println!("{}", out.join(report::PAGE).display());
+    arguments.told.tell(&results, |results| {
+        summary::print(results);
+        println!("{}", out.join(MACHINE).display());
+        println!("{}", out.join(report::PAGE).display());
+    })?;
     hint(format_args!(
         "crosshead simulate {}",
         out.join(MACHINE).display()

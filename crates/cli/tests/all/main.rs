@@ -16,6 +16,7 @@ mod features_shaft;
 mod first_look;
 mod hidden_effects;
 mod hostile;
+mod json;
 mod one_run;
 mod output;
 mod own_machine;
@@ -31,3 +32,4 @@ mod transcripts;
 #[path = "../../../../tests/readers/venv.rs"]
 mod venv;
 mod verdicts;
+mod wrong_files;

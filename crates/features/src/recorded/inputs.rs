@@ -88,8 +88,10 @@ pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
         if Bundle::is_at(path) {
             let mut bundle = Bundle::read(path)?;
             bundle.allow_outside = said.allow_outside;
-            for i in 0..bundle.runs.len() {
-                inputs.push(of_run(&bundle, i, said)?);
+            for (i, run) in bundle.runs.iter().enumerate() {
+                for file in 0..run.recordings().count() {
+                    inputs.push(of_run(&bundle, i, file, said)?);
+                }
             }
             continue;
         }
@@ -100,9 +102,9 @@ pub fn inputs(paths: &[PathBuf], said: &Said) -> Result<Vec<Input>, Error> {
         };
         for path in files {
             let input = match beside.run_of(&path)? {
-                Some((bundle, i)) => Input {
+                Some((bundle, i, of)) => Input {
                     path,
-                    ..of_run(bundle, i, said)?
+                    ..of_run(bundle, i, of, said)?
                 },
                 None => Input {
                     path,
@@ -125,7 +127,7 @@ struct Beside(BTreeMap<PathBuf, Option<Bundle>>);
 
 impl Beside {
     /// The run of a `recordings.yaml` in the file's folder whose recording it is.
-    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize)>, Error> {
+    fn run_of(&mut self, file: &Path) -> Result<Option<(&Bundle, usize, usize)>, Error> {
         let Ok(file) = file.canonicalize() else {
             return Ok(None);
         };
@@ -139,12 +141,16 @@ impl Beside {
         }
         let bundle = self.0.get(folder).and_then(Option::as_ref);
         Ok(bundle.and_then(|bundle| {
-            let is = |run: &Run| {
-                let path = bundle.path_of(run).ok();
+            let is = |run: &Run, of: usize| {
+                let path = bundle.path_of_file(run, of).ok();
                 path.and_then(|path| path.canonicalize().ok())
                     .is_some_and(|path| path == file)
             };
-            Some((bundle, bundle.runs.iter().position(is)?))
+            let mut found = bundle.runs.iter().enumerate().filter_map(|(i, run)| {
+                let of = (0..run.recordings().count()).find(|of| is(run, *of))?;
+                Some((bundle, i, of))
+            });
+            found.next()
         }))
     }
 }
@@ -169,9 +175,14 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(files)
 }
 
-fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
+/// Recording `of` of the run `index` of a bundle, with the channels that stand in it.
+fn of_run(bundle: &Bundle, index: usize, of: usize, said: &Said) -> Result<Input, Error> {
     let run = &bundle.runs[index];
     let meanings = bundle.meanings(index, &bundle.machine)?;
+    let file = run
+        .recordings()
+        .nth(of)
+        .map_or(run.file.as_path(), |(file, _)| file);
     let rate = run.sample_rate_hz.map(|rate| rate.get());
     let wrong = |key: &str, expected: String| {
         let error = input::Error::clash(format!("runs.{index}.{key}"), expected);
@@ -185,7 +196,10 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
             format!("the {asked} Hz of --sample-rate"),
         ));
     }
-    let listed = || run.channels.iter().zip(&meanings);
+    let listed = || {
+        run.channels_of(file)
+            .map(|(i, channel)| (channel, &meanings[i]))
+    };
     let asked = said.crank.bare_column().into_iter();
     let references = listed()
         .filter(|(_, meaning)| matches!(meaning, Meaning::CrankAngle(_) | Meaning::Tacho { .. }));
@@ -200,7 +214,7 @@ fn of_run(bundle: &Bundle, index: usize, said: &Said) -> Result<Input, Error> {
     options.sample_rate_hz = rate.or(options.sample_rate_hz);
     let speed = run.speed_rpm.map(|speed| speed.get());
     Ok(Input {
-        path: bundle.path_of(run)?,
+        path: bundle.path_of_file(run, of)?,
         options,
         speed_rpm: speed.or(said.speed_rpm),
         labels: labels(run),

@@ -63,6 +63,7 @@ fn by_name(name: &str, throws: &[&str]) -> Option<String> {
     let channel = |column: String| Channel {
         name: name.to_owned(),
         column,
+        file: None,
         unit: "Pa".to_owned(),
         offset: None,
         crank_angle_rad: None,

@@ -1,5 +1,6 @@
 //! Contact and friction laws of a joint.
 
+use super::materials::{self, MATERIALS_KEY};
 use super::relation::{RelationSection, Stated};
 use super::surfaces::Surfaces;
 use super::value::{self, Value};
@@ -47,6 +48,8 @@ const RELATION: &str = "relation";
 const AT_CLEARANCE: &str = "at_clearance";
 /// The key that most have.
 const STIFFNESS: &str = "stiffness";
+/// The key of the law `cylinder` in its place.
+const MODULUS: &str = "modulus";
 
 /// Names of the laws, and the keys of each.
 static NAMES: LazyLock<Vec<&'static str>> =
@@ -57,7 +60,8 @@ static KEYS: LazyLock<Vec<Vec<&'static str>>> = LazyLock::new(|| {
         let own = declared.parameters.iter().map(|parameter| parameter.key);
         let stiffness = declared.stiffness.map(|_| STIFFNESS);
         let keys = stiffness.into_iter().chain(own);
-        keys.chain([RELATION, AT_CLEARANCE]).collect()
+        keys.chain([MATERIALS_KEY, RELATION, AT_CLEARANCE])
+            .collect()
     };
     CONTACT_LAWS.iter().map(keys).collect()
 });
@@ -120,6 +124,10 @@ impl<'de> Visitor<'de> for Keys {
                 (None, STIFFNESS) if declared.stiffness.is_some() => {
                     stiffness = Some(map.next_value()?);
                 }
+                (None, MATERIALS_KEY) => {
+                    let expected = "a joint of a machine file beside it";
+                    return Err(A::Error::custom(expected));
+                }
                 (None, RELATION) => relation = map.next_value()?,
                 (None, AT_CLEARANCE) => at_clearance = map.next_value()?,
                 (None, _) => return Err(A::Error::unknown_field(&key, &KEYS[self.0])),
@@ -163,6 +171,8 @@ impl JsonSchema for Contact {
 fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Schema {
     let mut required: Vec<&str> = if is_default { vec![] } else { vec!["law"] };
     let mut properties = Map::new();
+    // The key in whose place the materials may stand.
+    let mut stands_for = None;
     properties.insert(
         "law".to_owned(),
         json!({"type": "string", "const": law.name}),
@@ -177,7 +187,7 @@ fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Sc
             words,
             generator.subschema_for::<StiffnessSource>(),
         );
-        required.push(STIFFNESS);
+        stands_for = Some(STIFFNESS);
     }
     for parameter in law.declaration.parameters {
         let mut schema = value::schema(parameter.declared(), generator);
@@ -185,9 +195,15 @@ fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Sc
             schema.insert("default".to_owned(), default.into());
         }
         add(parameter.key, parameter.words, schema);
-        if parameter.default.is_none() {
-            required.push(parameter.key);
+        match (parameter.default, parameter.key) {
+            (None, MODULUS) => stands_for = Some(MODULUS),
+            (None, key) => required.push(key),
+            (Some(_), _) => {}
         }
+    }
+    if stands_for.is_some() {
+        let schema = generator.subschema_for::<materials::Materials>();
+        add(MATERIALS_KEY, materials::WORDS, schema);
     }
     add(
         RELATION,
@@ -200,13 +216,18 @@ fn section(law: &Entry, is_default: bool, generator: &mut SchemaGenerator) -> Sc
         "Radial clearance at which the parameters are as they stand here; needed with a relation.",
         generator.subschema_for::<Positive<Clearance>>(),
     );
-    json_schema!({
+    let mut schema = json_schema!({
         "description": law.declaration.about,
         "type": "object",
         "properties": properties,
         "required": required,
         "additionalProperties": false,
-    })
+    });
+    if let Some(key) = stands_for {
+        let one = json!([{"required": [key]}, {"required": [MATERIALS_KEY]}]);
+        schema.insert("oneOf".to_owned(), one);
+    }
+    schema
 }
 
 /// A stiffness N/m^n with the n of its unit.

@@ -8,6 +8,7 @@ mod ambient;
 mod contact;
 pub(crate) mod effects;
 mod joints;
+mod materials;
 mod normal_clearance;
 mod relation;
 mod resolved;
@@ -74,7 +75,7 @@ impl MachineFile {
     /// As [`read`].
     pub fn from_document(document: Document) -> Result<Self, Error> {
         let Parts { written, sections } = match Parts::read(&document.tree) {
-            Ok(parts) if !document.has_duplicates() => parts,
+            Ok(parts) if document.faults().is_empty() => parts,
             // A file with a wrong key may also have values that do not go together.
             _ => all(&document, |tree| {
                 let parts = Parts::read(tree)?;
@@ -161,6 +162,7 @@ pub(crate) fn canonical(tree: &Value) -> Result<Value, Error> {
     let mut mistakes = Mistakes::default();
     synonyms::replace(&mut written, &mut mistakes);
     ambient::make_absolute(&mut written);
+    materials::replace(&mut written, &mut mistakes);
     mistakes.into_error()?;
     Ok(written.tree)
 }
@@ -183,6 +185,7 @@ impl Parts {
         let mut mistakes = Mistakes::default();
         synonyms::replace(&mut written, &mut mistakes);
         ambient::make_absolute(&mut written);
+        materials::replace(&mut written, &mut mistakes);
         mistakes.into_error()?;
         let spread = shared::spread(&written.tree);
         match reader::read(&spread) {

@@ -30,6 +30,7 @@ pub(super) struct Crank {
     mass: Option<Positive<Mass>>,
     /// Distance of their centre of mass from the shaft's axis, toward the crank pin.
     #[serde(default)]
+    #[schemars(example = "0.5 mm")]
     eccentricity: Option<NonNegative<Length>>,
 }
 
@@ -157,12 +158,14 @@ pub(super) struct Cylinder {
     suction: Positive<Pressure>,
     /// Discharge pressure, absolute.
     discharge: Positive<Pressure>,
-    /// Pressure behind a single-acting piston, and on the end of a double-acting one's rod.
+    /// Pressure behind a single-acting piston, and on the end of a double-acting one's rod: the ambient one, 1.013 bar,
+    /// where that side is open.
     back: NonNegative<Pressure>,
     /// Polytropic exponent of the gas.
     exponent: Number<AboveZero>,
     /// Polytropic exponent while the gas in the clearance expands; `exponent` where it is left out.
     #[serde(default)]
+    #[schemars(example = 1.3)]
     expansion_exponent: Option<Number<AboveZero>>,
     /// Gap between piston and head at top dead centre, along the stroke. The clearance volume of a data sheet, in % of
     /// the swept volume, may stand in its place as `clearance_volume`: the gap is that share of the stroke.

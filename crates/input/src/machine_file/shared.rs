@@ -78,6 +78,11 @@ pub(super) fn written_key<'a>(tree: &Value, key: &'a str) -> &'a str {
         return key;
     };
     let throw = &key[..key.len() - rest.len()];
+    // What is no section that the throws share is the throw's own, as its name is.
+    let top = rest.split('.').next().unwrap_or(rest);
+    if top != "joints" && !SECTIONS.contains(&top) {
+        return key;
+    }
     // The nearest section that is there, in the throw or else in what the throws share.
     let section = parents(rest).find(|section| {
         let own = format!("{throw}{section}");

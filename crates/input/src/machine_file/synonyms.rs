@@ -191,7 +191,7 @@ pub(super) fn replace(written: &mut Written, mistakes: &mut Mistakes) {
 }
 
 /// The top, and each throw.
-fn places(tree: &Value) -> Vec<String> {
+pub(super) fn places(tree: &Value) -> Vec<String> {
     let throws = tree["throws"].as_array().map_or(0, Vec::len);
     let throws = (0..throws).map(|i| format!("throws.{i}"));
     std::iter::once(String::new()).chain(throws).collect()

@@ -21,6 +21,7 @@ pub(crate) struct Sections {
     pub(super) speed: Positive<Speed>,
     /// Ambient pressure at the machine, from which its gauge pressures (`20 barg`, `300 psig`) count.
     #[serde(default, rename = "ambient_pressure")]
+    #[schemars(example = "1.013 bar")]
     _ambient_pressure: Option<Positive<Pressure>>,
     /// Gravity in the plane of motion.
     #[serde(default)]
@@ -73,6 +74,7 @@ struct ThrowSection {
     crank_pin_angle: Option<Quantity<Angle>>,
     /// Crank radius, where it differs from that of the crank.
     #[serde(default)]
+    #[schemars(example = "110 mm")]
     crank_radius: Option<Positive<Length>>,
     /// The connecting rod.
     rod: Rod,

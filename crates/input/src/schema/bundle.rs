@@ -51,6 +51,7 @@ pub fn bundle_schema() -> Value {
                     "properties": {
                         "id": text_of("Name of the run."),
                         "file": text_of("Its recording, a path from the folder on."),
+                        "files": files(),
                         "speed_rpm": above_zero("Measured mean speed."),
                         "speed_reference_rpm": above_zero(
                             "Speed at which the motor of a free crank gives its mean torque."),
@@ -61,7 +62,8 @@ pub fn bundle_schema() -> Value {
                         "revolutions": above_zero("Revolutions that the recording covers."),
                         "channels": channels(),
                     },
-                    "required": ["id", "file", "channels"],
+                    "required": ["id", "channels"],
+                    "oneOf": [{"required": ["file"]}, {"required": ["files"]}],
                 },
             },
         },
@@ -117,6 +119,29 @@ fn optional(schema: Value) -> Value {
     }
 }
 
+fn files() -> Value {
+    let file = "The recording, a path from the folder on.";
+    json!({
+        "description": "Its recordings where it has several, in the place of `file`: each of them a path, or a \
+            section with `file` and `start_s`. All have one sample rate. They are aligned by their times; a file \
+            without a column of time needs start_s.",
+        "type": "array",
+        "minItems": 1,
+        "items": {"anyOf": [
+            {"type": "string"},
+            {
+                "type": "object",
+                "properties": {
+                    "file": text_of(file),
+                    "start_s": number("Time of its first sample on the clock that the files of the run share, s."),
+                },
+                "required": ["file"],
+                "additionalProperties": false,
+            },
+        ]},
+    })
+}
+
 fn channels() -> Value {
     json!({
         "description": "The channels.",
@@ -127,7 +152,8 @@ fn channels() -> Value {
             "properties": {
                 "name": text_of("What it is, in words."),
                 "column": text_of("Its column in the file."),
-                "unit": text_of("Its unit, e.g. `m/s2`."),
+                "unit": {"description": "Its unit, e.g. `m/s2`.", "type": "string", "examples": ["m/s2"]},
+                "file": text_of("Its file, where the run has several."),
                 "offset": number(
                     "Added to its numbers, in its unit: the ambient pressure of a gauge."),
                 "crank_angle_rad": number("Crank angle at which the pulse of a tacho comes."),

@@ -15,3 +15,8 @@ pub use generate::generate;
 pub use machine::machine_schema;
 pub(crate) use machine::{MACHINE, machine};
 pub(crate) use node::Node;
+
+/// What belongs at `key` of a file whose form is that of `schema`, in words.
+pub(crate) fn expected(schema: &serde_json::Value, key: &str) -> Option<String> {
+    Node::top(schema).walk(key)?.expected()
+}

@@ -43,6 +43,11 @@ impl<'a> Node<'a> {
         keys
     }
 
+    /// Whether `key` is one of the keys that may stand here.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.sections().any(|section| section.contains_key(key))
+    }
+
     /// What may stand at `key`.
     pub(crate) fn key(&self, key: &str) -> Option<Self> {
         let mut schemas: Vec<&Value> = self.sections().filter_map(|s| s.get(key)).collect();
@@ -88,6 +93,15 @@ impl<'a> Node<'a> {
         words.next().map(str::to_owned)
     }
 
+    /// A usual value of the key `key`: its own example, or else that of its kind.
+    pub(crate) fn usual(&self, key: &str) -> Option<Value> {
+        let mut own = self
+            .sections()
+            .filter_map(|s| s.get(key)?["examples"].get(0));
+        let of_kind = || self.key(key)?.example().map(Value::from);
+        own.next().cloned().or_else(of_kind)
+    }
+
     /// Whether all sections that may stand here have the same keys.
     pub(crate) fn is_of_one_kind(&self) -> bool {
         self.sections().count() == 1
@@ -125,7 +139,10 @@ impl<'a> Node<'a> {
             "array" => "a list".to_owned(),
             "number" => "a plain number".to_owned(),
             "integer" => "a whole number".to_owned(),
-            _ => "text".to_owned(),
+            _ => match self.example() {
+                Some(example) => format!("text, e.g. '{example}'"),
+                None => "text".to_owned(),
+            },
         })
     }
 

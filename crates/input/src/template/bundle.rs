@@ -7,7 +7,9 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 const HEAD: &str = "\
-The recordings of a machine: fill in one entry of `runs` for each file, and save this as recordings.yaml beside them.
+The recordings of a machine: fill in one entry of `runs` for each run, and save this as recordings.yaml beside the files.
+Files are CSV, WAV, MAT, Parquet or MCAP. A run recorded in several has `files: [acceleration.csv, pressure.csv]` in the \
+place of `file`, and each channel its `file`.
 `crosshead check FOLDER` finds all mistakes at once.
 The machine's values stand in a file of their own (--machine), or here in a section `machine` with the keys of one.";
 
@@ -25,7 +27,7 @@ pub fn bundle(files: &[String]) -> Result<String, Error> {
         schema: &bundle_schema(),
         head: HEAD,
         note: &note,
-        shows_optional: false,
+        optional: &|_| false,
     })
 }
 
@@ -55,12 +57,18 @@ fn note(path: &str) -> Option<String> {
             "Absolute pressures in the suction and the discharge line during the run, Pa. Of a machine with several \
              throws: a section of these for each throw, by its name."
         }
+        "runs.0.channels.0.column" => {
+            "As the first line of the file has it, with or without its unit in brackets."
+        }
         "runs.0.joints" => {
             "What you believe: half the difference of the diameters, m. A joint that is left out is as the machine \
              has it."
         }
         "runs.0.channels" => {
-            "Columns that are left out are not used. One of acceleration and pressure is needed."
+            "Columns that are left out are not used. One of acceleration and pressure is needed. Of a machine with \
+             several throws the name begins with that of the throw: `throw1 cylinder pressure`. A gauge pressure (barg, \
+             psig) needs `offset`, the ambient pressure in the same unit. A pulse once per revolution is a channel \
+             `tacho`."
         }
         _ => return None,
     };

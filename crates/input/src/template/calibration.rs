@@ -35,6 +35,6 @@ pub fn calibration(folder: &str) -> Result<String, Error> {
         schema: &schema(),
         head: HEAD,
         note: &|_| None,
-        shows_optional: true,
+        optional: &|_| true,
     })
 }

@@ -19,8 +19,8 @@ pub struct Commented<'a> {
     pub head: &'a str,
     /// What is said of a key beside the words of its schema.
     pub note: &'a dyn Fn(&str) -> Option<String>,
-    /// Whether keys that the tree does not have are shown, commented out.
-    pub shows_optional: bool,
+    /// Which keys that the tree does not have are shown, commented out, by their path.
+    pub optional: &'a dyn Fn(&str) -> bool,
 }
 
 /// The content as YAML with comments; reading it gives the same content. The same words are not said twice.
@@ -64,10 +64,7 @@ impl Writer<'_> {
             self.say(&below, path, key, indent, lines);
             self.entry(key, value, &below, indent, lines)?;
         }
-        if self.file.shows_optional {
-            self.others(section, path, indent, lines);
-        }
-        Ok(())
+        self.others(section, path, indent, lines)
     }
 
     fn entry(
@@ -146,17 +143,17 @@ impl Writer<'_> {
         path: &str,
         indent: usize,
         lines: &mut Vec<String>,
-    ) {
+    ) -> Result<(), Error> {
         let Some(place) = Node::top(self.file.schema).walk_or_top(path) else {
-            return;
+            return Ok(());
         };
         let is_of_one_kind = place.is_of_one_kind();
         for key in place
             .keys()
             .into_iter()
-            .filter(|key| !section.contains_key(*key))
+            .filter(|key| !section.contains_key(*key) && (self.file.optional)(&join(path, key)))
         {
-            let example = place.key(key).and_then(|place| place.example());
+            let example = place.usual(key);
             let words = place.words(key);
             if let (true, Some(example), Some(words)) = (is_of_one_kind, example, words)
                 && self.said.insert(words.clone())
@@ -165,9 +162,11 @@ impl Writer<'_> {
                     lines.push(String::new());
                 }
                 lines.push(comment(indent, &words));
+                let example = flow(&example)?;
                 lines.push(format!("{}# {key}: {example}", " ".repeat(indent)));
             }
         }
+        Ok(())
     }
 }
 

@@ -60,8 +60,14 @@ pub fn machine(asked: &Asked) -> Result<String, Error> {
         schema: &MACHINE,
         head: HEAD,
         note: &note,
-        shows_optional: true,
+        optional: &|key| !is_of_each_throw(&tree, key),
     })
+}
+
+/// Whether every throw has the key of its own, so that nothing of it stands at the top.
+fn is_of_each_throw(tree: &Value, key: &str) -> bool {
+    let throws = tree["throws"].as_array();
+    throws.is_some_and(|throws| throws.iter().all(|throw| find(throw, key).is_some()))
 }
 
 /// Names that data sheets have for the key at `path`.

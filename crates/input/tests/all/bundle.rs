@@ -75,7 +75,7 @@ fn mistakes_are_named_with_their_line() {
     for (text, expected) in [
         (
             "runs: []\n".to_owned(),
-            "recordings.yaml:1:7: runs: found a list, expected a list of one run or more",
+            "recordings.yaml:1:7: runs: found an empty list, expected a list of one run or more",
         ),
         ("machine: {}\n".to_owned(), "runs: missing"),
         (

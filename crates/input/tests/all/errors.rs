@@ -198,9 +198,9 @@ messages! {
     misspelt_drive: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm, drive: fre}",
         "m.yaml:3:32: crank.drive: found 'fre', expected one of given, free; did you mean 'free'?";
     tab_for_indentation: "  mass: 12 kg" => "\tmass: 12 kg",
-        "m.yaml:5:11: not valid YAML: while scanning a plain scalar, found a tab";
+        "m.yaml:6:1: not valid YAML: indented by a tab; expected spaces";
     unclosed_bracket: "crank: {radius: 120 mm}" => "crank: {radius: 120 mm",
-        "m.yaml:4:4: not valid YAML: while parsing a flow mapping, did not find expected ',' or '}'";
+        "m.yaml:3:8: not valid YAML: the bracket '{' is not closed";
 }
 
 /// The keys of all mistakes in `text`.

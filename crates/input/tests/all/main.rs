@@ -7,6 +7,7 @@ mod data_sheet;
 mod effects;
 mod errors;
 mod machine_file;
+mod materials;
 mod quantities;
 mod schema;
 mod tables;

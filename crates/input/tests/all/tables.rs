@@ -2,6 +2,8 @@
 
 use input::effects::{CATALOGUE, Entry};
 use mechanism::joints::contact::CONTACT_LAWS;
+use mechanism::joints::materials::MATERIALS;
+use serde_json::Value;
 use simulate::sensors::SENSORS;
 use std::fs;
 use std::path::Path;
@@ -70,6 +72,51 @@ fn the_table_of_synonyms_is_current() {
         table.push_str(&format!("| `{key}` | {} | {states} |\n", names.join(", ")));
     }
     check("crates/input/README.md", "synonyms", &table);
+}
+
+#[test]
+fn the_table_of_materials_is_current() {
+    let mut table = String::from("| name | material | E | ν |\n|---|---|---|---|\n");
+    for entry in MATERIALS {
+        let of = entry.material;
+        let modulus = of.youngs_modulus / 1e9;
+        table.push_str(&format!(
+            "| `{}` | {} | {modulus} GPa | {} |\n",
+            entry.name, entry.words, of.poisson_ratio
+        ));
+    }
+    check("crates/input/README.md", "materials", &table);
+}
+
+/// Every key at the top of the four files is explained.
+#[test]
+fn the_tables_of_keys_are_current() {
+    for (file, schema) in [
+        ("machine", "machine"),
+        ("sweep", "sweep"),
+        ("recordings", "bundle"),
+        ("calibration", "calibration"),
+    ] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("../../data/schema")
+            .join(format!("{schema}.schema.json"));
+        let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+        let mut table = String::from("| key | what it is |\n|---|---|\n");
+        for (key, property) in schema["properties"].as_object().unwrap() {
+            let words = property["description"].as_str();
+            let words = words.unwrap_or_else(|| panic!("{file}.yaml: {key} is not explained"));
+            let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+            let needed = schema["required"].as_array().into_iter().flatten();
+            let is_needed = needed.into_iter().any(|needed| needed == key);
+            let mark = if is_needed { " (required)" } else { "" };
+            table.push_str(&format!("| `{key}`{mark} | {words} |\n"));
+        }
+        check(
+            "crates/input/README.md",
+            &format!("keys of {file}.yaml"),
+            &table,
+        );
+    }
 }
 
 fn row(entry: &Entry) -> String {

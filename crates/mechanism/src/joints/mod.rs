@@ -5,5 +5,6 @@ pub mod contact;
 pub(crate) mod contact_guards;
 pub mod friction;
 pub mod guide;
+pub mod materials;
 pub mod revolute;
 pub mod stiffness;

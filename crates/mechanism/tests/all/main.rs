@@ -11,6 +11,7 @@ mod energy;
 mod guide;
 mod ideal;
 mod joint_models;
+mod materials;
 mod momentum;
 mod plain;
 mod ravn;

@@ -71,6 +71,7 @@ pub struct Recording {
     path: PathBuf,
     labels: Vec<Value>,
     sample_rate_hz: Option<f64>,
+    start_s: Option<f64>,
     clock: Option<Clock>,
     samples: Box<dyn Samples>,
     expansion: Expansion,
@@ -100,6 +101,11 @@ pub(crate) trait Samples: Send {
         times: &mut Vec<f64>,
         channels: &mut [Vec<f32>],
     ) -> Result<usize, Error>;
+
+    /// The time from which times count once some were read, s since 1970 or since midnight; 0 where they are numbers.
+    fn origin_s(&self) -> f64 {
+        0.0
+    }
 }
 
 impl MeasuredFile {
@@ -176,6 +182,7 @@ impl Recording {
             path: path.to_owned(),
             labels,
             sample_rate_hz: stated_hz,
+            start_s: None,
             clock: None,
             samples: Box::new(samples),
             expansion: Expansion::new(path),
@@ -194,6 +201,8 @@ impl Recording {
             if recording.times.is_empty() {
                 return Err(Error::damaged("a recording", path, "it has no samples"));
             }
+            let first = recording.times[0] * time.seconds_per_unit;
+            recording.start_s = Some(recording.samples.origin_s() + first);
             let clock = Clock::new(path, time, &recording.times, stated_hz)?;
             recording.sample_rate_hz = Some(clock.sample_rate_hz());
             recording.clock = Some(clock);
@@ -209,6 +218,12 @@ impl Recording {
     /// Samples per second, if the file or its reader knows it.
     pub fn sample_rate_hz(&self) -> Option<f64> {
         self.sample_rate_hz
+    }
+
+    /// Time of the first sample by the file's column of time, s: since 1970 where it holds dates, since midnight where
+    /// it holds times of day.
+    pub fn start_s(&self) -> Option<f64> {
+        self.start_s
     }
 
     /// Some of the next samples of every channel, at least one where there is one; they are still to

@@ -1,9 +1,10 @@
 //! What can be wrong with a file of a dataset.
 
+use serde::Serialize;
 use std::fmt::{self, Display};
 
 /// A damaged file of a dataset.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
     /// The file, within the dataset.
     pub path: String,
@@ -28,7 +29,8 @@ impl Display for Fault {
 }
 
 /// What is wrong with a file of a dataset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[serde(rename_all = "snake_case")]
 pub enum Damage {
     /// It is not there.
     #[error("is missing")]

@@ -6,6 +6,7 @@ use std::path::{Component, Path};
 
 use recordings::formats::parquet::rows_of_footer;
 use recordings::{FileEntry, Manifest};
+use serde::Serialize;
 
 use super::check::{Check, damage_of};
 use super::fault::{Damage, Fault};
@@ -16,7 +17,7 @@ use crate::Error;
 use crate::in_order::{in_order, pool};
 
 /// What [`verify`] found.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Verified {
     /// Files that were compared, with the manifest and `SHA256SUMS`.
     pub files: usize,

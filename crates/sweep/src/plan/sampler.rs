@@ -178,10 +178,11 @@ pub(super) fn gaussian(
 }
 
 fn ascending(ends: &[Amount; 2]) -> Result<[f64; 2], Error> {
+    same_dimension(ends)?;
     let [low, high] = ends.map(|end| end.si);
     if low > high {
         let expected = format_args!("at least the lower end, {}", text(&ends[0]));
-        return Err(Error::found("1", text(&ends[1]), expected));
+        return Err(Error::clash("1", expected));
     }
     Ok([low, high])
 }

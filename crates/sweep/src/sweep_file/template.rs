@@ -52,7 +52,7 @@ pub fn template(path: &str, machine: &Resolved, tree: &Value) -> Result<String, 
         schema: &schema(),
         head: HEAD,
         note: &note,
-        shows_optional: true,
+        optional: &|_| true,
     })
 }
 

@@ -19,7 +19,7 @@ parameters! {
 
 contact_law! {
     /// K δⁿ, without loss (Hertz 1881).
-    Hertz, stiffness "Stiffness K, or what it follows from." {
+    Hertz, stiffness "Stiffness K. Where only the materials are known, `materials: {pin: steel, bush: bronze}` stands in its place." {
         /// Exponent n of the penetration; 1.5 where it is left out.
         exponent: Number(FromOne), or 1.5;
     }

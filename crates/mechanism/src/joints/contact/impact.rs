@@ -31,10 +31,10 @@ parameters! {
 
 contact_law! {
     /// IMPACT of ADAMS (the default): K δⁿ + STEP(δ, 0, 0, depth, damping) dδ/dt.
-    Impact, stiffness "Stiffness K, or what it follows from." {
+    Impact, stiffness "Stiffness K. Where only the materials are known, `materials: {pin: steel, bush: bronze}` stands in its place." {
         /// Exponent n of the penetration; 1.5 where it is left out.
         exponent: Number(FromOne), or 1.5;
-        /// Greatest damping.
+        /// Greatest damping. No data sheet has it: `crosshead calibrate` estimates it.
         damping: Damping(FromZero);
         /// Penetration at which the damping is full.
         depth: Length(AboveZero);

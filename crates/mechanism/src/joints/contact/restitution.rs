@@ -76,7 +76,7 @@ macro_rules! restitution_law {
 
         super::contact_law! {
             $(#[doc = $about])+
-            $name, stiffness "Stiffness K, or what it follows from." {
+            $name, stiffness "Stiffness K. Where only the materials are known, `materials: {pin: steel, bush: bronze}` stands in its place." {
                 /// Exponent n of the penetration; 1.5 where it is left out.
                 exponent: Number(FromOne), or 1.5;
                 /// Coefficient of restitution.

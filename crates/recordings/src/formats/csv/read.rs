@@ -163,6 +163,11 @@ fn seconds(cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
 }
 
 impl CsvSamples {
+    /// The first date, s.
+    fn first_date_s(&self) -> f64 {
+        self.start.map_or(0.0, |ns| ns as f64 * 1e-9)
+    }
+
     fn row(&mut self, times: &mut Vec<f64>, channels: &mut [Vec<f32>]) -> Result<(), Error> {
         let mut found = 0;
         for cell in cells(&self.lines.line, self.separator) {
@@ -205,6 +210,10 @@ impl CsvSamples {
 }
 
 impl Samples for CsvSamples {
+    fn origin_s(&self) -> f64 {
+        self.first_date_s()
+    }
+
     fn read(
         &mut self,
         most: usize,

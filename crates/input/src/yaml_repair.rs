@@ -1,0 +1,304 @@
+//! Text that is nearly YAML becomes YAML, line by line.
+//!
+//! A parser stops at the first line that it cannot read. Here several repairs of that line, and of the one before
+//! it, are tried: spaces for tabs, `key: value` for `key = value`, a closing bracket, the indentation of the line
+//! above, and at last no line at all. The repair after which the parser gets furthest is kept. What else is wrong
+//! in the file is then found in the same run.
+
+use crate::error::{Error, Place, Problem};
+
+/// Lines that are repaired at most.
+const REPAIRS: usize = 20;
+
+/// Bytes that all attempts together parse at most, so that a large file takes no longer.
+const PARSED: usize = 10_000_000;
+
+/// Spaces of an indentation where no line of a file shows how wide it is.
+const WIDTH: usize = 2;
+
+/// What became of a text.
+pub(crate) struct Repaired<T> {
+    /// What the parser made of it in the end.
+    pub(crate) content: T,
+    /// A mistake for each repair.
+    pub(crate) mistakes: Vec<Error>,
+    /// Whether lines are gone, and with them keys that somebody wrote.
+    pub(crate) has_lost_lines: bool,
+}
+
+/// Parses `text`, which it may repair first.
+///
+/// # Errors
+/// The mistakes that were found up to where no repair helps.
+pub(crate) fn parse<T>(
+    text: &str,
+    parser: &dyn Fn(&str) -> Result<T, Error>,
+) -> Result<Repaired<T>, Error> {
+    let mut error = match parser(text) {
+        Ok(content) => {
+            return Ok(Repaired {
+                content,
+                mistakes: Vec::new(),
+                has_lost_lines: false,
+            });
+        }
+        Err(error) => error,
+    };
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let (mut mistakes, mut has_lost_lines) = (Vec::new(), false);
+    let mut left = PARSED / text.len().max(1);
+    for _ in 0..REPAIRS {
+        let repairs = repairs(&lines, &error);
+        if repairs.len() > left {
+            break;
+        }
+        left -= repairs.len();
+        let here = error.place().map_or(0, |place| place.line);
+        let tried = repairs.into_iter().map(|repair| {
+            let next = parser(&repair.lines.join("\n"));
+            (reach(&next), repair, next)
+        });
+        let best = tried.reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let Some((_, repair, next)) = best.filter(|(reach, ..)| *reach > here) else {
+            break;
+        };
+        mistakes.push(repair.mistake);
+        has_lost_lines |= repair.loses;
+        match next {
+            Ok(content) => {
+                return Ok(Repaired {
+                    content,
+                    mistakes,
+                    has_lost_lines,
+                });
+            }
+            Err(next) => error = next,
+        }
+        lines = repair.lines;
+    }
+    mistakes.push(error);
+    Err(Error::all(mistakes).unwrap_or_else(|| Error::new("", Problem::Empty)))
+}
+
+/// The line up to which the parser got.
+fn reach<T>(outcome: &Result<T, Error>) -> u64 {
+    match outcome {
+        Ok(_) => u64::MAX,
+        Err(error) => error.place().map_or(0, |place| place.line),
+    }
+}
+
+/// One way to mend a text.
+struct Repair {
+    lines: Vec<String>,
+    mistake: Error,
+    loses: bool,
+}
+
+/// What may be meant at the line of `error`, the likeliest first.
+fn repairs(lines: &[String], error: &Error) -> Vec<Repair> {
+    let (Some(place), Problem::Syntax(_)) = (error.place(), error.problem()) else {
+        return Vec::new();
+    };
+    let here = usize::try_from(place.line).map_or(0, |line| line.saturating_sub(1));
+    let here = here.min(lines.len().saturating_sub(1));
+    let above = (0..here).rev().find(|i| !is_blank(&lines[*i]));
+    let mut all = Vec::new();
+    let with = |at: usize, line: String, words: &str, column: usize| {
+        let mut lines = lines.to_vec();
+        lines[at] = line;
+        let mistake = mistake(at, column, words);
+        Repair {
+            lines,
+            mistake,
+            loses: false,
+        }
+    };
+    all.extend(without_tabs(lines, here));
+    if let Some(line) = as_entry(&lines[here]) {
+        let words = format!(
+            "expected a colon and a space after the key: '{}'",
+            line.trim()
+        );
+        all.push(with(here, line, &words, indentation(&lines[here]).len()));
+    }
+    for at in [above, Some(here)].into_iter().flatten() {
+        if let Some((column, opener, line)) = closed(&lines[at]) {
+            let words = format!("the bracket '{opener}' is not closed");
+            all.push(with(at, line, &words, column));
+        }
+    }
+    if let Some(above) = above {
+        let line = format!("{}{}", indentation(&lines[above]), lines[here].trim_start());
+        let [found, expected] = [here, above].map(|at| indentation(&lines[at]).len());
+        let words = format!("indented by {found}, where the line above is indented by {expected}");
+        all.push(with(here, line, &words, found));
+    }
+    for at in [Some(here), above].into_iter().flatten() {
+        let mut rest = lines.to_vec();
+        rest[at].clear();
+        let mistake = match at == here {
+            true => error.clone(),
+            false => Error::new("", error.problem().clone()).at(place_at(at, 0)),
+        };
+        all.push(Repair {
+            lines: rest,
+            mistake,
+            loses: true,
+        });
+    }
+    all
+}
+
+fn mistake(line: usize, column: usize, words: &str) -> Error {
+    Error::new("", Problem::Syntax(words.to_owned())).at(place_at(line, column))
+}
+
+fn place_at(line: usize, column: usize) -> Place {
+    Place {
+        line: line as u64 + 1,
+        column: column as u64 + 1,
+    }
+}
+
+fn is_blank(line: &str) -> bool {
+    let line = line.trim();
+    line.is_empty() || line.starts_with('#')
+}
+
+fn indentation(line: &str) -> &str {
+    &line[..line.len() - line.trim_start().len()]
+}
+
+/// The text with spaces in the place of the tabs that lines begin with, if the line `here` or the next one has some.
+fn without_tabs(lines: &[String], here: usize) -> Option<Repair> {
+    let has_tab = |line: &String| indentation(line).contains('\t');
+    if !lines.iter().skip(here).take(2).any(has_tab) {
+        return None;
+    }
+    let widths = lines.iter().map(|line| indentation(line));
+    let widths = widths.filter(|indent| !indent.is_empty() && !indent.contains('\t'));
+    let width = widths.map(str::len).min().unwrap_or(WIDTH);
+    let tabbed: Vec<usize> = (0..lines.len()).filter(|i| has_tab(&lines[*i])).collect();
+    let spaced = |line: &String| {
+        let indent = indentation(line).replace('\t', &" ".repeat(width));
+        format!("{indent}{}", line.trim_start())
+    };
+    let others = match tabbed.len() {
+        0 | 1 => String::new(),
+        2 => ", and one more line".to_owned(),
+        several => format!(", and {} more lines", several - 1),
+    };
+    Some(Repair {
+        lines: lines.iter().map(spaced).collect(),
+        mistake: mistake(
+            *tabbed.first()?,
+            0,
+            &format!("indented by a tab{others}; expected spaces"),
+        ),
+        loses: false,
+    })
+}
+
+/// `key: value` of a line in which the colon or the space after it is missing.
+fn as_entry(line: &str) -> Option<String> {
+    let indent = indentation(line);
+    let rest = line.trim_start();
+    let (item, rest) = match rest.strip_prefix("- ") {
+        Some(rest) => ("- ", rest.trim_start()),
+        None => ("", rest),
+    };
+    let is_of_key = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    let end = rest.find(|c| !is_of_key(c)).filter(|end| *end > 0)?;
+    let (key, rest) = rest.split_at(end);
+    let value = rest.trim_start().strip_prefix([':', '='])?.trim();
+    (!value.is_empty()).then(|| format!("{indent}{item}{key}: {value}"))
+}
+
+/// A line with the brackets closed that it opens, and column and sign of the first of them; none where all are closed.
+fn closed(line: &str) -> Option<(usize, char, String)> {
+    let mut open: Vec<(usize, char)> = Vec::new();
+    let (mut quote, mut before, mut end) = (None, ' ', line.len());
+    for (at, (byte, c)) in line.char_indices().enumerate() {
+        match (quote, c) {
+            (Some(sign), c) if c == sign => quote = None,
+            (Some(_), _) => {}
+            (None, '\'' | '"') => quote = Some(c),
+            (None, '#') if before.is_whitespace() => {
+                end = byte;
+                break;
+            }
+            (None, '{' | '[') => open.push((at, c)),
+            (None, '}' | ']') => {
+                open.pop();
+            }
+            _ => {}
+        }
+        before = c;
+    }
+    let (column, opener) = *open.first()?;
+    let closers = open.iter().rev().map(|(_, c)| match c {
+        '{' => '}',
+        _ => ']',
+    });
+    let closers: String = closers.collect();
+    let line = format!("{}{closers} {}", line[..end].trim_end(), &line[end..]);
+    Some((column, opener, line))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::yaml::Document;
+    use serde_json::json;
+
+    /// The content of a text, and the lines of its mistakes.
+    fn read(text: &str) -> (serde_json::Value, Vec<u64>) {
+        let document = Document::parse(text, "f.yaml").unwrap();
+        let lines = document.faults().iter().filter_map(Error::place);
+        (
+            document.tree.clone(),
+            lines.map(|place| place.line).collect(),
+        )
+    }
+
+    #[test]
+    fn what_was_meant_is_read() {
+        for (text, tree, lines) in [
+            (
+                "a:\n\tb: 1\n\tc: 2\n",
+                json!({"a": {"b": 1, "c": 2}}),
+                vec![2],
+            ),
+            (
+                "a: 1\nspeed:740 rpm\nb: 2\n",
+                json!({"a": 1, "speed": "740 rpm", "b": 2}),
+                vec![2],
+            ),
+            (
+                "a: 1\nspeed = 740 rpm\n",
+                json!({"a": 1, "speed": "740 rpm"}),
+                vec![2],
+            ),
+            (
+                "a: {b: [1, 2\nc: 3\n",
+                json!({"a": {"b": [1, 2]}, "c": 3}),
+                vec![1],
+            ),
+            (
+                "a:\n  b: 1\n   c: 2\n  d: 3\n",
+                json!({"a": {"b": 1, "c": 2, "d": 3}}),
+                vec![3],
+            ),
+            ("a: 1\n? ] {\nb: 2\n", json!({"a": 1, "b": 2}), vec![2]),
+        ] {
+            assert_eq!(read(text), (tree, lines), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_no_repair_helps_is_refused() {
+        let error = Document::parse(&"[".repeat(1000), "f.yaml").unwrap_err();
+        assert!(matches!(error.problem(), Problem::Syntax(_)), "{error}");
+    }
+}
