@@ -1,7 +1,7 @@
 //! `crosshead check`: all mistakes of files that people write, at once.
 
 use crate::Failure;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use bench::settings::HiddenEffects;
 use clap::Args;
 use input::bundle::{self, Bundle};
@@ -30,7 +30,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// What was found in a file.
@@ -102,8 +102,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         all.push(check_file(path, &schemas)?);
     }
     arguments
-        .told
-        .tell(&all, |all| all.iter().for_each(Checked::print))?;
+        .format
+        .print(&all, |all| all.iter().for_each(Checked::print))?;
     let mistakes = || all.iter().flat_map(|checked| &checked.mistakes);
     let files: BTreeSet<&String> = mistakes().map(|mistake| &mistake.file).collect();
     match mistakes().count() {

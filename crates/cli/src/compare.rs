@@ -3,7 +3,7 @@
 use crate::output::{hint, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use crate::{Failure, console};
 use ::features::recorded::counted;
 use ::report::{comparison_page, text, write_page};
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// Compares the two and writes what differs.
@@ -70,7 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_file(&json, text.as_bytes())?;
     let rendered = comparison_page::render(&comparison).map_err(Failure::work)?;
     write_page(&page, &rendered.html).map_err(Failure::work)?;
-    arguments.told.tell(&comparison, |comparison| {
+    arguments.format.print(&comparison, |comparison| {
         summary(comparison);
         println!("{}", json.display());
         println!("{}", page.display());

@@ -3,7 +3,7 @@
 use crate::output::hint;
 use crate::progress::Progress;
 use crate::reading::Reading;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use crate::{Failure, console, interrupt};
 use ::features::recorded::{Input, Summary, Table, counted, inputs, row};
 use clap::Args;
@@ -54,7 +54,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// What was written.
@@ -166,7 +166,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         bridged_samples: summary.bridged(),
         left_out_s: windows.left_out_s(),
     };
-    arguments.told.tell(&written, Written::print)?;
+    arguments.format.print(&written, Written::print)?;
     if format == TableFormat::Parquet {
         hint(format_args!(
             "python3 -c 'import pandas; print(pandas.read_parquet(\"{}\").T)'",

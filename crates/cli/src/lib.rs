@@ -29,10 +29,10 @@ mod progress;
 mod reading;
 pub mod replay;
 pub mod report;
+mod result_format;
 pub mod schema;
 pub mod simulate;
 pub mod sweep;
-mod told;
 pub mod try_case;
 pub mod verify;
 

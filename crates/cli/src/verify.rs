@@ -3,7 +3,7 @@
 use crate::Failure;
 use crate::output::hint;
 use crate::progress::Progress;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::verify;
@@ -27,7 +27,7 @@ pub struct Arguments {
     #[arg(value_name = "DIR|URL")]
     dataset: PathBuf,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// Compares every file.
@@ -49,8 +49,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let megabytes = found.bytes as f64 / 1e6;
     arguments
-        .told
-        .tell(&found, |found| match found.faults[..] {
+        .format
+        .print(&found, |found| match found.faults[..] {
             [] => println!(
                 "{dataset}: {} files, {megabytes:.1} MB, all as they were written",
                 found.files

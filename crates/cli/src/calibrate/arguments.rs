@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use crate::bundle::AllowOutside;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use ::calibrate::Existing;
 use clap::{Args, ValueEnum};
 use input::bundle::Bundle;
@@ -72,7 +72,7 @@ pub struct Arguments {
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// How the best fit is searched.
@@ -181,8 +181,8 @@ impl Arguments {
         self.outside.allow_outside
     }
 
-    pub(super) fn told(&self) -> Told {
-        self.told
+    pub(super) fn format(&self) -> ResultFormat {
+        self.format
     }
 
     pub(super) fn out(&self) -> &Path {

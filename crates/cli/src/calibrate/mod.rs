@@ -33,7 +33,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out();
     let prepared = prepare(&settings, out, arguments.existing()).map_err(Failure::input)?;
     let done = finish(prepared, &cancel)?;
-    arguments.told().tell(&done.results, |results| {
+    arguments.format().print(&done.results, |results| {
         if done.reused {
             println!("nothing has changed since this was found:");
         }

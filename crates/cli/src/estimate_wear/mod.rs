@@ -4,7 +4,7 @@ mod summary;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::progress::Bar;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
 use ::calibrate::Settings;
 use ::calibrate::wear::{Asked, WEAR, prepare};
@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// A number above 1.
@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .finish(&mut Bar::new(&cancel))
         .map_err(Failure::work)?;
     let page = report::write_wear(out, &out.join(report::PAGE))?;
-    arguments.told.tell(&done.results, |results| {
+    arguments.format.print(&done.results, |results| {
         summary::print(results);
         println!("{}", done.machine.display());
         println!("{}", page.display());

@@ -6,7 +6,7 @@ mod summary;
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
 use crate::output::hint;
-use crate::told::Told;
+use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
 use clap::Args;
 use gap::folder::MACHINE;
@@ -56,7 +56,7 @@ pub struct Arguments {
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
-    told: Told,
+    format: ResultFormat,
 }
 
 /// Explains the gap and prints the results.
@@ -90,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
     };
     let results = into_folder(&asked, out, &cancel)?;
-    arguments.told.tell(&results, |results| {
+    arguments.format.print(&results, |results| {
         summary::print(results);
         println!("{}", out.join(MACHINE).display());
         println!("{}", out.join(report::PAGE).display());

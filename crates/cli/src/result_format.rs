@@ -1,4 +1,4 @@
-//! How the results of a verb are told: a summary for people, or one JSON document for programs.
+//! How the results of a verb are printed: a summary for people, or one JSON document for programs.
 
 use crate::Failure;
 use clap::Args;
@@ -6,18 +6,18 @@ use serde::Serialize;
 
 /// The option of every verb that has results.
 #[derive(Args, Clone, Copy, Debug)]
-pub(crate) struct Told {
+pub(crate) struct ResultFormat {
     /// Print the results as one JSON document in place of the summary; messages stay on standard error
     #[arg(long)]
     json: bool,
 }
 
-impl Told {
+impl ResultFormat {
     /// Prints `results` on standard output: as JSON, as the file of results has them, or by `summary`.
     ///
     /// # Errors
     /// Results that JSON cannot hold.
-    pub(crate) fn tell<T: Serialize>(
+    pub(crate) fn print<T: Serialize>(
         self,
         results: &T,
         summary: impl FnOnce(&T),
