@@ -235,7 +235,8 @@ impl Task {
         Ok(())
     }
 
-    /// The crank angle, rad in [0, 2π), at which the pulse of each tacho comes whose place was not known, by run.
+    /// The crank angle, rad in [0, 2π), to which the pulse of each tacho was aligned whose place was not known, by run. What is
+    /// fitted as its offset comes off it.
     pub fn pulse_angles(&self) -> impl Iterator<Item = (&str, f64)> {
         let runs = self.runs.iter().zip(&self.pulsed).zip(&self.turned);
         let pulsed = runs.filter(|((_, pulsed), _)| **pulsed);

@@ -19,6 +19,7 @@ use crate::stages::{ALIGNMENTS, Stage, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
 use recordings::WholeFile;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// What is asked for.
@@ -104,7 +105,7 @@ impl Prepared {
             &mut effort,
         )?;
         let problem = &found.model.problem;
-        concluded.results.pulse_angles_rad = pulses(&self.task);
+        concluded.results.pulse_angles_rad = pulses(&self.task, problem, &concluded.x);
         let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
         pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
         let machine = self.out.join(MACHINE);
@@ -244,9 +245,13 @@ fn conclude(
 }
 
 /// Where the pulses of tachos of unknown place were found.
-fn pulses(task: &Task) -> ByName<f64> {
-    let found = task.pulse_angles();
-    found.map(|(run, angle)| (run.to_owned(), angle)).collect()
+fn pulses(task: &Task, problem: &Problem, x: &[f64]) -> ByName<f64> {
+    let found = task.pulse_angles().filter_map(|(id, aligned)| {
+        let run = problem.runs.iter().find(|run| run.id == id)?;
+        let angle = aligned - problem.crank_angle_offset(run, x).0;
+        Some((id.to_owned(), angle.rem_euclid(TAU)))
+    });
+    found.collect()
 }
 
 /// The columns that were compared, each once.

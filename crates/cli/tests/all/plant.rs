@@ -56,6 +56,9 @@ fn a_worn_crosshead_pin_is_found_in_plant_data() {
         &bundle,
         "--machine",
         &machine,
+        // One of the runs is enough, and takes a tenth of the time of both.
+        "--leave-out",
+        "run02",
         "--out",
         &wear,
     ];
@@ -70,15 +73,15 @@ fn a_worn_crosshead_pin_is_found_in_plant_data() {
         assert_eq!(found.verdict, verdict, "{joint}");
         let diametral = found.diametral_clearance_m.unwrap();
         assert!(
-            (diametral / expected - 1.0).abs() < 0.02,
+            (diametral / expected - 1.0).abs() < 1e-3,
             "{joint}: {diametral}"
         );
         let [low, high] = [found.low_m, found.high_m].map(|bound| 2.0 * bound.unwrap());
         assert!((low..high).contains(&expected), "{joint}: {low} to {high}");
     }
-    assert_eq!(results.pulse_angles_rad.len(), 2);
+    assert_eq!(results.pulse_angles_rad.len(), 1);
     for (run, angle) in results.pulse_angles_rad.iter() {
-        assert!((angle - PULSE).abs() < 0.01, "{run}: {angle}");
+        assert!((angle - PULSE).abs() < 5e-4, "{run}: {angle}");
     }
 
     run(&["report", &wear]);
