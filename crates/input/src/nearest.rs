@@ -38,7 +38,9 @@ fn extended<'a>(name: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let is_one = |c: &&&str| {
         let c = c.to_lowercase();
         let shorter = name.len().min(c.len());
-        shorter >= BEGINNING && (name.starts_with(&c) || c.starts_with(name))
+        // A name that goes on for long is another one, and may be as long as a file.
+        let is_short = name.len() <= 2 * c.len();
+        shorter >= BEGINNING && is_short && (name.starts_with(&c) || c.starts_with(name))
     };
     let mut fitting = candidates.iter().filter(is_one);
     let only = fitting.next()?;

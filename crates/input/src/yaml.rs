@@ -79,11 +79,7 @@ impl Document {
     /// Where the text is empty, or is not YAML and cannot be taken for it line by line. Lines that are not, and keys
     /// that a section has twice, are found when the content is read.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, Error> {
-        let read = yaml_repair::parse(text, &nodes).map_err(|error| {
-            let each = error.into_each().into_iter();
-            let each = each.map(|error| error.in_file(file_name));
-            Error::all(each).unwrap_or_else(|| Error::new("", Problem::Empty))
-        })?;
+        let read = yaml_repair::parse(text, &nodes).map_err(|error| error.in_file(file_name))?;
         let mut index = Index::default();
         let tree = match read.content {
             None => Value::Null,
@@ -91,8 +87,9 @@ impl Document {
         };
         let mut faults = read.mistakes;
         if tree.is_null() {
+            // Nothing is left of a text of which no line can be read.
             let empty = || Error::new("", Problem::Empty);
-            let error = Error::all(faults).unwrap_or_else(empty);
+            let error = faults.into_iter().next().unwrap_or_else(empty);
             return Err(error.in_file(file_name));
         }
         faults.extend(index.duplicates);
@@ -258,7 +255,7 @@ fn syntax(error: &serde_saphyr::Error) -> Error {
         error => error,
     };
     let message = match error {
-        Yaml::Budget { .. } => "nested too deeply, or too large".to_owned(),
+        Yaml::Budget { .. } => yaml_repair::TOO_LARGE.to_owned(),
         other => UserMessageFormatter.format_message(other).into_owned(),
     };
     let mine = Error::new("", Problem::Syntax(message));

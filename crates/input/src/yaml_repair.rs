@@ -16,6 +16,12 @@ const PARSED: usize = 10_000_000;
 /// Spaces of an indentation where no line of a file shows how wide it is.
 const WIDTH: usize = 2;
 
+/// What is said of a text that is not parsed to its end.
+pub(crate) const TOO_LARGE: &str = "nested too deeply, or too large";
+
+/// Begins a document of a file that has several.
+const DOCUMENT: &str = "---";
+
 /// What became of a text.
 pub(crate) struct Repaired<T> {
     /// What the parser made of it in the end.
@@ -29,12 +35,12 @@ pub(crate) struct Repaired<T> {
 /// Parses `text`, which it may repair first.
 ///
 /// # Errors
-/// The mistakes that were found up to where no repair helps.
+/// What the parser says of a text that no repairs help.
 pub(crate) fn parse<T>(
     text: &str,
     parser: &dyn Fn(&str) -> Result<T, Error>,
 ) -> Result<Repaired<T>, Error> {
-    let mut error = match parser(text) {
+    let first = match parser(text) {
         Ok(content) => {
             return Ok(Repaired {
                 content,
@@ -44,6 +50,7 @@ pub(crate) fn parse<T>(
         }
         Err(error) => error,
     };
+    let mut error = first.clone();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let (mut mistakes, mut has_lost_lines) = (Vec::new(), false);
     let mut left = PARSED / text.len().max(1);
@@ -76,8 +83,7 @@ pub(crate) fn parse<T>(
         }
         lines = repair.lines;
     }
-    mistakes.push(error);
-    Err(Error::all(mistakes).unwrap_or_else(|| Error::new("", Problem::Empty)))
+    Err(first)
 }
 
 /// The line up to which the parser got.
@@ -97,12 +103,17 @@ struct Repair {
 
 /// What may be meant at the line of `error`, the likeliest first.
 fn repairs(lines: &[String], error: &Error) -> Vec<Repair> {
-    let (Some(place), Problem::Syntax(_)) = (error.place(), error.problem()) else {
+    let (Some(place), Problem::Syntax(words)) = (error.place(), error.problem()) else {
         return Vec::new();
     };
+    // Parsing it again would take as long each time.
+    if words == TOO_LARGE {
+        return Vec::new();
+    }
     let here = usize::try_from(place.line).map_or(0, |line| line.saturating_sub(1));
     let here = here.min(lines.len().saturating_sub(1));
     let above = (0..here).rev().find(|i| !is_blank(&lines[*i]));
+    let above = above.filter(|i| !lines[*i].starts_with(DOCUMENT));
     let mut all = Vec::new();
     let with = |at: usize, line: String, words: &str, column: usize| {
         let mut lines = lines.to_vec();

@@ -26,6 +26,7 @@ mod recorded_sensors;
 mod recovery;
 mod replay;
 mod report;
+mod several_files;
 mod shards;
 mod small_sweep;
 mod transcripts;

@@ -122,7 +122,7 @@ messages! {
     sensor_without_measure: "measure: crosshead_acceleration, " => "",
         "m.yaml:24:5: sensors.0.measure: missing; expected one of crosshead_acceleration, crosshead_lateral_acceleration, frame_acceleration, frame_velocity, housing_acceleration, housing_velocity, cylinder_pressure, crank_angle, crank_speed";
     key_of_another_law: "law: impact" => "law: hertz",
-        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, relation, at_clearance\nm.yaml:21:71: joints.big_end.contact.depth: unknown key; expected one of stiffness, exponent, relation, at_clearance";
+        "m.yaml:21:51: joints.big_end.contact.damping: unknown key; expected one of stiffness, exponent, materials, relation, at_clearance\nm.yaml:21:71: joints.big_end.contact.depth: unknown key; expected one of stiffness, exponent, materials, relation, at_clearance";
     misspelt_relation: "depth: 10 um" => "depth: 10 um, relation: conformel, at_clearance: 0.1 mm",
         "m.yaml:21:96: joints.big_end.contact.relation: found 'conformel', expected one of eq5, conformal, constant; did you mean 'conformal'?";
     misspelt_exponent: "depth: 10 um" => "depth: 10 um, relation: {stifness: -0.5}, at_clearance: 0.1 mm",

@@ -92,7 +92,7 @@ fn texts_that_are_no_quantities() {
         ("0,1 mm", UnitError::Comma),
         ("5 RPM", unknown("RPM", Some("rpm"))),
         ("5 hz", unknown("hz", Some("Hz"))),
-        ("5 inches", unknown("inches", None)),
+        ("5 inches", unknown("inches", Some("inch"))),
         ("5 krpm", unknown("krpm", Some("rpm"))),
     ] {
         assert_eq!(parse(text), Err(error), "{text}");
