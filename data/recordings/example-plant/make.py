@@ -1,4 +1,4 @@
-"""Makes run01.csv and run02.csv: the machine of machine.yaml with a worn crosshead pin, as a monitoring system exports it.
+"""Makes run01.csv: the machine of machine.yaml with a worn crosshead pin, as a monitoring system exports it.
 
     cargo build --release && python data/recordings/example-plant/make.py target/release/crosshead
 
@@ -18,8 +18,6 @@ HERE = pathlib.Path(__file__).parent
 # What is not in machine.yaml, and what the estimation has to find.
 CROSSHEAD_PIN = "0.012 in diametral"
 KEYPHASOR = math.radians(137)
-# Discharge pressure of each run.
-RUNS = {"run01": "150 psig", "run02": "120 psig"}
 G = 9.80665
 PSI = 4.4482216152605 / 0.0254**2
 AMBIENT = 14.7
@@ -36,23 +34,22 @@ def keyphasor(angle):
     return LOW + (HIGH - LOW) * min(rise, fall)
 
 
-def simulated(program, seed, discharge, folder):
-    """The rows of a run."""
+def simulated(program, folder):
+    """The rows of the run."""
     command = [program, "simulate", str(HERE / "machine.yaml"), "--revolutions", "12", "--transient", "40"]
-    for path, value in [("joints.small_end.clearance", CROSSHEAD_PIN), ("cylinder.discharge", discharge)]:
-        command += ["--set", f"{path}={value}"]
-    command += ["--seed", str(seed), "--format", "csv", "--quiet", "--out", folder]
+    command += ["--set", f"joints.small_end.clearance={CROSSHEAD_PIN}"]
+    command += ["--seed", "1", "--format", "csv", "--quiet", "--out", folder]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     with open(pathlib.Path(folder) / "signals.csv", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def export(path, run, rows, seed):
-    """Writes a run as the monitoring system does."""
-    noise = random.Random(seed)
+def export(path, rows):
+    """Writes the run as the monitoring system does."""
+    noise = random.Random(1)
     with open(path, "w", newline="\r\n") as file:
         file.write("Machine,K-101 gas compressor\nExport,waveform\n")
-        file.write(f"Run,{run}\nSample rate,12800 Hz\nSamples,{len(rows)}\n\n")
+        file.write(f"Run,run01\nSample rate,12800 Hz\nSamples,{len(rows)}\n\n")
         file.write("Time [s],Keyphasor [V],Guide acceleration [g],HE pressure [psig]\n")
         for i, row in enumerate(rows):
             volts = keyphasor(float(row["crank_angle_rad"])) + noise.gauss(0, 0.02)
@@ -61,7 +58,6 @@ def export(path, run, rows, seed):
             file.write(f"{i / 12800:.7f},{volts:.3f},{acceleration:.4f},{pressure:.2f}\n")
 
 
-for seed, (run, discharge) in enumerate(RUNS.items(), 1):
-    with tempfile.TemporaryDirectory() as folder:
-        rows = simulated(sys.argv[1], seed, discharge, folder + "/run")
-    export(HERE / f"{run}.csv", run, rows, seed)
+with tempfile.TemporaryDirectory() as folder:
+    rows = simulated(sys.argv[1], folder + "/run")
+export(HERE / "run01.csv", rows)
