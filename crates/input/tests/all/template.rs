@@ -109,3 +109,57 @@ fn a_machine_like_another_has_its_values() {
     let again = MachineFile::from_yaml(&machine(&asked).unwrap(), "n.yaml").unwrap();
     assert_eq!(again.resolve().unwrap(), like.resolve().unwrap());
 }
+
+/// A file with its suggestions taken: keys that are commented out with a usual value.
+fn with_suggestions(text: &str) -> (String, usize) {
+    let mut taken = 0;
+    let lines = text.lines().map(|line| {
+        let indent = line.len() - line.trim_start().len();
+        let suggested = line.trim_start().strip_prefix("# ").and_then(|rest| {
+            let (key, _) = rest.split_once(": ")?;
+            let is_key = key.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+            is_key.then_some(rest)
+        });
+        match suggested {
+            Some(rest) => {
+                taken += 1;
+                format!("{}{rest}", &line[..indent])
+            }
+            None => line.to_owned(),
+        }
+    });
+    let text = lines.collect::<Vec<_>>().join("\n") + "\n";
+    (text, taken)
+}
+
+#[test]
+fn what_is_suggested_is_right_too() {
+    for text in [asked(None, false), asked(Some(2), true)] {
+        assert!(text.contains("# ambient_pressure: 1.013 bar"), "{text}");
+        let (text, taken) = with_suggestions(&text);
+        assert!(taken >= 4, "{text}");
+        let machine = MachineFile::from_yaml(&text, "m.yaml").and_then(|file| file.resolve());
+        machine.unwrap_or_else(|e| panic!("{e}\n{text}"));
+    }
+    let (text, taken) = with_suggestions(&calibration("recordings").unwrap());
+    assert!(taken >= 4, "{text}");
+    let document = input::yaml::Document::parse(&text, "c.yaml").unwrap();
+    input::calibration::Calibration::of(&document).unwrap_or_else(|e| panic!("{e}\n{text}"));
+}
+
+#[test]
+fn nothing_is_suggested_that_every_throw_states() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/machines/two-stage.yaml"
+    );
+    let like = input::machine_file::read(std::path::Path::new(path)).unwrap();
+    let asked = Asked {
+        like: Some(&like),
+        ..Asked::default()
+    };
+    let text = machine(&asked).unwrap();
+    for key in ["piston_radius", "suction", "discharge", "head_clearance"] {
+        assert!(!text.contains(&format!("# {key}: ")), "{key}\n{text}");
+    }
+}
