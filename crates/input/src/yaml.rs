@@ -391,3 +391,59 @@ impl<'de> Deserialize<'de> for Node {
         deserializer.deserialize_any(Any)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// The content of a text, and the lines of its mistakes.
+    fn read(text: &str) -> (Value, Vec<u64>) {
+        let document = Document::parse(text, "f.yaml").unwrap();
+        let lines = document.faults().iter().filter_map(Error::place);
+        (
+            document.tree.clone(),
+            lines.map(|place| place.line).collect(),
+        )
+    }
+
+    #[test]
+    fn what_was_meant_is_read() {
+        for (text, tree, lines) in [
+            (
+                "a:\n\tb: 1\n\tc: 2\n",
+                json!({"a": {"b": 1, "c": 2}}),
+                vec![2],
+            ),
+            (
+                "a: 1\nspeed:740 rpm\nb: 2\n",
+                json!({"a": 1, "speed": "740 rpm", "b": 2}),
+                vec![2],
+            ),
+            (
+                "a: 1\nspeed = 740 rpm\n",
+                json!({"a": 1, "speed": "740 rpm"}),
+                vec![2],
+            ),
+            (
+                "a: {b: [1, 2\nc: 3\n",
+                json!({"a": {"b": [1, 2]}, "c": 3}),
+                vec![1],
+            ),
+            (
+                "a:\n  b: 1\n   c: 2\n  d: 3\n",
+                json!({"a": {"b": 1, "c": 2, "d": 3}}),
+                vec![3],
+            ),
+            ("a: 1\n? ] {\nb: 2\n", json!({"a": 1, "b": 2}), vec![2]),
+        ] {
+            assert_eq!(read(text), (tree, lines), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_no_repair_helps_is_refused() {
+        let error = Document::parse(&"[".repeat(1000), "f.yaml").unwrap_err();
+        assert!(matches!(error.problem(), Problem::Syntax(_)), "{error}");
+    }
+}

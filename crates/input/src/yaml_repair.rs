@@ -107,7 +107,7 @@ fn repairs(lines: &[String], error: &Error) -> Vec<Repair> {
         return Vec::new();
     };
     // Parsing it again would take as long each time.
-    if words == TOO_LARGE {
+    if words == TOO_LARGE || lines.is_empty() {
         return Vec::new();
     }
     let here = usize::try_from(place.line).map_or(0, |line| line.saturating_sub(1));
@@ -145,20 +145,24 @@ fn repairs(lines: &[String], error: &Error) -> Vec<Repair> {
         let words = format!("indented by {found}, where the line above is indented by {expected}");
         all.push(with(here, line, &words, found));
     }
-    for at in [Some(here), above].into_iter().flatten() {
-        let mut rest = lines.to_vec();
-        rest[at].clear();
-        let mistake = match at == here {
-            true => error.clone(),
-            false => Error::new("", error.problem().clone()).at(place_at(at, 0)),
-        };
-        all.push(Repair {
-            lines: rest,
-            mistake,
-            loses: true,
-        });
-    }
+    all.extend(without_line(lines, here, here, error));
+    all.extend(above.and_then(|above| without_line(lines, above, here, error)));
     all
+}
+
+/// The text without the line `at`; the parser stopped at the line `here`.
+fn without_line(lines: &[String], at: usize, here: usize, error: &Error) -> Option<Repair> {
+    let mut rest = lines.to_vec();
+    rest.get_mut(at)?.clear();
+    let mistake = match at == here {
+        true => error.clone(),
+        false => Error::new("", error.problem().clone()).at(place_at(at, 0)),
+    };
+    Some(Repair {
+        lines: rest,
+        mistake,
+        loses: true,
+    })
 }
 
 fn mistake(line: usize, column: usize, words: &str) -> Error {
@@ -255,61 +259,4 @@ fn closed(line: &str) -> Option<(usize, char, String)> {
     let closers: String = closers.collect();
     let line = format!("{}{closers} {}", line[..end].trim_end(), &line[end..]);
     Some((column, opener, line))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::yaml::Document;
-    use serde_json::json;
-
-    /// The content of a text, and the lines of its mistakes.
-    fn read(text: &str) -> (serde_json::Value, Vec<u64>) {
-        let document = Document::parse(text, "f.yaml").unwrap();
-        let lines = document.faults().iter().filter_map(Error::place);
-        (
-            document.tree.clone(),
-            lines.map(|place| place.line).collect(),
-        )
-    }
-
-    #[test]
-    fn what_was_meant_is_read() {
-        for (text, tree, lines) in [
-            (
-                "a:\n\tb: 1\n\tc: 2\n",
-                json!({"a": {"b": 1, "c": 2}}),
-                vec![2],
-            ),
-            (
-                "a: 1\nspeed:740 rpm\nb: 2\n",
-                json!({"a": 1, "speed": "740 rpm", "b": 2}),
-                vec![2],
-            ),
-            (
-                "a: 1\nspeed = 740 rpm\n",
-                json!({"a": 1, "speed": "740 rpm"}),
-                vec![2],
-            ),
-            (
-                "a: {b: [1, 2\nc: 3\n",
-                json!({"a": {"b": [1, 2]}, "c": 3}),
-                vec![1],
-            ),
-            (
-                "a:\n  b: 1\n   c: 2\n  d: 3\n",
-                json!({"a": {"b": 1, "c": 2, "d": 3}}),
-                vec![3],
-            ),
-            ("a: 1\n? ] {\nb: 2\n", json!({"a": 1, "b": 2}), vec![2]),
-        ] {
-            assert_eq!(read(text), (tree, lines), "{text}");
-        }
-    }
-
-    #[test]
-    fn what_no_repair_helps_is_refused() {
-        let error = Document::parse(&"[".repeat(1000), "f.yaml").unwrap_err();
-        assert!(matches!(error.problem(), Problem::Syntax(_)), "{error}");
-    }
 }

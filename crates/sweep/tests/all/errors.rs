@@ -115,7 +115,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [500 rpm, 400 rpm]}",
-        "sweep.yaml:8:36: cases.0.random.axes.speed.uniform.1: found 400 rpm, expected at least the lower end, 500 rpm",
+        "sweep.yaml:8:36: cases.0.random.axes.speed.uniform.1: found '400 rpm', expected at least the lower end, 500 rpm",
     ),
     (
         "cases:\n  - random:\n      count: 4\n      axes:\n        speed: {uniform: [500 rpm, 400 Pa]}",
@@ -155,7 +155,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary:\n  rod.mass: {lognormal: {factor: 1.1, range: [12 kg, 11 kg]}}",
-        "sweep.yaml:6:54: vary.rod.mass.lognormal.range.1: found 11 kg, expected at least the lower end, 12 kg",
+        "sweep.yaml:6:54: vary.rod.mass.lognormal.range.1: found '11 kg', expected at least the lower end, 12 kg",
     ),
     (
         "cases: [{grid: {speed: 500 rpm}}]\nvary_together:\n  - {parameters: {rod.mss: {lognormal: {factor: 1.1}}}, correlations: [[1]]}",
