@@ -11,7 +11,6 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// A joint counts as worn from this many times its normal clearance.
 pub const WORN_FROM: f64 = 1.5;
@@ -26,8 +25,10 @@ pub struct Case {
     pub results: Results,
     /// Runs that were compared.
     pub runs: usize,
-    /// Time that it took, s.
-    pub seconds: f64,
+    /// Whether the recorded motion repeats itself from revolution to revolution.
+    pub repeats: bool,
+    /// Processor time that it took, s.
+    pub cpu_seconds: f64,
 }
 
 /// The case of a machine file `tree` and the recorded `runs`, whose stated clearances are not used.
@@ -54,15 +55,26 @@ pub fn case(
         meter: Meter::default(),
     };
     eprintln!("{name}: {truth:?}, {} runs", runs.len());
-    let start = Instant::now();
+    let start = cpu_seconds()?;
     let results = estimate(&problem, &[0.0], WORN_FROM, &mut Quiet)?;
     Ok(Case {
         name,
         truth,
         results,
         runs: runs.len(),
-        seconds: start.elapsed().as_secs_f64(),
+        repeats: problem.runs.iter().all(|run| run.repeats_like(&[])),
+        cpu_seconds: cpu_seconds()? - start,
     })
+}
+
+/// Processor time of this process, s, as Linux reports it in hundredths of a second (proc(5): user and
+/// system time are the 14th and 15th field, and the 2nd, a name in brackets, may hold blanks).
+fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
+    let text = std::fs::read_to_string("/proc/self/stat")?;
+    let (_, fields) = text.rsplit_once(')').ok_or("no fields")?;
+    let times = fields.split_whitespace().skip(11).take(2);
+    let hundredths: f64 = times.map(|t| t.parse().unwrap_or(0.0)).sum();
+    Ok(hundredths / 100.0)
 }
 
 /// Nobody watches.

@@ -30,8 +30,13 @@ pub fn run(folder: &Path, machine: &Path, id: &str) -> Result<Case, Box<dyn Erro
         Some((joint.to_owned(), clearance.map_or(0.0, |c| c.si)))
     });
     let truth: BTreeMap<String, f64> = clearances.collect();
+    case(name(folder, id), tree, runs, truth)
+}
+
+/// The name of the case of a run of the bundle in `folder`.
+pub fn name(folder: &Path, id: &str) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    case(format!("{name}/{id}"), tree, runs, truth)
+    format!("{name}/{id}")
 }
 
 /// Labelled recordings of one machine.
@@ -55,6 +60,11 @@ impl Set {
             table: read_table(&folder.join("labelled/recordings.parquet"))?,
             labels: labels.collect::<Result<_, Box<dyn Error>>>()?,
         })
+    }
+
+    /// The name of the case of this row.
+    pub fn name(row: usize) -> String {
+        format!("labelled {row}")
     }
 
     /// The recording of this row, from 0 on.
@@ -96,11 +106,6 @@ impl Set {
         };
         let truth = ["joints.big_end", "joints.small_end"].map(str::to_owned);
         let truth = truth.into_iter().zip(self.labels[row]).collect();
-        case(
-            format!("labelled {row}"),
-            self.tree.clone(),
-            vec![run],
-            truth,
-        )
+        case(Self::name(row), self.tree.clone(), vec![run], truth)
     }
 }
