@@ -130,6 +130,9 @@ const CHANNEL: [&str; 6] = [
 /// The keys of a throw's load.
 const LOAD: [&str; 2] = ["suction_pressure_pa", "discharge_pressure_pa"];
 
+/// The keys of a clear joint.
+const CLEAR: [&str; 1] = ["clearance_m"];
+
 /// The joints of a throw.
 const JOINTS: [&str; 3] = ["big_end", "small_end", "guide"];
 
@@ -374,8 +377,8 @@ fn check_files(run: &Run, section: &Value) -> Result<(), Error> {
     Ok(())
 }
 
-fn read_run(section: &Value) -> Result<Run, Error> {
-    let mut tree = section.clone();
+/// Refuses misspelt keys of a run and of its sections.
+fn known_keys_of_run(section: &Value) -> Result<(), Error> {
     known_keys(section, &KEYS)?;
     for (i, channel) in section["channels"]
         .as_array()
@@ -385,6 +388,34 @@ fn read_run(section: &Value) -> Result<Run, Error> {
     {
         known_keys(channel, &CHANNEL).map_err(|error| error.under(format!("channels.{i}")))?;
     }
+    let of_throws = |key: &str, own: &[&str]| -> Vec<(String, Value)> {
+        let stated = &section[key];
+        match stated.as_object().filter(|_| is_by_throw(stated, own)) {
+            None => vec![(key.to_owned(), stated.clone())],
+            Some(throws) => {
+                let throws = throws.iter();
+                let throws =
+                    throws.map(|(throw, stated)| (format!("{key}.{throw}"), stated.clone()));
+                throws.collect()
+            }
+        }
+    };
+    for (place, load) in of_throws("load", &LOAD) {
+        known_keys(&load, &LOAD).map_err(|error| error.under(place))?;
+    }
+    for (place, joints) in of_throws("joints", &JOINTS) {
+        known_keys(&joints, &JOINTS).map_err(|error| error.under(&place))?;
+        for (joint, clear) in joints.as_object().into_iter().flatten() {
+            let place = format!("{place}.{joint}");
+            known_keys(clear, &CLEAR).map_err(|error| error.under(place))?;
+        }
+    }
+    Ok(())
+}
+
+fn read_run(section: &Value) -> Result<Run, Error> {
+    let mut tree = section.clone();
+    known_keys_of_run(section)?;
     if let Value::Object(section) = &mut tree {
         for (key, own) in [("load", &LOAD[..]), ("joints", &JOINTS[..])] {
             if let Some(value) = section
