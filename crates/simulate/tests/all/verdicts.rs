@@ -175,7 +175,7 @@ fn a_joint_that_gives_by_more_than_its_clearance_is_told() {
     };
     assert!(joint.is_too_deep(), "{joint}");
     let text = joint.to_string();
-    for part in ["big_end", "clearance of 50.000 µm", "conformal"] {
+    for part in ["big_end", "clearance of 50.000 µm", "materials"] {
         assert!(text.contains(part), "{text}");
     }
     // As it is shipped, the machine's contact is soft (MODEL.md, section 8), but not as soft as that.
