@@ -21,7 +21,7 @@ pub(crate) enum Reshaped {
 pub(crate) fn reshaped(place: &Node, value: &Value) -> Option<Reshaped> {
     let is_section = !place.keys().is_empty();
     match (value, place.items()) {
-        (Value::Array(items), None) if is_section => merged(items),
+        (Value::Array(items), None) if is_section => merged(place, items),
         (Value::Array(items), None) => {
             let first = items.first().filter(|first| !first.is_array())?;
             Some(Reshaped::Guess(first.clone()))
@@ -40,8 +40,8 @@ pub(crate) fn reshaped(place: &Node, value: &Value) -> Option<Reshaped> {
     }
 }
 
-/// One section of sections; the first of two equal keys counts.
-fn merged(items: &[Value]) -> Option<Reshaped> {
+/// One section of sections that have keys of `place`; the first of two equal keys counts.
+fn merged(place: &Node, items: &[Value]) -> Option<Reshaped> {
     let mut whole = Map::new();
     let mut parts = Vec::new();
     for (i, item) in items.iter().enumerate() {
@@ -50,7 +50,8 @@ fn merged(items: &[Value]) -> Option<Reshaped> {
             whole.entry(key).or_insert(value.clone());
         }
     }
-    (!whole.is_empty()).then_some(Reshaped::Parts(whole.into(), parts))
+    let belongs = whole.keys().any(|key| place.has(key));
+    belongs.then_some(Reshaped::Parts(whole.into(), parts))
 }
 
 /// A list of sections whose names were their keys.
@@ -89,6 +90,7 @@ mod tests {
             Some(json!({"mass": 1, "length": 2}))
         );
         assert_eq!(of("rod", json!([1])), None);
+        assert_eq!(of("rod", json!([{"suction": 1}])), None);
         assert_eq!(of("speed", json!(["1 rpm", "2 rpm"])), Some(json!("1 rpm")));
         assert_eq!(
             of("throws", json!({"a": {"x": 1}})),

@@ -20,7 +20,7 @@ const MISTAKES: &[(&str, &str)] = &[
         "caes: []",
         "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?\nsweep.yaml:4:7: caes: found no case at all, expected at least one",
     ),
-    ("", "sweep.yaml:1:1: cases: missing"),
+    ("", "sweep.yaml:1:1: cases: missing; expected a list"),
     (
         "cases: []",
         "sweep.yaml:4:8: cases: found no case at all, expected at least one",
@@ -67,7 +67,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      sped: [500 rpm]",
-        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
+        "sweep.yaml:6:7: cases.0.grid.sped: unknown key; expected one of joints, clearance, load, name, speed, ambient_pressure, gravity, crank, rod, crosshead, cylinder, housing, throws, frame, sensors, sample_rate, effects; did you mean 'speed'?",
     ),
     (
         "cases:\n  - grid:\n      joints.big_ned.contact.damping: [2e4 N s/m]",
@@ -75,7 +75,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "cases:\n  - grid:\n      joints.big_end.contact.dampign: [2e4 N s/m]",
-        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, relation, at_clearance, restitution, slowest_approach, length, modulus; did you mean 'damping'?",
+        "sweep.yaml:6:7: cases.0.grid.joints.big_end.contact.dampign: unknown key; expected one of law, stiffness, exponent, damping, depth, materials, relation, at_clearance, restitution, slowest_approach, length, modulus; did you mean 'damping'?",
     ),
     (
         "cases:\n  - grid:\n      crank.radius: [120 mm, 700 mm]",
