@@ -43,7 +43,8 @@ impl Listed {
         let own = own(&axes);
         let size = |axis: &Axis<Levels>, set: &JointSet| match axis.target.says(set, &own) {
             true => axis.values.len(),
-            false => 1,
+            // One case, and none where the axis has no value.
+            false => axis.values.len().min(1),
         };
         let sizes: Vec<Vec<u64>> = sets
             .iter()
