@@ -1,6 +1,6 @@
 //! Contact and friction laws of a joint.
 
-use super::materials::{self, MATERIALS_KEY};
+use super::materials::{self, Formula, MATERIALS_KEY};
 use super::relation::{RelationSection, Stated};
 use super::surfaces::Surfaces;
 use super::value::{self, Value};
@@ -14,7 +14,7 @@ use crate::unit::{self, Dimension};
 use mechanism::declaration::Quantity;
 use mechanism::joints::contact::{self, CONTACT_LAWS, ContactLaw, Entry, Parameter};
 use mechanism::joints::friction::{self, FrictionLaw};
-use mechanism::joints::stiffness::{Material, conformal, equation_5};
+use mechanism::joints::stiffness::Material;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{
     Deserialize, DeserializeSeed, Deserializer, EnumAccess, Error as _, MapAccess, Unexpected,
@@ -41,7 +41,7 @@ pub(super) struct Contact {
     at_clearance: Option<Positive<Clearance>>,
 }
 
-type StiffnessSource = Or<Stiffness, Materials>;
+type StiffnessSource = Or<Stiffness, FromMaterials>;
 
 /// Keys that every contact law has.
 const RELATION: &str = "relation";
@@ -279,26 +279,16 @@ impl JsonSchema for Stiffness {
     }
 }
 
-/// A stiffness that follows from the materials, the journal's radius and the clearance.
+/// A stiffness that follows from elastic constants, the journal's radius and the clearance that the joint has.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Materials {
+pub(super) struct FromMaterials {
     /// Which formula.
     from: Formula,
     /// Young's modulus: one for both bodies, or a list of two.
     youngs_modulus: Pair<Positive<Pressure>>,
     /// Poisson's ratio: one for both bodies, or a list of two.
     poisson_ratio: Pair<Number<Contraction>>,
-}
-
-/// A formula for the contact stiffness of a journal in a bearing.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-enum Formula {
-    /// Eq. (5) of the papers, with the effective radius R₁R₂/(R₁ + R₂).
-    Eq5,
-    /// The conformal form, with R₁R₂/(R₂ − R₁): stiffer, and it falls with the clearance.
-    Conformal,
 }
 
 impl Contact {
@@ -358,13 +348,13 @@ fn resolve_stiffness(
             Surfaces::Flat { .. } => Err(Error::found(
                 "",
                 "a stiffness from materials",
-                "a stiffness with its unit, e.g. '24 GN/m^1.5': the guide's faces have no radius",
+                materials::GUIDE_NEEDS,
             )),
         },
     }
 }
 
-impl Materials {
+impl FromMaterials {
     /// Stiffness of a journal of `radius` in a bearing with `clearance` (m), N/m^1.5.
     fn stiffness(&self, radius: f64, clearance: f64) -> f64 {
         let (modulus, ratio) = (self.youngs_modulus.both(), self.poisson_ratio.both());
@@ -372,10 +362,7 @@ impl Materials {
             youngs_modulus: modulus[i].si(),
             poisson_ratio: ratio[i].get(),
         });
-        match self.from {
-            Formula::Eq5 => equation_5(bodies, [radius, radius + clearance]),
-            Formula::Conformal => conformal(bodies, radius, clearance),
-        }
+        self.from.stiffness(bodies, radius, clearance)
     }
 }
 

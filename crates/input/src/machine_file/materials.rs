@@ -21,8 +21,8 @@ use crate::quantity::{
 use crate::reader;
 use crate::tree::{find, put, take};
 use crate::unit::Measure;
-use mechanism::joints::materials::{MATERIALS, composite_modulus};
-use mechanism::joints::stiffness::{Material, conformal, equation_5};
+use mechanism::joints::materials::MATERIALS;
+use mechanism::joints::stiffness::{Material, composite_modulus, conformal, equation_5};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _};
@@ -36,6 +36,10 @@ pub(super) const MATERIALS_KEY: &str = "materials";
 /// What it is, in words.
 pub(super) const WORDS: &str = "Materials of pin and bush, in the place of the stiffness (of the modulus in the law \
      cylinder), which then follows from them, the journal's radius and the clearance.";
+
+/// What a guide needs in the place of materials.
+pub(super) const GUIDE_NEEDS: &str =
+    "a stiffness with its unit, e.g. '24 GN/m^1.5': the guide's faces have no radius";
 
 /// A journal's radius over the clearance that a stiffness is worked out for where the joint states none: that of a
 /// new bearing. With the relation of its form the stiffness is the same for every choice.
@@ -51,7 +55,7 @@ pub(super) struct Materials {
     bush: Body,
     /// Form of the contact; conformal where it is left out.
     #[serde(default)]
-    form: Form,
+    form: Formula,
 }
 
 /// A material by its name, or by its elastic constants.
@@ -67,10 +71,10 @@ struct Elastic {
     poisson_ratio: Number<Contraction>,
 }
 
-/// How the stiffness follows from materials, radius and clearance.
+/// A formula for the contact stiffness of a journal in a bearing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-enum Form {
+pub(super) enum Formula {
     /// Hertz's, of a pin in a bush: the effective radius is R₁R₂/(R₂ − R₁), and the stiffness falls with the clearance.
     #[default]
     Conformal,
@@ -78,7 +82,7 @@ enum Form {
     Eq5,
 }
 
-impl Form {
+impl Formula {
     /// Its name, which its relation to the clearance shares.
     fn name(self) -> &'static str {
         match self {
@@ -88,7 +92,7 @@ impl Form {
     }
 
     /// The stiffness of a journal of this radius with this clearance, m, in N/m^1.5.
-    fn stiffness(self, bodies: [Material; 2], radius: f64, clearance: f64) -> f64 {
+    pub(super) fn stiffness(self, bodies: [Material; 2], radius: f64, clearance: f64) -> f64 {
         match self {
             Self::Conformal => conformal(bodies, radius, clearance),
             Self::Eq5 => equation_5(bodies, [radius, radius + clearance]),
@@ -189,8 +193,7 @@ fn numbers(
     }
     refuse_both("stiffness")?;
     if joint.ends_with("guide") {
-        let expected = "stiffness, e.g. '24 GN/m^1.5': the guide's faces have no radius";
-        return Err(Error::clash("", expected));
+        return Err(Error::clash("", GUIDE_NEEDS));
     }
     let radius = radius(&written.tree, joint)?;
     let clearance = clearance(&written.tree, joint).unwrap_or(radius / RADIUS_OVER_CLEARANCE);

@@ -48,10 +48,3 @@ pub const MATERIALS: [Entry; 7] = [
         0.35,
     ),
 ];
-
-/// E* of two bodies, Pa: 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂.
-pub fn composite_modulus(bodies: [Material; 2]) -> f64 {
-    let compliance =
-        |body: Material| (1.0 - body.poisson_ratio * body.poisson_ratio) / body.youngs_modulus;
-    (compliance(bodies[0]) + compliance(bodies[1])).recip()
-}

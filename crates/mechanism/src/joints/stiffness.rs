@@ -45,6 +45,12 @@ pub(super) fn effective_radius_conformal<S: Scalar>(journal: S, clearance: S) ->
     journal * (journal + clearance) / clearance
 }
 
+/// Composite modulus E* of two bodies, 1/E* = (1 − ν₁²)/E₁ + (1 − ν₂²)/E₂ (Johnson 1985, section 4.2). Pa.
+pub fn composite_modulus<S: Scalar>(bodies: [Material<S>; 2]) -> S {
+    let compliance = bodies[0].compliance() + bodies[1].compliance();
+    S::one() / (compliance * std::f64::consts::PI)
+}
+
 fn point_contact<S: Scalar>(bodies: [Material<S>; 2], radius: S) -> S {
     let compliance = bodies[0].compliance() + bodies[1].compliance();
     radius.sqrt() * 4.0 / (compliance * (3.0 * std::f64::consts::PI))

@@ -1,7 +1,7 @@
 //! Materials of contacts: their stiffness against Hertz's own formula.
 
-use mechanism::joints::materials::{MATERIALS, composite_modulus};
-use mechanism::joints::stiffness::{Material, conformal};
+use mechanism::joints::materials::MATERIALS;
+use mechanism::joints::stiffness::{Material, composite_modulus, conformal};
 
 fn named(name: &str) -> Material {
     MATERIALS
