@@ -17,6 +17,27 @@ const LEAST_FACTOR: f64 = 4.0;
 /// Most inner samples per recorded one: a slow recording still sees the contacts.
 const MOST_FACTOR: f64 = 4096.0;
 
+/// Revolutions that structures may take to settle.
+const MOST_SETTLING: f64 = 1000.0;
+
+/// Checks that what carries these sensors settles where a revolution takes so long, s.
+///
+/// # Errors
+/// A structure that takes more than 1000 revolutions.
+pub(crate) fn check_settling(sensors: &[Sensor], revolution: f64) -> Result<(), Error> {
+    for sensor in sensors {
+        let settling = sensor.chain.structure.map_or(0.0, |s| s.settling());
+        if settling > MOST_SETTLING * revolution {
+            return Err(Error::Swinging {
+                sensor: sensor.measured.entry().name,
+                revolutions: settling / revolution,
+                most: MOST_SETTLING,
+            });
+        }
+    }
+    Ok(())
+}
+
 /// How a record is sampled: more finely first, then decimated.
 #[derive(Clone)]
 pub(crate) struct Sampling {

@@ -28,6 +28,19 @@ pub enum Error {
         /// What is wrong with it.
         source: signal::Error,
     },
+    /// What carries a sensor swings for too long before it follows the machine.
+    #[error(
+        "sensor {sensor}: the housing swings by itself for {revolutions:.1e} revolutions, and at most {most} can be \
+         waited for: raise its damping_ratio or its frequency"
+    )]
+    Swinging {
+        /// The sensor.
+        sensor: &'static str,
+        /// How long it swings, revolutions.
+        revolutions: f64,
+        /// How long it may.
+        most: f64,
+    },
     /// A free crank stands still, or swings.
     #[error(
         "the crank does not come round any more: none of its revolutions ended before t = {time} s"

@@ -57,13 +57,20 @@ impl Structure {
         }
     }
 
-    /// How long its own swinging takes to decay, s.
+    /// How long its own swinging takes to decay, s: as exp(−ζωt), and beyond critical damping as the slower of its two
+    /// exponentials, exp(−(ζ − √(ζ² − 1))ωt).
     pub(crate) fn settling(&self) -> f64 {
         let Resonance {
             frequency,
             damping_ratio,
         } = self.resonance;
-        -LEFT.ln() / (damping_ratio * TAU * frequency)
+        let beyond = (damping_ratio * damping_ratio - 1.0).max(0.0).sqrt();
+        // (ζ − √(ζ² − 1)) without its cancellation.
+        let decay = match beyond > 0.0 {
+            true => 1.0 / (damping_ratio + beyond),
+            false => damping_ratio,
+        };
+        -LEFT.ln() / (decay * TAU * frequency)
     }
 
     /// The filter that is its response, at this rate, Hz.
@@ -75,6 +82,31 @@ impl Structure {
         match self.shows {
             Shows::Acceleration => Filter::accelerance(frequency, damping_ratio, rate),
             Shows::Velocity => Filter::mobility(frequency, damping_ratio, rate),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is left of a velocity after the time that it takes to settle, by the exact solution of the free oscillator.
+    #[test]
+    fn little_is_left_after_settling() {
+        for damping_ratio in [0.05, 0.9, 1.0, 1.1, 6.0] {
+            let resonance = Resonance {
+                frequency: 10.0,
+                damping_ratio,
+            };
+            let shows = Shows::Acceleration;
+            let settling = Structure { resonance, shows }.settling();
+            let own = TAU * resonance.frequency;
+            let root = Complex::new(damping_ratio * damping_ratio - 1.0, 0.0).sqrt();
+            let slow = (own * (root - damping_ratio) * settling).exp().norm();
+            assert!(
+                (0.99 * LEFT..1.01 * LEFT).contains(&slow),
+                "{damping_ratio}: {slow:e}"
+            );
         }
     }
 }

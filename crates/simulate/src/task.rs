@@ -1,6 +1,6 @@
 //! A record under way, as a sequence of courses; the caller integrates to the end of each.
 
-use crate::chain::Sampling;
+use crate::chain::{Sampling, check_settling};
 use crate::error::Error;
 use crate::leaving::{Leaving, Left};
 use crate::record::Record;
@@ -71,6 +71,7 @@ impl<'a> Task<'a> {
         } = *asked.settings;
         (asked.settings).check(asked.machine.drive.reference_speed())?;
         let mut run = Run::start(asked.machine.clone(), tolerance, kept == Kept::Trace);
+        check_settling(asked.sensors, run.revolution())?;
         let leaving = Leaving::new(&mut run, transient);
         let next = leaving.next(&run);
         let mut task = Self {

@@ -205,3 +205,18 @@ fn a_structure_has_swung_itself_in_where_its_record_begins() {
     // It begins where a record without it does.
     assert!(record.series[1][0] < 1e-6, "{}", record.series[1][0]);
 }
+
+#[test]
+fn a_structure_that_never_settles_is_refused() {
+    let mut machine = machine(false);
+    let sensor = Measured::HousingAcceleration {
+        throw: 0,
+        axis: Axis::X,
+    };
+    let housing = machine.machine.throws[0].housing.as_mut().unwrap();
+    housing.x.damping_ratio = 1e-9;
+    let sensors = [machine.perfect_sensor(sensor)];
+    let error = simulate(&machine.machine, &sensors, &Settings::default(), false).unwrap_err();
+    let words = "sensor housing_acceleration: the housing swings by itself for 3.8e7 revolutions";
+    assert!(error.to_string().starts_with(words), "{error}");
+}
