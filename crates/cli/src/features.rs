@@ -1,6 +1,6 @@
 //! `crosshead features`: measured recordings become a table of features.
 
-use crate::output::hint;
+use crate::output::{hint, make_folder_of};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
@@ -121,6 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let schema = table.schema().clone();
     let columns = schema.columns().len();
 
+    make_folder_of(out)?;
     let file = WholeFile::create(&out.with_extension("part"), out).map_err(Failure::input)?;
     let mut output = TableFile::new(file, format, &schema).map_err(Failure::work)?;
     let mut summary = Summary::new(columns);

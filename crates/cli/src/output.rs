@@ -33,6 +33,15 @@ pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     written.map(drop).map_err(Failure::work)
 }
 
+/// Makes the folder in which the file at `path` is to be, if it is not there.
+///
+/// # Errors
+/// Where it cannot be made.
+pub(crate) fn make_folder_of(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))
+}
+
 /// Writes to standard output, and ends the program where that fails.
 pub(crate) fn print(text: Arguments) {
     let mut out = io::stdout().lock();
