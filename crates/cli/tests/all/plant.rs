@@ -1,37 +1,31 @@
 //! Plant data from file to features, wear and page, by the four commands of pipelines/README.md.
 
 use crate::one_run::{crosshead, said};
+use crate::readme;
 use ::calibrate::wear::{Results, Verdict};
 use std::fs;
-use std::path::{Path, PathBuf};
 
 /// The diametral clearance of the worn crosshead pin, m, and the crank angle of the pulse, rad: the folder's README.md.
 const WORN: f64 = 0.012 * 0.0254;
 const HEALTHY: f64 = 0.005 * 0.0254;
 const PULSE: f64 = 137.0 / 180.0 * std::f64::consts::PI;
 
-fn example() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/recordings/example-plant")
-}
-
-/// Runs a command that must succeed, and returns what it prints.
-fn run(arguments: &[&str]) -> String {
+/// Runs a command that must succeed.
+fn run(arguments: &[&str]) {
     let done = crosshead(arguments);
     assert!(done.status.success(), "{arguments:?}: {}", said(&done));
-    String::from_utf8(done.stdout).unwrap()
 }
 
 #[test]
 fn a_worn_crosshead_pin_is_found_in_plant_data() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let plant = example();
-    let of_plant = |name: &str| plant.join(name).to_str().unwrap().to_owned();
-    let (bundle, machine) = (of_plant(""), of_plant("machine.yaml"));
-    run(&["check", &machine, &of_plant("recordings.yaml")]);
+    let clone = readme::clone();
+    let tour = readme::section("pipelines/README.md", "Plant data");
+    assert_eq!(readme::run(&tour, clone.path()), 4);
+    assert!(clone.path().join("plant/features.parquet").is_file());
 
-    // The tour writes into a folder that is not there before.
-    let table = path("plant/features.csv");
+    let path = |name: &str| clone.path().join(name).to_str().unwrap().to_owned();
+    let table = path("features.csv");
+    let bundle = path("data/recordings/example-plant");
     run(&["features", &bundle, "--out", &table]);
     let features = fs::read_to_string(&table).unwrap();
     let rows: Vec<Vec<&str>> = features
@@ -51,18 +45,8 @@ fn a_worn_crosshead_pin_is_found_in_plant_data() {
         "{peaks:?}"
     );
 
-    let wear = path("wear");
-    let estimate = [
-        "estimate-wear",
-        &bundle,
-        "--machine",
-        &machine,
-        "--out",
-        &wear,
-    ];
-    let printed = run(&estimate);
-    let results = Results::read(&folder.path().join("wear/wear.json")).unwrap();
-    assert_eq!(results.worn(), ["joints.small_end"], "{printed}");
+    let results = Results::read(&clone.path().join("plant/wear/wear.json")).unwrap();
+    assert_eq!(results.worn(), ["joints.small_end"]);
     for (joint, verdict, expected) in [
         ("joints.small_end", Verdict::Worn, WORN),
         ("joints.big_end", Verdict::Healthy, HEALTHY),
@@ -82,7 +66,6 @@ fn a_worn_crosshead_pin_is_found_in_plant_data() {
         assert!((angle - PULSE).abs() < 5e-4, "{run}: {angle}");
     }
 
-    run(&["report", &wear]);
-    let page = fs::read_to_string(folder.path().join("wear/report.html")).unwrap();
+    let page = fs::read_to_string(clone.path().join("plant/wear/report.html")).unwrap();
     assert!(page.contains("Worn: small end."), "no verdict on the page");
 }

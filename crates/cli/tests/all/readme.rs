@@ -18,10 +18,21 @@ const TOUR: [&str; 4] = [
     "crates/gap/PROOF.md",
 ];
 
-/// The blocks of a page in `language`, joined.
-fn blocks(page: &str, language: &str) -> String {
+fn page(path: &str) -> String {
+    std::fs::read_to_string(project().join(path)).unwrap()
+}
+
+/// The section of a page below `heading`, up to the next one of its level.
+pub fn section(path: &str, heading: &str) -> String {
+    let text = page(path);
+    let (_, rest) = text.split_once(&format!("\n## {heading}\n")).unwrap();
+    let section = rest.split("\n## ").next().unwrap_or_default();
+    section.to_owned()
+}
+
+/// The blocks of a text in `language`, joined.
+fn blocks(text: &str, language: &str) -> String {
     let fence = format!("```{language}\n");
-    let text = std::fs::read_to_string(project().join(page)).unwrap();
     let blocks = text.split(&fence).skip(1);
     blocks
         .map(|block| block.split("```").next().unwrap_or_default())
@@ -29,8 +40,8 @@ fn blocks(page: &str, language: &str) -> String {
 }
 
 /// One command per entry, continued lines joined.
-fn commands(page: &str) -> Vec<String> {
-    let text = blocks(page, "sh").replace("\\\n", " ");
+fn commands(text: &str) -> Vec<String> {
+    let text = blocks(text, "sh").replace("\\\n", " ");
     let lines = text.lines().map(str::trim);
     lines
         .filter(|line| !line.is_empty() && !line.starts_with('#'))
@@ -39,7 +50,7 @@ fn commands(page: &str) -> Vec<String> {
 }
 
 /// A folder with what a clone has besides its code.
-fn clone() -> tempfile::TempDir {
+pub fn clone() -> tempfile::TempDir {
     let clone = tempfile::tempdir().unwrap();
     for folder in ["pipelines", "data"] {
         let from = project().join(folder).canonicalize().unwrap();
@@ -48,11 +59,11 @@ fn clone() -> tempfile::TempDir {
     clone
 }
 
-/// Runs the commands of `page` in `clone` and counts them. Of a dataset that takes minutes only the plan is made, and
+/// Runs the commands of a text in `clone` and counts them. Of a dataset that takes minutes only the plan is made, and
 /// `cargo test` is running already.
-fn run(page: &str, clone: &Path) -> usize {
+pub fn run(text: &str, clone: &Path) -> usize {
     let mut run = 0;
-    for command in commands(page) {
+    for command in commands(text) {
         if command.starts_with("cargo test") || command.ends_with("report datasets/chaos-map") {
             continue;
         }
@@ -89,8 +100,9 @@ fn run(page: &str, clone: &Path) -> usize {
 #[test]
 fn the_commands_of_the_readme_work() {
     let clone = clone();
-    assert!(run("README.md", clone.path()) >= 5);
-    let code = blocks("README.md", "python");
+    let readme = page("README.md");
+    assert!(run(&readme, clone.path()) >= 5);
+    let code = blocks(&readme, "python");
     // The small dataset of the first command has the same columns.
     let code = code.replace("bearing-faults", "paper2");
     let mut python = Command::new(venv::python());
@@ -107,6 +119,6 @@ fn the_commands_of_the_readme_work() {
 #[ignore = "minutes: tests/nightly/run tour"]
 fn the_commands_of_the_tour_work() {
     let clone = clone();
-    let commands: usize = TOUR.iter().map(|page| run(page, clone.path())).sum();
+    let commands: usize = TOUR.iter().map(|path| run(&page(path), clone.path())).sum();
     assert!(commands >= 6, "the pages have only {commands} commands");
 }
