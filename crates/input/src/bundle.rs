@@ -324,15 +324,12 @@ fn is_by_throw(section: &Value, own: &[&str]) -> bool {
 /// Refuses a key that is probably a misspelt one of `known`. Others are passed over: a format may grow.
 fn known_keys(section: &Value, known: &[&str]) -> Result<(), Error> {
     let keys = section.as_object().into_iter().flat_map(Map::keys);
-    let is_misspelt = |key: &&String| {
-        let near = nearest(key, known.iter().copied());
-        !known.contains(&key.as_str()) && near.is_some_and(|near| !key.starts_with(near))
-    };
-    let begins =
-        |key: &&String| key.len() >= 4 && known.iter().any(|known| known.starts_with(key.as_str()));
-    let is_misspelt =
-        |key: &&String| is_misspelt(key) || !known.contains(&key.as_str()) && begins(key);
-    match keys.into_iter().find(is_misspelt) {
+    let mut unknown = keys.filter(|key| !known.contains(&key.as_str()));
+    // The beginning of several, as `speed`, is near to none of them.
+    let begins = |key: &str| key.len() >= 4 && known.iter().any(|known| known.starts_with(key));
+    let is_near =
+        |key: &str| nearest(key, known.iter().copied()).is_some_and(|near| !key.starts_with(near));
+    match unknown.find(|key| is_near(key) || begins(key)) {
         Some(key) => Err(Error::unknown_key(key, known)),
         None => Ok(()),
     }
