@@ -74,7 +74,7 @@ impl Candidate {
         values
     }
 
-    /// These values with each part of the form of its law that is no wave at its other end, and with all of them.
+    /// These values with each part of the form of its law that is no wave in its other form, and with all of them.
     pub fn other_forms_of(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let waves = self.waves().concat();
         let count = self.entry.parameters.len();
@@ -85,10 +85,8 @@ impl Candidate {
         let with = |changed: &[usize]| {
             let mut probe = values.to_vec();
             for (i, value) in probe.iter_mut().enumerate() {
-                let parameter = &self.entry.parameters[i % count];
-                let [low, high] = parameter.bounds;
                 if changed.contains(&(i % count)) {
-                    *value = if parameter.start == low { high } else { low };
+                    *value = self.entry.parameters[i % count].other;
                 }
             }
             probe

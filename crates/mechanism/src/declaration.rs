@@ -90,6 +90,8 @@ pub struct Parameter {
     pub cyclic: bool,
     /// True where it is a form of the law and no size: the laws that the literature has for the effect differ in it.
     pub shape: bool,
+    /// The value of the form that is other than the usual one, where that is not the end of its bounds, SI.
+    pub other: Option<f64>,
 }
 
 impl Parameter {
@@ -204,11 +206,12 @@ pub enum PlaceKey {
 ///         key: Quantity(Range), low to high, start value, absent value;      // an amplitude
 ///         key: Quantity(Range), low to high, start value;
 ///         key: Angle(Any), turn, start value;                                // a phase
-///         @shape key: Quantity(Range), low to high, start value;             // a form of the law
+///         @shape key: Quantity(Range), low to high, start value, other value; // a form of the law, and another one
 ///     }
 /// }
 /// ```
 ///
+/// A form whose `other` is left out is otherwise at the end of its bounds.
 /// A key that is left out has the value of `absent`, else of `start`; a proposal that is left out is
 /// [`Proposal::PerPlace`]. `includes` is for an effect that has a parameter of another one as well.
 #[macro_export]
@@ -221,7 +224,7 @@ macro_rules! declaration {
             $(
                 $(#[doc = $words:literal])+
                 $(@$shape:ident)? $key:ident: $quantity:ident($range:expr), $($cyclic:ident)? $($low:literal to $high:literal)?,
-                    start $start:literal $(, absent $absent:literal)?;
+                    start $start:literal $(, absent $absent:literal)? $(, other $other:literal)?;
             )+
         } $(as $type:ident)?
     ) => {
@@ -245,7 +248,8 @@ macro_rules! declaration {
                     range: $range,
                     bounds: $crate::declaration!(@bounds $($cyclic)? $($low to $high)?),
                     start: $start,
-                    absent: $crate::declaration!(@absent $($absent)?),
+                    absent: $crate::declaration!(@optional $($absent)?),
+                    other: $crate::declaration!(@optional $($other)?),
                     cyclic: $crate::declaration!(@cyclic $($cyclic)?),
                     shape: $crate::declaration!(@shape $($shape)?),
                 } ),+],
@@ -288,6 +292,6 @@ macro_rules! declaration {
     (@cyclic $cyclic:ident) => { true };
     (@shape) => { false };
     (@shape $shape:ident) => { true };
-    (@absent) => { None };
-    (@absent $absent:literal) => { Some($absent) };
+    (@optional) => { None };
+    (@optional $value:literal) => { Some($value) };
 }

@@ -52,7 +52,7 @@ declaration! {
         @shape laminar: Number(FromZero), 0.0 to 1.0, start 0.0;
         /// Pressure below which that behind the rings does not fall, as of a crankcase that breathes; 0 Pa where it is left out: the
         /// pressure on the other side of the piston, which data sheets of single-acting cylinders seldom state.
-        @shape behind: Pressure(FromZero), 0.0 to 1.1e5, start 0.0;
+        @shape behind: Pressure(FromZero), 0.0 to 2e5, start 0.0, other 101_325.0;
     } as RingLeakage
 }
 

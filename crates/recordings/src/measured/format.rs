@@ -10,8 +10,9 @@ use std::path::Path;
 const HEAD: u64 = 1024;
 
 /// Signatures of formats that are not read, at the beginning of a file.
-const UNREADABLE: [(&[u8], &str); 6] = [
+const UNREADABLE: [(&[u8], &str); 7] = [
     (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+    (b"TDSm", "a TDMS file"),
     (b"PK\x03\x04", "a ZIP archive or a spreadsheet"),
     (b"\x1f\x8b", "a gzip archive"),
     (b"fLaC", "a FLAC file"),
@@ -33,13 +34,13 @@ pub(super) fn format_of_file(path: &Path) -> Result<&'static RecordingFormat, Er
     let named = FORMATS.iter().find(|f| f.endings.contains(&&*ending));
     match (named, shown(&head)) {
         (Some(named), Shown::Format(shown, _)) if named.name == shown.name => Ok(named),
-        (_, Shown::Other(what)) | (Some(_), Shown::Format(_, what)) => {
-            let format = named.map_or("a recording", |named| named.name);
-            Err(Error::damaged(
-                format,
-                path,
-                format!("it looks like {what}"),
-            ))
+        (_, Shown::Other(what)) => {
+            let reason = format!("it looks like {what}: save it as {}", names("or"));
+            Err(Error::damaged(of(named), path, reason))
+        }
+        (Some(_), Shown::Format(_, what)) => {
+            let reason = format!("it looks like {what}");
+            Err(Error::damaged(of(named), path, reason))
         }
         (Some(named), Shown::Binary) if named.signature_at.is_none() => {
             Err(Error::damaged(named.name, path, "it is not text"))
@@ -48,12 +49,21 @@ pub(super) fn format_of_file(path: &Path) -> Result<&'static RecordingFormat, Er
         (Some(named), Shown::Binary) => Ok(named),
         (None, Shown::Format(format, _)) => Ok(format),
         (None, Shown::Binary) => {
-            let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
-            let (last, others) = names.split_last().unwrap_or((&"", &[]));
-            let reason = format!("it is none of {} and {last}", others.join(", "));
-            Err(Error::damaged("a recording", path, reason))
+            let reason = format!("it is none of {}", names("and"));
+            Err(Error::damaged(of(named), path, reason))
         }
     }
+}
+
+/// The formats that are read, as a list that ends with `last`.
+fn names(last: &str) -> String {
+    let names: Vec<&str> = FORMATS.iter().map(|format| format.name).collect();
+    let (end, others) = names.split_last().unwrap_or((&"", &[]));
+    format!("{} {last} {end}", others.join(", "))
+}
+
+fn of(named: Option<&RecordingFormat>) -> &'static str {
+    named.map_or("a recording", |named| named.name)
 }
 
 enum Shown {

@@ -505,6 +505,7 @@ fn one_clear_message_for_each_mistake() {
         ("a.csv", &whole, "as CSV: it looks like a WAV file"),
         ("b.parquet", &whole[..20], "as Parquet: it looks like a WAV file"),
         ("a.dat", b"PK\x03\x04\0\0", "it looks like a ZIP archive"),
+        ("a.tdms", b"TDSm\x0e\0\0\0", "a TDMS file: save it as CSV, WAV, MAT, Parquet or MCAP"),
         ("b.dat", b"\0\x01\x02", "it is none of CSV, WAV, MAT, Parquet and MCAP"),
         ("v73.mat", b"MATLAB 7.3 MAT-file\0", "version 7.3"),
         ("cut.wav", &whole[..whole.len() - 50], "announces 200 bytes of samples and has 150"),

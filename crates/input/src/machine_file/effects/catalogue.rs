@@ -86,6 +86,8 @@ pub struct Parameter {
     pub cyclic: bool,
     /// True where it is a form of the law and no size.
     pub shape: bool,
+    /// The value of the form that is other than the usual one.
+    pub other: f64,
 }
 
 /// A key that says where an effect acts.
@@ -103,6 +105,8 @@ pub struct Choice {
 impl Parameter {
     fn new(declared: &declaration::Parameter) -> Self {
         let (dimension, unit) = value::unit(declared.declared());
+        let [low, high] = declared.bounds;
+        let end = if declared.start == low { high } else { low };
         Self {
             key: declared.key,
             words: declared.words,
@@ -115,6 +119,7 @@ impl Parameter {
             on_the_stroke: declared.range == Range::OnTheStroke,
             cyclic: declared.cyclic,
             shape: declared.shape,
+            other: declared.other.unwrap_or(end),
         }
     }
 

@@ -27,7 +27,7 @@ pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     signature_at: Some(126),
     recognise: |head| {
         if has(head, 0, b"MATLAB 7.3") || has(head, 512, b"\x89HDF\r\n\x1a\n") {
-            let words = "a MAT file of version 7.3 (HDF5); save it with `-v7`";
+            let words = "a MAT file of version 7.3, which is HDF5 (that of `save -v7` is read)";
             return Some(Seen::Unreadable(words));
         }
         let is_mat = has(head, 126, b"IM") || has(head, 126, b"MI");
