@@ -5,6 +5,8 @@ use calibrate::{Error, Problem};
 
 /// A condition that differs by less than this factor between the runs does not vary.
 const VARIED: f64 = 1.1;
+/// The index of the clearance among the conditions.
+const CLEARANCE: usize = 2;
 
 /// What a run was recorded under: speed, rad/s; load, the discharge less the suction pressure of all throws, Pa; clearance, of
 /// all joints together, m.
@@ -80,6 +82,22 @@ pub(crate) fn most_different(runs: &[Conditions], count: usize) -> Vec<usize> {
     chosen
 }
 
+/// The indices of those runs whose clearance is that of most of them, of equals the smaller one.
+pub(crate) fn of_one_clearance(runs: &[Conditions]) -> Vec<usize> {
+    let like = |one: &Conditions| -> Vec<usize> {
+        let same = |i: &usize| {
+            let [a, b] = [one[CLEARANCE].1, runs[*i][CLEARANCE].1];
+            a.max(b) <= VARIED * a.min(b)
+        };
+        (0..runs.len()).filter(same).collect()
+    };
+    let mut all: Vec<&Conditions> = runs.iter().collect();
+    all.sort_by(|a, b| a[CLEARANCE].1.total_cmp(&b[CLEARANCE].1));
+    let of_each = all.into_iter().map(like);
+    // Of equals the first.
+    of_each.rev().max_by_key(Vec::len).unwrap_or_default()
+}
+
 fn range(runs: &[Conditions], condition: usize) -> [f64; 2] {
     let values = runs.iter().map(|run| run[condition].1);
     values.fold([f64::INFINITY, 0.0], |[least, greatest], value| {
@@ -108,9 +126,13 @@ mod tests {
         assert_eq!(most_different(&runs[..3], 3), [0, 2, 1]);
         assert_eq!(most_different(&runs[..1], 3), [0]);
         assert!(most_different(&[], 3).is_empty());
+        assert_eq!(of_one_clearance(&runs), [0, 1, 2, 3, 4]);
+        assert_eq!(of_one_clearance(&runs[4..]), [0]);
+        assert!(of_one_clearance(&[]).is_empty());
         // Ideal joints have no clearance to differ in.
         let ideal = [run(360.0, 3e5, 0.0), run(361.0, 3e5, 0.0)];
         assert_eq!(most_different(&ideal, 1), [0]);
         assert!(varied(&ideal).is_empty());
+        assert_eq!(of_one_clearance(&ideal), [0, 1]);
     }
 }

@@ -255,7 +255,7 @@ fn at_their_ends(
     problem: &Problem,
     mut known: Vec<Amended>,
 ) -> Result<Vec<Amended>, Error> {
-    let few = fitter.few(problem)?;
+    let few = fitter.few(problem)?.different;
     let deviance = |known: &[Amended]| -> Result<f64, Error> {
         let with = added(&few, known)?;
         let start = vec![0.0; with.parameters.len()];

@@ -5,7 +5,7 @@
 //! the catalogue is quite a machine's: where a descent allows less than the law is off by, the likelihood falls again.
 //! The allowance with which it is greatest is the size of the model's discrepancy (Kennedy and O'Hagan 2001).
 
-use crate::conditions::{conditions_of, most_different};
+use crate::conditions::{conditions_of, most_different, of_one_clearance};
 use crate::criteria::NOISE;
 use crate::effort::{Effort, FIRST_SEARCH, MOST_OF_A_DESCENT};
 use crate::error::{Error, possible};
@@ -62,6 +62,15 @@ pub type Watch<'a> = &'a (dyn Fn() -> ControlFlow<()> + Sync);
 
 /// A point from which a descent may start: a problem and coordinates of its parameters.
 pub(crate) type Start = (Problem, Vec<f64>);
+
+/// A problem in a few of its runs.
+pub(crate) struct Few {
+    /// Of one clearance, and of speeds as different as there are. Another clearance is another kind of motion, with minima of its
+    /// own: descents begin without it.
+    pub alike: Problem,
+    /// As different as there are: effects differ by how they grow with speed, load and clearance, so that sets are compared with these.
+    pub different: Problem,
+}
 
 /// Fits models.
 #[derive(Clone, Copy)]
@@ -249,22 +258,27 @@ impl Fitter<'_> {
         Ok(fit)
     }
 
-    /// The problem with a few of the runs that are fitted to, which differ as much as there are: effects differ by how they grow
-    /// with speed, load and clearance.
+    /// The problem with a few of the runs that are fitted to.
     ///
     /// # Errors
     /// An invalid machine.
-    pub fn few(&self, problem: &Problem) -> Result<Problem, Error> {
+    pub fn few(&self, problem: &Problem) -> Result<Few, Error> {
         let runs = problem.runs.iter();
         let mut runs: Vec<_> = runs.filter(|run| self.effort.fits(&run.id)).collect();
         runs.sort_by(|a, b| a.crank.speed.total_cmp(&b.crank.speed));
         let nominal = vec![0.0; problem.parameters.len()];
         let conditions = runs.iter().map(|run| conditions_of(problem, run, &nominal));
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
-        let chosen = most_different(&conditions, FEW);
-        let chosen: Vec<&str> = chosen.into_iter().map(|i| runs[i].id.as_str()).collect();
-        let chosen = |run: &Observation| chosen.contains(&run.id.as_str());
-        Ok(problem.with_runs(chosen))
+        let with = |chosen: Vec<usize>| {
+            let chosen: Vec<&str> = chosen.into_iter().map(|i| runs[i].id.as_str()).collect();
+            problem.with_runs(|run: &Observation| chosen.contains(&run.id.as_str()))
+        };
+        let alike = of_one_clearance(&conditions);
+        let spread = |i| alike.get(i * alike.len().saturating_sub(1) / (FEW - 1));
+        Ok(Few {
+            alike: with((0..FEW).filter_map(spread).copied().collect()),
+            different: with(most_different(&conditions, FEW)),
+        })
     }
 
     /// Whether a model fits the recordings within their noise.

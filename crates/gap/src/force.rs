@@ -74,7 +74,7 @@ pub(crate) fn empirical_force(fitter: &Fitter, model: &Model) -> Result<Option<F
             break;
         }
         let few = Model::at(
-            fitter.few(&model.problem)?,
+            fitter.few(&model.problem)?.different,
             &model.x,
             model.timing,
             fitter.effort,

@@ -54,7 +54,7 @@ pub(crate) fn judged(
     }
     let few = fitter.few(problem)?;
     let own = problem.parameters.len();
-    let first = match fitter.settled(&(few.clone(), nothing.model.x.clone()))? {
+    let first = match fitter.settled(&(few.different.clone(), nothing.model.x.clone()))? {
         Some(model) => Hypothesis::new(Vec::new(), model, own),
         None => nothing.clone(),
     };

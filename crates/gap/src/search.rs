@@ -7,11 +7,10 @@
 use crate::amendment::Amendment;
 use crate::criteria::left;
 use crate::error::{Error, possible};
-use crate::fitter::{Fitter, Start};
-use crate::hypothesis::{Amended, Hypothesis, start};
+use crate::fitter::{Few, Fitter, Start};
+use crate::hypothesis::{Amended, Hypothesis, added, start};
 use crate::model::Model;
 use crate::screen::{Screened, screen};
-use calibrate::Problem;
 use calibrate::parameter::Scale;
 use rand::RngExt;
 use rayon::prelude::*;
@@ -43,8 +42,8 @@ const DRAWN: f64 = 0.5;
 /// What a search looks for, and in what.
 pub(crate) struct Search<'a> {
     pub fitter: &'a Fitter<'a>,
-    /// The machine without amendments, in a few of its runs.
-    pub few: &'a Problem,
+    /// The machine without amendments.
+    pub few: &'a Few,
     /// What may be amended.
     pub amendments: &'a [Amendment],
 }
@@ -88,11 +87,11 @@ impl Search<'_> {
     /// The node with one of its amendments at one place alone, as what acts at two places imitates what acts at one; with
     /// values of each place's own; or without one of them: it may have been no more than a way to the others.
     fn varied(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
-        let own = self.few.parameters.len();
-        let mut varied = node.at_places_alone(self.few)?;
-        varied.extend(node.of_each_place(self.few)?);
+        let own = self.few.different.parameters.len();
+        let mut varied = node.at_places_alone(&self.few.different)?;
+        varied.extend(node.of_each_place(&self.few.different)?);
         if node.set.len() > 1 {
-            varied.extend(node.without_one(self.few)?);
+            varied.extend(node.without_one(&self.few.different)?);
         }
         let fitted = varied.into_par_iter().map(|(set, start)| {
             (self.fitter.say)(&words(node, "variations"), node.model.fitted);
@@ -106,9 +105,11 @@ impl Search<'_> {
     /// The node with one of its amendments exchanged for the most promising of other kinds, which are looked at in the machine
     /// as the node has it: without what is missing a fit goes astray, and what two kinds have in common does not show there.
     fn exchanged(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
-        let own = self.few.parameters.len();
+        let own = self.few.different.parameters.len();
         let mut trials = Vec::new();
-        for (one, (set, (problem, x))) in node.set.iter().zip(node.without_one(self.few)?) {
+        for (one, (set, (problem, x))) in
+            node.set.iter().zip(node.without_one(&self.few.different)?)
+        {
             let timing = node.model.timing;
             let Some(model) = possible(Model::at(problem, &x, timing, self.fitter.effort))? else {
                 continue;
@@ -118,7 +119,7 @@ impl Search<'_> {
                 |other: &&Amendment| other.kind() != one.amendment.kind() && !without.has(other);
             let others = self.amendments.iter().filter(of_other_kind).cloned();
             (self.fitter.say)(&words(node, "rivals"), node.model.fitted);
-            let screened = screen(self.fitter, &without.model, false, others.collect())?;
+            let screened = self.screened(&without, false, others.collect())?;
             let screened = best_of_each_kind(screened, 1);
             let screened = screened.into_iter().take(EXCHANGED);
             trials.extend(screened.map(|screened| (without.clone(), screened)));
@@ -141,12 +142,7 @@ impl Search<'_> {
             .amendments
             .iter()
             .filter(|amendment| !node.has(amendment));
-        let screened = screen(
-            self.fitter,
-            &node.model,
-            node.set.is_empty(),
-            others.cloned().collect(),
-        )?;
+        let screened = self.screened(node, node.set.is_empty(), others.cloned().collect())?;
         let of_a_kind = if node.set.is_empty() { OF_A_KIND } else { 1 };
         let mut chosen = best_of_each_kind(screened, of_a_kind);
         chosen.truncate(if node.set.is_empty() { ALONE } else { BESIDE });
@@ -165,7 +161,7 @@ impl Search<'_> {
         });
         let fitted = rough.into_par_iter().map(|trial| {
             (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
-            let own = self.few.parameters.len();
+            let own = self.few.different.parameters.len();
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
                 let far = self.fitter.explored(&anew(&trial.start, own))?;
@@ -178,10 +174,24 @@ impl Search<'_> {
         Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// A node with one amendment more, fitted roughly.
+    /// The amendments that a node may get, the most promising first.
+    fn screened(
+        &self,
+        node: &Hypothesis,
+        alone: bool,
+        amendments: Vec<Amendment>,
+    ) -> Result<Vec<Screened>, Error> {
+        let alike = added(&self.few.alike, &node.set)?;
+        let (x, timing) = (&node.model.x, node.model.timing);
+        let model = possible(Model::at(alike, x, timing, self.fitter.effort))?;
+        let model = model.as_ref().unwrap_or(&node.model);
+        screen(self.fitter, model, alone, amendments)
+    }
+
+    /// A node with one amendment more, fitted roughly to runs that are alike.
     fn roughly(&self, node: &Hypothesis, screened: &Screened) -> Result<Option<Trial>, Error> {
         let amendment = &screened.amendment;
-        let problem = &node.model.problem;
+        let problem = &added(&self.few.alike, &node.set)?;
         let mut probes: Vec<(&[f64], Vec<f64>)> = Vec::new();
         for point in &screened.starts {
             probes.push((&point.x, point.values.clone()));
@@ -201,12 +211,15 @@ impl Search<'_> {
         let Some(rough) = self.fitter.roughly(&starts)? else {
             return Ok(None);
         };
+        let values = values.swap_remove(rough.start);
+        let Some(with) = possible(amendment.added(&node.model.problem, &values))? else {
+            return Ok(None);
+        };
         let mut set = node.set.clone();
         set.push(Amended {
             amendment: amendment.clone(),
-            values: values.swap_remove(rough.start),
+            values,
         });
-        let with = starts.swap_remove(rough.start).0;
         Ok(Some(Trial {
             deviance: rough.deviance,
             set,
