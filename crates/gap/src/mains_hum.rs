@@ -1,7 +1,8 @@
 //! Mains hum: a tone whose frequency is the same in every run, at any speed.
 //!
 //! What repeats with the crank is subtracted from each recording first. In the rest a tone stands out of
-//! the frequencies around it in all runs at once. A run in which it meets an order hides it, and
+//! the frequencies around it in all runs at once, equally strong in each. What repeats with every other revolution may be at
+//! that frequency too, but at one speed alone. A run in which the tone meets an order hides it, and
 //! cannot be cleaned: that order of it is not compared.
 
 use crate::error::Error;
@@ -22,6 +23,9 @@ const AROUND: std::ops::RangeInclusive<i32> = 3..=14;
 /// A tone in noise has a mean power over noise of 1 in every run; in so many times that it is there.
 /// With one run of noise alone it is exceeded in one of e^20 tests.
 const STANDS_OUT: f64 = 20.0;
+/// Share of the mean amplitude that a tone has in every run, and by how many times the noise less it may be.
+const IN_EACH: f64 = 0.5;
+const SURE: f64 = 3.0;
 
 /// A hum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -153,8 +157,13 @@ fn hum(runs: &[Run], column: &str) -> Option<Hum> {
             }
             let count = heard.len() as f64;
             let over_noise = heard.iter().map(|(_, p, n)| p / n).sum::<f64>() / count;
-            if over_noise > STANDS_OUT && best.as_ref().is_none_or(|b| over_noise > b.over_noise) {
-                let amplitude = heard.iter().map(|(_, p, _)| p.sqrt()).sum::<f64>() / count;
+            let amplitude = heard.iter().map(|(_, p, _)| p.sqrt()).sum::<f64>() / count;
+            let is_in =
+                |(_, p, n): &(&Run, f64, f64)| p.sqrt() + SURE * n.sqrt() > IN_EACH * amplitude;
+            if over_noise > STANDS_OUT
+                && heard.iter().all(is_in)
+                && best.as_ref().is_none_or(|b| over_noise > b.over_noise)
+            {
                 let noise = heard.iter().map(|(_, _, n)| 0.5 * n).sum::<f64>() / count;
                 best = Some(Hum {
                     channel: column.to_owned(),
@@ -266,5 +275,16 @@ mod tests {
             run("c", 560.0, 0.0),
         ];
         assert_eq!(hum(&runs, COLUMN), None);
+    }
+
+    #[test]
+    fn a_tone_at_one_speed_alone_is_no_hum() {
+        let runs = [
+            run("a", 440.0, 0.0),
+            run("b", 500.0, 0.0),
+            run("c", 560.0, 2.0),
+        ];
+        assert_eq!(hum(&runs, COLUMN), None);
+        assert!(hum(&runs[2..], COLUMN).is_some());
     }
 }

@@ -1,6 +1,6 @@
 //! The page of a dataset, from its tables.
 
-use super::{about, columns, counts, examples, features, grid, random};
+use super::{about, columns, counts, examples, features, grid, operation, random};
 use crate::Error;
 use crate::dataset_page::{DatasetPage, Design};
 use sweep::reader::Dataset;
@@ -34,16 +34,17 @@ impl DatasetPage {
             channels: channels.map(|(name, _)| name).collect(),
             joints: dataset.joints(),
             splits: dataset.splits(),
-            faults,
             ranges: counts::ranges(dataset),
             failed: counts::failed(dataset),
             warnings: dataset.manifest().warnings.clone(),
             no_examples: about::no_recordings(dataset).to_owned(),
             examples,
             design,
+            operation: operation::operation(dataset, &faults)?,
             features,
             feature_rows,
             columns: columns::columns(dataset)?,
+            faults,
         })
     }
 }

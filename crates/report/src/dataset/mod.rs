@@ -10,6 +10,7 @@ mod features;
 mod features_page;
 mod grid;
 mod operating_points;
+mod operation;
 mod random;
 mod recording;
 mod words;

@@ -100,7 +100,7 @@ fn binned(values: &[f64]) -> (Vec<f64>, Vec<usize>) {
     ((0..=bins).map(|i| low + width * i as f64).collect(), counts)
 }
 
-fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
+pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let ((x, x_unit), (y, y_unit)) = (&scatter.x, &scatter.y);
     let points = || scatter.classes.iter().flat_map(|(_, points)| points);
     let (x_factor, x_unit) = readable(points().map(|point| point[0]), x_unit);

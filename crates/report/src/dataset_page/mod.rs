@@ -11,6 +11,7 @@ mod comparison;
 mod distributions;
 mod examples;
 mod levels;
+mod operation;
 mod page;
 mod portrait;
 mod settings;
@@ -58,6 +59,8 @@ pub struct DatasetPage {
     pub no_examples: String,
     /// What is compared: depends on the design of the sweep.
     pub design: Design,
+    /// How levels and spectra go with speed and load.
+    pub operation: Operation,
     /// The features of the table.
     pub features: Vec<Feature>,
     /// The values of the features for each fault.
@@ -207,6 +210,26 @@ pub struct RandomSweep {
     pub histograms: Vec<Histogram>,
     /// How features go with parameters.
     pub scatters: Vec<Scatter>,
+}
+
+/// What goes with speed and load, as far as they vary.
+#[derive(Clone, Debug, Default)]
+pub struct Operation {
+    /// The rms over the speed and over discharge pressures, of each sensor.
+    pub trends: Vec<Scatter>,
+    /// Spectra over the speed, of each sensor.
+    pub waterfalls: Vec<Waterfall>,
+}
+
+/// Spectra of one class over the speed, as one sensor reads them.
+#[derive(Clone, Debug)]
+pub struct Waterfall {
+    /// Label of the class.
+    pub fault: String,
+    /// The sensor; empty where the dataset has one.
+    pub sensor: String,
+    /// Speed in rad/s, the lowest first, and the order spectrum there.
+    pub spectra: Vec<(f64, Spectrum)>,
 }
 
 /// The values of one parameter over all cases.

@@ -5,7 +5,7 @@ use super::examples::{self, MOST_EXAMPLES};
 use super::levels;
 use super::{
     CaseLevel, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount, FeatureRow,
-    ParameterRange, comparison, distributions,
+    ParameterRange, comparison, distributions, operation,
 };
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Column, Error, classes, text};
@@ -100,6 +100,18 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
             first: 1,
             plates: distributions::plates(page, sweep),
         }),
+    }
+    let over_operation = operation::plates(page, &page.operation);
+    if !over_operation.is_empty() {
+        galleries.push(Gallery {
+            id: "operation".to_owned(),
+            heading: "Over speed and load".to_owned(),
+            introduction: "What an analyst plots first: levels over the operating point, and spectra over the speed.",
+            left_out: String::new(),
+            nothing: "",
+            first: 1,
+            plates: over_operation,
+        });
     }
     let mut number = 1;
     for gallery in &mut galleries {

@@ -182,6 +182,23 @@ fn random_cases_have_distributions_and_the_failed_one_its_reason() {
 }
 
 #[test]
+fn levels_and_spectra_stand_over_the_speed_where_it_varies() {
+    let html = datasets::random().render().unwrap().html;
+    assert!(html.contains("<h3>Rms against speed</h3>"));
+    assert!(html.contains("<h3>Waterfall over the speed, healthy</h3>"));
+    // The greatest is order 1, 100 m/s², and four decades are two and a half distances of 50 rpm.
+    let said = "rises by 125 rpm for amplitudes from 0.01 m/s² to 100 m/s², the greatest";
+    assert!(html.replace('\u{a0}', " ").contains(said));
+    assert!(
+        !datasets::grid()
+            .render()
+            .unwrap()
+            .html
+            .contains("Waterfall")
+    );
+}
+
+#[test]
 fn text_from_the_data_is_never_markup() {
     let hostile = "<script src='http://x'>&\"</script>".to_owned();
     let mut page = datasets::random();

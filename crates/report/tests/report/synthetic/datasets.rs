@@ -4,10 +4,11 @@ use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
 use recordings::FailedCase;
 use report::dataset_page::{
     CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount,
-    Feature, FeatureRow, Histogram, JointSet, ParameterRange, RandomSweep, Response, Scatter,
-    Spectrum,
+    Feature, FeatureRow, Histogram, JointSet, Operation, ParameterRange, RandomSweep, Response,
+    Scatter, Spectrum, Waterfall,
 };
 use report::{Column, Level};
+use std::f64::consts::TAU;
 
 const FAULTS: [(&str, &[&str]); 4] = [
     ("none", &[]),
@@ -134,10 +135,45 @@ pub fn random() -> DatasetPage {
             range("speed", "rpm", 350.1, 899.9, 2999),
             range("discharge pressure", "Pa", 2.5e5, 6e5, 2999),
         ],
+        operation: operation(),
         ..page(Design::Random(RandomSweep {
             histograms,
             scatters,
         }))
+    }
+}
+
+/// A healthy machine that resonates at 200 Hz, at nine speeds from 400 rpm to 800 rpm.
+fn operation() -> Operation {
+    let speeds = (0..9).map(|i| 400.0 + 50.0 * f64::from(i));
+    let line = |order: f64, rpm: f64| {
+        let detuned = order * rpm / 60.0 / 200.0 - 1.0;
+        100.0 / (order * order) + 5.0 / (1.0 + 400.0 * detuned * detuned)
+    };
+    let spectra = speeds.clone().map(|rpm| {
+        let orders = (1..=60).map(f64::from);
+        let spectrum = Spectrum {
+            at: orders.clone().collect(),
+            amplitude_m_s2: orders.map(|order| line(order, rpm)).collect(),
+        };
+        (rpm * TAU / 60.0, spectrum)
+    });
+    let trend = Scatter {
+        x: ("speed".to_owned(), "rpm".to_owned()),
+        y: ("rms".to_owned(), "m/s²".to_owned()),
+        log_y: true,
+        classes: vec![(
+            "none".to_owned(),
+            speeds.map(|rpm| [rpm, 1e-3 * rpm * rpm]).collect(),
+        )],
+    };
+    Operation {
+        trends: vec![trend],
+        waterfalls: vec![Waterfall {
+            fault: "none".to_owned(),
+            sensor: String::new(),
+            spectra: spectra.collect(),
+        }],
     }
 }
 
@@ -173,6 +209,7 @@ fn page(design: Design) -> DatasetPage {
         examples: (0..4).map(example).collect(),
         no_examples: String::new(),
         design,
+        operation: Operation::default(),
         features: vec![
             feature("rms", "m/s²"),
             feature("peak", "m/s²"),
