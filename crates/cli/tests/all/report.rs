@@ -330,8 +330,9 @@ fn random_cases_have_distributions() {
     ] {
         assert!(html.contains(said), "{said}");
     }
-    // Two examples, the histograms, four scatters.
-    assert_eq!(html.matches("<figcaption>").count(), 2 + 1 + 4);
+    // Two examples, the histograms, four scatters, a trend over the speed and a waterfall.
+    assert_eq!(html.matches("<figcaption>").count(), 2 + 1 + 4 + 2);
+    assert!(html.contains("<h3>Waterfall over the speed, healthy</h3>"));
     let page = dataset.page();
     let counts = page
         .faults
@@ -508,7 +509,8 @@ fn every_operating_point_is_on_the_page() {
             "{speed}"
         );
     }
-    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 * (2 + 1 + 2));
+    // And what goes with the speed.
+    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 * (2 + 1 + 2) + 2);
     // The claims have a row for each.
     let printed = String::from_utf8(output.stdout).unwrap();
     assert!(printed.contains("| 400 rpm | holds"), "{printed}");
