@@ -5,6 +5,7 @@
 
 use super::effort::Effort;
 use super::model::Model;
+use super::prior::{self, Prior, WithPriors};
 use super::screen::few;
 use crate::energies::Energies;
 use crate::error::Error;
@@ -13,6 +14,8 @@ use crate::likelihood::{Likelihood, NOISE, misfit};
 use crate::optimiser::{LeastSquares, Progress};
 use crate::problem::Problem;
 use crate::secant::secant;
+use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 /// What a stage compares, and the evaluations that it may take.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +33,8 @@ const ROUGH: [Stage; 3] = [
     Stage::Lines(0.003, 12),
 ];
 /// The stages with all runs.
-const FINE: [Stage; 3] = [
+const FINE: [Stage; 4] = [
+    Stage::Lines(0.01, 20),
     Stage::Lines(0.003, 20),
     Stage::Lines(0.001, 20),
     Stage::Lines(0.0, 40),
@@ -39,14 +43,14 @@ const FINE: [Stage; 3] = [
 const FOLLOWED: usize = 3;
 /// One of so many starts goes on after a stage.
 const KEPT: usize = 3;
+/// Descents that are made before the search may be stopped.
+const AT_ONCE: usize = 16;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Most evaluations of the last descent.
 const LAST: u64 = 300;
-/// Most evaluations of a search from where it ends.
-const SEARCH: u64 = 800;
 
 /// Where a descent has led.
 #[derive(Clone, Debug)]
@@ -66,8 +70,13 @@ pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -
     };
     let mut led: Vec<Led> = starts.iter().map(at).collect();
     for stage in ROUGH {
-        for led in &mut led {
-            descend(&part, led, stage, effort);
+        for together in led.chunks_mut(AT_ONCE) {
+            if effort.stopped {
+                break;
+            }
+            let each = together.par_iter_mut();
+            let spent = each.map(|led| descend(&part, &model.priors, led, stage));
+            effort.evaluated(spent.sum());
         }
         led.sort_by(|a, b| a.left.total_cmp(&b.left));
         led.truncate(led.len().div_ceil(KEPT).max(FOLLOWED));
@@ -80,7 +89,11 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
     let mut ends: Vec<Led> = Vec::new();
     for mut led in led.into_iter().take(FOLLOWED) {
         for stage in FINE {
-            descend(&model.problem, &mut led, stage, effort);
+            if effort.stopped {
+                break;
+            }
+            let spent = descend(&model.problem, &model.priors, &mut led, stage);
+            effort.evaluated(spent);
         }
         let at_noise = misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE;
         ends.push(led);
@@ -94,55 +107,55 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
         .ok_or(Error::Nothing("no descent has led anywhere"))
 }
 
-/// One stage of a descent. Where the machine cannot be simulated, nothing is moved.
-fn descend(problem: &Problem, led: &mut Led, stage: Stage, effort: &mut Effort) {
-    if effort.stopped {
-        return;
-    }
-    let measured = match stage {
+/// One stage of a descent, and the evaluations that it has taken. Where the machine cannot be simulated, nothing is moved.
+fn descend(problem: &Problem, priors: &[Prior], led: &mut Led, stage: Stage) -> u64 {
+    let (measured, spent) = match stage {
         Stage::Energies(most) => {
             let energies = Energies::new(problem);
-            let x = secants(&energies, &led.x, most, effort);
-            energies.squares(&x).map(|left| (x, left))
+            let (x, spent) = secants(&energies, priors, &led.x, most);
+            (energies.squares(&x).map(|left| (x, left)), spent)
         }
         Stage::Lines(timing, most) => {
             let lines = Likelihood::coarse(problem, timing);
-            let x = secants(&lines, &led.x, most, effort);
-            lines.likeliest(&x, &TIMINGS).map(|(_, left)| (x, left))
+            let (x, spent) = secants(&lines, priors, &led.x, most);
+            let measured = lines.likeliest(&x, &TIMINGS);
+            (measured.map(|(_, left)| (x, left)), spent)
         }
     };
     match measured {
-        Ok((x, left)) => (led.x, led.left) = (x, left),
+        Ok((x, left)) => {
+            led.left = left + prior::squares(priors, &x);
+            led.x = x;
+        }
         Err(_) => led.left = f64::INFINITY,
     }
+    spent
 }
 
-fn secants(compared: &impl LeastSquares, x: &[f64], most: u64, effort: &mut Effort) -> Vec<f64> {
-    let found = secant(compared, x, ENDED, most, &mut |progress: &Progress| {
-        effort.shown(progress.evaluations)
-    });
-    effort.spent += found.evaluations;
-    found.x
+fn secants(
+    compared: &impl LeastSquares,
+    priors: &[Prior],
+    x: &[f64],
+    most: u64,
+) -> (Vec<f64>, u64) {
+    let compared = WithPriors {
+        inner: compared,
+        priors,
+    };
+    let go = &mut |_: &Progress| ControlFlow::Continue(());
+    let found = secant(&compared, x, ENDED, most, go);
+    (found.x, found.evaluations)
 }
 
 /// The fit of a model from `x`, with intervals.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub(super) fn fit(
-    model: &Model,
-    x: Vec<f64>,
-    optimiser: Optimiser,
-    effort: &mut Effort,
-) -> Result<Fit, Error> {
-    let evaluations = match optimiser {
-        Optimiser::Default => SEARCH,
-        _ => LAST,
-    };
+pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
     let settings = FitSettings {
-        optimiser,
+        optimiser: Optimiser::LevenbergMarquardt,
         seed: 0,
-        evaluations,
+        evaluations: LAST,
         held_out: Vec::new(),
         start: Some(x),
     };
