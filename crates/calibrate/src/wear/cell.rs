@@ -23,7 +23,7 @@ const SPREADS: f64 = 2.0;
 const AT_ONCE: usize = 4;
 
 /// The best points of the cells around these, the best one first.
-pub(super) fn around(model: &Model, points: &[Vec<f64>], effort: &mut Effort) -> Vec<Led> {
+pub(super) fn around(model: &Model, points: Vec<Vec<f64>>, effort: &mut Effort) -> Vec<Led> {
     let few = few(&model.problem);
     let mut all: Vec<Led> = Vec::new();
     for part in points.chunks(AT_ONCE) {

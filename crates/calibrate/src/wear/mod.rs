@@ -23,6 +23,7 @@ mod effort;
 mod estimation;
 mod joint;
 mod model;
+mod parts;
 mod prior;
 mod results;
 mod screen;

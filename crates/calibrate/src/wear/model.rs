@@ -33,9 +33,6 @@ pub(super) enum Contacts {
     Fitted,
 }
 
-/// Coordinates of exponents, with their places.
-pub(super) type Exponents = Vec<(usize, f64)>;
-
 /// A model of the worn machine.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
@@ -119,26 +116,23 @@ impl Model {
         parameters.map(of).collect()
     }
 
-    /// The known relations between clearances beside that of the machine file, where exponents are unknown.
-    pub fn relations(&self) -> Vec<Exponents> {
-        let parameters = &self.problem.parameters;
-        let exponents: Vec<usize> = (0..parameters.len())
-            .filter(|i| parameters[*i].path.contains(".relation."))
-            .collect();
-        let of = |[stiffness, damping]: [f64; 2]| -> Exponents {
-            let at = |place: &usize| {
-                let parameter = &parameters[*place];
-                let exponent = match parameter.path.ends_with("damping") {
-                    true => damping,
-                    false => stiffness,
-                };
-                (*place, parameter.coordinate(exponent))
-            };
-            exponents.iter().map(at).collect()
+    /// The coordinates `x` with each of the known relations between clearances beside that of the machine file, where exponents
+    /// are unknown.
+    pub fn related(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let of = |[stiffness, damping]: [f64; 2]| {
+            let mut x = x.to_vec();
+            for (x, parameter) in x.iter_mut().zip(&self.problem.parameters) {
+                if parameter.path.ends_with(".relation.stiffness") {
+                    *x = parameter.coordinate(stiffness);
+                } else if parameter.path.ends_with(".relation.damping") {
+                    *x = parameter.coordinate(damping);
+                }
+            }
+            x
         };
         let all = relation::KNOWN.map(of).into_iter();
-        all.filter(|relation| relation.iter().any(|(_, x)| x.abs() > 1e-9))
-            .collect()
+        let differs = |y: &Vec<f64>| y.iter().zip(x).any(|(a, b)| (a - b).abs() > 1e-9);
+        all.filter(differs).collect()
     }
 
     /// By how much the logarithm of the contact parameter at `path` differs, at the coordinates `x`, from that by the relation

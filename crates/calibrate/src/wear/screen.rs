@@ -20,8 +20,6 @@ const BELOW: u32 = 2;
 const TOGETHER: usize = 2;
 /// Points that go on to the joints of the next throw, or are looked at with another joint.
 const BEAM: usize = 4;
-/// Points that are handed on.
-const STARTS: usize = 48;
 /// Runs that are looked at.
 const RUNS: usize = 3;
 /// Points that are looked at before the search may be stopped.
@@ -29,21 +27,20 @@ const AT_ONCE: usize = 16;
 
 /// A point with its sum of squares, and the groups of joints that have moved in it.
 #[derive(Clone, Debug)]
-struct Point {
+pub(super) struct Point {
     x: Vec<f64>,
     squares: f64,
     moved: Vec<usize>,
 }
 
-/// The best points around `x`, the best one first. The joints of a group are moved over their common grid, the best points
-/// are kept, and another group is moved, until every joint may have moved. The best points of all are looked at with each of the
-/// relations between clearances that the model allows.
-pub(super) fn starts(
+/// The points of the grid around `x` with the relation between clearances that `x` has. The joints of a
+/// group are moved over their common grid, the best points are kept, and another group is moved, until every joint may have moved.
+pub(super) fn screened(
     model: &Model,
     joints: &[Joint],
     x: &[f64],
     effort: &mut Effort,
-) -> Vec<Vec<f64>> {
+) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
     let mut all: Vec<Point> = looked_at(&energies, vec![x.to_vec()], &[], effort);
@@ -68,22 +65,7 @@ pub(super) fn starts(
         next.truncate(BEAM);
         beam = next;
     }
-    best_first(&mut all);
-    all.truncate(STARTS);
-    let others = model.relations();
-    let related = all.iter().flat_map(|point| {
-        let related = others.iter().map(|relation| {
-            let mut x = point.x.clone();
-            relation.iter().for_each(|(place, at)| x[*place] = *at);
-            x
-        });
-        related.collect::<Vec<_>>()
-    });
-    let related = related.collect();
-    all.extend(looked_at(&energies, related, &[], effort));
-    best_first(&mut all);
-    all.truncate(STARTS);
-    all.into_iter().map(|point| point.x).collect()
+    all
 }
 
 /// The best points with the clearance at `place`, that of `joint`, moved over its grid.
@@ -109,6 +91,13 @@ pub(super) fn along(
 
 fn best_first(points: &mut [Point]) {
     points.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+}
+
+/// The best of these points, which are taken out.
+pub(super) fn best_of(points: &mut Vec<Point>, count: usize) -> Vec<Vec<f64>> {
+    best_first(points);
+    let best = points.drain(..points.len().min(count));
+    best.map(|point| point.x).collect()
 }
 
 /// Places of clearances that are moved together: those of one throw, a few at a time.

@@ -6,7 +6,8 @@ use super::discrepancy::FAR;
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
-use super::screen::{along, few, starts};
+use super::parts::{joined, parts};
+use super::screen::{along, best_of, few, screened};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::likelihood::Likelihood;
@@ -15,7 +16,8 @@ use crate::problem::Problem;
 use crate::stages::Stage;
 use crate::transfer::STRONG;
 
-/// Points of the grid that are followed together, one part after the other until the noise is reached.
+/// Points of the grid whose cells are searched: the best by the relation of the machine file, then the best of the others and
+/// by all known relations.
 const FOLLOWED: [usize; 2] = [4, 12];
 
 /// A model with its fit.
@@ -74,22 +76,39 @@ pub(super) fn selected(
     if effort.stopped || best.fit.is_at_noise() {
         return Ok(best);
     }
-    effort.begins(Stage::Screen);
-    let points = starts(&model, joints, &at, effort);
-    effort.ends();
-    effort.begins(Stage::Clearances);
-    let mut ends = Vec::new();
-    let mut points = &points[..];
-    for count in FOLLOWED {
-        let (first, others) = points.split_at(points.len().min(count));
-        points = others;
-        let led = around(&model, first, effort);
-        ends.extend(led.iter().map(|led| led.x.clone()));
-        best = search.better(best, &model, led, effort)?;
+    let parts = parts(&model)?;
+    let mut points = vec![Vec::new(); parts.len()];
+    let mut ends = vec![Vec::new(); parts.len()];
+    for (round, count) in FOLLOWED.into_iter().enumerate() {
+        for (part, (points, ends)) in parts.iter().zip(points.iter_mut().zip(&mut ends)) {
+            let at = part.of_whole(&at);
+            let relations = match round {
+                0 => vec![at],
+                _ => part.model.related(&at),
+            };
+            effort.begins(Stage::Screen);
+            for x in relations {
+                points.extend(screened(&part.model, joints, &x, effort));
+            }
+            effort.ends();
+            effort.begins(Stage::Clearances);
+            ends.extend(around(&part.model, best_of(points, count), effort));
+            effort.ends();
+            ends.sort_by(|a: &Led, b| a.left.total_cmp(&b.left));
+        }
+        effort.begins(Stage::Clearances);
+        let found = search.better(best, &model, joined(&parts, &ends, &at), effort);
+        effort.ends();
+        best = found?;
         if effort.stopped || best.fit.is_at_noise() {
-            break;
+            return Ok(best);
         }
     }
+    let ends: Vec<Vec<f64>> = joined(&parts, &ends, &at)
+        .into_iter()
+        .map(|led| led.x)
+        .collect();
+    effort.begins(Stage::Clearances);
     while !effort.stopped && !best.fit.is_at_noise() {
         let Some((model, led)) = search.best_step(&best, (&model, &ends), &at, effort)? else {
             break;
@@ -185,7 +204,7 @@ impl Search<'_> {
                     let mut points = along(&model, joint, place, &x, effort);
                     let at = model.coordinates_of(first, at);
                     points.extend(along(&model, joint, place, &at, effort));
-                    around(&model, &points, effort)
+                    around(&model, points, effort)
                 }
                 Step::Contacts => {
                     let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
