@@ -11,6 +11,7 @@ use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
 use crate::likelihood::{Likelihood, NOISE, misfit};
+use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress};
 use crate::problem::Problem;
 use crate::secant::secant;
@@ -49,6 +50,8 @@ const AT_ONCE: usize = 16;
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
+/// By how much a coordinate of a clearance is moved to where a motion repeats itself: less than the width of a minimum of lines.
+const BESIDE: [f64; 6] = [-1e-3, -3e-4, -1e-4, 1e-4, 3e-4, 1e-3];
 /// Most evaluations of the last descent.
 const LAST: u64 = 300;
 
@@ -147,22 +150,61 @@ fn secants(
     (found.x, found.evaluations)
 }
 
-/// The fit of a model from `x`, with intervals.
+/// The fit of a model from `x`, with intervals. What is not identifiable keeps its value at `x`.
 ///
 /// # Errors
 /// As [`calibrate`].
 pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
+    let x = repeating(&model.problem, x, effort);
+    let mut problem = model.problem.clone();
+    for (parameter, x) in problem.parameters.iter_mut().zip(&x) {
+        parameter.nominal = parameter.value(*x);
+    }
     let settings = FitSettings {
         optimiser: Optimiser::LevenbergMarquardt,
         seed: 0,
         evaluations: LAST,
         held_out: Vec::new(),
-        start: Some(x),
+        start: None,
     };
-    let fit = calibrate(&model.problem, &settings, |progress| {
+    let mut fit = calibrate(&problem, &settings, |progress| {
         effort.fitted(progress.misfit());
         effort.shown(progress.evaluations)
     })?;
     effort.spent += fit.evaluations;
+    for (estimate, parameter) in fit.estimates.iter_mut().zip(&model.problem.parameters) {
+        estimate.parameter = parameter.clone();
+    }
     Ok(fit)
+}
+
+/// The coordinates `x`, where the motion repeats itself there or the recorded one does not. Elsewhere those beside them whose
+/// motion repeats itself and explains the recordings best: a motion that is about to double its period settles slowly, and has no
+/// derivatives.
+fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
+    let likelihood = Likelihood::new(problem);
+    let repeats = |x: &[f64]| {
+        let all = likelihood.predictions(x);
+        all.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic))
+    };
+    if !problem.runs.iter().all(Observation::repeats) || repeats(&x) {
+        return x;
+    }
+    let clearances = problem.parameters.iter().enumerate();
+    let clearances = clearances.filter(|(_, parameter)| parameter.is_clearance());
+    let beside = clearances.flat_map(|(place, _)| {
+        let x = &x;
+        BESIDE.map(move |by| {
+            let mut x = x.clone();
+            x[place] += by;
+            x
+        })
+    });
+    let beside: Vec<Vec<f64>> = beside.collect();
+    effort.evaluated(2 * beside.len() as u64);
+    let measured = beside.par_iter().filter(|x| repeats(x));
+    let measured = measured.map(|x| (misfit(&likelihood.residuals(x)), x.clone()));
+    let measured: Vec<(f64, Vec<f64>)> = measured.collect();
+    let best = measured.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or(x, |(_, x)| x)
 }
