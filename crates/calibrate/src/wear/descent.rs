@@ -10,7 +10,7 @@ use super::screen::few;
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
-use crate::likelihood::{Likelihood, NOISE, misfit};
+use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress};
 use crate::problem::Problem;
@@ -98,9 +98,8 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
             let spent = descend(&model.problem, &model.priors, &mut led, stage);
             effort.evaluated(spent);
         }
-        let at_noise = misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE;
         ends.push(led);
-        if at_noise || effort.stopped {
+        if effort.stopped {
             break;
         }
     }

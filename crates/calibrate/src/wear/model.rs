@@ -23,7 +23,7 @@ const EXPONENT: f64 = 0.2;
 const DESIGN: f64 = 0.3;
 
 /// What is unknown of the contacts of clear joints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Contacts {
     /// Nothing: their parameters follow the clearance by the relation of the machine file.
     Stated,
@@ -195,4 +195,99 @@ fn set_relation(tree: &mut Value) -> Result<Vec<ClearJoint>, Error> {
 fn length(si: f64) -> Value {
     let dimension = Dimension::of(1.0, 0.0, 0.0, 0.0);
     Measure { si, dimension }.to_string().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crank_motion::CrankMotion;
+    use crate::meter::Meter;
+    use serde_json::json;
+    use std::path::Path;
+
+    const PATH: &str = "joints.big_end";
+
+    /// A machine whose clear bearings have this relation at 0.05 mm.
+    fn healthy(relation: &str) -> Problem {
+        let file = format!(
+            "{}/../../data/machines/single-stage.yaml",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let file = input::machine_file::read(Path::new(&file)).unwrap();
+        let mut tree = file.to_tree().clone();
+        for joint in [PATH, "joints.small_end"] {
+            for (key, value) in [("relation", relation), ("at_clearance", "0.05 mm")] {
+                paths::set(&mut tree, &format!("{joint}.contact.{key}"), json!(value)).unwrap();
+            }
+        }
+        Problem {
+            tree,
+            parameters: Vec::new(),
+            runs: Vec::new(),
+            crank: CrankMotion::Driven,
+            meter: Meter::default(),
+        }
+    }
+
+    fn model(healthy: &Problem, contacts: Contacts) -> Model {
+        let joints = Joint::of_machine(&healthy.tree).unwrap();
+        let place = joints.iter().position(|joint| joint.path == PATH);
+        Model::new(healthy, &joints, vec![place.unwrap()], contacts).unwrap()
+    }
+
+    fn place(model: &Model, ends: &str) -> usize {
+        let mut parameters = model.problem.parameters.iter();
+        parameters.position(|p| p.path.ends_with(ends)).unwrap()
+    }
+
+    #[test]
+    fn contact_parameters_are_those_that_the_exponents_lead_to() {
+        let healthy = healthy("eq5");
+        let related = model(&healthy, Contacts::Related);
+        let fitted = model(&healthy, Contacts::Fitted);
+        let mut x = vec![0.0; related.problem.parameters.len()];
+        let clearance = &related.problem.parameters[0];
+        x[0] = clearance.coordinate(2.5e-4);
+        let damping = place(&related, "relation.damping");
+        x[damping] = related.problem.parameters[damping].coordinate(-0.05);
+        let y = fitted.coordinates_of(&related, &x);
+        // From c^(-0.2) to c^(-0.05) at five times the clearance.
+        let expected = 0.15 * 5.0_f64.ln();
+        assert!((y[place(&fitted, "contact.damping")] - expected).abs() < 1e-12);
+        assert_eq!(y[place(&fitted, "contact.stiffness")], 0.0);
+        assert_eq!(y[place(&fitted, "friction.coefficient")], 0.0);
+        let value = fitted.problem.parameters[0].value(y[0]);
+        assert!((value - 2.5e-4).abs() < 1e-18);
+    }
+
+    #[test]
+    fn the_known_relations_are_those_that_the_file_does_not_have() {
+        let exponents = |relation: &str| -> Vec<[f64; 2]> {
+            let related = model(&healthy(relation), Contacts::Related);
+            let x = vec![0.0; related.problem.parameters.len()];
+            let value = |x: &[f64], ends: &str| {
+                let place = place(&related, ends);
+                let exponent = related.problem.parameters[place].value(x[place]);
+                (1e9 * exponent).round() / 1e9
+            };
+            let all = related.related(&x);
+            all.iter()
+                .map(|x| ["relation.stiffness", "relation.damping"].map(|key| value(x, key)))
+                .collect()
+        };
+        assert_eq!(exponents("eq5"), [[0.0, 0.0], [-0.5, -0.2]]);
+        assert_eq!(exponents("constant"), [[0.0, -0.2], [-0.5, -0.2]]);
+        assert_eq!(exponents("conformal"), [[0.0, 0.0], [0.0, -0.2]]);
+    }
+
+    #[test]
+    fn an_exponent_is_known_to_two_tenths_before() {
+        let related = model(&healthy("constant"), Contacts::Related);
+        assert_eq!(related.priors.len(), 2);
+        for prior in &related.priors {
+            let exponent = &related.problem.parameters[prior.place];
+            let change = exponent.value(prior.spread) - exponent.nominal;
+            assert!((change - EXPONENT).abs() < 1e-12, "{prior:?}");
+        }
+    }
 }

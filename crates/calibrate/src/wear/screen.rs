@@ -18,7 +18,9 @@ pub(super) const STEP: f64 = 0.2;
 const BELOW: u32 = 2;
 /// Joints that are moved together at most.
 const TOGETHER: usize = 2;
-/// Points that go on to the joints of the next throw, or are looked at with another joint.
+/// Points along the grid of one joint that are handed on.
+const ALONG: usize = 2;
+/// Points that go on to the joints of the next throw.
 const BEAM: usize = 4;
 /// Runs that are looked at.
 const RUNS: usize = 3;
@@ -85,7 +87,7 @@ pub(super) fn along(
     });
     let mut points = looked_at(&energies, moved.collect(), &[], effort);
     best_first(&mut points);
-    points.truncate(BEAM);
+    points.truncate(ALONG);
     points.into_iter().map(|point| point.x).collect()
 }
 

@@ -130,11 +130,14 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The fit that descents from the clearances of the machine file lead to.
-    fn from_file(&self, model: &Model, at: &[f64], effort: &mut Effort) -> Result<Found, Error> {
-        let led = roughly(model, &[at.to_vec()], effort);
-        let x = finely(model, led, effort)?;
-        self.settled(model, x, effort)
+    /// The fit that descents from the clearances of the machine file lead to, by its relation between clearances.
+    fn from_file(&self, first: &Model, at: &[f64], effort: &mut Effort) -> Result<Found, Error> {
+        let clear = first.clear.clone();
+        let model = Model::new(self.healthy, self.joints, clear, Contacts::Stated)?;
+        let at = model.coordinates_of(first, at);
+        let led = roughly(&model, &[at], effort);
+        let x = finely(&model, led, effort)?;
+        self.settled(&model, x, effort)
     }
 
     /// The better one of `best` and the fits that descents from these ends lead to.
@@ -153,19 +156,20 @@ impl Search<'_> {
         }
     }
 
-    /// The fit of a model from `x`. Where that leads near the noise, the contact parameters by the relation of the machine file
-    /// and free ones are fitted too, and the evidence decides.
+    /// The fit of a model from `x`. Where that leads near the noise, the models with less and with more unknown of the contacts
+    /// are fitted too, and the evidence decides.
     fn settled(&self, model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Found, Error> {
         let found = judged(model.clone(), fit(model, x, effort)?)?;
-        let near = found.misfit() < FAR;
-        if !near || model.contacts != Contacts::Related {
+        if found.misfit() > FAR {
             return Ok(found);
         }
         let from = found.fit.coordinates();
+        let at_noise = found.fit.is_at_noise();
         let mut best = found;
-        for contacts in [Contacts::Stated, Contacts::Fitted] {
+        for contacts in [Contacts::Stated, Contacts::Related, Contacts::Fitted] {
             // What is simpler leaves at least as much.
-            if effort.stopped || (contacts == Contacts::Stated && !best.fit.is_at_noise()) {
+            let hopeless = contacts < model.contacts && !at_noise;
+            if effort.stopped || contacts == model.contacts || hopeless {
                 continue;
             }
             let other = Model::new(self.healthy, self.joints, model.clear.clone(), contacts)?;
