@@ -6,7 +6,7 @@
 use super::effort::Effort;
 use super::model::Model;
 use super::prior::{self, Prior, WithPriors};
-use super::screen::few;
+use super::screen::{AT_ONCE, few};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
@@ -44,8 +44,6 @@ const FINE: [Stage; 4] = [
 const FOLLOWED: usize = 3;
 /// One of so many starts goes on after a stage.
 const KEPT: usize = 3;
-/// Descents that are made before the search may be stopped.
-const AT_ONCE: usize = 16;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.

@@ -24,8 +24,8 @@ const ALONG: usize = 2;
 const BEAM: usize = 4;
 /// Runs that are looked at.
 const RUNS: usize = 3;
-/// Points that are looked at before the search may be stopped.
-const AT_ONCE: usize = 16;
+/// Points that are looked at, or descended from, before the search may be stopped.
+pub(super) const AT_ONCE: usize = 16;
 
 /// A point with its sum of squares, and the groups of joints that have moved in it.
 #[derive(Clone, Debug)]

@@ -70,7 +70,7 @@ pub(super) fn selected(
     let mut at = vec![0.0; model.problem.parameters.len() - x.len()];
     at.extend_from_slice(x);
     effort.begins(Stage::Clearances);
-    let found = search.from_file(&model, &at, effort);
+    let found = search.near_file(&model, &at, effort);
     effort.ends();
     let mut best = found?;
     if effort.stopped || best.fit.is_at_noise() {
@@ -131,7 +131,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// The fit that descents from the clearances of the machine file lead to, by its relation between clearances.
-    fn from_file(&self, first: &Model, at: &[f64], effort: &mut Effort) -> Result<Found, Error> {
+    fn near_file(&self, first: &Model, at: &[f64], effort: &mut Effort) -> Result<Found, Error> {
         let clear = first.clear.clone();
         let model = Model::new(self.healthy, self.joints, clear, Contacts::Stated)?;
         let at = model.coordinates_of(first, at);
