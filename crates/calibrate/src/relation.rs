@@ -26,6 +26,13 @@ pub enum Relation {
 /// Exponents that a fit of the relation starts from, and keeps where they are not identifiable: those of Eq. (5),
 /// of stiffness and damping.
 const NOMINAL: [f64; 2] = [0.0, -0.2];
+/// Exponents of stiffness and damping by the named relations, for a contact of Hertz's exponent: constant, Eq. (5), conformal.
+pub(crate) const KNOWN: [[f64; 2]; 3] =
+    [[0.0, 0.0], NOMINAL, [CONFORMAL, CONFORMAL / (HERTZ + 1.0)]];
+/// Exponent of the clearance that the stiffness of a conformal bearing follows.
+const CONFORMAL: f64 = -0.5;
+/// Exponent of the penetration in Hertz's law, which is that of a contact that states none.
+const HERTZ: f64 = 1.5;
 
 impl Relation {
     /// All of them.
@@ -126,9 +133,7 @@ impl ClearJoint {
     /// # Errors
     /// A clearance that is no length.
     pub fn at_clearance(&self, tree: &Value) -> Result<Option<f64>, Error> {
-        let [_, key] = self.keys();
-        let text = paths::get(tree, &key)?.and_then(Value::as_str);
-        text.map(|text| length(&key, text)).transpose()
+        at_clearance(tree, &self.path)
     }
 
     /// The path of its clearance.
@@ -175,6 +180,66 @@ pub fn exponents(tree: &Value) -> Result<Vec<Parameter>, Error> {
         .map(|key| Parameter::of(tree, &pattern(tree, &format!("contact.relation.{key}"))))
         .into_iter()
         .collect()
+}
+
+/// The clearance from which the relation of the joint at `path` leads, m; none where the machine file has none.
+///
+/// # Errors
+/// A clearance that is no length.
+pub(crate) fn at_clearance(tree: &Value, path: &str) -> Result<Option<f64>, Error> {
+    let key = format!("{path}.contact.at_clearance");
+    let text = paths::get(tree, &key)?.and_then(Value::as_str);
+    text.map(|text| length(&key, text)).transpose()
+}
+
+/// Gives the contacts of `joints` the powers of the clearance that their named relations come to. A relation has to be set
+/// first.
+///
+/// # Errors
+/// A joint that the file does not have.
+pub(crate) fn set_powers(tree: &mut Value, joints: &[ClearJoint]) -> Result<(), Error> {
+    for joint in joints {
+        let exponent = paths::get(tree, &format!("{}.contact.exponent", joint.path))?;
+        let exponent = exponent.and_then(Value::as_f64).unwrap_or(HERTZ);
+        let patch = CONFORMAL / (exponent + 1.0);
+        let exponents = match joint.relation(tree)? {
+            Some(Value::Object(stated)) => ["stiffness", "damping", "depth"]
+                .map(|key| stated.get(key).and_then(Value::as_f64).unwrap_or(0.0)),
+            Some(Value::String(name)) if name == Relation::Conformal.name() => {
+                [CONFORMAL, patch, -patch]
+            }
+            Some(Value::String(name)) if name == Relation::Equation5.name() => [0.0, patch, 0.0],
+            _ => [0.0; 3],
+        };
+        let [stiffness, damping, depth] = exponents;
+        let powers = json!({"stiffness": stiffness, "damping": damping, "depth": depth});
+        paths::set(tree, &joint.keys()[0], powers)?;
+    }
+    Ok(())
+}
+
+/// The exponents of stiffness and damping that the contacts of `joints` follow, as [`set_powers`] has them: shared by all where
+/// they are equal, and else one for each.
+///
+/// # Errors
+/// A machine file without such exponents.
+pub(crate) fn exponents_of(tree: &Value, joints: &[ClearJoint]) -> Result<Vec<Parameter>, Error> {
+    if joints.is_empty() {
+        return Ok(Vec::new());
+    }
+    if let Ok(shared) = exponents(tree)
+        && joints.iter().all(|joint| {
+            let path = &joint.path;
+            let place = |key: &str| format!("{path}.contact.relation.{key}");
+            shared[0].places.contains(&place("stiffness"))
+        })
+    {
+        return Ok(shared);
+    }
+    let paths = joints.iter().flat_map(|joint| {
+        ["stiffness", "damping"].map(|key| format!("{}.contact.relation.{key}", joint.path))
+    });
+    paths.map(|path| Parameter::of(tree, &path)).collect()
 }
 
 /// The paths of every joint's `key`.

@@ -22,8 +22,18 @@ use serde_json::{Value, json};
 use simulate::{ChamberEnd, Measured};
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::path::Path;
 
+/// The machines of one throw and of two: names and contents of their files.
+const MACHINES: [[&str; 2]; 2] = [
+    [
+        "single-stage.yaml",
+        include_str!("../../../../data/machines/single-stage.yaml"),
+    ],
+    [
+        "two-stage.yaml",
+        include_str!("../../../../data/machines/two-stage.yaml"),
+    ],
+];
 /// What of a contact is drawn.
 const CONTACT: [&str; 3] = [
     "contact.stiffness",
@@ -116,11 +126,8 @@ fn drawn(random: &mut Stream, seed: u64, number: u64) -> Result<Drawn, Box<dyn E
 
 /// The healthy machine of one throw or two, with its nominal contact parameters.
 fn healthy(throws: usize) -> Result<Value, Box<dyn Error>> {
-    let name = ["single-stage.yaml", "two-stage.yaml"][throws - 1];
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../data/machines")
-        .join(name);
-    let mut tree = input::machine_file::read(&path)?.to_tree().clone();
+    let [name, text] = MACHINES[throws - 1];
+    let mut tree = MachineFile::from_yaml(text, name)?.to_tree().clone();
     for joint in joints(&tree, throws)?.iter().filter(|joint| joint.is_clear) {
         let Joint { path, normal, .. } = joint;
         set(&mut tree, &format!("{path}.clearance"), *normal)?;

@@ -5,14 +5,18 @@
 
 use super::effort::Effort;
 use super::model::Model;
-use super::screen::few;
+use super::prior::{self, Prior, WithPriors};
+use super::screen::{AT_ONCE, few};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
-use crate::likelihood::{Likelihood, NOISE, misfit};
+use crate::likelihood::{Likelihood, misfit};
+use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress};
 use crate::problem::Problem;
 use crate::secant::secant;
+use rayon::prelude::*;
+use std::ops::ControlFlow;
 
 /// What a stage compares, and the evaluations that it may take.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +34,8 @@ const ROUGH: [Stage; 3] = [
     Stage::Lines(0.003, 12),
 ];
 /// The stages with all runs.
-const FINE: [Stage; 3] = [
+const FINE: [Stage; 4] = [
+    Stage::Lines(0.01, 20),
     Stage::Lines(0.003, 20),
     Stage::Lines(0.001, 20),
     Stage::Lines(0.0, 40),
@@ -43,10 +48,10 @@ const KEPT: usize = 3;
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
+/// By how much a coordinate of a clearance is moved to where a motion repeats itself: less than the width of a minimum of lines.
+const BESIDE: [f64; 6] = [-1e-3, -3e-4, -1e-4, 1e-4, 3e-4, 1e-3];
 /// Most evaluations of the last descent.
 const LAST: u64 = 300;
-/// Most evaluations of a search from where it ends.
-const SEARCH: u64 = 800;
 
 /// Where a descent has led.
 #[derive(Clone, Debug)]
@@ -66,8 +71,13 @@ pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -
     };
     let mut led: Vec<Led> = starts.iter().map(at).collect();
     for stage in ROUGH {
-        for led in &mut led {
-            descend(&part, led, stage, effort);
+        for together in led.chunks_mut(AT_ONCE) {
+            if effort.stopped {
+                break;
+            }
+            let each = together.par_iter_mut();
+            let spent = each.map(|led| descend(&part, &model.priors, led, stage));
+            effort.evaluated(spent.sum());
         }
         led.sort_by(|a, b| a.left.total_cmp(&b.left));
         led.truncate(led.len().div_ceil(KEPT).max(FOLLOWED));
@@ -80,11 +90,14 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
     let mut ends: Vec<Led> = Vec::new();
     for mut led in led.into_iter().take(FOLLOWED) {
         for stage in FINE {
-            descend(&model.problem, &mut led, stage, effort);
+            if effort.stopped {
+                break;
+            }
+            let spent = descend(&model.problem, &model.priors, &mut led, stage);
+            effort.evaluated(spent);
         }
-        let at_noise = misfit(&Likelihood::new(&model.problem).residuals(&led.x)) < NOISE;
         ends.push(led);
-        if at_noise || effort.stopped {
+        if effort.stopped {
             break;
         }
     }
@@ -94,62 +107,101 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
         .ok_or(Error::Nothing("no descent has led anywhere"))
 }
 
-/// One stage of a descent. Where the machine cannot be simulated, nothing is moved.
-fn descend(problem: &Problem, led: &mut Led, stage: Stage, effort: &mut Effort) {
-    if effort.stopped {
-        return;
-    }
-    let measured = match stage {
+/// One stage of a descent, and the evaluations that it has taken. Where the machine cannot be simulated, nothing is moved.
+fn descend(problem: &Problem, priors: &[Prior], led: &mut Led, stage: Stage) -> u64 {
+    let (measured, spent) = match stage {
         Stage::Energies(most) => {
             let energies = Energies::new(problem);
-            let x = secants(&energies, &led.x, most, effort);
-            energies.squares(&x).map(|left| (x, left))
+            let (x, spent) = secants(&energies, priors, &led.x, most);
+            (energies.squares(&x).map(|left| (x, left)), spent)
         }
         Stage::Lines(timing, most) => {
             let lines = Likelihood::coarse(problem, timing);
-            let x = secants(&lines, &led.x, most, effort);
-            lines.likeliest(&x, &TIMINGS).map(|(_, left)| (x, left))
+            let (x, spent) = secants(&lines, priors, &led.x, most);
+            let measured = lines.likeliest(&x, &TIMINGS);
+            (measured.map(|(_, left)| (x, left)), spent)
         }
     };
     match measured {
-        Ok((x, left)) => (led.x, led.left) = (x, left),
+        Ok((x, left)) => {
+            led.left = left + prior::squares(priors, &x);
+            led.x = x;
+        }
         Err(_) => led.left = f64::INFINITY,
     }
+    spent
 }
 
-fn secants(compared: &impl LeastSquares, x: &[f64], most: u64, effort: &mut Effort) -> Vec<f64> {
-    let found = secant(compared, x, ENDED, most, &mut |progress: &Progress| {
-        effort.shown(progress.evaluations)
-    });
-    effort.spent += found.evaluations;
-    found.x
+fn secants(
+    compared: &impl LeastSquares,
+    priors: &[Prior],
+    x: &[f64],
+    most: u64,
+) -> (Vec<f64>, u64) {
+    let compared = WithPriors {
+        inner: compared,
+        priors,
+    };
+    let go = &mut |_: &Progress| ControlFlow::Continue(());
+    let found = secant(&compared, x, ENDED, most, go);
+    (found.x, found.evaluations)
 }
 
-/// The fit of a model from `x`, with intervals.
+/// The fit of a model from `x`, with intervals. What is not identifiable keeps its value at `x`.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub(super) fn fit(
-    model: &Model,
-    x: Vec<f64>,
-    optimiser: Optimiser,
-    effort: &mut Effort,
-) -> Result<Fit, Error> {
-    let evaluations = match optimiser {
-        Optimiser::Default => SEARCH,
-        _ => LAST,
-    };
+pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
+    let x = repeating(&model.problem, x, effort);
+    let mut problem = model.problem.clone();
+    for (parameter, x) in problem.parameters.iter_mut().zip(&x) {
+        parameter.nominal = parameter.value(*x);
+    }
     let settings = FitSettings {
-        optimiser,
+        optimiser: Optimiser::LevenbergMarquardt,
         seed: 0,
-        evaluations,
+        evaluations: LAST,
         held_out: Vec::new(),
-        start: Some(x),
+        start: None,
     };
-    let fit = calibrate(&model.problem, &settings, |progress| {
+    let mut fit = calibrate(&problem, &settings, |progress| {
         effort.fitted(progress.misfit());
         effort.shown(progress.evaluations)
     })?;
     effort.spent += fit.evaluations;
+    for (estimate, parameter) in fit.estimates.iter_mut().zip(&model.problem.parameters) {
+        estimate.parameter = parameter.clone();
+    }
     Ok(fit)
+}
+
+/// The coordinates `x`, where the motion repeats itself there or the recorded one does not. Elsewhere those beside them whose
+/// motion repeats itself and explains the recordings best: a motion that is about to double its period settles slowly, and has no
+/// derivatives.
+fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
+    let likelihood = Likelihood::new(problem);
+    let repeats = |x: &[f64]| {
+        let all = likelihood.predictions(x);
+        all.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic))
+    };
+    if !problem.runs.iter().all(Observation::repeats) || repeats(&x) {
+        return x;
+    }
+    let clearances = problem.parameters.iter().enumerate();
+    let clearances = clearances.filter(|(_, parameter)| parameter.is_clearance());
+    let beside = clearances.flat_map(|(place, _)| {
+        let x = &x;
+        BESIDE.map(move |by| {
+            let mut x = x.clone();
+            x[place] += by;
+            x
+        })
+    });
+    let beside: Vec<Vec<f64>> = beside.collect();
+    effort.evaluated(2 * beside.len() as u64);
+    let measured = beside.par_iter().filter(|x| repeats(x));
+    let measured = measured.map(|x| (misfit(&likelihood.residuals(x)), x.clone()));
+    let measured: Vec<(f64, Vec<f64>)> = measured.collect();
+    let best = measured.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or(x, |(_, x)| x)
 }

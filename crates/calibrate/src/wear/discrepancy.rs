@@ -17,7 +17,7 @@ use crate::problem::Problem;
 /// each other explain what is left.
 const GREATEST: f64 = 0.003;
 /// Misfit beyond which no range is given: descents in wrong minima leave as much.
-const FAR: f64 = 5.0;
+pub(super) const FAR: f64 = 5.0;
 /// Relative change of the sum of squares at which the descent ends.
 const CHANGE: f64 = 1e-4;
 /// Most evaluations of it.

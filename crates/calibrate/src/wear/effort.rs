@@ -41,9 +41,9 @@ impl<'w> Effort<'w> {
         self.watcher.ends();
     }
 
-    /// Takes note of one evaluation, and returns whether to go on.
-    pub fn evaluated(&mut self) -> bool {
-        self.spent += 1;
+    /// Takes note of evaluations, and returns whether to go on.
+    pub fn evaluated(&mut self, count: u64) -> bool {
+        self.spent += count;
         self.shown(0).is_continue()
     }
 

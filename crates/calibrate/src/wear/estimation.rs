@@ -4,13 +4,14 @@ use super::descent;
 use super::discrepancy::{Discrepancy, discrepancy};
 use super::effort::Effort;
 use super::joint::Joint;
+use super::model::Contacts;
 use super::results::{Contact, Interval, Misfits, Results, RunMisfit, WEAR};
 use super::selection::{Found, selected};
 use super::tolerance::widen;
 use super::verdict::{Grounds, together};
 use crate::comparison::compare_models;
 use crate::error::Error;
-use crate::fit::{Optimiser, RunFit};
+use crate::fit::RunFit;
 use crate::likelihood::{Likelihood, misfit};
 use crate::pictures;
 use crate::problem::Problem;
@@ -133,7 +134,7 @@ impl Prepared {
             }
             found.model.problem = self.task.problem.clone();
             effort.begins(Stage::Clearances);
-            let fit = descent::fit(&found.model, x, Optimiser::LevenbergMarquardt, effort);
+            let fit = descent::fit(&found.model, x, effort);
             effort.ends();
             found.fit = fit?;
         }
@@ -179,7 +180,7 @@ fn conclude(
     worn_from: f64,
     effort: &mut Effort,
 ) -> Result<Concluded, Error> {
-    widen(healthy, joints, found)?;
+    widen(joints, found);
     let fit = &found.fit;
     let problem = &found.model.problem;
     let whole = fit.complete && !effort.stopped;
@@ -224,8 +225,8 @@ fn conclude(
         },
         timing_rad: discrepancy.map(|d| d.timing),
         contact: match found.model.contacts {
-            true => Contact::Fitted,
-            false => Contact::MachineFile,
+            Contacts::Stated => Contact::MachineFile,
+            Contacts::Related | Contacts::Fitted => Contact::Fitted,
         },
         fit: Misfits {
             unit: "standard deviations of the synchronous mean's noise".to_owned(),

@@ -5,21 +5,26 @@
 //! recordings ─> task ───────────────┴─> models ─screen─> starts ─descents─> fits ─evidence─> joints' clearances
 //! ```
 //!
-//! 1. All joints that are clear in the machine file have an unknown clearance. Their contact parameters follow it by the
-//!    relation of the machine file.
-//! 2. Clearances are screened on a grid, joint by joint, by the energies of sectors and bands ([`crate::energies`]). The
-//!    best points start descents that compare energies first, and waveforms last.
-//! 3. Where more than noise is left, one joint that is ideal in the file becomes clear, or the contact parameters are
-//!    fitted too. What lowers Schwarz's criterion (1978) most is kept, until nothing does.
-//! 4. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the model is wrong, the size of its discrepancy is estimated as
-//!    an error of timing, and what follows is a range that includes it.
+//! 1. All joints that are clear in the machine file have an unknown clearance. Their contact parameters follow it by powers, whose
+//!    exponents are unknown around those of the file's relation ([`prior`]).
+//! 2. Descents from the clearances of the file compare energies of sectors and bands first ([`crate::energies`]), and waveforms last.
+//! 3. Where they end above the noise, the clearances of each throw are screened on a common grid, by energies. The cells of the
+//!    best points are searched without derivatives, and the best ends are descended from.
+//! 4. From there the file's own relation and free contact parameters are fitted too. Schwarz's criterion (1978) decides.
+//! 5. Where still more than noise is left, one joint that is ideal in the file becomes clear, or free contact parameters are searched
+//!    from all ends. What lowers Schwarz's criterion most is kept, until nothing does.
+//! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
+//!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
 
+mod cell;
 mod descent;
 mod discrepancy;
 mod effort;
 mod estimation;
 mod joint;
 mod model;
+mod parts;
+mod prior;
 mod results;
 mod screen;
 mod selection;

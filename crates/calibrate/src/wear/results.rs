@@ -126,7 +126,7 @@ pub enum Interval {
 pub enum Contact {
     /// From the machine file, by its relation between clearances.
     MachineFile,
-    /// They were fitted with the clearances.
+    /// They were fitted with the clearances, or how they follow the clearance was.
     Fitted,
 }
 

@@ -1,93 +1,73 @@
 //! Points from which a descent may lead to the true clearances.
 //!
 //! The clearance decides at which crank angle the joint's surfaces meet and everything rings. A descent finds no way
-//! from one ringing to another, so that the clearances are screened on a grid, by energies, which have few minima.
+//! from one ringing to another, so that the clearances are screened on a grid, by energies, which have few minima. The joints
+//! of a throw act on each other: where two are wide, neither shows on a grid of the other alone. So they are moved together.
 
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::Model;
 use crate::energies::Energies;
-use crate::error::Error;
 use crate::observation::Observation;
-use crate::problem::Problem;
+use crate::problem::{Problem, throw};
+use rayon::prelude::*;
 
 /// Step of the logarithm of a clearance. The time in which a gap is crossed goes with its root and changes by a tenth.
-const STEP: f64 = 0.2;
-/// Points that go on to the next joint.
+pub(super) const STEP: f64 = 0.2;
+/// Steps below the clearance of the machine file at which a grid begins: a joint may have less than is stated.
+const BELOW: u32 = 2;
+/// Joints that are moved together at most.
+const TOGETHER: usize = 2;
+/// Points along the grid of one joint that are handed on.
+const ALONG: usize = 2;
+/// Points that go on to the joints of the next throw.
 const BEAM: usize = 4;
-/// Points that are handed on.
-const STARTS: usize = 48;
-/// Distance of two of them at least, in logarithms of clearances.
-const APART: f64 = 0.3;
 /// Runs that are looked at.
 const RUNS: usize = 3;
+/// Points that are looked at, or descended from, before the search may be stopped.
+pub(super) const AT_ONCE: usize = 16;
 
-/// A point with its sum of squares, and the joints that have moved in it.
+/// A point with its sum of squares, and the groups of joints that have moved in it.
 #[derive(Clone, Debug)]
-struct Point {
+pub(super) struct Point {
     x: Vec<f64>,
     squares: f64,
     moved: Vec<usize>,
 }
 
-/// The best points around `x`, the best one first. One joint is moved over its grid, the best points are kept, and
-/// another is moved, until every joint may have moved.
-///
-/// # Errors
-/// A joint whose parameters are invalid.
-pub(super) fn starts(
+/// The points of the grid around `x` with the relation between clearances that `x` has. The joints of a
+/// group are moved over their common grid, the best points are kept, and another group is moved, until every joint may have moved.
+pub(super) fn screened(
     model: &Model,
     joints: &[Joint],
     x: &[f64],
     effort: &mut Effort,
-) -> Result<Vec<Vec<f64>>, Error> {
+) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let squares = |x: &[f64]| energies.squares(x).unwrap_or(f64::INFINITY);
-    let mut all = vec![Point {
-        x: x.to_vec(),
-        squares: squares(x),
-        moved: Vec::new(),
-    }];
+    let mut all: Vec<Point> = looked_at(&energies, vec![x.to_vec()], &[], effort);
     let mut beam = all.clone();
-    for _ in 0..model.clear.len() {
+    let groups = groups(model);
+    for _ in 0..groups.len() {
         let mut next: Vec<Point> = Vec::new();
         for point in &beam {
-            for place in 0..model.clear.len() {
-                if point.moved.contains(&place) {
+            for (i, group) in groups.iter().enumerate() {
+                if point.moved.contains(&i) {
                     continue;
                 }
-                let parameter = &model.problem.parameters[place];
-                for clearance in grid(&joints[model.clear[place]]) {
-                    let mut x = point.x.clone();
-                    x[place] = parameter.coordinate(clearance);
-                    // The same clearances are reached by moving the joints in another order.
-                    if next.iter().any(|known| known.x == x) {
-                        continue;
-                    }
-                    let moved = point.moved.iter().copied().chain([place]).collect();
-                    let squares = squares(&x);
-                    next.push(Point { x, squares, moved });
-                    if !effort.evaluated() {
-                        return Ok(vec![x_of_best(&all, &next)]);
-                    }
-                }
+                let mut places = product(model, joints, group, &point.x);
+                // The same clearances are reached by moving the groups in another order.
+                places.retain(|x| next.iter().all(|known| known.x != *x));
+                let moved: Vec<usize> = point.moved.iter().copied().chain([i]).collect();
+                next.extend(looked_at(&energies, places, &moved, effort));
             }
         }
-        next.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+        best_first(&mut next);
         all.extend(next.iter().cloned());
         next.truncate(BEAM);
         beam = next;
     }
-    all.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-    let mut starts: Vec<Vec<f64>> = Vec::new();
-    for point in all {
-        let near = |x: &Vec<f64>| x.iter().zip(&point.x).all(|(a, b)| (a - b).abs() < APART);
-        if starts.len() < STARTS && !starts.iter().any(near) {
-            starts.push(point.x);
-        }
-    }
-    Ok(starts)
+    all
 }
 
 /// The best points with the clearance at `place`, that of `joint`, moved over its grid.
@@ -100,37 +80,94 @@ pub(super) fn along(
 ) -> Vec<Vec<f64>> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let mut points = Vec::new();
-    for clearance in grid(joint) {
+    let moved = grid(joint).into_iter().map(|clearance| {
         let mut x = x.to_vec();
         x[place] = model.problem.parameters[place].coordinate(clearance);
-        points.push((energies.squares(&x).unwrap_or(f64::INFINITY), x));
-        if !effort.evaluated() {
-            break;
+        x
+    });
+    let mut points = looked_at(&energies, moved.collect(), &[], effort);
+    best_first(&mut points);
+    points.truncate(ALONG);
+    points.into_iter().map(|point| point.x).collect()
+}
+
+fn best_first(points: &mut [Point]) {
+    points.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+}
+
+/// The best of these points, which are taken out.
+pub(super) fn best_of(points: &mut Vec<Point>, count: usize) -> Vec<Vec<f64>> {
+    best_first(points);
+    let best = points.drain(..points.len().min(count));
+    best.map(|point| point.x).collect()
+}
+
+/// Places of clearances that are moved together: those of one throw, a few at a time.
+fn groups(model: &Model) -> Vec<Vec<usize>> {
+    let throw_of = |place: usize| throw(&model.problem.parameters[place].path);
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for place in 0..model.clear.len() {
+        let open = |group: &&mut Vec<usize>| {
+            group.len() < TOGETHER && throw_of(group[0]) == throw_of(place)
+        };
+        match groups.iter_mut().find(open) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
         }
     }
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points.truncate(BEAM);
-    points.into_iter().map(|(_, x)| x).collect()
+    groups
 }
 
-fn x_of_best(all: &[Point], next: &[Point]) -> Vec<f64> {
-    let points = all.iter().chain(next);
-    let best = points.min_by(|a, b| a.squares.total_cmp(&b.squares));
-    best.map_or_else(Vec::new, |point| point.x.clone())
+/// The point `x` with the clearances of a group at all points of their common grid. Where nothing has moved is left out.
+fn product(model: &Model, joints: &[Joint], group: &[usize], x: &[f64]) -> Vec<Vec<f64>> {
+    let mut points = vec![x.to_vec()];
+    for place in group {
+        let parameter = &model.problem.parameters[*place];
+        let grid = grid(&joints[model.clear[*place]]);
+        let moved = points.iter().flat_map(|x| {
+            grid.iter().map(|clearance| {
+                let mut x = x.clone();
+                x[*place] = parameter.coordinate(*clearance);
+                x
+            })
+        });
+        points = moved.collect();
+    }
+    points.retain(|point| point != x);
+    points
 }
 
-/// Clearances of equal ratio from where the search of a joint leads to the greatest, that itself left out.
+/// These points with their sums of squares; those before a stop.
+fn looked_at(
+    energies: &Energies,
+    points: Vec<Vec<f64>>,
+    moved: &[usize],
+    effort: &mut Effort,
+) -> Vec<Point> {
+    let mut all = Vec::new();
+    for part in points.chunks(AT_ONCE) {
+        if effort.stopped {
+            break;
+        }
+        let part = part.par_iter().map(|x| Point {
+            x: x.clone(),
+            squares: energies.squares(x).unwrap_or(f64::INFINITY),
+            moved: moved.to_vec(),
+        });
+        all.extend(part.collect::<Vec<_>>());
+        effort.evaluated(AT_ONCE as u64);
+    }
+    all
+}
+
+/// Clearances of equal ratio around that from which the search of a joint leads, from some below it to the greatest.
 fn grid(joint: &Joint) -> Vec<f64> {
-    let [_, greatest] = joint.bounds;
-    let from = match joint.stated {
-        Some(stated) => stated,
-        // What is ideal in the file is looked at from its normal clearance on.
-        None => joint.normal * (-STEP).exp(),
-    };
-    let count = ((greatest / from).ln() / STEP).floor().max(1.0) as u32;
-    let at = |i: u32| from * (STEP * f64::from(i)).exp();
-    (1..=count).map(at).collect()
+    let [least, greatest] = joint.bounds;
+    let steps = |to: f64| ((to / joint.start()).ln() / STEP).floor() as i32;
+    let first = steps(least).max(-(BELOW as i32));
+    let at = |i: i32| joint.start() * (STEP * f64::from(i)).exp();
+    let all = (first..=steps(greatest).max(1)).map(at);
+    all.filter(|c| (least..=greatest).contains(c)).collect()
 }
 
 /// The problem with a few of its runs, of speeds as different as there are.
@@ -150,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_grid_leads_from_the_stated_clearance_to_the_greatest() {
+    fn a_grid_leads_from_below_the_stated_clearance_to_the_greatest() {
         let mut joint = Joint {
             path: String::new(),
             stated: Some(1e-4),
@@ -158,15 +195,15 @@ mod tests {
             bounds: [3e-5, 1e-3],
         };
         let points = grid(&joint);
-        assert_eq!(points.len(), 11);
-        assert!(
-            points.iter().all(|c| *c > 1.2e-4 && *c <= 1e-3),
-            "{points:?}"
-        );
+        // ln 10 / 0.2 = 11.5: eleven steps up, two down and the stated clearance itself.
+        assert_eq!(points.len(), 14);
+        assert!((points[2] - 1e-4).abs() < 1e-18, "{points:?}");
+        assert!((points[0] / 1e-4 - (-0.4_f64).exp()).abs() < 1e-12);
         for pair in points.windows(2) {
             assert!(((pair[1] / pair[0]).ln() - STEP).abs() < 1e-12);
         }
         joint.stated = None;
-        assert!((grid(&joint)[0] - 1e-4).abs() < 1e-18);
+        joint.bounds = [0.9e-4, 1.1e-4];
+        assert_eq!(grid(&joint), [1e-4]);
     }
 }

@@ -1,21 +1,24 @@
 //! Which joints are clear, and whether the contact parameters are as stated: a selection by evidence.
 
-use super::descent::{Led, finely, fit, roughly};
+use super::cell::around;
+use super::descent::{Led, TIMINGS, finely, fit, roughly};
+use super::discrepancy::FAR;
 use super::effort::Effort;
 use super::joint::Joint;
-use super::model::Model;
-use super::screen::{along, few, starts};
+use super::model::{Contacts, Model};
+use super::parts::{joined, parts};
+use super::screen::{along, best_of, few, screened};
 use crate::error::Error;
-use crate::fit::{Fit, Optimiser};
+use crate::fit::Fit;
 use crate::likelihood::Likelihood;
 use crate::optimiser::LeastSquares;
 use crate::problem::Problem;
 use crate::stages::Stage;
 use crate::transfer::STRONG;
 
-/// Points from which descents with the contact parameters of the machine file start. All points are followed only where
-/// these do not lead to the noise.
-const FIRST: usize = 12;
+/// Points of the grid whose cells are searched: the best by the relation of the machine file, then the best of the others and
+/// by all known relations.
+const FOLLOWED: [usize; 2] = [4, 12];
 
 /// A model with its fit.
 pub(super) struct Found {
@@ -28,6 +31,12 @@ pub(super) struct Found {
 }
 
 impl Found {
+    /// Whether every clearance is identifiable.
+    fn is_identifiable(&self) -> bool {
+        let clearances = self.fit.estimates.iter().take(self.model.clear.len());
+        clearances.into_iter().all(|e| e.interval.is_some())
+    }
+
     /// Misfit of all runs.
     pub fn misfit(&self) -> f64 {
         self.fit
@@ -41,7 +50,7 @@ impl Found {
 enum Step {
     /// A joint that was ideal becomes clear.
     Clear(usize),
-    /// The contact parameters are fitted.
+    /// Each contact parameter is fitted.
     Contacts,
 }
 
@@ -55,70 +64,175 @@ pub(super) fn selected(
     x: &[f64],
     effort: &mut Effort,
 ) -> Result<Found, Error> {
-    let model = Model::new(healthy, joints, initially(joints), false)?;
+    let search = Search { healthy, joints };
+    let model = Model::new(healthy, joints, initially(joints), Contacts::Related)?;
     // What else is unknown comes last.
     let mut at = vec![0.0; model.problem.parameters.len() - x.len()];
     at.extend_from_slice(x);
-    effort.begins(Stage::Screen);
-    let points = starts(&model, joints, &at, effort);
-    effort.ends();
-    let points = points?;
     effort.begins(Stage::Clearances);
-    let first = &points[..points.len().min(FIRST)];
-    let led = roughly(&model, first, effort);
-    let mut best = fitted(model, led, effort)?;
-    while !effort.stopped && !best.fit.is_at_noise() {
-        let Some((model, led)) = best_step(healthy, joints, &best, &points, effort)? else {
-            break;
-        };
-        match fitted(model, led, effort) {
-            Ok(next) if next.criterion < best.criterion - STRONG => best = next,
-            Ok(_) | Err(Error::Nothing(_) | Error::Simulation { .. }) => break,
-            Err(error) => return Err(error),
+    let found = search.near_file(&model, &at, effort);
+    effort.ends();
+    let mut best = found?;
+    if effort.stopped || best.fit.is_at_noise() {
+        return Ok(best);
+    }
+    let parts = parts(&model)?;
+    let mut points = vec![Vec::new(); parts.len()];
+    let mut ends = vec![Vec::new(); parts.len()];
+    for (round, count) in FOLLOWED.into_iter().enumerate() {
+        for (part, (points, ends)) in parts.iter().zip(points.iter_mut().zip(&mut ends)) {
+            let at = part.of_whole(&at);
+            let relations = match round {
+                0 => vec![at],
+                _ => part.model.related(&at),
+            };
+            effort.begins(Stage::Screen);
+            for x in relations {
+                points.extend(screened(&part.model, joints, &x, effort));
+            }
+            effort.ends();
+            effort.begins(Stage::Clearances);
+            ends.extend(around(&part.model, best_of(points, count), effort));
+            effort.ends();
+            ends.sort_by(|a: &Led, b| a.left.total_cmp(&b.left));
+        }
+        effort.begins(Stage::Clearances);
+        let found = search.better(best, &model, joined(&parts, &ends, &at), effort);
+        effort.ends();
+        best = found?;
+        if effort.stopped || best.fit.is_at_noise() {
+            return Ok(best);
         }
     }
-    if !effort.stopped && !best.fit.is_at_noise() {
-        best = searched(best, effort)?;
+    let ends: Vec<Vec<f64>> = joined(&parts, &ends, &at)
+        .into_iter()
+        .map(|led| led.x)
+        .collect();
+    effort.begins(Stage::Clearances);
+    while !effort.stopped && !best.fit.is_at_noise() {
+        let Some((model, led)) = search.best_step(&best, (&model, &ends), &at, effort)? else {
+            break;
+        };
+        let before = best.criterion;
+        best = search.better(best, &model, led, effort)?;
+        if best.criterion >= before - STRONG {
+            break;
+        }
     }
     effort.ends();
     Ok(best)
 }
 
-/// The step that short descents favour, and where they have led; none where there is no step.
-fn best_step(
-    healthy: &Problem,
-    joints: &[Joint],
-    best: &Found,
-    points: &[Vec<f64>],
-    effort: &mut Effort,
-) -> Result<Option<(Model, Vec<Led>)>, Error> {
-    let mut next: Option<(f64, Model, Vec<Led>)> = None;
-    for step in steps(&best.model, joints) {
-        let model = stepped(healthy, joints, best, step)?;
-        let x = model.coordinates_of(&best.model, &best.fit.coordinates());
-        let starts = match step {
-            Step::Clear(joint) => {
-                let place = model.clear.len() - 1;
-                along(&model, &joints[joint], place, &x, effort)
-            }
-            Step::Contacts => {
-                let first = Model::new(healthy, joints, initially(joints), false)?;
-                let earlier = points.iter().map(|x| model.coordinates_of(&first, x));
-                [x].into_iter().chain(earlier).collect()
-            }
-        };
-        let led = roughly(&model, &starts, effort);
-        let left = led.first().map_or(f64::INFINITY, |led| led.left);
-        let count = Likelihood::new(&few(&model.problem)).count();
-        let criterion = left + model.problem.parameters.len() as f64 * (count as f64).ln();
-        if next.as_ref().is_none_or(|(least, ..)| criterion < *least) {
-            next = Some((criterion, model, led));
-        }
-        if effort.stopped {
-            return Ok(None);
+/// A search under way.
+struct Search<'a> {
+    healthy: &'a Problem,
+    joints: &'a [Joint],
+}
+
+impl Search<'_> {
+    /// The fit that descents from the clearances of the machine file lead to, by its relation between clearances.
+    fn near_file(&self, first: &Model, at: &[f64], effort: &mut Effort) -> Result<Found, Error> {
+        let clear = first.clear.clone();
+        let model = Model::new(self.healthy, self.joints, clear, Contacts::Stated)?;
+        let at = model.coordinates_of(first, at);
+        let led = roughly(&model, &[at], effort);
+        let x = finely(&model, led, effort)?;
+        self.settled(&model, x, effort)
+    }
+
+    /// The better one of `best` and the fits that descents from these ends lead to.
+    fn better(
+        &self,
+        best: Found,
+        model: &Model,
+        led: Vec<Led>,
+        effort: &mut Effort,
+    ) -> Result<Found, Error> {
+        let found = finely(model, led, effort).and_then(|x| self.settled(model, x, effort));
+        match found {
+            Ok(next) if next.criterion < best.criterion => Ok(next),
+            Ok(_) | Err(Error::Nothing(_) | Error::Simulation { .. }) => Ok(best),
+            Err(error) => Err(error),
         }
     }
-    Ok(next.map(|(_, model, led)| (model, led)))
+
+    /// The fit of a model from `x`. Where that leads near the noise, the models with less and with more unknown of the contacts
+    /// are fitted too, and the evidence decides.
+    fn settled(&self, model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Found, Error> {
+        let found = judged(model.clone(), fit(model, x, effort)?)?;
+        if found.misfit() > FAR {
+            return Ok(found);
+        }
+        let from = found.fit.coordinates();
+        let at_noise = found.fit.is_at_noise();
+        let mut best = found;
+        for contacts in [Contacts::Stated, Contacts::Related, Contacts::Fitted] {
+            // What is simpler leaves at least as much.
+            let hopeless = contacts < model.contacts && !at_noise;
+            if effort.stopped || contacts == model.contacts || hopeless {
+                continue;
+            }
+            let other = Model::new(self.healthy, self.joints, model.clear.clone(), contacts)?;
+            let x = other.coordinates_of(model, &from);
+            match fit(&other, x, effort) {
+                Ok(fit) => {
+                    let other = judged(other, fit)?;
+                    if other.criterion < best.criterion && other.is_identifiable() {
+                        best = other;
+                    }
+                }
+                Err(Error::Nothing(_) | Error::Simulation { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(best)
+    }
+
+    /// The step that short descents favour, and where they have led; none where there is no step. `ends` are points of a
+    /// model from which descents with other contact parameters start.
+    fn best_step(
+        &self,
+        best: &Found,
+        (first, ends): (&Model, &[Vec<f64>]),
+        at: &[f64],
+        effort: &mut Effort,
+    ) -> Result<Option<(Model, Vec<Led>)>, Error> {
+        let mut next: Option<(f64, Model, Vec<Led>)> = None;
+        for step in steps(&best.model, self.joints) {
+            let model = stepped(self.healthy, self.joints, best, step)?;
+            let x = model.coordinates_of(&best.model, &best.fit.coordinates());
+            let led = match step {
+                Step::Clear(joint) => {
+                    let place = model.clear.len() - 1;
+                    let joint = &self.joints[joint];
+                    let mut points = along(&model, joint, place, &x, effort);
+                    let at = model.coordinates_of(first, at);
+                    points.extend(along(&model, joint, place, &at, effort));
+                    around(&model, points, effort)
+                }
+                Step::Contacts => {
+                    let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
+                    let starts: Vec<Vec<f64>> = [x].into_iter().chain(earlier).collect();
+                    roughly(&model, &starts, effort)
+                }
+            };
+            let part = few(&model.problem);
+            let likelihood = Likelihood::new(&part);
+            let left = led
+                .first()
+                .and_then(|led| likelihood.likeliest(&led.x, &TIMINGS).ok());
+            let left = left.map_or(f64::INFINITY, |(_, left)| left);
+            let count = likelihood.count() as f64;
+            let criterion = left + model.problem.parameters.len() as f64 * count.ln();
+            if next.as_ref().is_none_or(|(least, ..)| criterion < *least) {
+                next = Some((criterion, model, led));
+            }
+            if effort.stopped {
+                return Ok(None);
+            }
+        }
+        Ok(next.map(|(_, model, led)| (model, led)))
+    }
 }
 
 /// The joints that are clear in the machine file.
@@ -129,7 +243,7 @@ fn initially(joints: &[Joint]) -> Vec<usize> {
 
 fn steps(model: &Model, joints: &[Joint]) -> Vec<Step> {
     let ideal = (0..joints.len()).filter(|i| !model.clear.contains(i));
-    let contacts = !model.contacts && !model.clear.is_empty();
+    let contacts = model.contacts != Contacts::Fitted && !model.clear.is_empty();
     let contacts = contacts.then_some(Step::Contacts);
     contacts.into_iter().chain(ideal.map(Step::Clear)).collect()
 }
@@ -142,26 +256,9 @@ fn stepped(healthy: &Problem, joints: &[Joint], best: &Found, step: Step) -> Res
             clear.push(joint);
             best.model.contacts
         }
-        Step::Contacts => true,
+        Step::Contacts => Contacts::Fitted,
     };
     Model::new(healthy, joints, clear, contacts)
-}
-
-/// A fit that stopped above the noise, continued by the search of a calibration: kicks, and starts elsewhere.
-fn searched(found: Found, effort: &mut Effort) -> Result<Found, Error> {
-    let x = found.fit.coordinates();
-    let searched = fit(&found.model, x, Optimiser::Default, effort)?;
-    let continued = judged(found.model.clone(), searched)?;
-    Ok(match continued.criterion < found.criterion {
-        true => continued,
-        false => found,
-    })
-}
-
-fn fitted(model: Model, led: Vec<Led>, effort: &mut Effort) -> Result<Found, Error> {
-    let x = finely(&model, led, effort)?;
-    let fit = fit(&model, x, Optimiser::LevenbergMarquardt, effort)?;
-    judged(model, fit)
 }
 
 /// A fit with its criterion.
