@@ -66,6 +66,9 @@ pub struct Results {
     /// The runs that were held out.
     #[serde(default)]
     pub heldout_runs: Vec<String>,
+    /// The crank angle at which the pulse of a tacho was found to come, by run, where its place was not known, rad.
+    #[serde(default)]
+    pub pulse_angles_rad: ByName<f64>,
     /// The clear joints, by path.
     #[serde(default)]
     pub relation: ByName<JointRelation>,
@@ -259,6 +262,7 @@ impl Results {
             },
             runs: fit.runs.iter().map(run).collect(),
             heldout_runs: task.settings.held_out.clone(),
+            pulse_angles_rad: task.pulses(&task.problem, &fit.coordinates()),
             relation: joint_relations(&task.problem)?,
             relations,
             predictions,

@@ -18,6 +18,7 @@ use crate::observation::{Observation, Run};
 use crate::parameter::Parameter;
 use crate::prediction::predict;
 use crate::problem::{Problem, columns};
+use crate::results::ByName;
 use crate::run_condition::CRANK_ANGLE_OFFSET;
 use crate::shut_valve::ShutValve;
 use crate::{alignment, bundle, contradiction, zero};
@@ -241,6 +242,16 @@ impl Task {
         let runs = self.runs.iter().zip(&self.pulsed).zip(&self.turned);
         let pulsed = runs.filter(|((_, pulsed), _)| **pulsed);
         pulsed.map(|((run, _), turned)| (run.id.as_str(), turned.rem_euclid(TAU)))
+    }
+
+    /// The crank angle at which these pulses come, by run, rad in [0, 2π): with the offsets of `problem` at the coordinates `x`.
+    pub(crate) fn pulses(&self, problem: &Problem, x: &[f64]) -> ByName<f64> {
+        let found = self.pulse_angles().filter_map(|(id, aligned)| {
+            let run = problem.runs.iter().find(|run| run.id == id)?;
+            let angle = aligned - problem.crank_angle_offset(run, x).0;
+            Some((id.to_owned(), angle.rem_euclid(TAU)))
+        });
+        found.collect()
     }
 
     /// Aligns the crank angle of every run whose zero was not recorded with the prediction of the machine, with the

@@ -20,7 +20,6 @@ use crate::stages::{ALIGNMENTS, Stage, Watcher};
 use crate::task::{Settings, Task, task};
 use input::MachineFile;
 use recordings::WholeFile;
-use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// What is asked for.
@@ -106,7 +105,7 @@ impl Prepared {
             &mut effort,
         )?;
         let problem = &found.model.problem;
-        concluded.results.pulse_angles_rad = pulses(&self.task, problem, &concluded.x);
+        concluded.results.pulse_angles_rad = self.task.pulses(problem, &concluded.x);
         let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
         pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
         let machine = self.out.join(MACHINE);
@@ -243,16 +242,6 @@ fn conclude(
     };
     let x = discrepancy.map_or_else(|| fit.coordinates(), |d: &Discrepancy| d.x.clone());
     Ok(Concluded { results, x })
-}
-
-/// Where the pulses of tachos of unknown place were found.
-fn pulses(task: &Task, problem: &Problem, x: &[f64]) -> ByName<f64> {
-    let found = task.pulse_angles().filter_map(|(id, aligned)| {
-        let run = problem.runs.iter().find(|run| run.id == id)?;
-        let angle = aligned - problem.crank_angle_offset(run, x).0;
-        Some((id.to_owned(), angle.rem_euclid(TAU)))
-    });
-    found.collect()
 }
 
 /// The columns that were compared, each once.

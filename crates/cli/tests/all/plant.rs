@@ -68,4 +68,6 @@ fn a_worn_crosshead_pin_is_found_in_plant_data() {
 
     let page = fs::read_to_string(clone.path().join("plant/wear/report.html")).unwrap();
     assert!(page.contains("Worn: small end."), "no verdict on the page");
+    let pulse = format!("{:.1}\u{b0}</dd>", PULSE.to_degrees());
+    assert!(page.contains(&pulse), "no place of the pulse on the page");
 }

@@ -510,7 +510,10 @@ fn every_operating_point_is_on_the_page() {
         );
     }
     // And what goes with the speed.
-    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 * (2 + 1 + 2) + 2);
+    assert_eq!(
+        html.matches("<figcaption>").count(),
+        3 + 2 * (2 + 1 + 2) + 2
+    );
     // The claims have a row for each.
     let printed = String::from_utf8(output.stdout).unwrap();
     assert!(printed.contains("| 400 rpm | holds"), "{printed}");

@@ -181,6 +181,14 @@ impl View<'_> {
         }
     }
 
+    /// Where the pulses of tachos of unknown place come; empty where there is none.
+    fn pulses(&self) -> String {
+        let pulses = self.results.pulse_angles_rad.iter();
+        let pulses = pulses
+            .map(|(run, angle)| format!("{run}: {}\u{b0}", text::decimal(angle.to_degrees(), 1)));
+        pulses.collect::<Vec<_>>().join(", ")
+    }
+
     fn worn_from(&self) -> String {
         text::number(self.results.worn_from, 3)
     }
