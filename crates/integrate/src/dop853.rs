@@ -28,6 +28,8 @@ pub struct Step<S> {
     scratch: Vec<S>,
     /// Whether the pieces are those of this step.
     extended: bool,
+    /// Whether its observer has seen enough.
+    last: bool,
 }
 
 impl<S: Scalar> Step<S> {
@@ -43,7 +45,17 @@ impl<S: Scalar> Step<S> {
             pieces: zeros(PIECES * dimension),
             scratch: zeros(dimension),
             extended: false,
+            last: false,
         }
+    }
+
+    /// Ends the integration behind this step: its observer has seen enough.
+    pub fn stop(&mut self) {
+        self.last = true;
+    }
+
+    pub(crate) fn is_last(&self) -> bool {
+        self.last
     }
 
     fn dimension(&self) -> usize {

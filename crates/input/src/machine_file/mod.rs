@@ -31,7 +31,7 @@ pub(crate) use value::unit_of_quantity;
 
 use crate::error::Error;
 use crate::yaml::{self, Document};
-use crate::{reader, schema};
+use crate::{paths, reader, schema};
 use serde_json::{Map, Value};
 use std::path::Path;
 use written::{Mistakes, Written};
@@ -102,6 +102,21 @@ impl MachineFile {
         let file = Self::from_tree(&tree);
         let repaired = file.and_then(|file| file.resolve().map(|resolved| (file, resolved)));
         (repaired.ok(), Some(error))
+    }
+
+    /// The same machine with other values, each at its path (`joints.big_end.clearance`).
+    ///
+    /// # Errors
+    /// Where the format has no such path ([`paths::set`]), and as [`read`], without lines.
+    pub fn with_values<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a str, Value)>,
+    ) -> Result<Self, Error> {
+        let mut tree = self.written.tree.clone();
+        for (path, value) in values {
+            paths::set(&mut tree, path, value)?;
+        }
+        Self::from_tree(&tree)
     }
 
     /// The file's content, with the keys of machine files in the place of their synonyms.

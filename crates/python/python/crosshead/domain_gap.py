@@ -1,0 +1,121 @@
+"""How far simulated recordings differ from measured ones, as a classifier sees it."""
+
+import dataclasses
+
+import numpy as np
+
+from .errors import InputError
+from .features import Features, numbers_of
+
+
+@dataclasses.dataclass(frozen=True)
+class Tell:
+    """A feature that tells simulated windows from measured ones."""
+
+    feature: str
+    auc: float
+    """Area under the curve of this feature alone: 0.5 tells nothing, 1 everything."""
+    loss: float
+    """What the classifier's area loses when this feature is shuffled."""
+    simulated: float
+    """Median of the simulated windows."""
+    measured: float
+    """Median of the measured windows."""
+
+
+@dataclasses.dataclass(frozen=True)
+class DomainGap:
+    """How well a classifier tells simulated windows from measured ones."""
+
+    auc: float
+    """Area under the curve on held-out windows: 0.5 where nothing tells them apart, 1 where everything does."""
+    folds: list
+    """The same of each fold."""
+    features: list
+    """The features that give it away, the most telling first."""
+
+    def __str__(self):
+        lines = [f"AUC {self.auc:.3f} (folds {', '.join(f'{auc:.3f}' for auc in self.folds)})"]
+        for tell in self.features[:10]:
+            lines.append(
+                f"  {tell.feature}: alone {tell.auc:.3f}, loss {tell.loss:.3f}, "
+                f"simulated {tell.simulated:.4g}, measured {tell.measured:.4g}"
+            )
+        return "\n".join(lines)
+
+
+def domain_gap(dataset, measured, *, folds=5, seed=0, classifier=None):
+    """Trains a classifier to tell the windows of a dataset from measured ones, and tests it on windows that it has not seen.
+
+    dataset: a `Dataset`, all splits; or `Features` of simulated recordings.
+    measured: `Features` of recordings: ``crosshead.features("test.parquet", like=dataset)``.
+    folds: folds of the cross-validation. Windows of one group or one recording stay together.
+    classifier: of scikit-learn; by default gradient boosting, which takes missing values as they are.
+    """
+    from sklearn.ensemble import HistGradientBoostingClassifier
+    from sklearn.metrics import roc_auc_score
+    from sklearn.model_selection import StratifiedKFold
+
+    if not isinstance(measured, Features):
+        raise InputError("measured: expected Features, as `crosshead.features(recordings, like=dataset)` gives them")
+    names = dataset.feature_names if hasattr(dataset, "feature_names") else dataset.names
+    simulated, of_simulated = numbers_of(dataset, names)
+    real, of_real = numbers_of(measured, names)
+    units = _units(of_simulated, len(simulated)), _units(of_real, len(real), row_each=True)
+    x = np.vstack([simulated, real])
+    y = np.repeat([0, 1], [len(simulated), len(real)])
+    groups = np.concatenate([units[0], units[1] + len(simulated)])
+    if min(len(set(units[0])), len(set(units[1]))) < folds:
+        raise InputError(f"folds: found {folds}, expected at most the number of recordings on either side")
+    model = classifier or HistGradientBoostingClassifier(random_state=seed)
+    random = np.random.default_rng(seed)
+    # Folds of groups, each group counted once and stratified by side.
+    kinds, first = np.unique(groups, return_index=True)
+    areas, losses = [], []
+    for _, held_out in StratifiedKFold(folds, shuffle=True, random_state=seed).split(kinds, y[first]):
+        test = np.isin(groups, kinds[held_out])
+        model.fit(x[~test], y[~test])
+        area = roc_auc_score(y[test], _scores(model, x[test]))
+        areas.append(area)
+        losses.append([area - _shuffled(model, x[test], y[test], i, random, roc_auc_score) for i in range(x.shape[1])])
+    tells = [
+        Tell(name, _alone(x[:, i], y, roc_auc_score), loss, _median(simulated[:, i]), _median(real[:, i]))
+        for i, (name, loss) in enumerate(zip(names, np.mean(losses, axis=0)))
+    ]
+    tells.sort(key=lambda tell: (-round(tell.loss, 6), -tell.auc))
+    return DomainGap(float(np.mean(areas)), [float(area) for area in areas], tells)
+
+
+def _units(groups, rows, row_each=False):
+    """A whole number for each group. Rows of one file of several recordings are recordings of their own."""
+    kinds, numbers = np.unique(groups.astype(str), return_inverse=True)
+    if row_each and len(kinds) < rows and len(kinds) == 1:
+        return np.arange(rows)
+    return numbers
+
+
+def _scores(model, x):
+    if hasattr(model, "decision_function"):
+        return model.decision_function(x)
+    return model.predict_proba(x)[:, 1]
+
+
+def _shuffled(model, x, y, column, random, area):
+    """The area with one column shuffled."""
+    shuffled = x.copy()
+    random.shuffle(shuffled[:, column])
+    return area(y, _scores(model, shuffled))
+
+
+def _alone(values, y, area):
+    """The area of one feature, whichever way it points; a missing value tells as a value of its own does."""
+    finite = np.isfinite(values)
+    if not finite.any():
+        return 0.5
+    low = values[finite].min() - 1 - abs(values[finite].min())
+    area = area(y, np.where(finite, values, low))
+    return float(max(area, 1 - area))
+
+
+def _median(values):
+    return float(np.nanmedian(values)) if np.isfinite(values).any() else float("nan")

@@ -1,0 +1,79 @@
+"""Machine files."""
+
+import json
+import os
+
+from . import _crosshead
+from .errors import InputError
+
+
+class Machine:
+    """A machine file: a compressor with its sensors, every value with its unit.
+
+    ``Machine("machine.yaml")`` reads one. ``machine.replace(**{"joints.big_end.clearance": "0.2 mm"})`` gives the same
+    machine with other values; a value is a text with its unit, a number where the key has none, or what YAML would have
+    there.
+    """
+
+    def __init__(self, path):
+        self._rust = path if isinstance(path, _crosshead.Machine) else _crosshead.Machine(os.fspath(path))
+
+    @classmethod
+    def from_yaml(cls, text):
+        """The machine file with the content `text`."""
+        return cls(_crosshead.Machine.from_yaml(text))
+
+    @classmethod
+    def of(cls, machine):
+        """`machine` itself, the machine of a calibration or an explanation, or the file at this path."""
+        if isinstance(machine, Machine):
+            return machine
+        if isinstance(machine, (str, os.PathLike)):
+            return cls(machine)
+        if hasattr(machine, "machine"):
+            return machine.machine
+        raise InputError(
+            f"machine: found {type(machine).__name__}, expected a Machine, a path, or something with a machine"
+        )
+
+    @property
+    def name(self):
+        """Its name."""
+        return self._rust.name
+
+    @property
+    def speed_rpm(self):
+        """Speed of the crank, or reference speed of a free one, rpm."""
+        return self._rust.speed_rpm
+
+    @property
+    def sample_rate_hz(self):
+        """Sample rate of its recorder, Hz; none where the file states none."""
+        return self._rust.sample_rate_hz
+
+    @property
+    def channels(self):
+        """Names of the recorded channels, each ending in its unit."""
+        return self._rust.channels
+
+    def __getitem__(self, path):
+        """The value at a path of the file, as it is written: ``machine["joints.big_end.clearance"]``."""
+        value = self._rust._get(path)
+        if value is None:
+            raise KeyError(path)
+        return json.loads(value)
+
+    def replace(self, **values):
+        """The same machine with other values, each at its path."""
+        return Machine(self._rust._with(json.dumps(values)))
+
+    def to_yaml(self):
+        """The content of its file."""
+        return self._rust.to_yaml()
+
+    def save(self, path):
+        """Writes its file."""
+        self._rust.save(os.fspath(path))
+
+    def __repr__(self):
+        return f"<crosshead.Machine: {self.name}, {self.speed_rpm:.4g} rpm>"
