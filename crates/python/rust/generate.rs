@@ -19,11 +19,12 @@ use sweep::{Plan, Sweep, simulate_cases};
 ///
 /// `machine` takes the place of the sweep's own. `calibration` is the folder of a calibration, whose machine and
 /// uncertainty do: `uncertainty` is `sampled` or `ignored`, `undetermined` is `prior` or `nominal`.
+/// `channels` are those that are recorded, all of the machine's where none are given.
 ///
 /// # Errors
 /// Wrong input, an output that cannot be written, or Ctrl-C. Cases that failed are none: the manifest names them.
 #[pyfunction]
-#[pyo3(signature = (sweep, machine, calibration, uncertainty, undetermined, out, existing, threads, progress))]
+#[pyo3(signature = (sweep, machine, calibration, uncertainty, undetermined, channels, out, existing, threads, progress))]
 pub fn generate(
     py: Python<'_>,
     sweep: PathBuf,
@@ -31,6 +32,7 @@ pub fn generate(
     calibration: Option<PathBuf>,
     uncertainty: &str,
     undetermined: &str,
+    channels: Option<Vec<String>>,
     out: Option<PathBuf>,
     existing: &str,
     threads: Option<usize>,
@@ -61,6 +63,10 @@ pub fn generate(
                 (Claim::new(&out, existing)?, nominal)
             }
             true => calibrated(&sweep, &out, existing, shared)?,
+        };
+        let plan = match &channels {
+            Some(channels) => plan.with_channels(channels)?,
+            None => plan,
         };
         let mut shown = Shown {
             shared,

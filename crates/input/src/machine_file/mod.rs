@@ -119,6 +119,34 @@ impl MachineFile {
         Self::from_tree(&tree)
     }
 
+    /// The same machine with those sensors alone that give some of the channels of these names.
+    ///
+    /// # Errors
+    /// A channel that no sensor gives.
+    pub fn with_channels(&self, channels: &[String]) -> Result<Self, Error> {
+        let mut tree = self.written.tree.clone();
+        let listed = tree["sensors"].as_array().cloned().unwrap_or_default();
+        let (mut kept, mut given) = (Vec::new(), Vec::new());
+        for sensor in listed {
+            tree["sensors"] = Value::Array(vec![sensor.clone()]);
+            let alone = Self::from_tree(&tree)?.resolve()?;
+            let throws = alone.machine.throws.iter().map(|t| t.name.as_str());
+            let throws: Vec<&str> = throws.collect();
+            let columns = alone.sensors.iter().map(|s| s.measured.column(&throws));
+            let columns: Vec<String> = columns.collect();
+            if columns.iter().any(|column| channels.contains(column)) {
+                kept.push(sensor);
+            }
+            given.extend(columns);
+        }
+        if let Some(unknown) = channels.iter().find(|name| !given.contains(name)) {
+            let given: Vec<&str> = given.iter().map(String::as_str).collect();
+            return Err(Error::unknown_name("channels", unknown, &given));
+        }
+        tree["sensors"] = Value::Array(kept);
+        Self::from_tree(&tree)
+    }
+
     /// The file's content, with the keys of machine files in the place of their synonyms.
     pub fn to_tree(&self) -> &Value {
         &self.written.tree

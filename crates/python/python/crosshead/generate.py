@@ -22,6 +22,7 @@ def generate(
     existing="refuse",
     uncertainty=None,
     undetermined="nominal",
+    channels=None,
     threads=None,
     progress=None,
 ):
@@ -36,6 +37,8 @@ def generate(
         takes the best values. By default `sampled` where the model is adequate.
     undetermined: of a calibration: parameters that are not identifiable are drawn from their search range (`prior`) or
         keep their nominal values (`nominal`).
+    channels: the channels to record, ``["crosshead_acceleration_m_s2", "crank_angle_rad"]``. By default those of the
+        calibration's recordings, so that the dataset has no channel that they lack; else all of the machine.
     threads: threads that simulate. By default one per core.
     """
     if existing not in _EXISTING:
@@ -44,6 +47,8 @@ def generate(
     own = None if machine is None or calibration is not None else Machine.of(machine)._rust
     if uncertainty is None:
         uncertainty = "sampled" if calibration is not None and calibration.model_is_adequate else "ignored"
+    if channels is None and calibration is not None:
+        channels = list(calibration.noise)
     with shown(progress) as report:
         folder, doubts = _crosshead.generate(
             os.fspath(sweep),
@@ -51,6 +56,7 @@ def generate(
             None if calibration is None else str(calibration.folder.absolute()),
             uncertainty,
             undetermined,
+            None if channels is None else list(channels),
             None if out is None else os.fspath(out),
             existing,
             threads,

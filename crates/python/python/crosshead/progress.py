@@ -45,7 +45,8 @@ class _Bars:
             self._what = what
         if message:
             self._bar.set_postfix_str(message, refresh=False)
-        self._bar.update(done - self._bar.n)
+        if done != self._bar.n:
+            self._bar.update(done - self._bar.n)
 
     def close(self):
         if self._bar is not None:
