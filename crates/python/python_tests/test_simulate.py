@@ -91,8 +91,8 @@ def test_readers_in_one_line(worn):
     assert pl.DataFrame(table)["crosshead_acceleration_m_s2"].max() == peak
     assert pd.DataFrame.from_arrow(table)["crosshead_acceleration_m_s2"].max() == peak
     samples = table  # duckdb finds it by its name
-    found = duckdb.sql("select max(crosshead_acceleration_m_s2) from samples").fetchone()
-    assert found == (peak,)
+    found = duckdb.sql("select max(crosshead_acceleration_m_s2) from samples").fetchall()
+    assert found == [(peak,)]
 
 
 def test_the_same_seed_gives_the_same_samples(machine):
@@ -126,8 +126,8 @@ def test_wrong_input_is_a_value_error_with_file_and_line(tmp_path, machine):
         ch.simulate(tmp_path / "nowhere.yaml")
     wrong = tmp_path / "machine.yaml"
     text = machine.read_text()
-    wrong.write_text(text.replace("length: 0.6 m", "length: 0.6 s", 1))
-    line = next(i for i, row in enumerate(wrong.read_text().splitlines(), 1) if "0.6 s" in row)
+    wrong.write_text(text.replace("length: 600 mm", "length: 600 ms", 1))
+    line = next(i for i, row in enumerate(wrong.read_text().splitlines(), 1) if "600 ms" in row)
     with pytest.raises(ch.InputError, match=rf"machine.yaml:{line}:\d+: rod.length"):
         ch.simulate(wrong)
     with pytest.raises(ch.InputError, match="expected a Machine, a path"):

@@ -128,6 +128,7 @@ pub fn features(
         let like = like.transpose().map_err(Failure::input)?;
         if let Some(like) = &like {
             said.motion = like.motion;
+            said.machine.get_or_insert_with(|| like.machine.clone());
             length = like.length();
         }
         let inputs = inputs(&paths, &said).map_err(Failure::input)?;

@@ -2,7 +2,7 @@
 //! length. A classifier that was trained on the one is then shown the same quantities of the other.
 
 use super::{Dataset, Error, Subset};
-use features::recorded::{Row, WindowLength};
+use features::recorded::{KnownMachine, Row, WindowLength};
 use recordings::{Column, Role, Schema, Value};
 use std::collections::BTreeSet;
 
@@ -20,6 +20,8 @@ pub struct Like {
     pub revolutions: u32,
     /// Whether the kind of motion is among the features.
     pub motion: bool,
+    /// The machine, for the indicated power.
+    pub machine: KnownMachine,
 }
 
 /// How recordings differ from a dataset.
@@ -81,6 +83,7 @@ impl Dataset {
             sample_rate_hz: self.plan.settings.sample_rate,
             revolutions: self.revolutions_per_window(),
             motion: self.plan.chaos,
+            machine: KnownMachine::of(&self.plan.base),
         })
     }
 }
