@@ -50,8 +50,7 @@ pub(crate) struct Reading {
     /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     window: Option<String>,
-    /// Whether the kind of motion is judged from the signals: regime, exponents, entropies. It takes most of the
-    /// time
+    /// Whether regime, exponents and entropies are computed, which takes most of the time
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     chaos: bool,
     #[command(flatten)]

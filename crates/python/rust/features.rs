@@ -9,12 +9,12 @@ use ::features::recorded::{
 use cli::Failure;
 use input::quantity::{AboveZero, Angle, Frequency, Quantity, Speed};
 use pyo3::prelude::*;
+use recordings::Table as Rows;
 use recordings::formats::record_batch::record_batch;
 use recordings::measured::Options;
-use recordings::{Column, Schema, Table as Rows};
 use std::path::PathBuf;
 use sweep::in_order::in_order;
-use sweep::reader::{Dataset, Like};
+use sweep::reader::Like;
 
 /// What is said of recordings: texts with their units, as on the command line.
 #[derive(FromPyObject)]
@@ -124,11 +124,10 @@ pub fn features(
     }
     let (rows, warnings) = interruptible(py, progress, |shared| {
         let (mut said, mut length) = (asked.said()?, asked.length()?);
-        let like = like.map(|folder| Dataset::read(&folder).and_then(|dataset| dataset.like()));
+        let like = like.as_deref().map(Like::read);
         let like = like.transpose().map_err(Failure::input)?;
         if let Some(like) = &like {
-            said.motion = like.motion;
-            said.machine.get_or_insert_with(|| like.machine.clone());
+            like.say(&mut said);
             length = like.length();
         }
         let inputs = inputs(&paths, &said).map_err(Failure::input)?;
@@ -152,8 +151,7 @@ fn rows(
         Some(like) => like.columns(&schema).map_err(Failure::input)?,
         None => (0..schema.columns().len()).collect(),
     };
-    let columns: Vec<Column> = kept.iter().map(|i| schema.columns()[*i].clone()).collect();
-    let mut rows = Rows::new(Schema::new(columns).map_err(Failure::work)?);
+    let mut rows = Rows::new(schema.select(&kept));
     let mut warnings = Vec::new();
     let threads = std::thread::available_parallelism().map_or(1, Into::into);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -175,10 +173,8 @@ fn rows(
                 like.check(&made).map_err(Failure::input)?;
             }
             warnings.extend(made.warning());
-            let mut take =
-                |i: &usize| std::mem::replace(&mut made.values[*i], recordings::Value::Missing);
-            rows.push(kept.iter().map(&mut take).collect())
-                .map_err(Failure::work)
+            made.keep(&kept);
+            rows.push(made.values).map_err(Failure::work)
         },
     )?;
     Ok((rows, warnings))

@@ -18,6 +18,7 @@ use scalar::random::{Purpose, stream};
 use signal::channel::Channel;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Instant;
 use sweep::run_analysis::RunAnalysis;
 use sweep::run_table::run_table;
 
@@ -27,6 +28,8 @@ pub struct Run {
     machine: Arc<Resolved>,
     record: Record,
     batch: RecordBatch,
+    /// Time that simulating and measuring took, s.
+    seconds: f64,
 }
 
 /// Simulates one run: `values` are changes of the machine as JSON, `sample_rate` a text with its unit.
@@ -112,6 +115,7 @@ fn run(
             false => ControlFlow::Continue(()),
         }
     };
+    let started = Instant::now();
     let record =
         ::simulate::simulate_watched(&machine.machine, &machine.sensors, settings, &mut watch)
             .map_err(|error| match error.is_stopped() {
@@ -120,7 +124,9 @@ fn run(
             })?;
     let mut noise = stream(seed, 0, Purpose::Noise);
     let channels = ::simulate::measure(&record, &machine.sensors, &throws(&machine), &mut noise);
+    let seconds = started.elapsed().as_secs_f64();
     Ok(Run {
+        seconds,
         batch: recorded(channels, record.sample_rate).map_err(Failure::work)?,
         machine,
         record,
@@ -197,6 +203,12 @@ impl Run {
     #[getter]
     fn energy_residual(&self) -> Option<f64> {
         self.record.energy_residual
+    }
+
+    /// Time that simulating and measuring took, s.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.seconds
     }
 
     /// Names of the throws; one empty name in a machine of one.

@@ -418,6 +418,20 @@ pub fn row(job: &Job) -> Row {
 }
 
 impl Row {
+    /// Keeps these columns alone, in this order.
+    pub fn keep(&mut self, columns: &[usize]) {
+        let mut all = std::mem::take(&mut self.values);
+        let kept = columns.iter();
+        self.values = kept
+            .map(|i| std::mem::replace(&mut all[*i], Value::Missing))
+            .collect();
+        let place = |column: usize| columns.iter().position(|i| *i == column);
+        let reasons = self.reasons.drain(..);
+        self.reasons = reasons
+            .filter_map(|(column, reason)| Some((place(column)?, reason)))
+            .collect();
+    }
+
     /// What looks wrong with the window, with its file and time.
     pub fn warning(&self) -> Option<String> {
         let warning = self.warning.as_ref()?;

@@ -87,6 +87,7 @@ class Run:
     speed_rpm: float
     sample_rate_hz: float
     energy_residual: float | None
+    seconds: float
     throws: list[str]
     clearances_m: list[tuple[str, float]]
     warnings: list[str]

@@ -2,9 +2,10 @@
 //! length. A classifier that was trained on the one is then shown the same quantities of the other.
 
 use super::{Dataset, Error, Subset};
-use features::recorded::{KnownMachine, Row, WindowLength};
+use features::recorded::{KnownMachine, Row, Said, WindowLength};
 use recordings::{Column, Role, Schema, Value};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Largest difference between two sample rates that are meant to be one, as a share: clocks of recorders are that far off.
 const RATE: f64 = 1e-3;
@@ -89,6 +90,20 @@ impl Dataset {
 }
 
 impl Like {
+    /// Of the dataset in `folder`.
+    ///
+    /// # Errors
+    /// A folder that is no whole dataset.
+    pub fn read(folder: &Path) -> Result<Self, Error> {
+        Dataset::read(folder)?.like()
+    }
+
+    /// Says of recordings what the dataset knows: whether their motion is judged, and the machine where nobody names another.
+    pub fn say(&self, said: &mut Said) {
+        said.motion = self.motion;
+        said.machine.get_or_insert_with(|| self.machine.clone());
+    }
+
     /// How recordings are cut.
     pub fn length(&self) -> WindowLength {
         WindowLength::RevolutionsOrRows(self.revolutions.into())
