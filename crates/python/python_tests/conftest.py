@@ -31,8 +31,14 @@ def machine():
 
 
 @pytest.fixture(scope="session")
-def bundle():
-    return DATA / "recordings" / "example-single-stage"
+def diagnosis():
+    """Recordings of another program: a healthy machine, and the same with worn joints."""
+    return DATA / "recordings" / "example-diagnosis"
+
+
+@pytest.fixture(scope="session")
+def bundle(diagnosis):
+    return diagnosis / "healthy"
 
 
 @pytest.fixture(scope="session")
