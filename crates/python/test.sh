@@ -29,5 +29,5 @@ if [ "${1:-}" = --wheel ]; then
     "$venv/bin/python" python_tests/measure_wheel.py "$wheels"/*.whl
 else
     build --profile dev
-    MPLBACKEND=agg "$venv/bin/python" -m pytest -q "$@"
+    MPLBACKEND=agg "$venv/bin/python" -m pytest -q --durations=5 "$@"
 fi

@@ -38,6 +38,15 @@ def test_a_calibration_is_opened_again(calibration, bundle):
         ch.Calibration(calibration.folder.parent)
 
 
+def test_a_bundle_has_a_nominal_machine(bundle, calibration):
+    nominal = ch.Machine.from_bundle(bundle)
+    stiffness = float(nominal[STIFFNESS].split()[0])
+    assert stiffness == calibration.parameters[STIFFNESS].nominal
+    assert nominal.speed_rpm == pytest.approx(400)
+    with pytest.raises(ch.InputError, match="recordings.yaml"):
+        ch.Machine.from_bundle(bundle.parent)
+
+
 def test_without_a_folder_a_calibration_stands_in_a_temporary_one(bundle):
     found = ch.calibrate(bundle, evaluations=3, optimiser="levenberg_marquardt")
     folder = found.folder

@@ -2,12 +2,14 @@
 
 use crate::failure::{raised, wrong};
 use cli::Failure;
+use input::bundle::Bundle;
 use input::{MachineFile, Resolved, machine_file, paths};
 use pyo3::prelude::*;
 use recordings::WholeFile;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use sweep::calibration::machine_of;
 
 /// A machine file and what it describes.
 #[pyclass(frozen, subclass, module = "crosshead")]
@@ -58,6 +60,14 @@ impl Machine {
         let file = MachineFile::from_yaml(text, "machine");
         file.and_then(Self::new)
             .map_err(|error| raised(error.into()))
+    }
+
+    /// The machine section of the bundle in `folder`, at the conditions of its first run.
+    #[staticmethod]
+    fn from_bundle(folder: PathBuf) -> PyResult<Self> {
+        let tree = Bundle::read(&folder).and_then(|bundle| machine_of(&bundle));
+        let machine = tree.and_then(|tree| Self::new(MachineFile::from_tree(&tree)?));
+        machine.map_err(|error| raised(error.into()))
     }
 
     #[getter]

@@ -308,7 +308,10 @@ fn is_relation(path: &str) -> bool {
 }
 
 /// The machine section of a bundle as a machine file's tree, at the conditions of the first run.
-fn machine_of(bundle: &Bundle) -> Result<Value, Error> {
+///
+/// # Errors
+/// A bundle without such a section, or a mistake in it or in the first run.
+pub fn machine_of(bundle: &Bundle) -> Result<Value, Error> {
     if bundle.machine.is_null() {
         return Err(bundle.locate(Error::missing("machine")));
     }

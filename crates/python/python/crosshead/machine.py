@@ -24,6 +24,11 @@ class Machine:
         return cls(_crosshead.Machine.from_yaml(text))
 
     @classmethod
+    def from_bundle(cls, folder):
+        """The machine that a bundle of recordings states, as nobody has calibrated it, at the conditions of its first run."""
+        return cls(_crosshead.Machine.from_bundle(os.fspath(folder)))
+
+    @classmethod
     def of(cls, machine):
         """`machine` itself, the machine of a calibration or an explanation, or the file at this path."""
         if isinstance(machine, Machine):

@@ -1,6 +1,7 @@
 """Progress on standard error, by tqdm where it is installed."""
 
 import contextlib
+import warnings
 
 
 @contextlib.contextmanager
@@ -30,7 +31,10 @@ class _Bars:
     @classmethod
     def new(cls):
         try:
-            from tqdm.auto import tqdm
+            with warnings.catch_warnings():
+                # In a notebook without widgets tqdm draws text, and says so.
+                warnings.simplefilter("ignore")
+                from tqdm.auto import tqdm
         except ImportError:
             return None
         return cls(tqdm)
