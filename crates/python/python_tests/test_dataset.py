@@ -109,9 +109,9 @@ def test_windows_over_the_crank_angle(dataset):
     assert all(signal.shape == (len(dataset.channels) - 1, 4 * 128) for signal in signals)
     # The pressure rests at the suction pressure at bottom dead centre, and is highest before top dead centre.
     pressure = [c for c in dataset.channels if c != "crank_angle_rad"].index("cylinder_pressure_pa")
-    for signal, begins in zip(signals, first):
-        bottom = signal[pressure][(64 - begins) % 128 :: 128]
-        top = signal[pressure][(124 - begins) % 128 :: 128]
+    for window, begins in zip(signals, first):
+        bottom = window[pressure][(64 - begins) % 128 :: 128]
+        top = window[pressure][(124 - begins) % 128 :: 128]
         assert (top > 2 * bottom).all()
     with pytest.raises(ch.InputError, match="channels: found 'x'"):
         dataset.over_crank_angle("train", channels=["x"])

@@ -39,5 +39,7 @@ def test_a_notebook_runs_through(make, script, monkeypatch):
     made = make.notebook(script)
     client = make.NotebookClient(made, timeout=1200, resources={"metadata": {"path": str(NOTEBOOKS)}})
     client.execute()
-    drawn = [output for cell in made.cells for output in cell.get("outputs", []) if output.output_type == "display_data"]
+    drawn = [
+        output for cell in made.cells for output in cell.get("outputs", []) if output.output_type == "display_data"
+    ]
     assert len(drawn) >= 2

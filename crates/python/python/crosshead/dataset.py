@@ -1,27 +1,35 @@
 """Datasets that `generate` or the program `gen-dataset` has written."""
 
+from __future__ import annotations
+
 import functools
 import json
 import os
 import pathlib
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _crosshead
 from .errors import InputError
-from .page import page
+from .kinds import AnyPath, Json
+from .page import Page, page
+
+if TYPE_CHECKING:
+    from .torch import AngleWindows
 
 
 class Dataset:
     """A finished dataset. Its files are compared with their checksums as they are opened."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: AnyPath) -> None:
         self.folder = pathlib.Path(folder)
         """Its folder."""
         said = _crosshead.open_dataset(os.fspath(folder))
         self.name = said.name
         """Its name."""
-        self.manifest = json.loads(said.manifest)
+        self.manifest: Json = json.loads(said.manifest)
         """The content of `manifest.json`."""
         self.splits = said.splits
         """The splits that have rows: `train`, `validation`, `test`."""
@@ -33,26 +41,26 @@ class Dataset:
         """Names of the recorded channels, each ending in its unit."""
         self._columns = said.features
 
-    def _named(self, role, numbers=False):
+    def _named(self, role: str, numbers: bool = False) -> list[str]:
         kinds = ("a real number", "a whole number")
         return [name for name, kind, of, *_ in self._columns if of == role and (not numbers or kind in kinds)]
 
     @property
-    def feature_names(self):
+    def feature_names(self) -> list[str]:
         """Names of the features that are numbers, in the order of the columns of `xy`."""
         return self._named("feature", numbers=True)
 
     @property
-    def roles(self):
+    def roles(self) -> dict[str, str]:
         """Role of each column of the table of features that has one: `label`, `condition`, `unknown` or `feature`."""
         return {name: role for name, _, role, *_ in self._columns if role}
 
     @property
-    def failed(self):
+    def failed(self) -> list[Json]:
         """The cases that could not be simulated: dicts with `case_id`, `reason`, `command`."""
         return self.manifest["failed"]
 
-    def _files(self, subset, split=None):
+    def _files(self, subset: str, split: str | None = None) -> list[str]:
         """Paths of the tables of a subset, of one split or of all."""
         if split is not None and split not in self.splits:
             raise InputError(f"split: found {split!r}, expected one of {', '.join(self.splits)}")
@@ -63,38 +71,39 @@ class Dataset:
             raise InputError(f"{self.folder}: no table of {subset}: its recordings are in another format")
         return found
 
-    def table(self, split=None, columns=None):
+    def table(self, split: str | None = None, columns: Sequence[str] | None = None) -> _crosshead.Table:
         """The table of features, a row for each window, as an Arrow table: of one split or of all, some columns or all."""
         return _crosshead.ParquetFiles(self._files("features", split), columns).read()
 
     @functools.cached_property
-    def features(self):
+    def features(self) -> _crosshead.Table:
         """The table of features of all splits as an Arrow table, a row for each window."""
         return self.table()
 
     @functools.cached_property
-    def cases(self):
+    def cases(self) -> _crosshead.Table:
         """The cases as an Arrow table, a row for each: `case_id`, `group`, `split`, labels, conditions and unknowns."""
         described = [name for name, _, role, *_ in self._columns if role in ("label", "condition", "unknown")]
         table = self.table(columns=["case_id", "group", "split", *described])
-        seen = set()
-        keep = [not (case in seen or seen.add(case)) for case in table["case_id"]]
-        return table.filter(keep)
+        _, first = np.unique(table["case_id"].astype(str), return_index=True)
+        keep = np.zeros(len(table), dtype=bool)
+        keep[first] = True
+        return table.filter(keep.tolist())
 
-    def labels(self, split=None):
+    def labels(self, split: str | None = None) -> _crosshead.Table:
         """What is to be found out, as an Arrow table, a row for each window."""
         return self.table(split, self._named("label"))
 
-    def conditions(self, split=None):
+    def conditions(self, split: str | None = None) -> _crosshead.Table:
         """At what the machine ran, as an Arrow table, a row for each window."""
         return self.table(split, self._named("condition"))
 
-    def unknowns(self, split=None):
+    def unknowns(self, split: str | None = None) -> _crosshead.Table | None:
         """What varied without being known, as an Arrow table, a row for each window; none where nothing did."""
         names = self._named("unknown")
         return self.table(split, names) if names else None
 
-    def xy(self, split="train", target="fault"):
+    def xy(self, split: str = "train", target: str = "fault") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Features, labels and groups of a split for a classifier or a regression: `X, y, groups`.
 
         X: features that are numbers alone, a row for each window, NaN where one is missing; `feature_names` names the columns.
@@ -107,7 +116,17 @@ class Dataset:
         table = self.table(split)
         return matrix(table, self.feature_names), table[target], table["group"]
 
-    def signals(self, split=None, *, case=None, columns=None):
+    @overload
+    def signals(
+        self, split: str | None = None, *, case: None = None, columns: Sequence[str] | None = None
+    ) -> _crosshead.ParquetFiles: ...
+    @overload
+    def signals(
+        self, split: str | None = None, *, case: str, columns: Sequence[str] | None = None
+    ) -> _crosshead.Table: ...
+    def signals(
+        self, split: str | None = None, *, case: str | None = None, columns: Sequence[str] | None = None
+    ) -> _crosshead.ParquetFiles | _crosshead.Table:
         """The recordings, a row for each window, with labels and conditions: as a stream of Arrow record batches, decoded as
         they are asked for. polars, pyarrow and duckdb read it as a table; a loop over it gives one table after the other.
 
@@ -125,7 +144,13 @@ class Dataset:
                 return _crosshead.ParquetFiles([path], columns, span).read()
         raise InputError(f"case: found {case!r}, which is not in {self.folder}")
 
-    def over_crank_angle(self, split="train", samples_per_revolution=512, channels=None, target="fault"):
+    def over_crank_angle(
+        self,
+        split: str = "train",
+        samples_per_revolution: int = 512,
+        channels: Iterable[str] | None = None,
+        target: str = "fault",
+    ) -> tuple[list[np.ndarray], np.ndarray, np.ndarray]:
         """The recordings of a split over the crank angle: `signals, first, y`.
 
         signals: an array of float32 for each window, channels by points; `samples_per_revolution` points in each revolution,
@@ -140,7 +165,9 @@ class Dataset:
                 raise InputError(f"channels: found {name!r}, expected some of {', '.join(self.channels)}")
         angle = [name for name in self.channels if name == "crank_angle_rad"]
         columns = [target, "speed_rpm", "sample_rate_hz", *angle, *(c for c in chosen if c not in angle)]
-        signals, first, y = [], [], []
+        signals: list[np.ndarray] = []
+        first: list[int] = []
+        y: list[Any] = []
         for table in self.signals(split, columns=columns):
             for samples, begins in _crosshead.over_crank_angle(table, chosen, samples_per_revolution):
                 signals.append(samples)
@@ -150,16 +177,16 @@ class Dataset:
 
     def torch(
         self,
-        split="train",
-        samples_per_revolution=512,
+        split: str = "train",
+        samples_per_revolution: int = 512,
         *,
-        revolutions=None,
-        channels=None,
-        target="fault",
-        start="random",
-        classes=None,
-        seed=0,
-    ):
+        revolutions: int | None = None,
+        channels: Iterable[str] | None = None,
+        target: str = "fault",
+        start: str = "random",
+        classes: Sequence[str] | None = None,
+        seed: int = 0,
+    ) -> AngleWindows:
         """A `torch.utils.data.Dataset` of recordings of one length over the crank angle: `(signal, label)`.
 
         signal: float32, channels by points. label: index of the class in `classes`, or the number where it is one.
@@ -172,16 +199,16 @@ class Dataset:
         signals, first, y = self.over_crank_angle(split, samples_per_revolution, channels, target)
         return AngleWindows(signals, first, y, samples_per_revolution, revolutions, start, classes, seed)
 
-    def page(self, out=None):
+    def page(self, out: AnyPath | None = None) -> Page:
         """Writes its page, and returns it."""
         return page(os.fspath(self.folder), out)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         counts = self.manifest["counts"]
         return f"<crosshead.Dataset: {self.name}, {counts['cases']} cases, splits {', '.join(self.splits)}>"
 
 
-def matrix(table, names):
+def matrix(table: _crosshead.Table, names: Sequence[str]) -> np.ndarray:
     """Columns of numbers side by side, NaN where one is missing."""
     if not names:
         return np.empty((len(table), 0))

@@ -1,9 +1,13 @@
 """How far simulated recordings differ from measured ones, as a classifier sees it."""
 
+from __future__ import annotations
+
 import dataclasses
+from typing import Any
 
 import numpy as np
 
+from .dataset import Dataset
 from .errors import InputError
 from .features import Features, numbers_of
 
@@ -33,12 +37,12 @@ class DomainGap:
 
     auc: float
     """Area under the curve on held-out windows: 0.5 where nothing tells them apart, 1 where everything does."""
-    folds: list
+    folds: list[float]
     """The same of each fold."""
-    features: list
+    features: list[Tell]
     """The features that give it away, the most telling first."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         lines = [f"AUC {self.auc:.3f} (folds {', '.join(f'{auc:.3f}' for auc in self.folds)})"]
         for tell in self.features[:10]:
             lines.append(
@@ -48,7 +52,9 @@ class DomainGap:
         return "\n".join(lines)
 
 
-def domain_gap(dataset, measured, *, folds=5, seed=0, classifier=None):
+def domain_gap(
+    dataset: Dataset | Features, measured: Features, *, folds: int = 5, seed: int = 0, classifier: Any = None
+) -> DomainGap:
     """Trains a classifier to tell the windows of a dataset from measured ones, and tests it on windows that it has not seen.
 
     dataset: a `Dataset`, all splits; or `Features` of simulated recordings.
@@ -61,7 +67,7 @@ def domain_gap(dataset, measured, *, folds=5, seed=0, classifier=None):
 
     if not isinstance(measured, Features):
         raise InputError("measured: expected Features, as `crosshead.features(recordings, like=dataset)` gives them")
-    names = dataset.feature_names if hasattr(dataset, "feature_names") else dataset.names
+    names = dataset.feature_names if isinstance(dataset, Dataset) else dataset.names
     simulated, of_simulated = numbers_of(dataset, names)
     real, of_real = numbers_of(measured, names)
     units = _units(of_simulated, len(simulated)), _units(of_real, len(real), row_each=True)
@@ -74,7 +80,8 @@ def domain_gap(dataset, measured, *, folds=5, seed=0, classifier=None):
     random = np.random.default_rng(seed)
     # Folds of groups, each group counted once and stratified by side.
     kinds, first = np.unique(groups, return_index=True)
-    areas, losses = [], []
+    areas: list[float] = []
+    losses = []
     for _, held_out in StratifiedKFold(folds, shuffle=True, random_state=seed).split(kinds, y[first]):
         test = np.isin(groups, kinds[held_out])
         model.fit(x[~test], y[~test])
@@ -92,7 +99,7 @@ def domain_gap(dataset, measured, *, folds=5, seed=0, classifier=None):
     return DomainGap(float(np.mean(areas)), [float(area) for area in areas], tells)
 
 
-def _units(groups, rows, row_each=False):
+def _units(groups: np.ndarray, rows: int, row_each: bool = False) -> np.ndarray:
     """A whole number for each group. Rows of one file of several recordings are recordings of their own."""
     kinds, numbers = np.unique(groups.astype(str), return_inverse=True)
     if row_each and len(kinds) < rows and len(kinds) == 1:
@@ -100,13 +107,13 @@ def _units(groups, rows, row_each=False):
     return numbers
 
 
-def _scores(model, x):
+def _scores(model: Any, x: np.ndarray) -> np.ndarray:
     if hasattr(model, "decision_function"):
         return model.decision_function(x)
     return model.predict_proba(x)[:, 1]
 
 
-def _shuffled(model, x, y, random):
+def _shuffled(model: Any, x: np.ndarray, y: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """The area with each column shuffled, one after the other. Several copies are judged at once: a call costs more than its
     rows."""
     rows, columns = x.shape
@@ -121,7 +128,7 @@ def _shuffled(model, x, y, random):
     return np.concatenate(areas)
 
 
-def _area(scores, y):
+def _area(scores: np.ndarray, y: np.ndarray) -> Any:
     """Area under the curve of each row of scores, by the ranks of the measured windows (Mann and Whitney 1947)."""
     from scipy.stats import rankdata
 
@@ -130,5 +137,5 @@ def _area(scores, y):
     return (ranks - measured * (measured + 1) / 2) / (measured * (len(y) - measured))
 
 
-def _median(values):
+def _median(values: np.ndarray) -> float:
     return float(np.nanmedian(values)) if np.isfinite(values).any() else float("nan")

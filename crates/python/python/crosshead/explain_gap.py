@@ -1,19 +1,31 @@
 """The effect that a model lacks and recordings show."""
 
+from __future__ import annotations
+
 import os
+import pathlib
+from collections.abc import Iterable
 
 from . import _crosshead
 from .calibrate import settings_of
 from .errors import InputError
 from .folder import Folder, paths
+from .kinds import AnyMachine, AnyPath, Json, Progress
 from .machine import Machine
-from .page import page
+from .page import Page, page
 from .progress import shown
 
 
 def explain_gap(
-    bundle, *, machine=None, out=None, hold_out=None, leave_out=(), allow_outside=False, progress=None
-):
+    bundle: AnyPath,
+    *,
+    machine: AnyMachine | None = None,
+    out: AnyPath | None = None,
+    hold_out: list[str] | None = None,
+    leave_out: Iterable[str] = (),
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> Explanation:
     """Finds which effects of the catalogue a calibrated model lacks.
 
     bundle: a folder with `recordings.yaml`.
@@ -40,40 +52,40 @@ def explain_gap(
 class Explanation:
     """Which effects a model lacks. `Explanation("explained")` opens a folder that `crosshead explain-gap` has written."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: AnyPath | Folder) -> None:
         self._folder = folder if isinstance(folder, Folder) else Folder(folder)
-        self.results = self._folder.read("gap.json")
+        self.results: Json = self._folder.read("gap.json")
         """The content of `gap.json`."""
 
     @property
-    def folder(self):
+    def folder(self) -> pathlib.Path:
         """The folder of its files."""
         return self._folder.path
 
     @property
-    def verdict(self):
+    def verdict(self) -> str:
         """`no-gap`, `explained`, `partly-explained` or `unexplained`."""
         return self.results["verdict"]
 
     @property
-    def effects(self):
+    def effects(self) -> list[Json]:
         """The effects that were added, in order: dicts with `effect`, `places`, `probability`, `parameters`, `rivals`."""
         return self.results["effects"]
 
     @property
-    def gap(self):
+    def gap(self) -> Json:
         """Misfits over the noise, before and after, of the fitted and of the held-out runs."""
         return self.results["gap"]
 
     @property
-    def machine(self):
+    def machine(self) -> Machine:
         """The machine with the effects."""
         return Machine(self.folder / "machine.yaml")
 
-    def page(self, out=None):
+    def page(self, out: AnyPath | None = None) -> Page:
         """Writes its page, and returns it."""
         return page(os.fspath(self.folder), out)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         effects = ", ".join(effect["effect"] for effect in self.effects) or "no effect"
         return f"<crosshead.Explanation: {self.verdict}, {effects}>"

@@ -1,6 +1,10 @@
 """Features of recordings, measured or simulated."""
 
+from __future__ import annotations
+
 import os
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -8,26 +12,27 @@ from . import _crosshead
 from .dataset import Dataset, matrix
 from .errors import InputError
 from .folder import paths
+from .kinds import AnyPath, Progress
 from .progress import shown
 
 
 def features(
-    recordings,
+    recordings: AnyPath | Iterable[AnyPath],
     *,
-    like=None,
-    columns=(),
-    sample_rate=None,
-    unit=None,
-    speed=None,
-    crank_angle=None,
-    tacho=None,
-    top_dead_centre=None,
-    machine=None,
-    window=None,
-    chaos=True,
-    allow_outside=False,
-    progress=None,
-):
+    like: Dataset | AnyPath | None = None,
+    columns: str | Iterable[str] = (),
+    sample_rate: str | float | None = None,
+    unit: str | None = None,
+    speed: str | None = None,
+    crank_angle: str | None = None,
+    tacho: str | None = None,
+    top_dead_centre: str | None = None,
+    machine: AnyPath | None = None,
+    window: str | None = None,
+    chaos: bool = True,
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> Features:
     """Computes the features of recordings, a row for each window.
 
     recordings: one path or several: CSV, WAV, MAT, Parquet or MCAP files, bundles, datasets.
@@ -68,7 +73,7 @@ def features(
 class Features:
     """Features of recordings. `X` is the matrix for a classifier, `table` the Arrow table."""
 
-    def __init__(self, table, warnings, names=None):
+    def __init__(self, table: _crosshead.Table, warnings: list[str], names: list[str] | None = None) -> None:
         self.table = table
         """The table, a row for each window: `file`, `window`, `start_s`, what the files say of them, the features."""
         self.warnings = warnings
@@ -81,23 +86,23 @@ class Features:
         """Names of the features that are numbers: the columns of `X`."""
 
     @property
-    def X(self):
+    def X(self) -> np.ndarray:
         """The features that are numbers, a row for each window, NaN where one is missing."""
         return matrix(self.table, self.names)
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         if copy is False:
             raise ValueError("features stand in columns: a matrix of them is a copy")
         return np.asarray(self.X, dtype=dtype)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.table)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<crosshead.Features: {len(self)} windows, {len(self.names)} features>"
 
 
-def numbers_of(of, names=None):
+def numbers_of(of: Dataset | Features, names: Sequence[str] | None = None) -> tuple[np.ndarray, np.ndarray]:
     """The matrix of a `Dataset` (all splits) or of `Features`, and its groups."""
     if isinstance(of, Dataset):
         table = of.features

@@ -1,13 +1,17 @@
 """Labelled datasets from sweeps."""
 
+from __future__ import annotations
+
 import os
 import pathlib
 import warnings
+from collections.abc import Iterable
 
 from . import _crosshead
 from .calibrate import Calibration
 from .dataset import Dataset
 from .errors import InputError
+from .kinds import AnyMachine, AnyPath, Progress
 from .machine import Machine
 from .progress import shown
 
@@ -15,17 +19,17 @@ _EXISTING = ("refuse", "resume", "overwrite")
 
 
 def generate(
-    sweep,
+    sweep: AnyPath,
     *,
-    machine=None,
-    out=None,
-    existing="refuse",
-    uncertainty=None,
-    undetermined="nominal",
-    channels=None,
-    threads=None,
-    progress=None,
-):
+    machine: AnyMachine | None = None,
+    out: AnyPath | None = None,
+    existing: str = "refuse",
+    uncertainty: str | None = None,
+    undetermined: str = "nominal",
+    channels: Iterable[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Dataset:
     """Simulates the cases of a sweep file and writes a labelled dataset.
 
     sweep: path of the sweep file.

@@ -1,9 +1,19 @@
 """Pictures of runs, by matplotlib."""
 
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def plot_run(run):
+    from ._crosshead import Table
+    from .simulate import Run
+
+
+def plot_run(run: Run) -> Figure:
     """The recorded channels over the crank angle, and the orbit in each joint with clearance."""
     import matplotlib.pyplot as plt
 
@@ -12,7 +22,9 @@ def plot_run(run):
     channels = {name: samples for name, samples in run.channels.items() if units.get(name) != "rad"}
     joints = run.clearances_m
     figure = plt.figure(figsize=(10, 2.2 * max(len(channels), 1) + (3.2 if joints else 0)), layout="constrained")
-    rows = figure.add_gridspec(len(channels) + bool(joints), 1, height_ratios=[1] * len(channels) + [1.5] * bool(joints))
+    rows = figure.add_gridspec(
+        len(channels) + bool(joints), 1, height_ratios=[1] * len(channels) + [1.5] * bool(joints)
+    )
     first = None
     for row, (name, samples) in enumerate(channels.items()):
         axes = first = figure.add_subplot(rows[row], sharex=first)
@@ -29,9 +41,8 @@ def plot_run(run):
     return figure
 
 
-def _plot_orbits(figure, motion, joints):
+def _plot_orbits(figure: Any, motion: Table, joints: dict[str, float]) -> None:
     """The journal's centre from the bearing's, and the circle of the clearance."""
-    figure.set_layout_engine("none") if hasattr(figure, "set_layout_engine") else None
     for axes, (joint, clearance) in zip(np.atleast_1d(figure.subplots(1, len(joints))), joints.items()):
         throw, _, name = joint.rpartition(".")
         column = f"{throw}.true_{name}" if throw else f"true_{name}"
@@ -46,13 +57,13 @@ def _plot_orbits(figure, motion, joints):
         axes.set_title(f"{joint.replace('_', ' ')}, journal, µm", fontsize=9)
 
 
-def _revolutions(angle, samples):
+def _revolutions(angle: np.ndarray, samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Angle and samples with a gap where a revolution ends, so that no line goes back."""
     ends = np.flatnonzero(np.abs(np.diff(angle)) > 180) + 1
     return np.insert(angle, ends, np.nan), np.insert(samples.astype(float), ends, np.nan)
 
 
-def _words(name, unit):
+def _words(name: str, unit: str | None) -> str:
     """The name of a channel without its unit."""
     suffix = {"m/s^2": "_m_s2", "m/s": "_m_s", "Pa": "_pa", "N": "_n", "rad": "_rad", "rad/s": "_rad_s", "m": "_m"}
-    return name.removesuffix(suffix.get(unit, "")).replace("_", " ")
+    return name.removesuffix(suffix.get(unit or "", "")).replace("_", " ")

@@ -1,11 +1,17 @@
 """Progress on standard error, by tqdm where it is installed."""
 
+from __future__ import annotations
+
 import contextlib
 import warnings
+from collections.abc import Iterator
+from typing import Any
+
+from .kinds import Progress
 
 
 @contextlib.contextmanager
-def shown(progress):
+def shown(progress: Progress) -> Iterator[Any]:
     """A function ``(what, done, total, message)`` that draws the progress; none where it is not wanted.
 
     ``progress=True`` and ``None`` draw with tqdm, if it is installed. ``False`` draws nothing. Any other value is called
@@ -25,11 +31,13 @@ def shown(progress):
 class _Bars:
     """A bar for each stage, one after the other."""
 
-    def __init__(self, tqdm):
-        self._tqdm, self._bar, self._what = tqdm, None, None
+    def __init__(self, tqdm: Any) -> None:
+        self._tqdm = tqdm
+        self._bar: Any = None
+        self._what: str | None = None
 
     @classmethod
-    def new(cls):
+    def new(cls) -> _Bars | None:
         try:
             with warnings.catch_warnings():
                 # In a notebook without widgets tqdm draws text, and says so.
@@ -39,7 +47,7 @@ class _Bars:
             return None
         return cls(tqdm)
 
-    def __call__(self, what, done, total, message):
+    def __call__(self, what: str, done: int, total: int | None, message: str) -> None:
         if not what:
             return
         if what != self._what:
@@ -52,7 +60,7 @@ class _Bars:
         if done != self._bar.n:
             self._bar.update(done - self._bar.n)
 
-    def close(self):
+    def close(self) -> None:
         if self._bar is not None:
             self._bar.close()
             self._bar = None

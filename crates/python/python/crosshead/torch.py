@@ -1,5 +1,9 @@
 """Recordings for PyTorch."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
 import torch
 
@@ -9,7 +13,17 @@ from .errors import InputError
 class AngleWindows(torch.utils.data.Dataset):
     """Recordings of one length over the crank angle, with their labels."""
 
-    def __init__(self, signals, first, y, samples_per_revolution, revolutions, start, classes, seed):
+    def __init__(
+        self,
+        signals: list[np.ndarray],
+        first: np.ndarray,
+        y: np.ndarray,
+        samples_per_revolution: int,
+        revolutions: int | None,
+        start: str,
+        classes: Sequence[str] | None,
+        seed: int,
+    ) -> None:
         if start not in ("random", "top-dead-centre"):
             raise InputError(f"start: found {start!r}, expected random or top-dead-centre")
         shortest = min((signal.shape[1] for signal in signals), default=0) // samples_per_revolution
@@ -18,7 +32,7 @@ class AngleWindows(torch.utils.data.Dataset):
             raise InputError(f"revolutions: found {revolutions}, expected 1 to {shortest}")
         self.samples_per_revolution = samples_per_revolution
         self.revolutions = revolutions
-        self.classes = None
+        self.classes: list[str] | None = None
         """The classes in the order of their indices; none where labels are numbers."""
         if y.dtype.kind in "fi":
             self._y = torch.as_tensor(y, dtype=torch.float32)
@@ -32,17 +46,19 @@ class AngleWindows(torch.utils.data.Dataset):
         self._signals, self._first, self._start = signals, first, start
         self._random = np.random.default_rng(seed)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._signals)
 
-    def __getitem__(self, index):
+    def __getitem__(self, index: int) -> tuple[torch.Tensor, torch.Tensor]:
         signal, length = self._signals[index], self.revolutions * self.samples_per_revolution
         spare = signal.shape[1] - length
-        begin = int(self._random.integers(spare + 1)) if self._start == "random" else self._top_dead_centre(index, spare)
+        begin = (
+            int(self._random.integers(spare + 1)) if self._start == "random" else self._top_dead_centre(index, spare)
+        )
         # A piece of its own: what the dataset holds cannot be written to.
         return torch.tensor(signal[:, begin : begin + length]), self._y[index]
 
-    def _top_dead_centre(self, index, spare):
+    def _top_dead_centre(self, index: int, spare: int) -> int:
         begin = -int(self._first[index]) % self.samples_per_revolution
         if begin > spare:
             raise InputError("revolutions: the recording is too short to begin at top dead centre")

@@ -1,16 +1,30 @@
 """Which joints are worn, and how much."""
 
+from __future__ import annotations
+
 import os
+import pathlib
+from collections.abc import Iterable
 
 from . import _crosshead
 from .errors import InputError
 from .folder import Folder
+from .kinds import AnyMachine, AnyPath, Json, Progress
 from .machine import Machine
-from .page import page
+from .page import Page, page
 from .progress import shown
 
 
-def estimate_wear(bundle, *, machine, out=None, worn_from=1.5, leave_out=(), allow_outside=False, progress=None):
+def estimate_wear(
+    bundle: AnyPath,
+    *,
+    machine: AnyMachine,
+    out: AnyPath | None = None,
+    worn_from: float = 1.5,
+    leave_out: Iterable[str] = (),
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> Wear:
     """Estimates the radial clearance of each joint from recordings of a machine in one state.
 
     bundle: a folder with `recordings.yaml`. Clearances that it states are not used.
@@ -41,30 +55,30 @@ def estimate_wear(bundle, *, machine, out=None, worn_from=1.5, leave_out=(), all
 class Wear:
     """The estimated clearance of each joint. `Wear("wear")` opens a folder that `crosshead estimate-wear` has written."""
 
-    def __init__(self, folder):
+    def __init__(self, folder: AnyPath | Folder) -> None:
         self._folder = folder if isinstance(folder, Folder) else Folder(folder)
-        self.results = self._folder.read("wear.json")
+        self.results: Json = self._folder.read("wear.json")
         """The content of `wear.json`."""
 
     @property
-    def folder(self):
+    def folder(self) -> pathlib.Path:
         """The folder of its files."""
         return self._folder.path
 
     @property
-    def joints(self):
-        """The joints by path: dicts with `verdict`, `clearance_m`, `low_m`, `high_m`, `worn`, `probability`, `reason`."""
+    def joints(self) -> dict[str, Json]:
+        """The joints by path: dicts with `verdict`, `clearance_m`, `low_m`, `high_m`, `reason`."""
         return self.results["joints"]
 
     @property
-    def machine(self):
+    def machine(self) -> Machine:
         """The machine with the estimated clearances."""
         return Machine(self.folder / "machine.yaml")
 
-    def page(self, out=None):
+    def page(self, out: AnyPath | None = None) -> Page:
         """Writes its page, and returns it."""
         return page(os.fspath(self.folder), out)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         joints = ", ".join(f"{joint}: {one.get('verdict')}" for joint, one in self.joints.items())
         return f"<crosshead.Wear: {joints}>"
