@@ -160,7 +160,7 @@ def test_recordings_that_do_not_fit_raise_with_what_differs(dataset, machine, tm
 def test_the_domain_gap_sees_a_difference_and_none(dataset, machine, sweep, tmp_path):
     pytest.importorskip("sklearn")
     sweep_of = tmp_path / "sweep.yaml"
-    sweep_of.write_text(sweep.read_text().replace("count: 12", "count: 40"))
+    sweep_of.write_text(sweep.read_text().replace("count: 12", "count: 30"))
     simulated = ch.generate(sweep_of, out=tmp_path / "simulated")
     again = tmp_path / "again.yaml"
     again.write_text(sweep_of.read_text().replace("seed: 7", "seed: 8"))

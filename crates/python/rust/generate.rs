@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use sweep::dataset::{Claim, Existing, Options, Progress, check_calibration, generate_in};
+use sweep::dataset::{Claim, Existing, Options, Progress, Trial, check_calibration, generate_in};
 use sweep::sweep_file::{Uncertainty, Undetermined};
 use sweep::{Plan, Sweep, simulate_cases};
 
@@ -77,7 +77,8 @@ pub fn generate(
             threads: threads.unwrap_or_else(cores).max(1),
             cancel: &shared.stop,
             retry_failed: false,
-            trial: Some(&try_case::command),
+            // Without its own program this process is the interpreter, which tries no case.
+            trial: sweep::program::is_named().then_some(&try_case::command as &Trial),
         };
         generate_in(claim, &plan, &options, &simulate_cases, &mut shown)?;
         Ok((out, shown.warnings))

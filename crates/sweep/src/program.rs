@@ -11,6 +11,11 @@ pub fn set(path: PathBuf) {
     let _ = PROGRAM.set(path);
 }
 
+/// Whether a program has been named.
+pub fn is_named() -> bool {
+    PROGRAM.get().is_some()
+}
+
 /// Where the program is.
 ///
 /// # Errors

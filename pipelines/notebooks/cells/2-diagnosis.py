@@ -18,7 +18,7 @@ import numpy as np
 from sklearn.ensemble import ExtraTreesClassifier, ExtraTreesRegressor
 from sklearn.metrics import ConfusionMatrixDisplay
 
-CASES = int(os.environ.get("CASES", 400))
+CASES = int(os.environ.get("CASES", 300))
 ROOT = "../../data/recordings/example-diagnosis"
 FOLDER = tempfile.mkdtemp()
 

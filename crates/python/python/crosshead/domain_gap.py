@@ -15,6 +15,9 @@ from .features import Features, numbers_of
 # Rows that are judged in one call.
 _ROWS = 20_000
 
+# Numbers from which several threads share the work.
+_SHARED = 1_000_000
+
 
 @dataclasses.dataclass(frozen=True)
 class Tell:
@@ -64,6 +67,7 @@ def domain_gap(
     """
     from sklearn.ensemble import HistGradientBoostingClassifier
     from sklearn.model_selection import StratifiedKFold
+    from threadpoolctl import threadpool_limits
 
     if not isinstance(measured, Features):
         raise InputError("measured: expected Features, as `crosshead.features(recordings, like=dataset)` gives them")
@@ -82,12 +86,15 @@ def domain_gap(
     kinds, first = np.unique(groups, return_index=True)
     areas: list[float] = []
     losses = []
-    for _, held_out in StratifiedKFold(folds, shuffle=True, random_state=seed).split(kinds, y[first]):
-        test = np.isin(groups, kinds[held_out])
-        model.fit(x[~test], y[~test])
-        area = _area(_scores(model, x[test]), y[test])
-        areas.append(area)
-        losses.append(area - _shuffled(model, x[test], y[test], random))
+    # So few numbers are worked on faster by one thread than by several that wait for each other.
+    threads = 1 if x.size < _SHARED else None
+    with threadpool_limits(threads, user_api="openmp"):
+        for _, held_out in StratifiedKFold(folds, shuffle=True, random_state=seed).split(kinds, y[first]):
+            test = np.isin(groups, kinds[held_out])
+            model.fit(x[~test], y[~test])
+            area = _area(_scores(model, x[test]), y[test])
+            areas.append(area)
+            losses.append(area - _shuffled(model, x[test], y[test], random))
     # Whichever way a feature points; a missing value tells as one below all others does.
     alone = _area(np.where(np.isfinite(x), x, -np.inf).T, y)
     alone = np.maximum(alone, 1 - alone)

@@ -31,6 +31,6 @@ def run(name: str, arguments: list[str]) -> int:
 def name_program() -> None:
     """Tells the package where its own program is, which tries single cases in processes of their own."""
     scripts = sysconfig.get_path("scripts")
-    found = shutil.which("crosshead", path=scripts) or shutil.which("crosshead")
+    found = shutil.which("crosshead", path=scripts)
     if found:
         _crosshead.set_program(os.path.abspath(found))
