@@ -54,8 +54,9 @@ impl<S: Scalar> Step<S> {
         self.last = true;
     }
 
-    pub(crate) fn is_last(&self) -> bool {
-        self.last
+    /// Whether it was the last, once.
+    pub(crate) fn take_last(&mut self) -> bool {
+        std::mem::take(&mut self.last)
     }
 
     fn dimension(&self) -> usize {

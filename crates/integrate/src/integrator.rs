@@ -337,7 +337,7 @@ impl<S: Real> Integrator<S> {
         };
         if let Some(observe) = observe {
             observe(system, &mut self.step);
-            if self.step.is_last() {
+            if self.step.take_last() {
                 let time = self.time();
                 return Err(Error::Stopped { time });
             }
