@@ -96,7 +96,7 @@ print(f"worn or not right: {np.sum((found == 'none') == (truth == 'none'))} of {
 ConfusionMatrixDisplay.from_predictions(truth, found, xticks_rotation=30);
 
 # %% [markdown]
-# How worn: the clearance of each worn joint, from a regression of its logarithm.
+# How worn: the clearance of each worn joint, from a regression of its logarithm on the cases in which that joint is worn.
 
 # %%
 right = total = 0
@@ -104,7 +104,9 @@ plt.figure(figsize=(4, 4), layout="constrained")
 for joint in ["big_end", "small_end"]:
     column = f"clearance_{joint}_m"
     X, y = everything(ds, column)
-    regression = ExtraTreesRegressor(300, random_state=0).fit(X, np.log(y))
+    _, faults = everything(ds, "fault")
+    cases = np.array([joint in fault for fault in faults])
+    regression = ExtraTreesRegressor(300, random_state=0).fit(X[cases], np.log(y[cases]))
     worn = np.array([joint in fault for fault in truth])
     true = np.array([float(row[column]) for row in rows])[worn]
     estimate = np.exp(regression.predict(T.X[worn]))
