@@ -1,7 +1,6 @@
 //! How a verb fails, and what the shell sees of it.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Why a verb stopped; the text is the one message that is printed.
 #[derive(Debug)]
@@ -42,7 +41,8 @@ impl Failure {
         }
     }
 
-    fn status(&self) -> u8 {
+    /// The exit status.
+    pub fn status(&self) -> u8 {
         match self {
             Self::Work(_) => 1,
             Self::Input(_) => 2,
@@ -87,9 +87,9 @@ impl From<sweep::engines::Error> for Failure {
 }
 
 /// Prints the message of a failure and returns the exit status.
-pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
+pub fn finish(outcome: Result<(), Failure>) -> u8 {
     let failure = match outcome {
-        Ok(()) => return ExitCode::SUCCESS,
+        Ok(()) => return 0,
         Err(failure) => failure,
     };
     // Several mistakes are a line each; what is indented belongs to the line above.
@@ -97,5 +97,5 @@ pub fn finish(outcome: Result<(), Failure>) -> ExitCode {
         let start = if line.starts_with(' ') { "" } else { "error: " };
         eprintln!("{start}{line}");
     }
-    ExitCode::from(failure.status())
+    failure.status()
 }

@@ -14,6 +14,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use sweep::in_order::in_order;
+use sweep::reader::Like;
 
 /// Arguments of `crosshead features`.
 #[derive(Args, Debug)]
@@ -42,6 +43,7 @@ Examples:
   crosshead features log.csv --tacho keyphasor --top-dead-centre '30 deg' --out log-features.csv
   crosshead features indicated.csv --machine machine.yaml --out indicated.parquet
   crosshead features datasets/paper2 my-bundle/ --out features.parquet
+  crosshead features measured/ --like datasets/bearing-faults --out measured.parquet
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 interrupted.")]
 pub struct Arguments {
@@ -50,6 +52,10 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    /// Compute the features of this dataset, from windows of its length; recordings of another sample rate, length or of
+    /// other channels are refused
+    #[arg(long, value_name = "DATASET", conflicts_with_all = ["window", "chaos"])]
+    like: Option<PathBuf>,
     /// The table to write, .parquet or .csv; one that is there is replaced
     #[arg(long, value_name = "FILE.parquet")]
     out: PathBuf,
@@ -108,7 +114,13 @@ impl Written<'_> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     let format = format(out)?;
-    let (said, length) = (arguments.reading.said()?, arguments.reading.window()?);
+    let (mut said, mut length) = (arguments.reading.said()?, arguments.reading.window()?);
+    let like = arguments.like.as_deref().map(Like::read);
+    let like = like.transpose().map_err(Failure::input)?;
+    if let Some(like) = &like {
+        length = like.length();
+        like.say(&mut said);
+    }
     let inputs = inputs(&arguments.files, &said).map_err(Failure::input)?;
     refuse_input_as_output(&inputs, out)?;
     let table = Table::new(&inputs, &said).map_err(Failure::input)?;
@@ -118,7 +130,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "note: {file}: no unit of {channels}: statistics alone; --unit 'm/s^2' gives the rest"
         )
     });
-    let schema = table.schema().clone();
+    let kept = like.as_ref().map(|like| like.columns(table.schema()));
+    let kept = kept.transpose().map_err(Failure::input)?;
+    let schema = match &kept {
+        Some(kept) => table.schema().select(kept),
+        None => table.schema().clone(),
+    };
     let columns = schema.columns().len();
 
     make_folder_of(out)?;
@@ -149,6 +166,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
             progress.add(1);
             let Some(mut row) = row else { return Ok(()) };
+            if let (Some(like), Some(kept)) = (&like, &kept) {
+                like.check(&row).map_err(Failure::input)?;
+                row.keep(kept);
+            }
             summary.add(&mut row);
             output.write(row.values).map_err(Failure::work)
         },

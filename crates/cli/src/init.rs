@@ -2,10 +2,13 @@
 
 use crate::Failure;
 use clap::{Args, ValueEnum};
+use input::bundle::Bundle;
 use input::template::{self, Asked};
+use input::{MachineFile, machine_file};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use sweep::calibration::machine_of;
 
 /// Arguments of `crosshead init`.
 #[derive(Args, Debug)]
@@ -14,6 +17,7 @@ Examples:
   crosshead init machine
   crosshead init machine --throws 2 --double-acting --out compressor.yaml
   crosshead init machine --like data/machines/two-stage.yaml --out compressor.yaml
+  crosshead init machine --from-bundle data/recordings/example-single-stage
   crosshead init sweep --machine compressor.yaml
   crosshead init bundle --out recordings/recordings.yaml
 
@@ -36,6 +40,9 @@ pub struct Arguments {
     /// A machine file whose values stand in the new one [default: a single-stage compressor]
     #[arg(long, value_name = "MACHINE.yaml")]
     like: Option<PathBuf>,
+    /// A bundle whose machine section, at the conditions of its first run, gives the values
+    #[arg(long, value_name = "BUNDLE", conflicts_with = "like")]
+    from_bundle: Option<PathBuf>,
     /// The machine of a sweep [default: machine.yaml in the folder of the new file]
     #[arg(long, value_name = "MACHINE.yaml")]
     machine: Option<PathBuf>,
@@ -94,8 +101,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn machine(arguments: &Arguments) -> Result<String, Failure> {
-    let like = arguments.like.as_deref().map(input::machine_file::read);
-    let like = like.transpose()?;
+    let like = match (&arguments.from_bundle, &arguments.like) {
+        (Some(folder), _) => {
+            let tree = machine_of(&Bundle::read(folder)?)?;
+            Some(MachineFile::from_tree(&tree)?)
+        }
+        (None, like) => like.as_deref().map(machine_file::read).transpose()?,
+    };
     Ok(template::machine(&Asked {
         like: like.as_ref(),
         throws: arguments.throws.map(usize::from),
@@ -112,7 +124,7 @@ fn sweep(arguments: &Arguments, folder: &Path) -> Result<String, Failure> {
             path.display()
         )));
     }
-    let machine = input::machine_file::read(&path)?;
+    let machine = machine_file::read(&path)?;
     let resolved = machine.resolve()?;
     Ok(sweep::sweep_file::template(
         &from(folder, &path),
@@ -150,14 +162,18 @@ fn recordings(folder: &Path) -> Vec<String> {
 
 /// Options that the file does not have.
 fn refuse_others(arguments: &Arguments) -> Result<(), Failure> {
-    let of_machine =
-        arguments.throws.is_some() || arguments.double_acting || arguments.like.is_some();
+    let of_machine = arguments.throws.is_some()
+        || arguments.double_acting
+        || arguments.like.is_some()
+        || arguments.from_bundle.is_some();
     let wrong = match arguments.file {
         File::Machine => arguments
             .machine
             .as_ref()
             .map(|_| "--machine is an option of init sweep"),
-        _ if of_machine => Some("--throws, --double-acting and --like are options of init machine"),
+        _ if of_machine => {
+            Some("--throws, --double-acting, --like and --from-bundle are options of init machine")
+        }
         File::Sweep => None,
         File::Bundle | File::Calibration => arguments
             .machine

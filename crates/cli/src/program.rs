@@ -5,8 +5,9 @@ use crate::{
     Failure, calibrate, check, compare, completions, estimate_wear, explain_gap, features,
     gen_dataset, hidden_effects, init,
 };
-use crate::{man, replay, report, schema, simulate, sweep, verify};
+use crate::{finish, man, replay, report, schema, simulate, sweep, try_case, verify};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
 
 /// Help is no wider than this, so that a line is read at once.
 pub const WIDEST_HELP: usize = 100;
@@ -125,9 +126,13 @@ pub fn commands() -> [Command; 2] {
     [Crosshead::command(), GenDataset::command()]
 }
 
-/// The arguments of this process.
-pub fn parse<P: Program>() -> P {
-    let command = P::command().color(colour_of_clap(std::env::args_os()));
-    let matches = command.get_matches();
+/// Does what `arguments` say, the first of which is the program's own name, and gives the exit status.
+pub fn main<P: Program>(arguments: Vec<OsString>) -> u8 {
+    try_case::if_asked(&arguments).unwrap_or_else(|| finish(parse::<P>(arguments).run()))
+}
+
+fn parse<P: Program>(arguments: Vec<OsString>) -> P {
+    let command = P::command().color(colour_of_clap(arguments.iter().cloned()));
+    let matches = command.get_matches_from(arguments);
     P::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
 }

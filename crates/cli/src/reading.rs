@@ -50,6 +50,9 @@ pub(crate) struct Reading {
     /// 100000 samples), windows of that length of a longer one; rows of a table are one window each]
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     window: Option<String>,
+    /// Whether regime, exponents and entropies are computed, which takes most of the time
+    #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
+    chaos: bool,
     #[command(flatten)]
     outside: AllowOutside,
 }
@@ -77,6 +80,7 @@ impl Reading {
             },
             machine: (self.machine.as_deref().map(KnownMachine::read)).transpose()?,
             allow_outside: self.outside.allow_outside,
+            motion: self.chaos,
         })
     }
 

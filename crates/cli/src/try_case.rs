@@ -1,20 +1,19 @@
 //! A case in a process of its own, so that its parent sees how it ends: the program itself, called as
 //! `PROGRAM try-case DATASET CASE`. People do not call it, so that no help names it.
 
-use std::env;
 use std::ffi::OsString;
 use std::io;
 use std::path::Path;
-use std::process::{self, Command, ExitCode};
+use std::process::{self, Command};
 use std::thread;
 use sweep::dataset::try_here;
-use sweep::simulate_cases;
+use sweep::{program, simulate_cases};
 
 const VERB: &str = "try-case";
 
 /// The command that tries case `case` of the dataset at `root`.
-pub(crate) fn command(root: &Path, case: u64) -> Option<Command> {
-    let mut command = Command::new(env::current_exe().ok()?);
+pub fn command(root: &Path, case: u64) -> Option<Command> {
+    let mut command = Command::new(program::path().ok()?);
     command.arg(VERB).arg(root).arg(case.to_string());
     Some(command)
 }
@@ -25,10 +24,9 @@ fn end_with_parent() -> ! {
     process::exit(0)
 }
 
-/// Tries a case if this process was called to; a program does this before anything else.
-pub fn if_asked() -> Option<ExitCode> {
-    let arguments: Vec<OsString> = env::args_os().skip(1).collect();
-    let [verb, root, case] = arguments.as_slice() else {
+/// Tries a case if `arguments` ask for it, and gives the exit status; a program does this before anything else.
+pub(crate) fn if_asked(arguments: &[OsString]) -> Option<u8> {
+    let [_, verb, root, case] = arguments else {
         return None;
     };
     if verb != VERB {

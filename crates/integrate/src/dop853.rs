@@ -28,6 +28,8 @@ pub struct Step<S> {
     scratch: Vec<S>,
     /// Whether the pieces are those of this step.
     extended: bool,
+    /// Whether its observer has seen enough.
+    last: bool,
 }
 
 impl<S: Scalar> Step<S> {
@@ -43,7 +45,18 @@ impl<S: Scalar> Step<S> {
             pieces: zeros(PIECES * dimension),
             scratch: zeros(dimension),
             extended: false,
+            last: false,
         }
+    }
+
+    /// Ends the integration behind this step: its observer has seen enough.
+    pub fn stop(&mut self) {
+        self.last = true;
+    }
+
+    /// Whether it was the last, once.
+    pub(crate) fn take_last(&mut self) -> bool {
+        std::mem::take(&mut self.last)
     }
 
     fn dimension(&self) -> usize {

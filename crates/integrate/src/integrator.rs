@@ -37,6 +37,12 @@ pub enum Error {
         /// Number of the guard.
         guard: usize,
     },
+    /// An observer ended it ([`Step::stop`]).
+    #[error("stopped at t = {time} s")]
+    Stopped {
+        /// Time reached, s.
+        time: f64,
+    },
 }
 
 /// Counts of what an integration did.
@@ -331,6 +337,10 @@ impl<S: Real> Integrator<S> {
         };
         if let Some(observe) = observe {
             observe(system, &mut self.step);
+            if self.step.take_last() {
+                let time = self.time();
+                return Err(Error::Stopped { time });
+            }
         }
         self.step.shift();
         if later.varies() {

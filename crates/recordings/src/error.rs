@@ -68,6 +68,9 @@ pub enum Error {
     /// A column without a name.
     #[error("column {0} has no name")]
     NamelessColumn(usize),
+    /// Nothing to read.
+    #[error("no file to read")]
+    NoFiles,
     /// A row of the wrong length.
     #[error("row {row} has {found} values where the table has {expected} columns")]
     RowLength {

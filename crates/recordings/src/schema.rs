@@ -133,6 +133,14 @@ impl Schema {
         Self { metadata, ..self }
     }
 
+    /// The same schema with these columns alone, in this order, each at most once.
+    pub fn select(&self, columns: &[usize]) -> Self {
+        Self {
+            columns: columns.iter().map(|i| self.columns[*i].clone()).collect(),
+            metadata: self.metadata.clone(),
+        }
+    }
+
     /// The columns, in order.
     pub fn columns(&self) -> &[Column] {
         &self.columns

@@ -223,7 +223,7 @@ impl Revolutions {
     }
 
     /// Multiple of 2π/points at which every revolution starts.
-    pub(crate) fn first_point(&self) -> usize {
+    pub fn first_point(&self) -> usize {
         self.first_point
     }
 

@@ -8,6 +8,7 @@ use crate::task::{Asked, Kept, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};
+use std::ops::ControlFlow;
 
 /// Runs and records all that is asked, as [`simulate`](crate::simulate()) does one by one, bit-identical.
 /// A record whose energy does not balance over the revolution after it is an error. `keep` receives each
@@ -149,12 +150,15 @@ fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &
         }) = passenger.take()
         {
             coach.ensemble.give(lane, false, task.run.integrator_mut());
-            file(index, task.finish(&mut |_| ()));
+            file(index, task.finish(&mut |_| ControlFlow::Continue(())));
         }
     }
     // Where there is one lane, so is everybody who still waits.
     while let Some(passenger) = next(file) {
-        file(passenger.index, passenger.task.finish(&mut |_| ()));
+        file(
+            passenger.index,
+            passenger.task.finish(&mut |_| ControlFlow::Continue(())),
+        );
     }
 }
 

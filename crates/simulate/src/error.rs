@@ -101,3 +101,10 @@ pub enum Error {
         time: f64,
     },
 }
+
+impl Error {
+    /// Whether whoever watched the run ended it.
+    pub fn is_stopped(&self) -> bool {
+        matches!(self, Self::Integration(integrate::Error::Stopped { .. }))
+    }
+}

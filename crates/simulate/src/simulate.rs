@@ -6,6 +6,7 @@ use crate::sensor::Sensor;
 use crate::settings::Settings;
 use crate::task::{Asked, Kept, Task};
 use mechanism::Machine;
+use std::ops::ControlFlow;
 
 /// Runs `machine` and records `sensors`; with `traced` also the motion itself.
 ///
@@ -40,18 +41,19 @@ pub fn simulate_later(
         settings,
     };
     let kept = if traced { Kept::Trace } else { Kept::Series };
-    Task::start(asked, delay, kept)?.finish(&mut |_| ())
+    Task::start(asked, delay, kept)?.finish(&mut |_| ControlFlow::Continue(()))
 }
 
-/// As [`simulate`] with a trace; after each step `watch` receives the share of the run that is done.
+/// As [`simulate`] with a trace; after each step `watch` receives the share of the run that is done, and a
+/// break ends the run.
 ///
 /// # Errors
-/// As [`simulate`].
+/// As [`simulate`]; [`integrate::Error::Stopped`] where `watch` ends it.
 pub fn simulate_watched(
     machine: &Machine,
     sensors: &[Sensor],
     settings: &Settings,
-    watch: &mut dyn FnMut(f64),
+    watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Record, Error> {
     let asked = Asked {
         machine,

@@ -11,6 +11,7 @@ use crate::settings::{Settings, Transient};
 use crate::trace::Trace;
 use integrate::{Course, Trial};
 use mechanism::Machine;
+use std::ops::ControlFlow;
 
 /// What is to be recorded.
 #[derive(Clone, Copy, Debug)]
@@ -217,8 +218,12 @@ impl<'a> Task<'a> {
         }
     }
 
-    /// Goes to the end by itself; after each step `watch` receives the share of the way that is done.
-    pub fn finish(mut self, watch: &mut dyn FnMut(f64)) -> Result<Record, Error> {
+    /// Goes to the end by itself; after each step `watch` receives the share of the way that is done, and may
+    /// end it there.
+    pub fn finish(
+        mut self,
+        watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Record, Error> {
         let whole = self.planned_end();
         loop {
             let (run, course, mut sampler) = self.parts();
@@ -226,7 +231,9 @@ impl<'a> Task<'a> {
                 if let Some(sampler) = &mut sampler {
                     sampler.observe(dynamics, step);
                 }
-                watch((step.start / whole).min(1.0));
+                if watch((step.start / whole).min(1.0)).is_break() {
+                    step.stop();
+                }
             })?;
             match self.arrive()? {
                 Ok(record) => return Ok(record),

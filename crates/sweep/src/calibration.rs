@@ -8,6 +8,7 @@ mod results;
 
 use std::path::{Path, PathBuf};
 
+use calibrate::{Existing, Prepared, Settings};
 use input::bundle::Bundle;
 use input::choice::Or;
 use input::yaml::Document;
@@ -207,6 +208,39 @@ impl Sweep {
         }
     }
 
+    /// The calibration that it asks for, into its folder in that of the dataset, `root`. An existing one is used if
+    /// it has the same recordings, machine and settings.
+    ///
+    /// # Errors
+    /// A sweep that asks for none; settings, a machine or recordings that cannot be used.
+    pub fn prepared(&self, root: &Path) -> Result<Prepared, calibrate::Error> {
+        let Some(asked) = self.calibrate() else {
+            return Err(self.document.locate(Error::missing("calibrate")).into());
+        };
+        let machine = self.machine()?;
+        let settings = Settings {
+            calibration: &asked.settings,
+            base: self.folder(),
+            machine: machine.as_ref(),
+            allow_outside: false,
+            clearances_unknown: false,
+            locate: &|error: Error| self.locate(error),
+        };
+        calibrate::prepare(&settings, &root.join(CALIBRATION), Existing::Renew)
+    }
+
+    /// The same sweep of the machine with this content.
+    ///
+    /// # Errors
+    /// As [`Sweep::new`].
+    pub fn with_machine(&self, machine: Value) -> Result<Self, Error> {
+        let mut document = self.document.clone();
+        if let Some(sweep) = document.tree.as_object_mut() {
+            sweep.insert("machine".into(), machine);
+        }
+        Self::new(document, &self.folder)
+    }
+
     /// The plan with the calibrated machine, and with its uncertainty where the sweep asks for it.
     /// What the sweep varies itself is left to it.
     ///
@@ -215,6 +249,16 @@ impl Sweep {
     pub fn calibrated(&self, calibration: &Calibration) -> Result<Plan, Error> {
         let uncertainty = self.calibrate().map(|c| (c.uncertainty, c.undetermined));
         let (uncertainty, undetermined) = uncertainty.unwrap_or_default();
+        self.calibrated_with(calibration, uncertainty, undetermined)
+    }
+
+    /// The same with so much of its uncertainty.
+    fn calibrated_with(
+        &self,
+        calibration: &Calibration,
+        uncertainty: Uncertainty,
+        undetermined: Undetermined,
+    ) -> Result<Plan, Error> {
         let varied = |path: &str| self.file.vary.0.iter().any(|(own, _)| own == path);
         let mut machine = calibration.machine.clone();
         let sampled = uncertainty == Uncertainty::Sampled;
@@ -264,7 +308,10 @@ fn is_relation(path: &str) -> bool {
 }
 
 /// The machine section of a bundle as a machine file's tree, at the conditions of the first run.
-fn machine_of(bundle: &Bundle) -> Result<Value, Error> {
+///
+/// # Errors
+/// A bundle without such a section, or a mistake in it or in the first run.
+pub fn machine_of(bundle: &Bundle) -> Result<Value, Error> {
     if bundle.machine.is_null() {
         return Err(bundle.locate(Error::missing("machine")));
     }

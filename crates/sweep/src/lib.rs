@@ -12,6 +12,7 @@ pub mod in_order;
 pub mod labels;
 mod normal;
 pub mod plan;
+pub mod program;
 pub mod ranges;
 pub mod reader;
 pub mod run_analysis;

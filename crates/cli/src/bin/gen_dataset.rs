@@ -1,11 +1,8 @@
 //! `gen-dataset`: the main job.
 
-use cli::program::{GenDataset, Program, parse};
+use cli::program::{GenDataset, main as program};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    if let Some(tried) = cli::try_case::if_asked() {
-        return tried;
-    }
-    cli::finish(parse::<GenDataset>().run())
+    ExitCode::from(program::<GenDataset>(std::env::args_os().collect()))
 }

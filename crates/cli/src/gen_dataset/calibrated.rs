@@ -2,8 +2,7 @@
 
 use crate::Failure;
 use crate::calibrate::{finish, summary};
-use ::calibrate::{Calibrated, Prepared, Settings};
-use input::Error;
+use ::calibrate::Calibrated;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use sweep::calibration::Sweep;
@@ -22,7 +21,7 @@ pub fn plan(
     existing: Existing,
     cancel: &AtomicBool,
 ) -> Result<(Claim, Plan), Failure> {
-    let prepared = prepare(sweep, root)?;
+    let prepared = sweep.prepared(root).map_err(Failure::input)?;
     let mut claim = Claim::new(root, existing)?;
     let folder = claim.calibration(prepared.is_done())?;
     let done = finish(prepared, cancel)?;
@@ -43,27 +42,10 @@ pub fn plan(
 /// # Errors
 /// Settings or recordings that cannot be used.
 pub fn plan_if_kept(sweep: &Sweep, root: &Path) -> Result<Option<Plan>, Failure> {
-    let is_done = prepare(sweep, root)?.is_done();
+    let prepared = sweep.prepared(root).map_err(Failure::input)?;
+    let is_done = prepared.is_done();
     let plan = is_done.then(|| sweep.kept(&root.join(CALIBRATION)));
     Ok(plan.transpose()?)
-}
-
-fn prepare(sweep: &Sweep, root: &Path) -> Result<Prepared, Failure> {
-    let Some(calibrate) = sweep.calibrate() else {
-        return Err(Failure::input("the sweep asks for no calibration"));
-    };
-    let machine = sweep.machine()?;
-    let settings = Settings {
-        calibration: &calibrate.settings,
-        base: sweep.folder(),
-        machine: machine.as_ref(),
-        allow_outside: false,
-        clearances_unknown: false,
-        locate: &|error: Error| sweep.locate(error),
-    };
-    let folder = root.join(CALIBRATION);
-    let existing = ::calibrate::Existing::Renew;
-    ::calibrate::prepare(&settings, &folder, existing).map_err(Failure::input)
 }
 
 fn print(done: &Calibrated, folder: &Path) {

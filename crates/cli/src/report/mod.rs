@@ -15,7 +15,7 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// Name of the page in its folder.
-pub(crate) const PAGE: &str = "report.html";
+pub const PAGE: &str = "report.html";
 
 /// Arguments of `crosshead report`.
 #[derive(Args, Debug)]
@@ -48,23 +48,32 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dir = &arguments.dir;
     let out = arguments.out.clone().unwrap_or_else(|| dir.join(PAGE));
-    if CalibrationPage::is_at(dir) {
-        println!("{}", write_calibration(dir, &out)?.display());
-    } else if WearPage::is_at(dir) {
-        println!("{}", write_wear(dir, &out)?.display());
-    } else if GapPage::is_at(dir) {
-        println!("{}", write_gap(dir, &out)?.display());
-    } else {
-        let progress = Progress::of_time("pages of the dataset");
-        let page = write_dataset(dir, &out).map_err(failed)?;
-        drop(progress);
-        println!("{}", out.display());
-        if let Design::Grid(grids) = &page.design {
-            print!("{}", grids.markdown());
-        }
+    let progress = Progress::of_time("pages");
+    let dataset = write(dir, &out)?;
+    drop(progress);
+    println!("{}", out.display());
+    if let Some(Design::Grid(grids)) = dataset.map(|page| page.design) {
+        print!("{}", grids.markdown());
     }
     hint(format_args!("open {} in a browser", out.display()));
     Ok(())
+}
+
+/// Writes the page of whatever the folder `dir` holds to the file `out`; gives that of a dataset back.
+///
+/// # Errors
+/// A folder that holds nothing with a page, or a page that cannot be made or written.
+pub fn write(dir: &Path, out: &Path) -> Result<Option<DatasetPage>, Failure> {
+    if CalibrationPage::is_at(dir) {
+        write_calibration(dir, out)?;
+    } else if WearPage::is_at(dir) {
+        write_wear(dir, out)?;
+    } else if GapPage::is_at(dir) {
+        write_gap(dir, out)?;
+    } else {
+        return write_dataset(dir, out).map(Some).map_err(failed);
+    }
+    Ok(None)
 }
 
 /// Writes the pages of the dataset in `folder`, its own to the file `out` and last: where it is, the others are.
@@ -92,7 +101,7 @@ fn failed(error: Error) -> Failure {
 ///
 /// # Errors
 /// A folder that is no calibration, or a page that cannot be made or written.
-pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+pub fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = CalibrationPage::read(folder)
         .map_err(failed)?
         .render()
@@ -105,7 +114,7 @@ pub(crate) fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Fa
 ///
 /// # Errors
 /// A folder that is no explanation, or a page that cannot be made or written.
-pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+pub fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = GapPage::read(folder)
         .map_err(failed)?
         .render()
@@ -118,7 +127,7 @@ pub(crate) fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
 ///
 /// # Errors
 /// A folder without an estimation of wear, or a page that cannot be made or written.
-pub(crate) fn write_wear(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
+pub fn write_wear(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
     let page = WearPage::read(folder)
         .map_err(failed)?
         .render()

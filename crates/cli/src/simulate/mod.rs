@@ -17,6 +17,7 @@ use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use signal::channel::Channel;
 use simulate::{ExponentSettings, Extent, Record, Settings, Transient};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use sweep::run_analysis::RunAnalysis;
 use sweep::run_table::run_table;
@@ -98,7 +99,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         "{bar:40} {pos} % simulated  {eta} left",
     );
     let (m, sensors) = (&machine.machine, &machine.sensors);
-    let mut watch = |done: f64| progress.set((100.0 * done) as u64);
+    let mut watch = |done: f64| {
+        progress.set((100.0 * done) as u64);
+        ControlFlow::Continue(())
+    };
     let record = simulate::simulate_watched(m, sensors, &settings, &mut watch)
         .map_err(|e| Failure::work(format!("{}: {e}", machine.name)))?;
     drop(progress);

@@ -105,6 +105,77 @@ fn datasets_give_the_features_that_they_have() {
     }
 }
 
+/// With `--like` a recording has the columns of the dataset and windows of its length, or is refused.
+#[test]
+fn recordings_are_made_like_a_dataset_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = project().join("data/machines/single-stage.yaml");
+    let machine = machine.display().to_string();
+    let sweep = SWEEP.replace("MACHINE", &machine);
+    fs::write(folder.path().join("sweep.yaml"), sweep).unwrap();
+    let simulate = |out: &str, options: &[&str]| {
+        let all = [&["simulate", &machine, "--out", out][..], options].concat();
+        assert!(run(folder.path(), "crosshead", &all).status.success());
+    };
+    let made = run(folder.path(), "gen-dataset", &["sweep.yaml", "--out", "ds"]);
+    assert!(made.status.success());
+    simulate("long", &["--revolutions", "7"]);
+    simulate("fine", &["--revolutions", "4", "--sample-rate", "20 kHz"]);
+    simulate("short", &["--revolutions", "1"]);
+
+    let expected = read_table(
+        &folder
+            .path()
+            .join("ds/features/train-00000-of-00001.parquet"),
+    );
+    let names = |table: &Table| -> Vec<String> {
+        let columns = table.schema().columns().iter();
+        let features = columns.filter(|c| c.role == Some(recordings::Role::Feature));
+        features.map(|c| c.name.clone()).collect()
+    };
+    let measured = features(folder.path(), &["long/signals.parquet", "--like", "ds"]);
+    assert_eq!(names(&measured), names(&expected.unwrap()));
+    // Seven revolutions in windows of two.
+    assert_eq!(measured.rows(), 3);
+    assert!(real(&measured, "cylinder_pressure.indicated_power_w", 0).is_some());
+
+    for (arguments, message) in [
+        (
+            &["fine/signals.parquet"][..],
+            "sample rate: found 20000 Hz, expected 10000 Hz as in the dataset",
+        ),
+        (&["short/signals.parquet"], "less than a window"),
+        (
+            &[
+                "long/signals.parquet",
+                "--column",
+                "crosshead_acceleration_m_s2",
+            ],
+            "channels: found crosshead_acceleration, expected crosshead_acceleration, cylinder_pressure, \
+             frame_acceleration_x as in the dataset",
+        ),
+        (
+            &["long/signals.parquet", "--window", "1 s"],
+            "cannot be used with",
+        ),
+    ] {
+        let out = [
+            "--like",
+            "ds",
+            "--speed",
+            "500 rpm",
+            "--out",
+            "refused.parquet",
+        ];
+        let all = [&["features"], arguments, &out].concat();
+        let output = run(folder.path(), "crosshead", &all);
+        let found = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {found}");
+        assert!(found.contains(message), "{found}");
+        assert!(!folder.path().join("refused.parquet").exists());
+    }
+}
+
 /// Acceleration of a shaft at 600 rpm in m/s^2, sampled at 2 kHz.
 fn wave(i: usize) -> f64 {
     let t = i as f64 / 2000.0;

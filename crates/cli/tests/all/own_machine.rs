@@ -277,3 +277,28 @@ fn every_file_is_right_as_it_is_written() {
     let bundle = std::fs::read_to_string(file("recordings.yaml")).unwrap();
     assert!(bundle.contains("file: a.csv"), "{bundle}");
 }
+
+#[test]
+fn a_bundle_gives_its_nominal_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let bundle = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let bundle = bundle.join("../../data/recordings/example-diagnosis/healthy");
+    let mut command = crosshead(&["init", "machine", "--from-bundle"]);
+    run(command.arg(&bundle).current_dir(folder.path()));
+    let machine = machine_file::read(&folder.path().join("machine.yaml")).unwrap();
+    let resolved = machine.resolve().unwrap();
+    // Its first run: 400 rpm, both joints of the rod with 0.03 mm.
+    assert!((resolved.speed - 400.0 * PI / 30.0).abs() < 1e-9);
+    let throw = &resolved.machine.throws[0];
+    for joint in [&throw.big_end, &throw.small_end] {
+        let Revolute::Clear(clear) = joint else {
+            panic!("{joint:?}")
+        };
+        assert!((clear.clearance - 3e-5).abs() < 1e-12);
+    }
+    let mut command = crosshead(&["init", "sweep", "--from-bundle"]);
+    let wrong = command.arg(&bundle).current_dir(folder.path()).output();
+    let wrong = wrong.unwrap();
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(text(&wrong.stderr).contains("--from-bundle are options of init machine"));
+}

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 /// What each crate may import, the lowest first. A crate that is added gets its line here.
-const MAY_IMPORT: [(&str, &str); 17] = [
+const MAY_IMPORT: [(&str, &str); 18] = [
     ("scalar", ""),
     ("files", ""),
     ("signal", ""),
@@ -40,6 +40,10 @@ const MAY_IMPORT: [(&str, &str); 17] = [
         "cli",
         "bench calibrate chaos features files gap input mechanism recordings report scalar signal \
          simulate sweep",
+    ),
+    (
+        "python",
+        "calibrate cli features gap input recordings scalar signal simulate sweep",
     ),
     (
         "crosshead",

@@ -15,16 +15,25 @@ pub fn crates() -> Vec<PathBuf> {
     let mut folders: Vec<PathBuf> = std::fs::read_dir(all)
         .expect("a folder")
         .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.join("src/lib.rs").exists())
+        .filter(|path| root(path).exists())
         .collect();
     folders.sort();
     folders
 }
 
+/// The file at the root of a crate's modules. The Python package keeps its Rust apart from its Python.
+fn root(folder: &Path) -> PathBuf {
+    let own = folder.join("rust/lib.rs");
+    match own.exists() {
+        true => own,
+        false => folder.join("src/lib.rs"),
+    }
+}
+
 /// Every module of a crate that has a file of its own, without what is compiled for tests alone.
 pub fn modules(folder: &Path) -> BTreeMap<Module, (PathBuf, Vec<Item>)> {
     let mut modules = BTreeMap::new();
-    read(&folder.join("src/lib.rs"), Vec::new(), &mut modules);
+    read(&root(folder), Vec::new(), &mut modules);
     modules
 }
 

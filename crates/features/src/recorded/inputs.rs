@@ -63,6 +63,8 @@ pub struct Said {
     pub machine: Option<KnownMachine>,
     /// Whether a bundle may name recordings outside of its folder.
     pub allow_outside: bool,
+    /// Whether the kind of motion is judged from the signals, which takes most of the time.
+    pub motion: bool,
 }
 
 impl Said {

@@ -116,7 +116,9 @@ fn windows(
     })?;
     let stated = layout.stated_speed(recording.labels())?;
     let mut speed = stated;
-    if let (None, WindowLength::Revolutions(_)) = (stated, length) {
+    if let (None, WindowLength::Revolutions(_) | WindowLength::RevolutionsOrRows(_)) =
+        (stated, length)
+    {
         let first = recording.peek().map_err(Error::File)?;
         let crank = layout.crank(&first).and_then(Result::ok);
         speed = crank.and_then(|crank| shaft::speed_rpm(&crank, rate).ok());

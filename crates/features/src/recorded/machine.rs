@@ -1,9 +1,9 @@
 //! The machine that recordings are of, as far as an indicator needs it.
 
 use super::units::{Role, Scaled};
-use input::MachineFile;
 use input::bundle::Bundle;
 use input::bundle_channel::{Channel, Meaning, meaning};
+use input::{MachineFile, Resolved};
 use simulate::Chamber;
 use std::path::Path;
 use std::sync::Arc;
@@ -24,6 +24,15 @@ impl KnownMachine {
         Self::new(&input::machine_file::read(path)?)
     }
 
+    /// This machine.
+    pub fn of(machine: &Resolved) -> Self {
+        let machine = &machine.machine;
+        Self {
+            chambers: Arc::new(Chamber::of_machine(machine)),
+            throws: machine.throws.iter().map(|t| t.name.clone()).collect(),
+        }
+    }
+
     /// The machine section of a bundle. One that is missing, or does not say enough for a simulation, is
     /// no mistake here: only the indicated power needs it.
     pub(super) fn of_bundle(bundle: &Bundle) -> Option<Self> {
@@ -32,11 +41,7 @@ impl KnownMachine {
     }
 
     fn new(file: &MachineFile) -> Result<Self, input::Error> {
-        let machine = file.resolve()?.machine;
-        Ok(Self {
-            chambers: Arc::new(Chamber::of_machine(&machine)),
-            throws: machine.throws.iter().map(|t| t.name.clone()).collect(),
-        })
+        Ok(Self::of(&file.resolve()?))
     }
 
     /// The chambers whose pressures are among these channels of a file, each under the name of its

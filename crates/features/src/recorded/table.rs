@@ -95,6 +95,8 @@ pub(super) struct Layout {
     pub(super) speed_label: Option<usize>,
     window_label: Option<usize>,
     stated_speed_rpm: Option<f64>,
+    /// Whether the kind of motion is judged.
+    motion: bool,
 }
 
 impl Layout {
@@ -142,7 +144,7 @@ impl Layout {
         }
         let is = |name: &str, kind| own(name).filter(|&i| file.labels()[i].kind == kind);
         Ok(Self {
-            features: crate::columns(names, true)
+            features: crate::columns(names, said.motion)
                 .into_iter()
                 .map(column)
                 .collect(),
@@ -150,6 +152,7 @@ impl Layout {
             speed_label: is("speed_rpm", Kind::Real),
             window_label: is("window", Kind::Integer),
             stated_speed_rpm: input.speed_rpm,
+            motion: said.motion,
             file: shown,
             channels,
             chambers,
@@ -356,7 +359,7 @@ pub fn row(job: &Job) -> Row {
             channels: &channels,
             chambers: &layout.chambers,
         },
-        true,
+        layout.motion,
     );
     let speed = known.map(|crank| shaft::speed_rpm(crank, job.sample_rate_hz));
     let measured_rpm = speed
@@ -411,6 +414,28 @@ pub fn row(job: &Job) -> Row {
         start_s: job.window.start_s,
         warning,
         bridged: job.window.bridged.iter().sum(),
+    }
+}
+
+impl Row {
+    /// Keeps these columns alone, in this order.
+    pub fn keep(&mut self, columns: &[usize]) {
+        let mut all = std::mem::take(&mut self.values);
+        let kept = columns.iter();
+        self.values = kept
+            .map(|i| std::mem::replace(&mut all[*i], Value::Missing))
+            .collect();
+        let place = |column: usize| columns.iter().position(|i| *i == column);
+        let reasons = self.reasons.drain(..);
+        self.reasons = reasons
+            .filter_map(|(column, reason)| Some((place(column)?, reason)))
+            .collect();
+    }
+
+    /// What looks wrong with the window, with its file and time.
+    pub fn warning(&self) -> Option<String> {
+        let warning = self.warning.as_ref()?;
+        Some(format!("{} at {:.3} s: {warning}", self.file, self.start_s))
     }
 }
 

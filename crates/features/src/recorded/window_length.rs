@@ -20,6 +20,8 @@ pub enum WindowLength {
     Seconds(f64),
     /// So many revolutions of the crank.
     Revolutions(f64),
+    /// The same; rows of a table are one window each, as they are.
+    RevolutionsOrRows(f64),
 }
 
 impl WindowLength {
@@ -48,14 +50,18 @@ impl WindowLength {
         whole: bool,
     ) -> Result<Length, String> {
         let samples = match (self, speed_rpm) {
-            (Self::Default, _) if whole => return Ok(Length::UpTo(MOST_SAMPLES as usize)),
+            (Self::Default | Self::RevolutionsOrRows(_), _) if whole => {
+                return Ok(Length::UpTo(MOST_SAMPLES as usize));
+            }
             (Self::Default, _) => {
                 let most = (DEFAULT_S * sample_rate_hz).clamp(DEFAULT_SAMPLES, MOST_SAMPLES);
                 return Ok(Length::UpTo(most as usize));
             }
             (Self::Seconds(seconds), _) => seconds * sample_rate_hz,
-            (Self::Revolutions(count), Some(speed)) => count * 60.0 / speed * sample_rate_hz,
-            (Self::Revolutions(_), None) => {
+            (Self::Revolutions(count) | Self::RevolutionsOrRows(count), Some(speed)) => {
+                count * 60.0 / speed * sample_rate_hz
+            }
+            (Self::Revolutions(_) | Self::RevolutionsOrRows(_), None) => {
                 return Err(
                     "a window in revolutions needs the speed: give --speed, --tacho or --crank-angle, or --window in seconds"
                         .into(),

@@ -31,7 +31,7 @@ pub(crate) use value::unit_of_quantity;
 
 use crate::error::Error;
 use crate::yaml::{self, Document};
-use crate::{reader, schema};
+use crate::{paths, reader, schema};
 use serde_json::{Map, Value};
 use std::path::Path;
 use written::{Mistakes, Written};
@@ -102,6 +102,49 @@ impl MachineFile {
         let file = Self::from_tree(&tree);
         let repaired = file.and_then(|file| file.resolve().map(|resolved| (file, resolved)));
         (repaired.ok(), Some(error))
+    }
+
+    /// The same machine with other values, each at its path (`joints.big_end.clearance`).
+    ///
+    /// # Errors
+    /// Where the format has no such path ([`paths::set`]), and as [`read`], without lines.
+    pub fn with_values<'a>(
+        &self,
+        values: impl IntoIterator<Item = (&'a str, Value)>,
+    ) -> Result<Self, Error> {
+        let mut tree = self.written.tree.clone();
+        for (path, value) in values {
+            paths::set(&mut tree, path, value)?;
+        }
+        Self::from_tree(&tree)
+    }
+
+    /// The same machine with those sensors alone that give some of the channels of these names.
+    ///
+    /// # Errors
+    /// A channel that no sensor gives.
+    pub fn with_channels(&self, channels: &[String]) -> Result<Self, Error> {
+        let mut tree = self.written.tree.clone();
+        let listed = tree["sensors"].as_array().cloned().unwrap_or_default();
+        let (mut kept, mut given) = (Vec::new(), Vec::new());
+        for sensor in listed {
+            tree["sensors"] = Value::Array(vec![sensor.clone()]);
+            let alone = Self::from_tree(&tree)?.resolve()?;
+            let throws = alone.machine.throws.iter().map(|t| t.name.as_str());
+            let throws: Vec<&str> = throws.collect();
+            let columns = alone.sensors.iter().map(|s| s.measured.column(&throws));
+            let columns: Vec<String> = columns.collect();
+            if columns.iter().any(|column| channels.contains(column)) {
+                kept.push(sensor);
+            }
+            given.extend(columns);
+        }
+        if let Some(unknown) = channels.iter().find(|name| !given.contains(name)) {
+            let given: Vec<&str> = given.iter().map(String::as_str).collect();
+            return Err(Error::unknown_name("channels", unknown, &given));
+        }
+        tree["sensors"] = Value::Array(kept);
+        Self::from_tree(&tree)
     }
 
     /// The file's content, with the keys of machine files in the place of their synonyms.

@@ -374,3 +374,46 @@ fn a_tree_written_as_yaml_reads_back() {
     let text = yaml::to_string(&tree).unwrap();
     assert_eq!(yaml::Document::parse(&text, "t.yaml").unwrap().tree, tree);
 }
+
+#[test]
+fn values_are_replaced_by_their_paths() {
+    let values = [
+        ("joints.big_end.clearance", json!("0.2 mm")),
+        ("speed", json!("600 rpm")),
+    ];
+    let changed = shipped().with_values(values).unwrap();
+    let set = |path| paths::get(changed.to_tree(), path).unwrap().cloned();
+    assert_eq!(set("joints.big_end.clearance"), Some(json!("0.2 mm")));
+    let speed = changed.resolve().unwrap().speed;
+    assert_eq!(speed, 600.0 * std::f64::consts::PI / 30.0);
+    let wrong = |path, value| {
+        let changed = shipped().with_values([(path, json!(value))]);
+        changed.unwrap_err().to_string()
+    };
+    let message = wrong("joints.bigend.clearance", "0.2 mm");
+    assert!(message.contains("did you mean 'big_end'?"), "{message}");
+    let message = wrong("speed", "600 mm");
+    assert!(
+        message.starts_with("speed: found '600 mm' (a length), expected"),
+        "{message}"
+    );
+}
+
+#[test]
+fn sensors_are_chosen_by_their_channels() {
+    let channels = ["crank_angle_rad", "crosshead_acceleration_m_s2"].map(str::to_owned);
+    let chosen = shipped().with_channels(&channels).unwrap();
+    let sensors = chosen.resolve().unwrap().sensors;
+    let measured: Vec<String> = sensors.iter().map(|s| s.measured.column(&[""])).collect();
+    // In the order of the file.
+    assert_eq!(measured, ["crosshead_acceleration_m_s2", "crank_angle_rad"]);
+    let all = shipped().resolve().unwrap().sensors;
+    let same = all.iter().find(|s| s.measured == sensors[0].measured);
+    assert_eq!(same, Some(&sensors[0]));
+    let unknown = ["crosshead_accelaration_m_s2".to_owned()];
+    let message = shipped().with_channels(&unknown).unwrap_err().to_string();
+    assert!(
+        message.contains("did you mean 'crosshead_acceleration_m_s2'?"),
+        "{message}"
+    );
+}

@@ -48,3 +48,23 @@ fn a_hop_much_shorter_than_a_step_is_not_stepped_over() {
     }
     assert!(expected > 60.0, "touches end before {expected}");
 }
+
+#[test]
+fn an_observer_ends_the_integration_behind_its_step() {
+    let mut ball = Ball {
+        touches: Vec::new(),
+    };
+    let mut run = Integrator::new(&mut ball, 0.0, &[1.0, 0.0], 1e-10, 0.01);
+    let mut seen = 0;
+    let stopped = run.watch(&mut ball, 60.0, |_, step| {
+        seen += 1;
+        if step.start > 0.1 {
+            step.stop();
+        }
+    });
+    let Err(integrate::Error::Stopped { time }) = stopped else {
+        panic!("{stopped:?}");
+    };
+    assert!((0.1..0.13).contains(&time), "{time}");
+    assert!(seen >= 10, "{seen}");
+}

@@ -4,6 +4,7 @@
 //! are recognised, and its reader) and a line in the list below.
 
 mod guarded;
+pub mod record_batch;
 pub(crate) mod recording_format;
 pub mod table_file;
 

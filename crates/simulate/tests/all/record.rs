@@ -2,8 +2,9 @@
 
 use input::{MachineFile, Resolved};
 use mechanism::drive::{Drive, Fluctuation, GivenSpeed};
-use simulate::{Measured, Record, Settings, Transient, simulate};
+use simulate::{Measured, Record, Settings, Transient, simulate, simulate_watched};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 /// The shipped machine with the same clearance at both ends, mm.
 fn machine(clearance: &str) -> Resolved {
@@ -260,4 +261,39 @@ fn the_crank_speed_is_that_of_the_drive() {
         let expected = speed * (1.0 + amplitude * (speed * time + phase).cos());
         assert!((seen / expected - 1.0).abs() < 1e-6, "sample {i}: {seen}");
     }
+}
+
+#[test]
+fn who_watches_a_run_may_end_it_and_changes_nothing_otherwise() {
+    let machine = machine("0.2 mm");
+    let mut shares = Vec::new();
+    let watched = simulate_watched(
+        &machine.machine,
+        &machine.sensors,
+        &settings(),
+        &mut |share| {
+            shares.push(share);
+            ControlFlow::Continue(())
+        },
+    );
+    assert_eq!(
+        watched.unwrap().series,
+        record(&machine, &settings()).series
+    );
+    assert!(shares.is_sorted() && shares.last() > Some(&0.99));
+    let mut steps = 0;
+    let ended = simulate_watched(
+        &machine.machine,
+        &machine.sensors,
+        &settings(),
+        &mut |share| {
+            steps += 1;
+            match share > 0.5 {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        },
+    );
+    assert!(ended.unwrap_err().is_stopped());
+    assert!(steps < shares.len());
 }

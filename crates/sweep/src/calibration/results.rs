@@ -13,21 +13,36 @@ use scalar::elementary::ln;
 use serde_json::Value;
 
 use super::{Calibration, Estimate, Relations, Sweep};
-use crate::sweep_file::{Amount, Uncertainty};
+use crate::sweep_file::{Amount, Uncertainty, Undetermined};
 use crate::{Error, Plan};
 
 impl Sweep {
-    /// The plan with the calibration that `folder` holds.
+    /// The plan with the calibration that `folder` holds, and of its uncertainty what the sweep asks for.
+    ///
+    /// # Errors
+    /// As [`Sweep::kept_with`].
+    pub fn kept(&self, folder: &Path) -> Result<Plan, Error> {
+        let asked = self.calibrate();
+        let (uncertainty, undetermined) = asked
+            .map(|asked| (asked.uncertainty, asked.undetermined))
+            .unwrap_or_default();
+        self.kept_with(folder, uncertainty, undetermined)
+    }
+
+    /// The plan with the calibration that `folder` holds, and so much of its uncertainty.
     ///
     /// # Errors
     /// A calibration that is damaged, or one without intervals where the sweep draws from them; and as
     /// [`Plan::read`].
-    pub fn kept(&self, folder: &Path) -> Result<Plan, Error> {
+    pub fn kept_with(
+        &self,
+        folder: &Path,
+        uncertainty: Uncertainty,
+        undetermined: Undetermined,
+    ) -> Result<Plan, Error> {
         let mut calibration = Calibration::read(folder)?;
         let asked = self.calibrate();
-        if asked.is_some_and(|asked| asked.uncertainty == Uncertainty::Sampled)
-            && !calibration.is_adequate
-        {
+        if uncertainty == Uncertainty::Sampled && !calibration.is_adequate {
             return Err(Error::NoIntervals(folder.join(RESULTS)));
         }
         // A relation that the sweep states is what its author knows.
@@ -43,7 +58,7 @@ impl Sweep {
             }
             calibration.machine = machine;
         }
-        Ok(self.calibrated(&calibration)?)
+        Ok(self.calibrated_with(&calibration, uncertainty, undetermined)?)
     }
 
     /// What the runs set in the machine file: speed, pressures, clearances. A sweep's own machine keeps

@@ -173,6 +173,19 @@ impl Plan {
         self
     }
 
+    /// The same sweep of the machine with those sensors alone that give some of the channels of these names.
+    ///
+    /// # Errors
+    /// A channel that no sensor gives.
+    pub fn with_channels(self, channels: &[String]) -> Result<Self, Error> {
+        let mut tree = self.sweep;
+        let machine = MachineFile::from_tree(&tree["machine"])?.with_channels(channels)?;
+        tree["machine"] = machine.to_tree().clone();
+        let mut plan = Self::new(&Document::from_tree(tree), Path::new(""))?;
+        plan.calibrated = self.calibrated;
+        Ok(plan)
+    }
+
     /// The same sweep in `shards` shards of equal size, or a few less where the cases do not divide
     /// evenly.
     ///

@@ -6,11 +6,13 @@
 //! for readers that show the file's own keys only, as JSON objects under `units` and
 //! `descriptions`. pandas finds the units in `DataFrame.attrs`.
 
+mod batches;
 mod pages;
 mod read;
 mod recordings;
 mod write;
 
+pub use batches::Batches;
 pub use read::{ParquetFile, read_table, rows_of_footer};
 pub use write::{PENDING_ROWS, TableWriter, write_table};
 

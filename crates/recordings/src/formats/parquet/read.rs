@@ -119,14 +119,7 @@ impl ParquetFile {
     /// When a column or a row is not there, tables do not have the column's type, or the
     /// file is damaged.
     pub fn read(&self, columns: &[&str], rows: Range<usize>) -> Result<Table, Error> {
-        if rows.start > rows.end || rows.end > self.rows {
-            return Err(Error::NoSuchRows {
-                path: self.path.clone(),
-                start: rows.start,
-                end: rows.end,
-                rows: self.rows,
-            });
-        }
+        self.check_rows(&rows)?;
         let wanted = columns
             .iter()
             .map(|name| self.wanted(name))
@@ -145,6 +138,18 @@ impl ParquetFile {
             return Err(damaged(&self.path)(reason));
         }
         Table::from_columns(schema, data)
+    }
+
+    pub(super) fn check_rows(&self, rows: &Range<usize>) -> Result<(), Error> {
+        if rows.start <= rows.end && rows.end <= self.rows {
+            return Ok(());
+        }
+        Err(Error::NoSuchRows {
+            path: self.path.clone(),
+            start: rows.start,
+            end: rows.end,
+            rows: self.rows,
+        })
     }
 
     /// The rows of some columns from the first to the last, `rows` at a time, in the order asked
@@ -209,7 +214,7 @@ impl ParquetFile {
         Ok(())
     }
 
-    fn wanted(&self, name: &str) -> Result<Column, Error> {
+    pub(super) fn wanted(&self, name: &str) -> Result<Column, Error> {
         let missing = match self.schema.position(name) {
             Ok(position) => return Ok(self.schema.columns()[position].clone()),
             Err(missing) => missing,
@@ -222,7 +227,8 @@ impl ParquetFile {
         }))
     }
 
-    fn batches(
+    /// A reader of some rows of some columns, in the order of the file, so many at a time that their texts fit.
+    pub(super) fn batches(
         &self,
         columns: &[&str],
         rows: Range<usize>,
@@ -282,11 +288,11 @@ fn table(path: &Path, batch: &RecordBatch, schema: &Schema) -> Result<Table, Err
 
 /// The result of `read`: the Parquet library takes some damage to page headers (one flipped byte in 2000) for a mistake of
 /// its own.
-fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+pub(super) fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
     super::super::guarded::guarded(read, || damaged(path)("its pages contradict each other"))
 }
 
-fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
+pub(super) fn damaged<E: ToString>(path: &Path) -> impl FnOnce(E) -> Error {
     let path = path.to_owned();
     move |error| Error::Damaged {
         format: "Parquet",

@@ -333,3 +333,88 @@ fn units_stand_where_readers_look() {
     assert_eq!(descriptions["healthy"], "no joint is worn");
     assert_eq!(value("sample_rate_hz"), "10000");
 }
+
+/// A file of one column of numbers and one of recordings, from `first` on.
+fn numbered(folder: &Path, name: &str, column: &str, first: usize, rows: usize) -> PathBuf {
+    let schema = Schema::new(vec![
+        Column::new(column, Kind::Real, "a number").unit("m"),
+        Column::new("signal", Kind::Samples, "a recording"),
+    ]);
+    let mut table = Table::new(schema.unwrap());
+    for i in first..first + rows {
+        let row = vec![(i as f64).into(), vec![i as f32; 3].into()];
+        table.push(row).unwrap();
+    }
+    let path = folder.join(name);
+    write_table(File::create(&path).unwrap(), &table, 4).unwrap();
+    path
+}
+
+/// The numbers of all batches, in order.
+fn numbers(batches: Batches) -> Result<Vec<f64>, String> {
+    let mut numbers = Vec::new();
+    for batch in batches {
+        let batch = batch.map_err(|error| error.to_string())?;
+        let column = batch.column_by_name("x").unwrap();
+        let column = column.as_any().downcast_ref::<arrow::array::Float64Array>();
+        numbers.extend(column.unwrap().values());
+    }
+    Ok(numbers)
+}
+
+#[test]
+fn several_files_are_one_stream_of_record_batches() {
+    let folder = tempfile::tempdir().unwrap();
+    let [a, b] = [("a", 0, 5), ("b", 5, 7)]
+        .map(|(name, first, rows)| numbered(folder.path(), name, "x", first, rows));
+    let both = Batches::new(vec![a.clone(), b.clone()], None).unwrap();
+    let expected: Vec<f64> = (0..12).map(f64::from).collect();
+    assert_eq!(numbers(both), Ok(expected));
+    let some = Batches::new(vec![a.clone()], Some(vec!["x".into()])).unwrap();
+    let schema = arrow::array::RecordBatchReader::schema(&some);
+    assert_eq!(schema.fields().len(), 1);
+    assert_eq!(schema.field(0).metadata().get("unit").unwrap(), "m");
+    let rows = Batches::of_rows(&b, None, 2..4).unwrap();
+    assert_eq!(numbers(rows), Ok(vec![7.0, 8.0]));
+}
+
+#[test]
+fn a_stream_says_which_file_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let a = numbered(folder.path(), "a", "x", 0, 5);
+    let other = numbered(folder.path(), "other", "y", 0, 5);
+    let mixed = Batches::new(vec![a.clone(), other], None).unwrap();
+    let message = numbers(mixed).unwrap_err();
+    assert!(message.contains("other` as Parquet: it has other columns"), "{message}");
+    let missing = Batches::new(vec![a.clone(), folder.path().join("c")], None).unwrap();
+    assert!(numbers(missing).unwrap_err().contains("cannot open"));
+    let column = Batches::new(vec![a.clone()], Some(vec!["z".into()])).err();
+    assert_eq!(column.unwrap().to_string(), "no column `z`; there are: x, signal");
+    assert!(Batches::of_rows(&a, None, 4..6).is_err());
+    assert!(matches!(Batches::new(Vec::new(), None), Err(Error::NoFiles)));
+}
+
+#[test]
+fn tables_become_record_batches_with_units_and_roles() {
+    let mut table = Table::new(schema());
+    let samples = vec![1.0_f32, 2.0];
+    table
+        .push(vec![
+            "a".into(),
+            Value::Missing,
+            3_i64.into(),
+            1e-4.into(),
+            Value::Missing,
+            true.into(),
+            samples.clone().into(),
+            Value::Missing,
+        ])
+        .unwrap();
+    let batch = crate::formats::record_batch::record_batch(&table).unwrap();
+    assert_eq!((batch.num_rows(), batch.num_columns()), (1, 8));
+    let schema = batch.schema();
+    let field = schema.field_with_name("clearance_big_end_m").unwrap();
+    assert_eq!(field.metadata().get("unit").unwrap(), "m");
+    assert_eq!(field.metadata().get("role").unwrap(), "label");
+    assert_eq!(schema.metadata()["sample_rate_hz"], "10000");
+}

@@ -1,12 +1,8 @@
 //! Tables to Parquet, row group by row group.
 
-use crate::{Column, Data, Error, Kind, Schema, Table, Value};
-use arrow::array::{
-    ArrayRef, BooleanArray, Float32Array, Float64Array, Int64Array, ListArray, RecordBatch,
-    StringArray,
-};
-use arrow::buffer::{NullBuffer, OffsetBuffer};
-use arrow::datatypes::{DataType, Field, Metadata, Schema as ArrowSchema, SchemaRef};
+use crate::formats::record_batch::{ELEMENT, fields, with_schema};
+use crate::{Error, Kind, Schema, Table, Value};
+use arrow::datatypes::{Schema as ArrowSchema, SchemaRef};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::errors::ParquetError;
@@ -20,9 +16,6 @@ use std::sync::Arc;
 
 /// Named in every file; the program's version stands in the dataset's manifest.
 const CREATED_BY: &str = "crosshead";
-
-/// Name of the values within a list, as the Parquet standard has it.
-const ELEMENT: &str = "element";
 
 /// Samples that are collected before they are encoded together (1 MiB of float32).
 const PENDING_SAMPLES: usize = 1 << 18;
@@ -54,8 +47,7 @@ impl<W: Write + Send> TableWriter<W> {
     pub fn new(out: W, schema: &Schema, rows_per_group: usize) -> Result<Self, Error> {
         let rows_per_group = NonZeroUsize::new(rows_per_group).ok_or(Error::EmptyRowGroup)?;
         let key_values = key_values(schema)?;
-        let fields: Vec<Field> = schema.columns().iter().map(arrow_field).collect();
-        let arrow_schema = ArrowSchema::new_with_metadata(fields, key_values.clone());
+        let arrow_schema = ArrowSchema::new_with_metadata(fields(schema), key_values.clone());
         let arrow_schema = Arc::new(arrow_schema);
         let properties = properties(schema, key_values, rows_per_group)?;
         let out =
@@ -99,7 +91,7 @@ impl<W: Write + Send> TableWriter<W> {
     }
 
     fn encode_pending(&mut self) -> Result<(), Error> {
-        let batch = record_batch(&self.arrow_schema, &self.pending)?;
+        let batch = with_schema(&self.arrow_schema, &self.pending)?;
         self.out.write(&batch).map_err(encode)?;
         self.pending = Table::new(self.pending.schema().clone());
         self.pending_samples = 0;
@@ -117,7 +109,7 @@ pub fn write_table<W: Write + Send>(
     rows_per_group: usize,
 ) -> Result<W, Error> {
     let mut writer = TableWriter::new(out, table.schema(), rows_per_group)?;
-    let batch = record_batch(&writer.arrow_schema, table)?;
+    let batch = with_schema(&writer.arrow_schema, table)?;
     writer.out.write(&batch).map_err(encode)?;
     writer.finish()
 }
@@ -154,24 +146,6 @@ fn key_values(schema: &Schema) -> Result<BTreeMap<String, String>, Error> {
     Ok(keys)
 }
 
-fn arrow_field(column: &Column) -> Field {
-    let data_type = match column.kind {
-        Kind::Text => DataType::Utf8,
-        Kind::Integer => DataType::Int64,
-        Kind::Real => DataType::Float64,
-        Kind::Flag => DataType::Boolean,
-        Kind::Samples => DataType::List(element()),
-    };
-    let mut metadata = Metadata::from([("description", column.description.clone())]);
-    metadata.extend(column.unit.iter().map(|unit| ("unit", unit.clone())));
-    metadata.extend(column.role.map(|role| ("role", role.name().to_owned())));
-    Field::new(&column.name, data_type, column.optional).with_metadata(metadata)
-}
-
-fn element() -> Arc<Field> {
-    Arc::new(Field::new(ELEMENT, DataType::Float32, false))
-}
-
 fn properties(
     schema: &Schema,
     key_values: BTreeMap<String, String>,
@@ -206,43 +180,4 @@ fn properties(
         };
     }
     Ok(properties.build())
-}
-
-fn record_batch(schema: &SchemaRef, table: &Table) -> Result<RecordBatch, Error> {
-    let arrays = table
-        .columns()
-        .iter()
-        .map(array)
-        .collect::<Result<_, _>>()?;
-    RecordBatch::try_new(schema.clone(), arrays).map_err(|error| Error::encode("Parquet", error))
-}
-
-fn array(data: &Data) -> Result<ArrayRef, Error> {
-    Ok(match data {
-        Data::Text(values) => {
-            Arc::new(values.iter().map(Option::as_deref).collect::<StringArray>())
-        }
-        Data::Integer(values) => Arc::new(values.iter().collect::<Int64Array>()),
-        Data::Real(values) => Arc::new(values.iter().collect::<Float64Array>()),
-        Data::Flag(values) => Arc::new(values.iter().collect::<BooleanArray>()),
-        Data::Samples(values) => Arc::new(list_array(values)?),
-    })
-}
-
-fn list_array(values: &[Option<Vec<f32>>]) -> Result<ListArray, Error> {
-    let mut offsets = vec![0];
-    let mut samples = Vec::new();
-    for row in values {
-        samples.extend_from_slice(row.as_deref().unwrap_or_default());
-        offsets
-            .push(i32::try_from(samples.len()).map_err(|error| Error::encode("Parquet", error))?);
-    }
-    let offsets = OffsetBuffer::new(offsets.into());
-    let nulls: NullBuffer = values.iter().map(Option::is_some).collect();
-    Ok(ListArray::new(
-        element(),
-        offsets,
-        Arc::new(Float32Array::from(samples)),
-        Some(nulls),
-    ))
 }

@@ -85,7 +85,7 @@ impl Jobs {
         })?;
         let submitted = Submitted {
             name: name.to_owned(),
-            program: std::env::current_exe()?,
+            program: crate::program::path()?,
             array_size,
             flags: flags.to_vec(),
             round: 1,

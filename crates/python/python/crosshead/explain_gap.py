@@ -1,0 +1,91 @@
+"""The effect that a model lacks and recordings show."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Iterable
+
+from . import _crosshead
+from .calibrate import settings_of
+from .errors import InputError
+from .folder import Folder, paths
+from .kinds import AnyMachine, AnyPath, Json, Progress
+from .machine import Machine
+from .page import Page, page
+from .progress import shown
+
+
+def explain_gap(
+    bundle: AnyPath,
+    *,
+    machine: AnyMachine | None = None,
+    out: AnyPath | None = None,
+    hold_out: list[str] | None = None,
+    leave_out: Iterable[str] = (),
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> Explanation:
+    """Finds which effects of the catalogue a calibrated model lacks.
+
+    bundle: a folder with `recordings.yaml`.
+    machine: a `Machine` or the path of its file. By default the machine section of the bundle.
+    out: folder to write into. By default a temporary one. An interrupted explanation continues in its folder.
+    hold_out: runs that are predicted and not fitted to.
+    leave_out: runs that are not used.
+    allow_outside: whether the bundle may name recordings outside of its folder.
+    """
+    folder = Folder(out)
+    if (folder.path / "gap.json").exists():
+        raise InputError(f"{folder.path / 'gap.json'} is already there; `Explanation(folder)` opens it")
+    own = None
+    if machine is not None:
+        folder.path.mkdir(parents=True, exist_ok=True)
+        own = str((folder.path / "nominal-machine.yaml").absolute())
+        Machine.of(machine).save(own)
+    settings = settings_of(bundle=paths(bundle), machine=own, hold_out=hold_out, leave_out=list(leave_out))
+    with shown(progress) as report:
+        _crosshead.explain_gap(settings, str(folder.path), allow_outside, report)
+    return Explanation(folder)
+
+
+class Explanation:
+    """Which effects a model lacks. `Explanation("explained")` opens a folder that `crosshead explain-gap` has written."""
+
+    def __init__(self, folder: AnyPath | Folder) -> None:
+        self._folder = folder if isinstance(folder, Folder) else Folder(folder)
+        self.results: Json = self._folder.read("gap.json")
+        """The content of `gap.json`."""
+
+    @property
+    def folder(self) -> pathlib.Path:
+        """The folder of its files."""
+        return self._folder.path
+
+    @property
+    def verdict(self) -> str:
+        """`no-gap`, `explained`, `partly-explained` or `unexplained`."""
+        return self.results["verdict"]
+
+    @property
+    def effects(self) -> list[Json]:
+        """The effects that were added, in order: dicts with `effect`, `places`, `probability`, `parameters`, `rivals`."""
+        return self.results["effects"]
+
+    @property
+    def gap(self) -> Json:
+        """Misfits over the noise, before and after, of the fitted and of the held-out runs."""
+        return self.results["gap"]
+
+    @property
+    def machine(self) -> Machine:
+        """The machine with the effects."""
+        return Machine(self.folder / "machine.yaml")
+
+    def page(self, out: AnyPath | None = None) -> Page:
+        """Writes its page, and returns it."""
+        return page(os.fspath(self.folder), out)
+
+    def __repr__(self) -> str:
+        effects = ", ".join(effect["effect"] for effect in self.effects) or "no effect"
+        return f"<crosshead.Explanation: {self.verdict}, {effects}>"

@@ -1,0 +1,112 @@
+"""Features of recordings, measured or simulated."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _crosshead
+from .dataset import Dataset, matrix
+from .errors import InputError
+from .folder import paths
+from .kinds import AnyPath, Progress
+from .progress import shown
+
+
+def features(
+    recordings: AnyPath | Iterable[AnyPath],
+    *,
+    like: Dataset | AnyPath | None = None,
+    columns: str | Iterable[str] = (),
+    sample_rate: str | float | None = None,
+    unit: str | None = None,
+    speed: str | None = None,
+    crank_angle: str | None = None,
+    tacho: str | None = None,
+    top_dead_centre: str | None = None,
+    machine: AnyPath | None = None,
+    window: str | None = None,
+    chaos: bool = True,
+    allow_outside: bool = False,
+    progress: Progress = None,
+) -> Features:
+    """Computes the features of recordings, a row for each window.
+
+    recordings: one path or several: CSV, WAV, MAT, Parquet or MCAP files, bundles, datasets.
+    like: a `Dataset` or its folder. The features are then those of the dataset, from windows of its length. Recordings of
+        another rate, length or of other channels raise `InputError`.
+    columns: columns to take. By default every column of numbers.
+    sample_rate: ``"20 kHz"``, if the file does not say.
+    unit: unit of the columns that have none, or what 1 in the file is.
+    speed: speed of the crank, ``"500 rpm"``, if neither a crank angle nor the file has it.
+    crank_angle: column of the crank angle.
+    tacho: column of pulses, one per revolution.
+    top_dead_centre: reading of the crank angle at top dead centre.
+    machine: path of the machine file, for the indicated power.
+    window: length of a window, ``"2 s"`` or ``"10 revolutions"``.
+    chaos: whether the kind of motion is judged from the signals, which takes most of the time.
+    allow_outside: whether a bundle may name recordings outside of its folder.
+    """
+    asked = {
+        "columns": [columns] if isinstance(columns, str) else list(columns),
+        "sample_rate": f"{sample_rate} Hz" if isinstance(sample_rate, (int, float)) else sample_rate,
+        "unit": unit,
+        "speed": speed,
+        "crank_angle": crank_angle,
+        "tacho": tacho,
+        "top_dead_centre": top_dead_centre,
+        "machine": None if machine is None else os.fspath(machine),
+        "window": window,
+        "chaos": chaos,
+        "allow_outside": allow_outside,
+    }
+    dataset = like if like is None or isinstance(like, Dataset) else Dataset(like)
+    folder = None if dataset is None else str(dataset.folder)
+    with shown(progress) as report:
+        table, warnings = _crosshead.features(paths(recordings), asked, folder, report)
+    return Features(table, warnings, None if dataset is None else dataset.feature_names)
+
+
+class Features:
+    """Features of recordings. `X` is the matrix for a classifier, `table` the Arrow table."""
+
+    def __init__(self, table: _crosshead.Table, warnings: list[str], names: list[str] | None = None) -> None:
+        self.table = table
+        """The table, a row for each window: `file`, `window`, `start_s`, what the files say of them, the features."""
+        self.warnings = warnings
+        """What looks wrong with windows."""
+        if names is None:
+            roles = table.roles
+            features = [name for name in table.names if roles.get(name) == "feature"]
+            names = [name for name in features if table[name].dtype != object]
+        self.names = names
+        """Names of the features that are numbers: the columns of `X`."""
+
+    @property
+    def X(self) -> np.ndarray:
+        """The features that are numbers, a row for each window, NaN where one is missing."""
+        return matrix(self.table, self.names)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        if copy is False:
+            raise ValueError("features stand in columns: a matrix of them is a copy")
+        return np.asarray(self.X, dtype=dtype)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __repr__(self) -> str:
+        return f"<crosshead.Features: {len(self)} windows, {len(self.names)} features>"
+
+
+def numbers_of(of: Dataset | Features, names: Sequence[str] | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """The matrix of a `Dataset` (all splits) or of `Features`, and its groups."""
+    if isinstance(of, Dataset):
+        table = of.features
+        return matrix(table, names or of.feature_names), table["group"]
+    if isinstance(of, Features):
+        return matrix(of.table, names or of.names), of.table["file"]
+    raise InputError(f"found {type(of).__name__}, expected a Dataset or Features")

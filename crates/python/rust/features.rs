@@ -1,0 +1,181 @@
+//! Features of recordings, measured or simulated.
+
+use crate::failure::wrong;
+use crate::interruptible::{Shared, interruptible};
+use crate::table::Table;
+use ::features::recorded::{
+    CrankReference, Input, KnownMachine, Said, Table as Recorded, Unit, WindowLength, inputs, row,
+};
+use cli::Failure;
+use input::quantity::{AboveZero, Angle, Frequency, Quantity, Speed};
+use pyo3::prelude::*;
+use recordings::Table as Rows;
+use recordings::formats::record_batch::record_batch;
+use recordings::measured::Options;
+use std::path::PathBuf;
+use sweep::in_order::in_order;
+use sweep::reader::Like;
+
+/// What is said of recordings: texts with their units, as on the command line.
+#[derive(FromPyObject)]
+pub struct Asked {
+    #[pyo3(item)]
+    columns: Vec<String>,
+    #[pyo3(item)]
+    sample_rate: Option<String>,
+    #[pyo3(item)]
+    unit: Option<String>,
+    #[pyo3(item)]
+    speed: Option<String>,
+    #[pyo3(item)]
+    crank_angle: Option<String>,
+    #[pyo3(item)]
+    tacho: Option<String>,
+    #[pyo3(item)]
+    top_dead_centre: Option<String>,
+    #[pyo3(item)]
+    machine: Option<PathBuf>,
+    #[pyo3(item)]
+    window: Option<String>,
+    #[pyo3(item)]
+    chaos: bool,
+    #[pyo3(item)]
+    allow_outside: bool,
+}
+
+impl Asked {
+    fn said(&self) -> Result<Said, Failure> {
+        let rate = |text: &str| Quantity::<Frequency, AboveZero>::parse(text).map(|q| q.si());
+        let rate_like = Quantity::<Frequency, AboveZero>::expected;
+        let speed = |text: &str| {
+            let speed = Quantity::<Speed, AboveZero>::parse(text);
+            speed.map(|speed| speed.si().to_degrees() / 6.0)
+        };
+        let angle = |text: &str| Quantity::<Angle>::parse(text).map(|angle| angle.si());
+        let unit = |text: &str| Unit::parse(text).ok_or_else(|| format!("'{text}'"));
+        let unit_like = || "a unit, e.g. 'm/s^2'".to_owned();
+        let options = Options {
+            columns: self.columns.clone(),
+            sample_rate_hz: parsed("sample_rate", &self.sample_rate, rate, rate_like)?,
+            skipped_lines: 0,
+        };
+        let speed_like = Quantity::<Speed, AboveZero>::expected;
+        let angle_like = Quantity::<Angle>::expected;
+        Ok(Said {
+            options,
+            speed_rpm: parsed("speed", &self.speed, speed, speed_like)?,
+            unit: parsed("unit", &self.unit, unit, unit_like)?,
+            crank: CrankReference {
+                crank_angle: self.crank_angle.clone(),
+                tacho: self.tacho.clone(),
+                top_dead_centre: parsed(
+                    "top_dead_centre",
+                    &self.top_dead_centre,
+                    angle,
+                    angle_like,
+                )?,
+            },
+            machine: (self.machine.as_deref().map(KnownMachine::read)).transpose()?,
+            allow_outside: self.allow_outside,
+            motion: self.chaos,
+        })
+    }
+
+    fn length(&self) -> Result<WindowLength, Failure> {
+        let like = || "a duration, e.g. '2 s', or '10 revolutions'".to_owned();
+        let length = parsed("window", &self.window, WindowLength::parse, like)?;
+        Ok(length.unwrap_or(WindowLength::Default))
+    }
+}
+
+/// An argument that may be left out.
+fn parsed<T>(
+    key: &str,
+    text: &Option<String>,
+    parse: impl Fn(&str) -> Result<T, String>,
+    expected: impl Fn() -> String,
+) -> Result<Option<T>, Failure> {
+    let value = text.as_deref().map(parse).transpose();
+    value.map_err(|found| {
+        let expected = expected();
+        Failure::input(format!("{key}: found {found}, expected {expected}"))
+    })
+}
+
+/// The features of the recordings at `paths`, a row for each window, and what looks wrong with them.
+///
+/// With `like`, the folder of a dataset, these are its features, from windows as it has them.
+///
+/// # Errors
+/// Wrong arguments, a file that cannot be read, recordings that differ from the dataset, or Ctrl-C.
+#[pyfunction]
+#[pyo3(signature = (paths, asked, like, progress))]
+pub fn features(
+    py: Python<'_>,
+    paths: Vec<PathBuf>,
+    asked: Asked,
+    like: Option<PathBuf>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(Table, Vec<String>)> {
+    if asked.window.is_some() && like.is_some() {
+        return Err(wrong(
+            "window: found one beside like, which says how long windows are",
+        ));
+    }
+    let (rows, warnings) = interruptible(py, progress, |shared| {
+        let (mut said, mut length) = (asked.said()?, asked.length()?);
+        let like = like.as_deref().map(Like::read);
+        let like = like.transpose().map_err(Failure::input)?;
+        if let Some(like) = &like {
+            like.say(&mut said);
+            length = like.length();
+        }
+        let inputs = inputs(&paths, &said).map_err(Failure::input)?;
+        rows(&inputs, &said, length, like.as_ref(), shared)
+    })?;
+    let batch = record_batch(&rows).map_err(crate::failure::failed)?;
+    Ok((Table::of_batch(batch), warnings))
+}
+
+/// The rows of all windows, in order.
+fn rows(
+    inputs: &[Input],
+    said: &Said,
+    length: WindowLength,
+    like: Option<&Like>,
+    shared: &Shared,
+) -> Result<(Rows, Vec<String>), Failure> {
+    let table = Recorded::new(inputs, said).map_err(Failure::input)?;
+    let schema = table.schema().clone();
+    let kept = match like {
+        Some(like) => like.columns(&schema).map_err(Failure::input)?,
+        None => (0..schema.columns().len()).collect(),
+    };
+    let mut rows = Rows::new(schema.select(&kept));
+    let mut warnings = Vec::new();
+    let threads = std::thread::available_parallelism().map_or(1, Into::into);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(Failure::work)?;
+    shared.begin("windows", None, 0);
+    in_order(
+        &pool,
+        2 * threads,
+        table.windows(length),
+        |window| window.as_ref().ok().map(row),
+        |window, made| {
+            window.map_err(Failure::input)?;
+            if shared.is_stopped() {
+                return Err(Failure::interrupted("interrupted"));
+            }
+            shared.add(1);
+            let Some(mut made) = made else { return Ok(()) };
+            if let Some(like) = like {
+                like.check(&made).map_err(Failure::input)?;
+            }
+            warnings.extend(made.warning());
+            made.keep(&kept);
+            rows.push(made.values).map_err(Failure::work)
+        },
+    )?;
+    Ok((rows, warnings))
+}
