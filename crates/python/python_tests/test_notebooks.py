@@ -36,6 +36,8 @@ def test_a_notebook_is_that_of_its_script(make, script):
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_a_notebook_runs_through(make, script, monkeypatch):
     monkeypatch.setenv("CASES", "24")
+    # Pictures go into the notebook.
+    monkeypatch.delenv("MPLBACKEND", raising=False)
     made = make.notebook(script)
     client = make.NotebookClient(made, timeout=1200, resources={"metadata": {"path": str(NOTEBOOKS)}})
     client.execute()
