@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import os
-import pathlib
 from collections.abc import Iterable
 from typing import Any
 
@@ -14,8 +12,8 @@ from .errors import InputError
 from .folder import Folder, paths
 from .kinds import AnyMachine, AnyPath, Json, Progress
 from .machine import Machine
-from .page import Page, page
 from .progress import shown
+from .results import Results
 
 
 @dataclasses.dataclass(frozen=True)
@@ -94,26 +92,16 @@ def settings_of(**settings: Any) -> str:
     return json.dumps({key: value for key, value in settings.items() if value is not None})
 
 
-class Calibration:
+class Calibration(Results):
     """A calibrated machine: what the fit found, and what stays unknown. `Calibration("calibrated")` opens a folder that
     `crosshead calibrate` has written."""
 
+    FILE = "calibration.json"
+
     def __init__(self, folder: AnyPath | Folder) -> None:
-        self._folder = folder if isinstance(folder, Folder) else Folder(folder)
-        self.results: Json = self._folder.read("calibration.json")
-        """The content of `calibration.json`."""
+        super().__init__(folder)
         if "parameters" not in self.results:
             raise InputError(f"{self.folder}: calibration.json: missing key `parameters`")
-
-    @property
-    def folder(self) -> pathlib.Path:
-        """The folder of its files."""
-        return self._folder.path
-
-    @property
-    def machine(self) -> Machine:
-        """The calibrated machine."""
-        return Machine(self.folder / "machine.yaml")
 
     @property
     def parameters(self) -> dict[str, Parameter]:
@@ -142,10 +130,6 @@ class Calibration:
     def model_is_adequate(self) -> bool:
         """Whether the model explains the recordings to within 1.5 times their noise. If not, no interval is known."""
         return self.results["model_is_adequate"]
-
-    def page(self, out: AnyPath | None = None) -> Page:
-        """Writes its page, and returns it."""
-        return page(os.fspath(self.folder), out)
 
     def __repr__(self) -> str:
         misfit = self.fit.get("calibrated")

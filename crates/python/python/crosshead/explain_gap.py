@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import pathlib
 from collections.abc import Iterable
 
 from . import _crosshead
 from .calibrate import settings_of
-from .errors import InputError
-from .folder import Folder, paths
+from .folder import paths
 from .kinds import AnyMachine, AnyPath, Json, Progress
 from .machine import Machine
-from .page import Page, page
 from .progress import shown
+from .results import Results
 
 
 def explain_gap(
@@ -35,9 +32,7 @@ def explain_gap(
     leave_out: runs that are not used.
     allow_outside: whether the bundle may name recordings outside of its folder.
     """
-    folder = Folder(out)
-    if (folder.path / "gap.json").exists():
-        raise InputError(f"{folder.path / 'gap.json'} is already there; `Explanation(folder)` opens it")
+    folder = Explanation.new_folder(out)
     own = None
     if machine is not None:
         folder.path.mkdir(parents=True, exist_ok=True)
@@ -49,18 +44,10 @@ def explain_gap(
     return Explanation(folder)
 
 
-class Explanation:
+class Explanation(Results):
     """Which effects a model lacks. `Explanation("explained")` opens a folder that `crosshead explain-gap` has written."""
 
-    def __init__(self, folder: AnyPath | Folder) -> None:
-        self._folder = folder if isinstance(folder, Folder) else Folder(folder)
-        self.results: Json = self._folder.read("gap.json")
-        """The content of `gap.json`."""
-
-    @property
-    def folder(self) -> pathlib.Path:
-        """The folder of its files."""
-        return self._folder.path
+    FILE = "gap.json"
 
     @property
     def verdict(self) -> str:
@@ -76,15 +63,6 @@ class Explanation:
     def gap(self) -> Json:
         """Misfits over the noise, before and after, of the fitted and of the held-out runs."""
         return self.results["gap"]
-
-    @property
-    def machine(self) -> Machine:
-        """The machine with the effects."""
-        return Machine(self.folder / "machine.yaml")
-
-    def page(self, out: AnyPath | None = None) -> Page:
-        """Writes its page, and returns it."""
-        return page(os.fspath(self.folder), out)
 
     def __repr__(self) -> str:
         effects = ", ".join(effect["effect"] for effect in self.effects) or "no effect"

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import os
-import pathlib
 from collections.abc import Iterable
 
 from . import _crosshead
 from .errors import InputError
-from .folder import Folder
 from .kinds import AnyMachine, AnyPath, Json, Progress
 from .machine import Machine
-from .page import Page, page
 from .progress import shown
+from .results import Results
 
 
 def estimate_wear(
@@ -36,9 +34,7 @@ def estimate_wear(
     """
     if not 1 < worn_from < float("inf"):
         raise InputError(f"worn_from: found {worn_from}, expected a number above 1")
-    folder = Folder(out)
-    if (folder.path / "wear.json").exists():
-        raise InputError(f"{folder.path / 'wear.json'} is already there; `Wear(folder)` opens it")
+    folder = Wear.new_folder(out)
     with shown(progress) as report:
         _crosshead.estimate_wear(
             os.fspath(bundle),
@@ -52,32 +48,15 @@ def estimate_wear(
     return Wear(folder)
 
 
-class Wear:
+class Wear(Results):
     """The estimated clearance of each joint. `Wear("wear")` opens a folder that `crosshead estimate-wear` has written."""
 
-    def __init__(self, folder: AnyPath | Folder) -> None:
-        self._folder = folder if isinstance(folder, Folder) else Folder(folder)
-        self.results: Json = self._folder.read("wear.json")
-        """The content of `wear.json`."""
-
-    @property
-    def folder(self) -> pathlib.Path:
-        """The folder of its files."""
-        return self._folder.path
+    FILE = "wear.json"
 
     @property
     def joints(self) -> dict[str, Json]:
         """The joints by path: dicts with `verdict`, `clearance_m`, `low_m`, `high_m`, `reason`."""
         return self.results["joints"]
-
-    @property
-    def machine(self) -> Machine:
-        """The machine with the estimated clearances."""
-        return Machine(self.folder / "machine.yaml")
-
-    def page(self, out: AnyPath | None = None) -> Page:
-        """Writes its page, and returns it."""
-        return page(os.fspath(self.folder), out)
 
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint}: {one.get('verdict')}" for joint, one in self.joints.items())
