@@ -13,4 +13,5 @@ mod operating_points;
 mod operation;
 mod random;
 mod recording;
+mod scatter;
 mod words;

@@ -2,7 +2,7 @@
 
 use super::examples::nearest_median;
 use super::recording::Recording;
-use super::words;
+use super::{scatter, words};
 use crate::dataset_page::{FaultCount, Operation, Scatter, Waterfall};
 use crate::{Error, text};
 use std::f64::consts::TAU;
@@ -44,25 +44,12 @@ fn trends(dataset: &Dataset, faults: &[FaultCount], sensor: usize) -> Vec<Scatte
         );
         is_condition && distinct(label.values.iter().copied()).len() > 1
     };
-    let judged = |count: &&FaultCount| dataset.sensors.of_fault(&count.fault).contains(&sensor);
-    let place = match words::sensor(dataset, sensor).as_str() {
-        "" => String::new(),
-        sensor => format!(", {sensor}"),
-    };
     let rms = &windows.measured[sensor].rms;
     let trend = |label: &Label| Scatter {
         x: (words::name(label), text::unit(&label.unit)),
-        y: (format!("rms{place}"), "m/s²".to_owned()),
+        y: (scatter::feature(dataset, sensor, "rms"), "m/s²".to_owned()),
         log_y: true,
-        classes: faults
-            .iter()
-            .filter(judged)
-            .map(|count| {
-                let own = (0..windows.count()).filter(|&w| windows.fault[w] == count.fault);
-                let points = own.map(|w| [label.values[w], rms[w]]);
-                (count.fault.clone(), points.collect())
-            })
-            .collect(),
+        classes: scatter::by_fault(dataset, faults, sensor, [&label.values, rms]),
     };
     windows.labels.iter().filter(condition).map(trend).collect()
 }

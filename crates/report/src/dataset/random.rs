@@ -1,7 +1,7 @@
 //! Sweeps drawn at random: how parameters lie, and how features go with clearance.
 
 use super::features::{high_name, high_rms};
-use super::words;
+use super::{scatter, words};
 use crate::dataset_page::{FaultCount, Histogram, RandomSweep, Scatter};
 use crate::text;
 use sweep::reader::{ChannelFeatures, Dataset};
@@ -42,30 +42,17 @@ fn scatters(dataset: &Dataset, faults: &[FaultCount]) -> Vec<Scatter> {
         .map(|window| windows.largest_clearance(window))
         .collect();
     let of_sensor = |(sensor, measured): (usize, &ChannelFeatures)| {
-        let judged = |count: &&FaultCount| dataset.sensors.of_fault(&count.fault).contains(&sensor);
-        let place = match words::sensor(dataset, sensor).as_str() {
-            "" => String::new(),
-            sensor => format!(", {sensor}"),
-        };
-        let scatter = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
+        let against = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
             x: ("largest clearance".to_owned(), "m".to_owned()),
-            y: (format!("{name}{place}"), unit.to_owned()),
+            y: (scatter::feature(dataset, sensor, name), unit.to_owned()),
             log_y,
-            classes: faults
-                .iter()
-                .filter(judged)
-                .map(|count| {
-                    let own = (0..windows.count()).filter(|&w| windows.fault[w] == count.fault);
-                    let points = own.map(|w| [clearances[w], values[w]]);
-                    (count.fault.clone(), points.collect())
-                })
-                .collect(),
+            classes: scatter::by_fault(dataset, faults, sensor, [&clearances, values]),
         };
         [
-            scatter("rms", "m/s²", false, &measured.rms),
-            scatter(&high_name(), "m/s²", true, &high_rms(measured)),
-            scatter("crest factor", "", false, &measured.crest_factor),
-            scatter("kurtosis", "", true, &measured.kurtosis),
+            against("rms", "m/s²", false, &measured.rms),
+            against(&high_name(), "m/s²", true, &high_rms(measured)),
+            against("crest factor", "", false, &measured.crest_factor),
+            against("kurtosis", "", true, &measured.kurtosis),
         ]
     };
     let sensors = windows.measured.iter().enumerate();
