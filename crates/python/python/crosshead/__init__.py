@@ -12,7 +12,7 @@ stops any work.
 from ._crosshead import Table, __version__
 from .calibrate import Calibration, Parameter, calibrate
 from .dataset import Dataset
-from .domain_gap import DomainGap, domain_gap
+from .domain_gap import DomainGap, TellingFeature, domain_gap
 from .errors import Error, InputError
 from .explain_gap import Explanation, explain_gap
 from .features import Features, features
@@ -38,6 +38,7 @@ __all__ = [
     "Parameter",
     "Run",
     "Table",
+    "TellingFeature",
     "Wear",
     "__version__",
     "calibrate",
