@@ -8,6 +8,7 @@ pub mod distribution;
 pub mod effects;
 pub mod engines;
 mod error;
+pub mod fault_words;
 pub mod in_order;
 pub mod labels;
 mod normal;

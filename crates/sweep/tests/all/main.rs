@@ -7,7 +7,9 @@ mod dataset;
 mod errors;
 mod exponent;
 mod labels;
+mod over_angle;
 mod plan;
 mod schema;
 #[path = "../toy/mod.rs"]
 mod toy;
+mod words;
