@@ -6,7 +6,7 @@ use recordings::formats::mcap::{self, Channel, Recording};
 use recordings::formats::parquet::TableWriter;
 use recordings::{
     CaseWarning, Column, ColumnEntry, Counts, DatasetCard, FailedCase, FileEntry, FileRecord, Kind,
-    Licence, Manifest, Schema, Subset, Value, WholeFile,
+    Licence, Manifest, Schema, Subset, Value, WholeFile, croissant,
 };
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
@@ -272,6 +272,7 @@ impl Dataset {
             version: "0.1.0".into(),
         };
         self.text("README.md", &card.to_string());
+        self.text("croissant.json", &croissant(&card, &self.files).unwrap());
         self.text("sweep.yaml", SWEEP);
         self.files.sort_by(|a, b| a.path.cmp(&b.path));
         let manifest = Manifest {

@@ -12,4 +12,6 @@ mod plan;
 mod schema;
 #[path = "../toy/mod.rs"]
 mod toy;
+#[path = "../../../../tests/readers/venv.rs"]
+mod venv;
 mod words;

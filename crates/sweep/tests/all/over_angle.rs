@@ -2,12 +2,14 @@
 //! resampling leaves of an order in closed form.
 
 use crate::toy::{self, each, files, options, plan, run};
+use crate::venv;
 use recordings::Table;
 use recordings::formats::parquet;
 use signal::channel::Channel;
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::path::Path;
+use std::process::Command;
 use std::sync::atomic::AtomicBool;
 use sweep::dataset::Failure;
 use sweep::{Case, Existing, Plan, Recording, generate};
@@ -136,6 +138,8 @@ fn signals_are_of_one_length_and_what_resampling_leaves_is_bounded() {
     }
     // Each of the twelve cases draws its own.
     assert!(starts.len() > 8, "{starts:?}");
+    let script = venv::readers().join("read_dataset.py");
+    venv::run(Command::new(venv::python()).arg(script).arg(&one));
 }
 
 #[test]
