@@ -20,7 +20,7 @@ def test_the_bytes_are_those_of_the_program(dataset, sweep, tmp_path):
 def test_cases_have_labels_conditions_and_unknowns(dataset):
     cases = dataset.cases
     assert len(cases) == 12 == len(set(cases["case_id"]))
-    assert set(cases.roles.values()) == {"label", "condition", "unknown"}
+    assert set(cases.roles.values()) == {"identifier", "label", "condition", "unknown"}
     assert set(cases["fault"]) == {"none", "big_end", "big_end+small_end"}
     worn = cases["clearance_big_end_m"][cases["fault"] == "big_end"]
     assert ((1e-4 <= worn) & (worn <= 3e-4)).all()

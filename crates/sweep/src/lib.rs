@@ -9,6 +9,7 @@ pub mod domain_gap;
 pub mod effects;
 pub mod engines;
 mod error;
+pub mod fault_words;
 pub mod in_order;
 pub mod labels;
 mod normal;

@@ -31,7 +31,7 @@ class Table:
         """What each column means."""
     @property
     def roles(self) -> dict[str, str]:
-        """Role of each column that has one: `label`, `condition`, `unknown`, `feature` or `signal`."""
+        """Role of each column that has one: `identifier`, `label`, `condition`, `unknown`, `feature` or `signal`."""
     def __len__(self) -> int: ...
     def __contains__(self, name: str) -> bool: ...
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
@@ -61,6 +61,7 @@ class Description:
     manifest: str
     splits: list[str]
     sample_rate_hz: float
+    samples_per_revolution: int | None
     revolutions_per_window: int
     channels: list[str]
     features: list[tuple[str, str, str | None, str | None, str]]

@@ -26,12 +26,10 @@ pub use subset::Subset;
 pub use windows::{Case, Windows};
 
 use crate::Plan;
+use crate::dataset::CRANK_ANGLE;
 use files::Files;
 use recordings::{Column, Manifest, Table};
 use std::path::Path;
-
-/// The channel of the crank angle.
-const CRANK_ANGLE: &str = "crank_angle_rad";
 
 /// A finished dataset, its table of features read.
 pub struct Dataset {

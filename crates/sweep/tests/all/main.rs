@@ -7,7 +7,11 @@ mod dataset;
 mod errors;
 mod exponent;
 mod labels;
+mod over_angle;
 mod plan;
 mod schema;
 #[path = "../toy/mod.rs"]
 mod toy;
+#[path = "../../../../tests/readers/venv.rs"]
+mod venv;
+mod words;
