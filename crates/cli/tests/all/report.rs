@@ -327,6 +327,7 @@ fn random_cases_have_distributions() {
         "<h3>Kurtosis against largest clearance</h3>",
         "against largest clearance for 16\u{a0}windows",
         "No clearance, ",
+        "trained on 8 windows of the split for training and tested on 8",
     ] {
         assert!(html.contains(said), "{said}");
     }

@@ -1,6 +1,6 @@
 //! The page of a dataset, from its tables.
 
-use super::{about, columns, counts, examples, features, grid, operation, random};
+use super::{about, baseline, columns, counts, examples, features, grid, operation, random};
 use crate::Error;
 use crate::dataset_page::{DatasetPage, Design};
 use sweep::reader::Dataset;
@@ -42,6 +42,7 @@ impl DatasetPage {
             examples,
             design,
             operation: operation::operation(dataset, &faults)?,
+            baseline: baseline::baseline(dataset)?,
             features,
             feature_rows,
             columns: columns::columns(dataset)?,

@@ -1,6 +1,7 @@
 //! The pages of a dataset, from its tables.
 
 mod about;
+mod baseline;
 mod chaos;
 mod columns;
 mod counts;

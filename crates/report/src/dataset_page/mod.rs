@@ -20,6 +20,7 @@ pub(crate) use examples::MOST_EXAMPLES;
 
 use crate::figure::Colour;
 use crate::{Column, Level, classes};
+use classify::Baseline;
 use recordings::{CaseWarning, FailedCase};
 
 /// The content of the page. Numbers are SI; labels and names are as in the data.
@@ -63,6 +64,8 @@ pub struct DatasetPage {
     pub design: Design,
     /// How levels and spectra go with speed and load.
     pub operation: Operation,
+    /// How well a classifier does that is trained on it; none where it has no test or one class alone.
+    pub baseline: Option<Baseline>,
     /// The features of the table.
     pub features: Vec<Feature>,
     /// The values of the features for each fault.

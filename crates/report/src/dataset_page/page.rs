@@ -10,6 +10,7 @@ use super::{
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Column, Error, classes, text};
 use askama::Template;
+use classify::{Baseline, ClassScore};
 use recordings::{CaseWarning, FailedCase};
 
 /// Longest tables on the page, in rows.
@@ -248,6 +249,19 @@ impl View<'_> {
 
     fn feature_rows(&self) -> &[FeatureRow] {
         &self.page.feature_rows[..self.page.feature_rows.len().min(MOST_FAULTS)]
+    }
+
+    /// The first faults of a baseline, which is as many as a table has.
+    fn classes(baseline: &Baseline) -> &[ClassScore] {
+        &baseline.classes[..baseline.classes.len().min(MOST_FAULTS)]
+    }
+
+    fn class_count(baseline: &Baseline) -> String {
+        text::count(baseline.classes.len())
+    }
+
+    fn percent(share: &f64) -> String {
+        format!("{}\u{a0}%", text::decimal(100.0 * share, 1))
     }
 
     /// A remark under a table that does not show all rows; empty if it does.

@@ -199,6 +199,20 @@ fn levels_and_spectra_stand_over_the_speed_where_it_varies() {
 }
 
 #[test]
+fn a_baseline_stands_on_the_page_where_there_is_one() {
+    let page = datasets::grid();
+    let html = page.render().unwrap().html;
+    assert!(html.contains("trained on 1200 windows") && html.contains("tested on 400"));
+    assert!(html.contains("the right fault in 92.0\u{a0}% of these windows"));
+    assert!(html.contains("<td class=\"n\">84.0\u{a0}%</td><td>small end</td>"));
+    let without = DatasetPage {
+        baseline: None,
+        ..page
+    };
+    assert!(!without.render().unwrap().html.contains("baseline"));
+}
+
+#[test]
 fn text_from_the_data_is_never_markup() {
     let hostile = "<script src='http://x'>&\"</script>".to_owned();
     let mut page = datasets::random();
