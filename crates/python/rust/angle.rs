@@ -85,22 +85,24 @@ fn resampled(
 
 /// The crank angle of a row of so many samples.
 fn angle(batch: &RecordBatch, row: usize, count: usize) -> Result<CrankAngle, Failure> {
-    let encoder = match batch.column_by_name(CRANK_ANGLE) {
-        Some(_) => Some(samples(batch, CRANK_ANGLE, row)?),
-        None => None,
-    };
-    let rpm = number(batch, "speed_rpm", row)?;
-    // Signals over the crank angle have no rate; at the mean speed it is this one.
-    let rate = match batch.column_by_name(OF_TURN) {
-        Some(of_turn) => {
-            let of_turn = of_turn.as_primitive_opt::<Int64Type>();
-            let kind = || Failure::input(format!("column `{OF_TURN}` holds no whole numbers"));
-            of_turn.ok_or_else(kind)?.value(row) as f64 * rpm / 60.0
+    let angle = match batch.column_by_name(CRANK_ANGLE) {
+        Some(_) => CrankAngle::from_encoder(&samples(batch, CRANK_ANGLE, row)?),
+        None => {
+            let rpm = number(batch, "speed_rpm", row)?;
+            CrankAngle::from_speed(count, rate(batch, row, rpm)?, rpm)
         }
-        None => number(batch, "sample_rate_hz", row)?,
     };
-    let angle = CrankAngle::recorded(encoder.as_deref(), count, rate, rpm);
     angle.map_err(|error| Failure::input(format!("row {row}, crank angle: {error}")))
+}
+
+/// Samples per second of a row at its mean speed, Hz.
+fn rate(batch: &RecordBatch, row: usize, rpm: f64) -> Result<f64, Failure> {
+    let Some(of_turn) = batch.column_by_name(OF_TURN) else {
+        return number(batch, "sample_rate_hz", row);
+    };
+    let of_turn = of_turn.as_primitive_opt::<Int64Type>();
+    let kind = || Failure::input(format!("column `{OF_TURN}` holds no whole numbers"));
+    Ok(of_turn.ok_or_else(kind)?.value(row) as f64 * rpm / 60.0)
 }
 
 /// The point at which signals begin whose angle no sensor reads.

@@ -88,7 +88,7 @@ impl Dataset {
             retry_failed: false,
             trial: None,
         };
-        let plan = plan.with_format(format);
+        let plan = plan.with_format(format).unwrap();
         generate(&plan, &self.path(), &options, &simulate_cases, &mut ()).unwrap();
     }
 
