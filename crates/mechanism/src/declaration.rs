@@ -58,14 +58,12 @@ pub enum Proposal {
     Hum,
     /// By a sparse regression on its terms: a force law without a name.
     ForceLaw,
-    /// Not by a search.
-    Separately,
 }
 
 impl Proposal {
     /// Whether it is not tried at each place as others are.
     pub fn is_separate(self) -> bool {
-        matches!(self, Self::Hum | Self::ForceLaw | Self::Separately)
+        matches!(self, Self::Hum | Self::ForceLaw)
     }
 }
 

@@ -11,7 +11,7 @@ use simulate::Sensor;
 declaration! {
     /// A constant added to what sensors read, in their unit: one to all accelerometers, one to all
     /// gauges of cylinder pressure.
-    SensorOffset at [Throw], Sensor, Separately:
+    SensorOffset at [Throw], Sensor:
     "The sensor's zero has drifted: it reads too much or too little, everywhere by the same amount."
     law "reading + constant" after "" {
         /// Constant added to accelerations.
