@@ -18,6 +18,7 @@ mod interruptible;
 mod machine;
 mod program;
 mod settings;
+mod signal_batches;
 mod simulate;
 mod stream;
 mod table;
@@ -47,6 +48,8 @@ mod _crosshead {
     use crate::machine::Machine;
     #[pymodule_export]
     use crate::program::{page, program, set_program};
+    #[pymodule_export]
+    use crate::signal_batches::{SignalBatches, signal_batches};
     #[pymodule_export]
     use crate::simulate::{Run, simulate};
     #[pymodule_export]

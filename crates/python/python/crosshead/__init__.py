@@ -20,6 +20,7 @@ from .generate import generate
 from .machine import Machine
 from .page import Page
 from .programs import name_program as _name_program
+from .signal_batches import SignalBatches
 from .simulate import Run, simulate
 from .wear import Wear, estimate_wear
 
@@ -37,6 +38,7 @@ __all__ = [
     "Page",
     "Parameter",
     "Run",
+    "SignalBatches",
     "Table",
     "Wear",
     "__version__",

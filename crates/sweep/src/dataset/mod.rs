@@ -1,4 +1,5 @@
-//! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
+//! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard; or their
+//! recordings are handed out without a folder.
 
 mod adopt;
 mod attempts;
@@ -25,6 +26,7 @@ mod record;
 mod recording;
 mod run_shards;
 mod shard;
+mod signal_batches;
 mod status;
 mod store;
 mod tables;
@@ -48,6 +50,7 @@ pub use parts::run_part;
 pub use progress::Progress;
 pub use recording::{Failure, Recording, Runner};
 pub use run_shards::run_shards;
+pub use signal_batches::{SignalBatch, SignalBatches, Waited};
 pub use status::{Status, status};
 pub use tables::Tables;
 pub(crate) use tables::prefixed;

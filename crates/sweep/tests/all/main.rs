@@ -9,5 +9,6 @@ mod exponent;
 mod labels;
 mod plan;
 mod schema;
+mod signal_batches;
 #[path = "../toy/mod.rs"]
 mod toy;
