@@ -10,6 +10,7 @@ stops any work.
 """
 
 from ._crosshead import Table, __version__
+from .angle import over_crank_angle
 from .calibrate import Calibration, Parameter, calibrate
 from .dataset import Dataset
 from .domain_gap import DomainGap, domain_gap
@@ -48,5 +49,6 @@ __all__ = [
     "explain_gap",
     "features",
     "generate",
+    "over_crank_angle",
     "simulate",
 ]
