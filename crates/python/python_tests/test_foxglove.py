@@ -12,10 +12,9 @@ LAYOUT = pathlib.Path(__file__).parents[3] / "pipelines" / "notebooks" / "foxglo
 
 def paths(panel):
     """The message paths of a panel."""
-    axis = panel.get("xAxisPath")
-    return [path["value"] for path in panel.get("paths", []) + [axis] * bool(axis)] + [panel["topicPath"]] * (
-        "topicPath" in panel
-    )
+    axis = [panel["xAxisPath"]] if "xAxisPath" in panel else []
+    topic = [panel["topicPath"]] if "topicPath" in panel else []
+    return [path["value"] for path in panel.get("paths", []) + axis] + topic
 
 
 def leaves(layout):

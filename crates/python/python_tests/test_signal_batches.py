@@ -1,7 +1,6 @@
 """Recordings of a sweep without a folder."""
 
 import gc
-import itertools
 import os
 import pathlib
 import signal
@@ -15,9 +14,9 @@ import pytest
 
 @pytest.fixture
 def long(sweep, tmp_path):
-    """A sweep of minutes."""
+    """A sweep of more cases than are simulated ahead."""
     path = tmp_path / "long.yaml"
-    path.write_text(sweep.read_text().replace("count: 12", "count: 5000"))
+    path.write_text(sweep.read_text().replace("count: 12", "count: 600"))
     return path
 
 
@@ -73,7 +72,6 @@ def test_abandoned_it_ends(long):
     before = threads()
     batches = ch.generate(long)
     next(batches)
-    assert len(list(itertools.islice(batches, 1))) == 1
     del batches
     gc.collect()
     assert settled(before)
@@ -81,14 +79,14 @@ def test_abandoned_it_ends(long):
         next(batches)
     assert settled(before)
     assert list(batches) == []
-    assert batches.done < 5000
+    assert batches.done < 600
 
 
 def test_ctrl_c_ends_it(long):
-    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
     batches = ch.generate(long, progress=False)
+    next(batches)
     started = time.monotonic()
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         for _ in batches:
             pass
@@ -98,7 +96,7 @@ def test_ctrl_c_ends_it(long):
 
 def test_a_progress_that_raises_ends_it(long):
     def stop(what, done, total, message):
-        assert (what, total) == ("cases", 5000)
+        assert (what, total) == ("cases", 600)
         raise RuntimeError("enough")
 
     batches = ch.generate(long, progress=stop)

@@ -20,7 +20,7 @@ import torch
 from crosshead.torch import AngleWindows
 from sklearn.metrics import ConfusionMatrixDisplay
 
-CASES = int(os.environ.get("CASES", 2048))
+CASES = int(os.environ.get("CASES", 800))
 EPOCHS = int(os.environ.get("EPOCHS", 30))
 ROOT = "../../data/recordings/example-diagnosis"
 FOLDER = tempfile.mkdtemp()

@@ -68,7 +68,7 @@ class SignalBatches(Iterator[_crosshead.Table]):
     def __next__(self) -> _crosshead.Table:
         try:
             table = self._rust.next()
-            if self._report is not None:
+            if table is not None and self._report is not None:
                 self._report("cases", self.done, self.cases, "")
         except BaseException:
             self.close()
