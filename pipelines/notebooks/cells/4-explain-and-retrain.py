@@ -4,6 +4,8 @@
 # The recordings in `data/recordings/example-hidden-effect` were made by another program, whose machine does something that the
 # model of the data sheet does not. What does that cost a model trained on simulated recordings, and is it repaired when the
 # missing effect is found and added?
+#
+# Takes six minutes of processor time.
 
 # %%
 import os
