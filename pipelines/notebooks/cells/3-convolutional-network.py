@@ -5,7 +5,7 @@
 # itself. Over the crank angle all speeds have the same number of points in a revolution. It is trained on simulated recordings
 # alone and tested on 24 recordings of another program.
 #
-# Needs PyTorch: `pip install torch`. Takes five minutes of processor time, about half of it for training.
+# Needs PyTorch: `pip install torch`. Takes five minutes of processor time.
 
 # %%
 import csv
