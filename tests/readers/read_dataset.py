@@ -3,8 +3,8 @@
     python read_dataset.py DIR [--expected FILE.json]
 
 Reads every table with pyarrow, pandas, polars, duckdb and Hugging Face datasets, and with deltalake and
-polars where it was exported as a Delta table, every MCAP file with mcap and mcap-ros2-support, and runs
-the Python code of the data card. What is expected comes from
+polars where it was exported as a Delta table, every MCAP file with mcap and mcap-ros2-support, validates
+croissant.json and reads records by it with mlcroissant, and runs the Python code of the data card. What is expected comes from
 manifest.json and from the files themselves, which must agree with each other: checksums, counts,
 splits, labels and units. With --expected also every value is compared with those of the file:
 
@@ -17,6 +17,7 @@ Exit status 1 and a message at the first difference.
 
 import argparse
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -30,6 +31,7 @@ os.environ.update(HF_HOME=CACHE.name, HF_HUB_OFFLINE="1", HF_DATASETS_OFFLINE="1
 import datasets  # noqa: E402  (reads the environment when imported)
 import deltalake  # noqa: E402
 import duckdb  # noqa: E402
+import mlcroissant  # noqa: E402
 import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 import polars as pl  # noqa: E402
@@ -240,11 +242,55 @@ def read_with_datasets(folder, tables):
             rows = loaded[split]
             table = rows.with_format("arrow")[:]
             found = {column: of_arrow(table[column]) for column in table.column_names}
+            classes = {column: f for column, f in rows.features.items() if isinstance(f, datasets.ClassLabel)}
+            same(list(classes), [c for c in ["fault"] if c in columns], f"classes of {name}/{split} in datasets")
+            for column, label in classes.items():
+                found[column] = [label.int2str(value) for value in found[column]]
+                same(len(set(label.names)), label.num_classes, f"names of the classes of {column}")
             equal_columns(found, columns, f"{name}/{split} in datasets")
             if len(rows) > 0:
-                first = {column: plain([value]) for column, value in rows[0].items()}
+                row = {c: classes[c].int2str(v) if c in classes else v for c, v in rows[0].items()}
+                first = {column: plain([value]) for column, value in row.items()}
                 wanted = {column: values[:1] for column, values in columns.items()}
                 equal_columns(first, wanted, f"first row of {name}/{split} in datasets")
+
+
+# ---- Croissant
+
+RECORDS = 3
+
+
+def read_with_croissant(folder, manifest, tables):
+    """croissant.json is valid, has the checksums of the manifest, and gives the records of the tables."""
+    path = folder / "croissant.json"
+    # It raises where the metadata is not valid.
+    metadata = mlcroissant.Dataset(jsonld=str(path)).metadata
+    same(list(metadata.issues.errors), [], f"errors in {path}")
+    sums = {file["path"]: file["sha256"] for file in manifest["files"]}
+    files = [f for f in metadata.distribution if isinstance(f, mlcroissant.FileObject)]
+    same({f.content_url: f.sha256 for f in files}, {p: s for p, s in sums.items() if p.endswith(".parquet")}, str(path))
+    same([r.name for r in metadata.record_sets], list(tables), f"record sets of {path}")
+    for name, splits in tables.items():
+        every = {column: sum((c[column] for c in splits.values()), []) for column in next(iter(splits.values()))}
+        if not next(iter(every.values())):
+            continue
+        key = [column for column in ("case_id", "window", "value", "direction", "bifurcation") if column in every]
+        rows = list(zip(*(every[column] for column in key)))
+        records = mlcroissant.Dataset(jsonld=str(path)).records(name)
+        for record in itertools.islice(records, RECORDS):
+            found = {column.removeprefix(f"{name}/"): of_croissant(value) for column, value in record.items()}
+            row = rows.index(tuple(found[column] for column in key))
+            wanted = {column: values[row : row + 1] for column, values in every.items()}
+            equal_columns({column: [value] for column, value in found.items()}, wanted, f"a record of {name} by {path}")
+
+
+def of_croissant(value):
+    """A value as the tables have it: texts are bytes there, lists are numbers."""
+    if isinstance(value, bytes):
+        return value.decode()
+    if isinstance(value, (list, np.ndarray)):
+        return np.asarray(value, dtype="float32").tobytes()
+    return plain([value], nan_is_null=True)[0]
 
 
 # ---- MCAP
@@ -380,6 +426,8 @@ def main():
     check_counts(manifest, tables)
     diagrams = read_diagrams(folder)
     read_with_datasets(folder, {**tables, **diagrams})
+    if (folder / "croissant.json").exists():
+        read_with_croissant(folder, manifest, {**tables, **diagrams})
     cases = [check_mcap(folder, path, tables, expected) for path in recordings]
     if cases and "features" in tables:
         known = {case for columns in tables["features"].values() for case in columns["case_id"]}

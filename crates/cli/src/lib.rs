@@ -15,6 +15,7 @@ pub mod check;
 pub mod compare;
 pub mod completions;
 pub mod console;
+pub mod domain_gap;
 pub mod estimate_wear;
 pub mod explain_gap;
 pub mod failure;

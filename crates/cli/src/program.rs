@@ -2,8 +2,8 @@
 
 use crate::console::{Console, colour_of_clap};
 use crate::{
-    Failure, calibrate, check, compare, completions, estimate_wear, explain_gap, features,
-    gen_dataset, hidden_effects, init,
+    Failure, calibrate, check, compare, completions, domain_gap, estimate_wear, explain_gap,
+    features, gen_dataset, hidden_effects, init,
 };
 use crate::{finish, man, replay, report, schema, simulate, sweep, try_case, verify};
 use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -43,6 +43,8 @@ enum Verb {
     Features(features::Arguments),
     /// Compare two recordings, or two datasets: features, waveforms, spectra
     Compare(compare::Arguments),
+    /// Find out whether a classifier can tell simulated windows from measured ones, and by which features
+    DomainGap(domain_gap::Arguments),
     /// Check that the files of a finished dataset are those that were written
     Verify(verify::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
@@ -100,6 +102,7 @@ impl Program for Crosshead {
             Verb::Simulate(arguments) => simulate::run(arguments),
             Verb::Features(arguments) => features::run(arguments),
             Verb::Compare(arguments) => compare::run(arguments),
+            Verb::DomainGap(arguments) => domain_gap::run(arguments),
             Verb::Verify(arguments) => verify::run(arguments),
             Verb::Report(arguments) => report::run(arguments),
             Verb::Calibrate(arguments) => calibrate::run(arguments),

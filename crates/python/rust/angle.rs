@@ -4,16 +4,22 @@ use crate::column::Column;
 use crate::failure::{failed, wrong};
 use crate::table::Table;
 use arrow::array::{ArrayRef, AsArray, Float32Array, RecordBatch};
-use arrow::datatypes::{Float32Type, Float64Type};
+use arrow::datatypes::{Float32Type, Float64Type, Int64Type};
 use cli::Failure;
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The column with the crank angle at each sample.
 const CRANK_ANGLE: &str = "crank_angle_rad";
+/// The column of signals over the crank angle.
+const OF_TURN: &str = "samples_per_revolution";
+
+/// The column of the angle at which such signals begin.
+const START: &str = "start_angle_rad";
 
 /// A row: its channels one after the other, and at which point of a revolution they begin, counted from top dead centre.
 type Resampled = (Vec<f32>, usize);
@@ -61,7 +67,8 @@ fn resampled(
     let place = |error: signal::Error| Failure::input(format!("row {row}: {error}"));
     let mut grid = None;
     let mut all = Vec::new();
-    let mut first = 0;
+    let start = start(batch, row, points)?;
+    let mut first = start;
     for name in channels {
         let samples = samples(batch, name, row)?;
         let grid = match &mut grid {
@@ -70,7 +77,7 @@ fn resampled(
                 .insert(AngleGrid::new(&angle(batch, row, samples.len())?, points).map_err(place)?),
         };
         let over_angle = grid.resample(&samples).map_err(place)?;
-        first = over_angle.first_point();
+        first = (over_angle.first_point() + start) % points;
         all.extend(over_angle.samples().iter().map(|x| *x as f32));
     }
     Ok((all, first))
@@ -78,14 +85,34 @@ fn resampled(
 
 /// The crank angle of a row of so many samples.
 fn angle(batch: &RecordBatch, row: usize, count: usize) -> Result<CrankAngle, Failure> {
-    let angle = match batch.column_by_name(CRANK_ANGLE) {
-        Some(_) => CrankAngle::from_encoder(&samples(batch, CRANK_ANGLE, row)?),
-        None => {
-            let rate = number(batch, "sample_rate_hz", row)?;
-            CrankAngle::from_speed(count, rate, number(batch, "speed_rpm", row)?)
-        }
+    let encoder = match batch.column_by_name(CRANK_ANGLE) {
+        Some(_) => Some(samples(batch, CRANK_ANGLE, row)?),
+        None => None,
     };
+    let rpm = number(batch, "speed_rpm", row)?;
+    // Signals over the crank angle have no rate; at the mean speed it is this one.
+    let rate = match batch.column_by_name(OF_TURN) {
+        Some(of_turn) => {
+            let of_turn = of_turn.as_primitive_opt::<Int64Type>();
+            let kind = || Failure::input(format!("column `{OF_TURN}` holds no whole numbers"));
+            of_turn.ok_or_else(kind)?.value(row) as f64 * rpm / 60.0
+        }
+        None => number(batch, "sample_rate_hz", row)?,
+    };
+    let angle = CrankAngle::recorded(encoder.as_deref(), count, rate, rpm);
     angle.map_err(|error| Failure::input(format!("row {row}, crank angle: {error}")))
+}
+
+/// The point at which signals begin whose angle no sensor reads.
+fn start(batch: &RecordBatch, row: usize, points: usize) -> Result<usize, Failure> {
+    let known = batch.column_by_name(CRANK_ANGLE).is_some();
+    match batch.column_by_name(START) {
+        Some(_) if !known => {
+            let turns = number(batch, START, row)? / TAU;
+            Ok((turns * points as f64).round() as usize)
+        }
+        _ => Ok(0),
+    }
 }
 
 fn column<'a>(batch: &'a RecordBatch, name: &str) -> Result<&'a ArrayRef, Failure> {

@@ -19,6 +19,8 @@ pub struct Description {
     manifest: String,
     splits: Vec<String>,
     sample_rate_hz: f64,
+    /// Of signals over the crank angle.
+    samples_per_revolution: Option<u32>,
     revolutions_per_window: u32,
     /// Names of the recorded channels.
     channels: Vec<String>,
@@ -53,6 +55,7 @@ pub fn open_dataset(py: Python<'_>, folder: PathBuf) -> PyResult<Description> {
         manifest: dataset.manifest().to_json().map_err(failed)?,
         splits: dataset.splits(),
         sample_rate_hz: dataset.plan.settings.sample_rate,
+        samples_per_revolution: (dataset.plan.over_angle).map(|of| of.samples_per_revolution),
         revolutions_per_window: dataset.revolutions_per_window(),
         channels: dataset
             .plan

@@ -1,20 +1,17 @@
 //! Features of recordings, measured or simulated.
 
 use crate::failure::wrong;
-use crate::interruptible::{Shared, interruptible};
+use crate::interruptible::interruptible;
 use crate::table::Table;
-use ::features::recorded::{
-    CrankReference, Input, KnownMachine, Said, Table as Recorded, Unit, WindowLength, inputs, row,
-};
+use ::features::recorded::{CrankReference, KnownMachine, Said, Unit, WindowLength, inputs};
 use cli::Failure;
 use input::quantity::{AboveZero, Angle, Frequency, Quantity, Speed};
 use pyo3::prelude::*;
-use recordings::Table as Rows;
 use recordings::formats::record_batch::record_batch;
 use recordings::measured::Options;
 use std::path::PathBuf;
-use sweep::in_order::in_order;
 use sweep::reader::Like;
+use sweep::recorded_table::recorded_table;
 
 /// What is said of recordings: texts with their units, as on the command line.
 #[derive(FromPyObject)]
@@ -102,7 +99,8 @@ fn parsed<T>(
     })
 }
 
-/// The features of the recordings at `paths`, a row for each window, and what looks wrong with them.
+/// The features of the recordings at `paths`, a row for each window, the recording that each row is of, and what looks
+/// wrong with them.
 ///
 /// With `like`, the folder of a dataset, these are its features, from windows as it has them.
 ///
@@ -116,13 +114,13 @@ pub fn features(
     asked: Asked,
     like: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Table, Vec<String>)> {
+) -> PyResult<(Table, Vec<String>, Vec<String>)> {
     if asked.window.is_some() && like.is_some() {
         return Err(wrong(
             "window: found one beside like, which says how long windows are",
         ));
     }
-    let (rows, warnings) = interruptible(py, progress, |shared| {
+    let (table, recordings) = interruptible(py, progress, |shared| {
         let (mut said, mut length) = (asked.said()?, asked.length()?);
         let like = like.as_deref().map(Like::read);
         let like = like.transpose().map_err(Failure::input)?;
@@ -131,51 +129,19 @@ pub fn features(
             length = like.length();
         }
         let inputs = inputs(&paths, &said).map_err(Failure::input)?;
-        rows(&inputs, &said, length, like.as_ref(), shared)
-    })?;
-    let batch = record_batch(&rows).map_err(crate::failure::failed)?;
-    Ok((Table::of_batch(batch), warnings))
-}
-
-/// The rows of all windows, in order.
-fn rows(
-    inputs: &[Input],
-    said: &Said,
-    length: WindowLength,
-    like: Option<&Like>,
-    shared: &Shared,
-) -> Result<(Rows, Vec<String>), Failure> {
-    let table = Recorded::new(inputs, said).map_err(Failure::input)?;
-    let schema = table.schema().clone();
-    let kept = match like {
-        Some(like) => like.columns(&schema).map_err(Failure::input)?,
-        None => (0..schema.columns().len()).collect(),
-    };
-    let mut rows = Rows::new(schema.select(&kept));
-    let mut warnings = Vec::new();
-    let threads = std::thread::available_parallelism().map_or(1, Into::into);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(Failure::work)?;
-    shared.begin("windows", None, 0);
-    in_order(
-        &pool,
-        2 * threads,
-        table.windows(length),
-        |window| window.as_ref().ok().map(row),
-        |window, made| {
-            window.map_err(Failure::input)?;
-            if shared.is_stopped() {
-                return Err(Failure::interrupted("interrupted"));
-            }
+        let threads = std::thread::available_parallelism().map_or(1, Into::into);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(Failure::work)?;
+        shared.begin("windows", None, 0);
+        let go_on = || {
             shared.add(1);
-            let Some(mut made) = made else { return Ok(()) };
-            if let Some(like) = like {
-                like.check(&made).map_err(Failure::input)?;
-            }
-            warnings.extend(made.warning());
-            made.keep(&kept);
-            rows.push(made.values).map_err(Failure::work)
-        },
-    )?;
-    Ok((rows, warnings))
+            !shared.is_stopped()
+        };
+        let table = recorded_table(&inputs, &said, length, like.as_ref(), &pool, go_on);
+        let table = table.map_err(Failure::input)?;
+        let recordings = table.recordings().map_err(Failure::work)?;
+        Ok((table, recordings))
+    })?;
+    let batch = record_batch(&table.rows).map_err(crate::failure::failed)?;
+    Ok((Table::of_batch(batch), recordings, table.warnings))
 }

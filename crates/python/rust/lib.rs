@@ -10,6 +10,7 @@ mod angle;
 mod calibrate;
 mod column;
 mod dataset;
+mod domain_gap;
 mod explain_gap;
 mod failure;
 mod features;
@@ -38,6 +39,8 @@ mod _crosshead {
     use crate::column::Column;
     #[pymodule_export]
     use crate::dataset::{Description, ParquetFiles, TableIterator, open_dataset};
+    #[pymodule_export]
+    use crate::domain_gap::domain_gap;
     #[pymodule_export]
     use crate::explain_gap::explain_gap;
     #[pymodule_export]

@@ -98,7 +98,7 @@ impl Table {
         self.said(py, "description")
     }
 
-    /// Role of each column that has one: `label`, `condition`, `unknown`, `feature` or `signal`.
+    /// Role of each column that has one: `identifier`, `label`, `condition`, `unknown`, `feature` or `signal`.
     #[getter]
     fn roles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.said(py, "role")

@@ -5,7 +5,7 @@
 //! - [`measured`]: recordings of any origin, read a stretch at a time;
 //! - [`WholeFile`]: a file that appears whole or not at all, with its size and checksum;
 //! - [`shell`]: words of the shell, for commands to paste;
-//! - [`DatasetCard`] and [`Manifest`]: what a dataset says about itself, to people and programs.
+//! - [`DatasetCard`], [`croissant()`] and [`Manifest`]: what a dataset says about itself, to people and programs.
 //!
 //! A table reaches the disk through three steps, each of which hands the writer on:
 //!
@@ -32,17 +32,21 @@ pub mod formats;
 pub mod measured;
 pub mod shell;
 
+mod croissant;
 mod dataset_card;
 mod error;
+mod licence;
 mod manifest;
 mod schema;
 mod table;
 mod value_kind;
 mod whole_file;
 
+pub use croissant::croissant;
 pub use dataset_card::{DatasetCard, Subset};
 pub use error::Error;
-pub use manifest::{CaseWarning, Counts, FailedCase, FileEntry, Manifest};
+pub use licence::Licence;
+pub use manifest::{CaseWarning, ColumnEntry, Counts, FailedCase, FileEntry, Manifest};
 pub use schema::{Column, Role, Schema};
 pub use table::{Cell, Data, Table, Value};
 pub use value_kind::Kind;

@@ -1,6 +1,6 @@
 //! `manifest.json`: what a dataset consists of, for programs.
 
-use crate::{Error, shell};
+use crate::{Column, Error, Schema, shell};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,6 +17,9 @@ pub struct Manifest {
     pub seed: u64,
     /// How many cases and rows there are.
     pub counts: Counts,
+    /// The columns of each table, in their order: `columns["features"]`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub columns: BTreeMap<String, Vec<ColumnEntry>>,
     /// Every other file of the dataset, sorted by path.
     pub files: Vec<FileEntry>,
     /// The cases that have no row, sorted by identifier.
@@ -24,6 +27,42 @@ pub struct Manifest {
     /// What is doubtful about cases that have rows, sorted by identifier.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<CaseWarning>,
+}
+
+/// A column of a table of a dataset.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ColumnEntry {
+    /// Its name.
+    pub name: String,
+    /// Its [`crate::Role`], by name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<String>,
+    /// What its values are: `text`, `integer`, `real`, `flag` or `samples`.
+    pub holds: String,
+    /// Unit of the values, where they have one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// What the values mean.
+    pub description: String,
+}
+
+impl ColumnEntry {
+    /// The columns of a table.
+    pub fn of(schema: &Schema) -> Vec<Self> {
+        schema.columns().iter().map(Self::from).collect()
+    }
+}
+
+impl From<&Column> for ColumnEntry {
+    fn from(column: &Column) -> Self {
+        Self {
+            name: column.name.clone(),
+            role: column.role.map(|role| role.name().to_owned()),
+            holds: column.kind.name().to_owned(),
+            unit: column.unit.clone(),
+            description: column.description.clone(),
+        }
+    }
 }
 
 /// Something doubtful about a case that was simulated.

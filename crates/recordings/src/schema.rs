@@ -6,6 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// What a column is to those who learn from a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
+    /// What names a row, and the rows that belong together.
+    Identifier,
     /// What is to be found out: the fault, and how large it is.
     Label,
     /// At what the machine ran, and what else was chosen.
@@ -19,7 +21,9 @@ pub enum Role {
 }
 
 impl Role {
-    const ALL: [Self; 5] = [
+    /// All roles, in the order in which tables and cards have them.
+    pub const ALL: [Self; 6] = [
+        Self::Identifier,
         Self::Label,
         Self::Condition,
         Self::Unknown,
@@ -30,6 +34,7 @@ impl Role {
     /// Its name in files.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Identifier => "identifier",
             Self::Label => "label",
             Self::Condition => "condition",
             Self::Unknown => "unknown",
@@ -55,7 +60,7 @@ pub struct Column {
     pub unit: Option<String>,
     /// What the values mean, in a sentence.
     pub description: String,
-    /// What it is to those who learn from the table; none of what names a row.
+    /// What it is to those who learn from the table.
     pub role: Option<Role>,
     /// Whether a value may be missing (null in files).
     pub optional: bool,

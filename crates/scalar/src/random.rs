@@ -21,6 +21,8 @@ pub enum Purpose {
     Noise,
     /// Membership of a split.
     Split,
+    /// The crank angle at which a recording begins.
+    Start,
 }
 
 /// The stream of `purpose` for case (or group) `index` of the sweep with this `seed`.

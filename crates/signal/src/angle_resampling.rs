@@ -4,7 +4,7 @@ use crate::crank_angle::CrankAngle;
 use crate::decimate::Decimator;
 use crate::error::{Error, positive};
 use crate::interpolation::interpolate;
-use crate::kaiser::PASS_BAND;
+use crate::kaiser::{HALF_WIDTH, PASS_BAND};
 use rustfft::num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -42,14 +42,7 @@ impl AngleGrid {
     /// # Errors
     /// Fewer than 32 points, or less than one revolution.
     pub fn new(angle: &CrankAngle, points_per_revolution: usize) -> Result<Self, Error> {
-        let n = points_per_revolution;
-        if n < 32 {
-            return Err(Error::OutOfRange {
-                what: "points per revolution",
-                value: n as f64,
-                allowed: "32 or more",
-            });
-        }
+        let n = checked(points_per_revolution)?;
         let samples = angle.angles().len();
         let step = TAU / n as f64;
         let points = points_within_one_interval(angle, step);
@@ -64,7 +57,44 @@ impl AngleGrid {
         let middle = 0.5 * (angle.angles()[0] + angle.angles()[samples - 1]) / step;
         let centred = (middle - 0.5 * (count - 1) as f64).round() as i64;
         let first = centred.clamp(points.start, points.end - count);
+        Self::over(angle, n, first, count)
+    }
 
+    /// The grid of so many whole revolutions that begin at a multiple of 2π/points: the first that is `start` modulo a
+    /// revolution and at least a revolution after the first sample.
+    ///
+    /// The recording covers all that its filters reach, so that the bounds of resampling hold for every point: up to
+    /// 0.4 of the points (or of the samples per revolution, if they are fewer) an order passes within 1e-4, and of
+    /// those that would alias below that less than 1e-4 is left.
+    ///
+    /// # Errors
+    /// Fewer than 32 points, and a recording that does not reach a revolution beyond either end.
+    pub fn from_start(
+        angle: &CrankAngle,
+        points_per_revolution: usize,
+        start: usize,
+        revolutions: usize,
+    ) -> Result<Self, Error> {
+        let n = checked(points_per_revolution)?;
+        let step = TAU / n as f64;
+        let a = angle.angles();
+        // The encoder's steps must not decide on a whole revolution.
+        let begin = (a[0] / step - 0.5).ceil() as i64 + n as i64;
+        let first = begin + (start as i64 - begin).rem_euclid(n as i64);
+        let grid = Self::over(angle, n, first, (revolutions * n) as i64)?;
+        let reach = HALF_WIDTH as f64;
+        let [low, high] = [grid.positions[0], grid.positions[grid.positions.len() - 1]];
+        if low < reach || high > a.len() as f64 - 1.0 - reach {
+            return Err(Error::TooFewRevolutions {
+                needed: revolutions + 3,
+                got: angle.revolutions(),
+            });
+        }
+        Ok(grid)
+    }
+
+    fn over(angle: &CrankAngle, n: usize, first: i64, count: i64) -> Result<Self, Error> {
+        let step = TAU / n as f64;
         // Up to 1 % more samples than points is as good as none: rounding must not decide.
         let excess = angle.samples_per_revolution() / (1.01 * n as f64);
         let factor = excess.ceil().max(1.0) as usize;
@@ -79,7 +109,7 @@ impl AngleGrid {
                 .collect(),
             decimator,
             factor,
-            samples,
+            samples: angle.angles().len(),
             samples_per_revolution: angle.samples_per_revolution(),
             points_per_revolution: n,
             first_point: first.rem_euclid(n as i64) as usize,
@@ -97,6 +127,11 @@ impl AngleGrid {
         // Below 64 low orders would not fit; above 65 536 there is more detail than an encoder's.
         let points = per_revolution.clamp(64, 1 << 16).next_power_of_two();
         Self::new(angle, points)
+    }
+
+    /// Sample indices of the recording, with their fractions, at which the first revolution starts and the last ends.
+    pub fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 
     /// The highest order that resampling leaves unchanged (within 1e-4): 0.8 of half the samples,
@@ -175,6 +210,17 @@ impl AngleGrid {
         };
         Ok((0..at.len()).map(interval).collect())
     }
+}
+
+fn checked(points_per_revolution: usize) -> Result<usize, Error> {
+    if points_per_revolution < 32 {
+        return Err(Error::OutOfRange {
+            what: "points per revolution",
+            value: points_per_revolution as f64,
+            allowed: "32 or more",
+        });
+    }
+    Ok(points_per_revolution)
 }
 
 /// Multiples of `step` that the crank passes from one sample interval before the first sample to
@@ -331,6 +377,50 @@ mod tests {
         let fine = AngleGrid::new(&angle, 512).unwrap().resample(&x).unwrap();
         let inner = fine.iter().nth(2).unwrap();
         assert!((inner.iter().map(|y| y * y).sum::<f64>() / 512.0 - 0.5).abs() < 1e-4);
+    }
+
+    /// A recording of 8 revolutions with 1000 samples in each, resampled to 5 of them from a point of its own. What passes is
+    /// met at every point, the ends included; what would alias below 0.4 of the points is gone.
+    #[test]
+    fn revolutions_from_a_start_are_met_to_their_ends() {
+        for (points, start) in [(512, 0), (512, 300), (64, 17)] {
+            let angle = CrankAngle::from_speed(8000, 1000.0, 60.0).unwrap();
+            let grid = AngleGrid::from_start(&angle, points, start, 5).unwrap();
+            let of_order = |order: f64| {
+                let x: Vec<f64> = angle
+                    .angles()
+                    .iter()
+                    .map(|a| (order * a + 0.3).sin())
+                    .collect();
+                grid.resample(&x).unwrap()
+            };
+            let highest = 0.4 * points as f64;
+            for order in [1.0, 0.5 * highest, highest - 1.0] {
+                let passed = of_order(order);
+                assert_eq!((passed.count(), passed.first_point()), (5, start));
+                for (j, y) in passed.samples().iter().enumerate() {
+                    let at = TAU * (start + j) as f64 / points as f64;
+                    let error = y - (order * at + 0.3).sin();
+                    assert!(error.abs() < 1e-4, "{points} {order} {j}: {error:e}");
+                }
+            }
+            // From the first order that would alias below `highest` to the last that interpolation passes.
+            let [low, high] = [points as f64 - highest + 1.0, 0.8 * 500.0 - 1.0];
+            for share in [0.0, 0.3, 1.0] {
+                let order = low + share * (high - low);
+                let left = of_order(order);
+                let largest = left
+                    .samples()
+                    .iter()
+                    .fold(0.0, |most: f64, y| most.max(y.abs()));
+                assert!(largest < 1e-4, "{points} {order}: {largest:e}");
+            }
+        }
+        let short = CrankAngle::from_speed(6900, 1000.0, 60.0).unwrap();
+        assert!(matches!(
+            AngleGrid::from_start(&short, 512, 511, 5),
+            Err(Error::TooFewRevolutions { needed: 8, .. })
+        ));
     }
 
     #[test]

@@ -64,6 +64,22 @@ impl CrankAngle {
         })
     }
 
+    /// From the readings of an encoder where there is one, otherwise from a constant speed.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_encoder`] and [`Self::from_speed`].
+    pub fn recorded(
+        encoder: Option<&[f64]>,
+        samples: usize,
+        sample_rate: f64,
+        speed_rpm: f64,
+    ) -> Result<Self, Error> {
+        match encoder {
+            Some(readings) => Self::from_encoder(readings),
+            None => Self::from_speed(samples, sample_rate, speed_rpm),
+        }
+    }
+
     /// The angles, rad; four at least.
     pub fn angles(&self) -> &[f64] {
         &self.angle
@@ -82,7 +98,7 @@ impl CrankAngle {
 
     /// The sample index, with its fraction, at which the crank stands at `angle`. Cubic
     /// interpolation of the inverse map. Beyond the ends the speed is taken as constant.
-    pub(crate) fn position(&self, angle: f64) -> f64 {
+    pub fn position(&self, angle: f64) -> f64 {
         let a = &self.angle;
         let last = a.len() - 1;
         let above = a.partition_point(|&x| x <= angle);

@@ -9,8 +9,10 @@
 use std::collections::BTreeMap;
 
 use input::effects::{Entry, Parameter, entry};
+use mechanism::declaration::Kind;
 use serde_json::{Map, Value};
 
+use crate::fault_words::Fault;
 use crate::sweep_file::Amount;
 
 /// An effect of the machine file that a sweep varies.
@@ -42,6 +44,8 @@ struct Id {
     /// Words of its place, and its order.
     place: Vec<String>,
     throw: Option<String>,
+    /// Words of its place but for the throw.
+    part: Vec<String>,
 }
 
 /// The amplitudes of every effect of a machine file, SI, in the order of the catalogue.
@@ -51,6 +55,20 @@ impl VariedEffect {
     /// Whether the machine file `tree` has it.
     pub(crate) fn is_in(&self, tree: &Value) -> bool {
         size(&amplitudes(tree), &self.id) != absent(self.id.name)
+    }
+
+    /// The fault that it is in the machine file `tree`.
+    pub(crate) fn fault(&self, tree: &Value) -> Fault {
+        let Id {
+            name, throw, part, ..
+        } = &self.id;
+        let kind = entry(name).map_or(Kind::Sensor, |entry| entry.kind);
+        let sizes = size(&amplitudes(tree), &self.id).into_iter();
+        let absent = absent(name);
+        let sizes = sizes
+            .zip(&absent)
+            .map(|(size, absent)| (size - absent).abs());
+        Fault::of_effect(name, kind, throw.as_deref(), part, sizes)
     }
 
     /// The value of one of its amplitudes in the machine file `tree`, SI: the one at which the
@@ -187,6 +205,7 @@ fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
     let entry = entry(name)?;
     let word = |key| section.get(key).and_then(Value::as_str).map(str::to_owned);
     let words = entry.places.iter().filter_map(|choice| word(choice.key));
+    let parts = entry.places.iter().filter(|choice| choice.key != "throw");
     let orders = entry.parameters.iter().filter(|parameter| parameter.whole);
     let orders = orders.filter_map(|parameter| section.get(parameter.key).map(Value::to_string));
     let value = |parameter: &Parameter| {
@@ -197,6 +216,7 @@ fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
         name: entry.name,
         place: words.chain(orders).collect(),
         throw: word("throw"),
+        part: parts.filter_map(|choice| word(choice.key)).collect(),
     };
     Some((id, entry.amplitudes().map(value).collect()))
 }

@@ -6,6 +6,7 @@ use mechanism::Machine;
 use serde_json::Value;
 
 use crate::effects::VariedEffect;
+use crate::fault_words::Fault;
 use crate::sweep_file::Amount;
 
 /// The label of a case without any fault.
@@ -45,6 +46,8 @@ pub struct Labels {
     pub faulty_joints: usize,
     /// Clearance of every joint in the order of [`joints`], m; 0 for an ideal one.
     pub clearances_m: Vec<f64>,
+    /// The faults one by one: joints and effects, in the order of `fault`.
+    pub faults: Vec<Fault>,
 }
 
 /// The joints of `machine`: the main bearing, then big end, small end and guide of each throw.
@@ -127,17 +130,21 @@ pub(crate) fn labels(
     resolved: &Resolved,
     own: &Value,
 ) -> Labels {
-    let faulty: Vec<&str> = joints
+    let faulty: Vec<&Joint> = joints
         .iter()
         .filter(|joint| joint.is_faulty(tree, resolved, own))
-        .map(|joint| joint.name.as_str())
         .collect();
-    let mut names = faulty.clone();
-    for effect in effects.iter().filter(|effect| effect.is_in(tree)) {
+    let there: Vec<&VariedEffect> = effects.iter().filter(|e| e.is_in(tree)).collect();
+    let mut names: Vec<&str> = faulty.iter().map(|joint| joint.name.as_str()).collect();
+    for effect in &there {
         if !names.contains(&effect.label.as_str()) {
             names.push(&effect.label);
         }
     }
+    let worn = faulty.iter().map(|joint| {
+        let (clearance, _) = joint.clearances(resolved);
+        Fault::of_joint(&joint.name, clearance)
+    });
     Labels {
         fault: match names.as_slice() {
             [] => NONE.into(),
@@ -145,5 +152,6 @@ pub(crate) fn labels(
         },
         faulty_joints: faulty.len(),
         clearances_m: joints.iter().map(|j| j.clearances(resolved).0).collect(),
+        faults: worn.chain(there.iter().map(|e| e.fault(tree))).collect(),
     }
 }

@@ -93,7 +93,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let claim = || claim(&sweep, nominal, &out, existing, &cancel);
     let (claim, plan) = on_threads(threads, claim)?;
-    let plan = with_format(plan, arguments.format);
+    let plan = with_format(plan, arguments.format)?;
     // Before hours of simulation.
     warn(&plan.census().mistakes());
     let mut bar = Bar::default();
@@ -128,12 +128,15 @@ pub(crate) fn claim(
 }
 
 /// `plan` with the recordings in another format, where one is asked for.
-pub(crate) fn with_format(plan: Plan, format: Option<FormatArgument>) -> Plan {
-    match format {
+///
+/// # Errors
+/// A format that the plan cannot have.
+pub(crate) fn with_format(plan: Plan, format: Option<FormatArgument>) -> Result<Plan, Failure> {
+    Ok(match format {
         None => plan,
-        Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet),
-        Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap),
-    }
+        Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet)?,
+        Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap)?,
+    })
 }
 
 /// The folder of the dataset of a sweep with this name, where the user names none.
@@ -182,7 +185,7 @@ impl Arguments {
                 }
             },
         };
-        Ok(with_format(plan, self.format))
+        with_format(plan, self.format)
     }
 }
 

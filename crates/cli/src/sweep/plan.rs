@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cancel = interrupt::flag()?;
     let out = &arguments.out;
     let (claim, plan) = gen_dataset::claim(&sweep, nominal, out, sweep::Existing::Resume, &cancel)?;
-    let mut plan = gen_dataset::with_format(plan, arguments.format);
+    let mut plan = gen_dataset::with_format(plan, arguments.format)?;
     if let Some(shards) = arguments.shards {
         plan = plan.with_shards(shards)?;
     }

@@ -8,6 +8,7 @@ mod console;
 mod damage;
 mod dataset;
 mod dataset_bytes;
+mod domain_gap;
 mod estimate_wear;
 mod explain_gap;
 mod explain_pressures;

@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 /// What each crate may import, the lowest first. A crate that is added gets its line here.
-const MAY_IMPORT: [(&str, &str); 18] = [
+const MAY_IMPORT: [(&str, &str); 19] = [
     ("scalar", ""),
     ("files", ""),
     ("signal", ""),
+    ("classify", ""),
     ("integrate", "scalar"),
     ("chaos", "scalar"),
     ("mechanism", "scalar integrate"),
@@ -22,7 +23,7 @@ const MAY_IMPORT: [(&str, &str); 18] = [
     ),
     (
         "sweep",
-        "calibrate features files input mechanism recordings scalar signal simulate",
+        "calibrate classify features files input mechanism recordings scalar signal simulate",
     ),
     (
         "gap",
@@ -34,16 +35,16 @@ const MAY_IMPORT: [(&str, &str); 18] = [
     ),
     (
         "report",
-        "calibrate chaos features gap input recordings signal simulate sweep",
+        "calibrate chaos classify features gap input recordings signal simulate sweep",
     ),
     (
         "cli",
-        "bench calibrate chaos features files gap input mechanism recordings report scalar signal \
-         simulate sweep",
+        "bench calibrate chaos classify features files gap input mechanism recordings report scalar \
+         signal simulate sweep",
     ),
     (
         "python",
-        "calibrate cli features gap input recordings scalar signal simulate sweep",
+        "calibrate classify cli features gap input recordings scalar signal simulate sweep",
     ),
     (
         "crosshead",

@@ -13,7 +13,7 @@ from ._crosshead import Table, __version__
 from .angle import over_crank_angle
 from .calibrate import Calibration, Parameter, calibrate
 from .dataset import Dataset
-from .domain_gap import DomainGap, domain_gap
+from .domain_gap import DomainGap, TellingFeature, domain_gap
 from .errors import Error, InputError
 from .explain_gap import Explanation, explain_gap
 from .features import Features, features
@@ -41,6 +41,7 @@ __all__ = [
     "Run",
     "SignalBatches",
     "Table",
+    "TellingFeature",
     "Wear",
     "__version__",
     "calibrate",

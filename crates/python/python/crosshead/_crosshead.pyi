@@ -31,7 +31,7 @@ class Table:
         """What each column means."""
     @property
     def roles(self) -> dict[str, str]:
-        """Role of each column that has one: `label`, `condition`, `unknown`, `feature` or `signal`."""
+        """Role of each column that has one: `identifier`, `label`, `condition`, `unknown`, `feature` or `signal`."""
     def __len__(self) -> int: ...
     def __contains__(self, name: str) -> bool: ...
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
@@ -61,6 +61,7 @@ class Description:
     manifest: str
     splits: list[str]
     sample_rate_hz: float
+    samples_per_revolution: int | None
     revolutions_per_window: int
     channels: list[str]
     features: list[tuple[str, str, str | None, str | None, str]]
@@ -154,7 +155,14 @@ def estimate_wear(
 ) -> None: ...
 def features(
     paths: Sequence[str], asked: dict[str, Any], like: str | None, progress: _Progress
-) -> tuple[Table, list[str]]: ...
+) -> tuple[Table, list[str], list[str]]: ...
+def domain_gap(
+    names: list[str],
+    simulated: tuple[list[list[float]], list[str]],
+    measured: tuple[list[list[float]], list[str]],
+    folds: int,
+    seed: int,
+) -> tuple[float, list[float], list[tuple[str, float, float, float | None, float | None]]]: ...
 def open_dataset(folder: str) -> Description: ...
 def over_crank_angle(
     table: Table, channels: Sequence[str], points: int

@@ -35,6 +35,9 @@ class Dataset:
         """The splits that have rows: `train`, `validation`, `test`."""
         self.sample_rate_hz = said.sample_rate_hz
         """Samples per second of its recordings, Hz."""
+        self.samples_per_revolution = said.samples_per_revolution
+        """Samples per revolution of its signals, where they are over the crank angle; `sample_rate_hz` is then that of the
+        recordings before, of which the features are."""
         self.revolutions_per_window = said.revolutions_per_window
         """Revolutions of the crank in a window."""
         self.channels = said.channels
@@ -52,7 +55,7 @@ class Dataset:
 
     @property
     def roles(self) -> dict[str, str]:
-        """Role of each column of the table of features that has one: `label`, `condition`, `unknown` or `feature`."""
+        """Role of each column of the table of features: `identifier`, `label`, `condition`, `unknown` or `feature`."""
         return {name: role for name, _, role, *_ in self._columns if role}
 
     @property
@@ -164,7 +167,8 @@ class Dataset:
             if name not in self.channels:
                 raise InputError(f"channels: found {name!r}, expected some of {', '.join(self.channels)}")
         angle = [name for name in self.channels if name == "crank_angle_rad"]
-        columns = [target, "speed_rpm", "sample_rate_hz", *angle, *(c for c in chosen if c not in angle)]
+        sampling = ["samples_per_revolution", "start_angle_rad"] if self.samples_per_revolution else ["sample_rate_hz"]
+        columns = [target, "speed_rpm", *sampling, *angle, *(c for c in chosen if c not in angle)]
         signals: list[np.ndarray] = []
         first: list[int] = []
         y: list[Any] = []

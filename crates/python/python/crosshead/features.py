@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from . import _crosshead
 from .dataset import Dataset, matrix
-from .errors import InputError
 from .folder import paths
 from .kinds import AnyPath, Progress
 from .progress import shown
@@ -66,16 +65,20 @@ def features(
     dataset = like if like is None or isinstance(like, Dataset) else Dataset(like)
     folder = None if dataset is None else str(dataset.folder)
     with shown(progress) as report:
-        table, warnings = _crosshead.features(paths(recordings), asked, folder, report)
-    return Features(table, warnings, None if dataset is None else dataset.feature_names)
+        table, recordings, warnings = _crosshead.features(paths(recordings), asked, folder, report)
+    return Features(table, recordings, warnings, None if dataset is None else dataset.feature_names)
 
 
 class Features:
     """Features of recordings. `X` is the matrix for a classifier, `table` the Arrow table."""
 
-    def __init__(self, table: _crosshead.Table, warnings: list[str], names: list[str] | None = None) -> None:
+    def __init__(
+        self, table: _crosshead.Table, recordings: list[str], warnings: list[str], names: list[str] | None = None
+    ) -> None:
         self.table = table
         """The table, a row for each window: `file`, `window`, `start_s`, what the files say of them, the features."""
+        self.groups = np.array(recordings)
+        """The recording of each window, or its group where the recordings are a dataset."""
         self.warnings = warnings
         """What looks wrong with windows."""
         if names is None:
@@ -100,13 +103,3 @@ class Features:
 
     def __repr__(self) -> str:
         return f"<crosshead.Features: {len(self)} windows, {len(self.names)} features>"
-
-
-def numbers_of(of: Dataset | Features, names: Sequence[str] | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """The matrix of a `Dataset` (all splits) or of `Features`, and its groups."""
-    if isinstance(of, Dataset):
-        table = of.features
-        return matrix(table, names or of.feature_names), table["group"]
-    if isinstance(of, Features):
-        return matrix(of.table, names or of.names), of.table["file"]
-    raise InputError(f"found {type(of).__name__}, expected a Dataset or Features")

@@ -5,8 +5,8 @@ use crate::venv;
 use recordings::formats::mcap::{self, Channel, Recording};
 use recordings::formats::parquet::TableWriter;
 use recordings::{
-    CaseWarning, Column, Counts, DatasetCard, FailedCase, FileEntry, FileRecord, Kind, Manifest,
-    Schema, Subset, Value, WholeFile,
+    CaseWarning, Column, ColumnEntry, Counts, DatasetCard, FailedCase, FileEntry, FileRecord, Kind,
+    Licence, Manifest, Schema, Subset, Value, WholeFile, croissant,
 };
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
@@ -252,10 +252,16 @@ impl Dataset {
                 .entry(fault.into())
                 .or_default() += 1;
         }
+        let columns = subsets
+            .iter()
+            .map(|subset| (subset.name.clone(), ColumnEntry::of(&subset.schema)))
+            .collect();
         let card = DatasetCard {
             title: "Compressor: \"small\"".into(),
             summary: "Five cases.".into(),
-            license: "cc0-1.0".into(),
+            licence: Some(Licence::CC0),
+            uses: vec!["Training.".into()],
+            limits: vec!["Simulated.".into()],
             tags: vec!["condition-monitoring".into(), "yes".into()],
             machine: vec![("crank radius".into(), "120 mm".into())],
             rows: counts.rows.clone(),
@@ -266,12 +272,14 @@ impl Dataset {
             version: "0.1.0".into(),
         };
         self.text("README.md", &card.to_string());
+        self.text("croissant.json", &croissant(&card, &self.files).unwrap());
         self.text("sweep.yaml", SWEEP);
         self.files.sort_by(|a, b| a.path.cmp(&b.path));
         let manifest = Manifest {
             version: "0.1.0".into(),
             seed: u64::MAX,
             counts,
+            columns,
             files: self.files.clone(),
             failed: vec![FailedCase {
                 case_id: "case-5".into(),

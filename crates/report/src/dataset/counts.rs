@@ -5,6 +5,7 @@ use crate::dataset_page::{FaultCount, ParameterRange};
 use crate::text;
 use recordings::FailedCase;
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::path::Path;
 use sweep::reader::{Dataset, Meaning};
 
@@ -66,8 +67,8 @@ pub(super) fn samples_per_window(dataset: &Dataset) -> (usize, usize) {
     let speeds = labels.filter(|label| label.meaning == Meaning::Speed);
     let speeds = speeds.flat_map(|label| &label.values).copied();
     let samples = |rpm: f64| {
-        let seconds = f64::from(dataset.revolutions_per_window()) * 60.0 / rpm;
-        (seconds * dataset.plan.settings.sample_rate).round() as usize
+        let of_turn = dataset.plan.samples_per_revolution(rpm * TAU / 60.0);
+        (f64::from(dataset.revolutions_per_window()) * of_turn).round() as usize
     };
     let turning = speeds.filter(|rpm| *rpm > 0.0);
     let (low, high) = turning.fold((f64::INFINITY, 0.0_f64), |(low, high), rpm| {

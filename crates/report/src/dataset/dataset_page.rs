@@ -29,6 +29,7 @@ impl DatasetPage {
             version: dataset.manifest().version.clone(),
             seed: dataset.manifest().seed,
             sample_rate_hz: dataset.plan.settings.sample_rate,
+            samples_per_revolution: (dataset.plan.over_angle).map(|of| of.samples_per_revolution),
             revolutions_per_window: dataset.revolutions_per_window(),
             samples_per_window: counts::samples_per_window(dataset),
             channels: channels.map(|(name, _)| name).collect(),

@@ -56,12 +56,9 @@ impl Recording {
     }
 
     fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
-        let angle = match &row.crank_angle {
-            Some(readings) => CrankAngle::from_encoder(readings)?,
-            None => {
-                CrankAngle::from_speed(row.acceleration.len(), row.sample_rate_hz, row.speed_rpm)?
-            }
-        };
+        let encoder = row.crank_angle.as_deref();
+        let count = row.acceleration.len();
+        let angle = CrankAngle::recorded(encoder, count, row.sample_rate_hz, row.speed_rpm)?;
         let points = (angle.samples_per_revolution() / 1.01).ceil() as usize;
         let grid = AngleGrid::new(&angle, points.clamp(64, 1 << 16).next_power_of_two())?;
         let revolutions = grid.resample(&row.acceleration)?;

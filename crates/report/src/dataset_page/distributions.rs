@@ -5,10 +5,9 @@ use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
 use crate::statistics::quantile;
-use crate::{Level, text};
+use crate::{Level, histogram, text};
 use std::f64::consts::FRAC_PI_2;
 
-const MOST_BINS: usize = 30;
 /// At most this many of each kind of figure.
 const MOST_HISTOGRAMS: usize = 24;
 const MOST_SCATTERS: usize = 12;
@@ -33,16 +32,13 @@ pub(super) fn plates(page: &DatasetPage, sweep: &RandomSweep) -> Vec<Plate> {
 
 fn histograms(all: &[Histogram]) -> Plate {
     let cases = all.first().map_or(0, |histogram| histogram.values.len());
-    let panels = all.iter().map(|histogram| {
-        let (factor, unit) = readable(histogram.values.iter().copied(), &histogram.unit);
-        let values: Vec<f64> = histogram
-            .values
-            .iter()
-            .map(|value| value * factor)
-            .collect();
-        let (edges, counts) = binned(&values);
+    let panels = all.iter().map(|drawn| {
+        let (factor, unit) = readable(drawn.values.iter().copied(), &drawn.unit);
+        let values: Vec<f64> = drawn.values.iter().map(|value| value * factor).collect();
+        let edges = histogram::edges(values.iter().copied());
+        let counts = histogram::counts(&edges, values.iter().copied());
         Panel {
-            x: Axis::linear(text::with_unit(&histogram.name, unit)),
+            x: Axis::linear(text::with_unit(&drawn.name, unit)),
             y: Axis::linear("cases"),
             series: vec![Series::histogram("", Colour::Class(0), &edges, &counts)],
             note: if counts.is_empty() {
@@ -74,30 +70,6 @@ fn readable(values: impl Iterator<Item = f64>, unit: &str) -> (f64, &str) {
         .filter(|v| v.is_finite())
         .fold(0.0_f64, |largest, v| largest.max(v.abs()));
     text::readable_unit(largest, unit)
-}
-
-/// Edges and counts of equal bins over the finite values; none where there are no values. There
-/// are 2∛n bins for n values (D. Lane's rule of Rice University), and not too many.
-fn binned(values: &[f64]) -> (Vec<f64>, Vec<usize>) {
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-        (l.min(v), h.max(v))
-    });
-    if low > high {
-        return (Vec::new(), Vec::new());
-    }
-    let bins = (2.0 * (finite().count() as f64).cbrt()).ceil() as usize;
-    let bins = bins.min(MOST_BINS);
-    let (low, width) = if high > low {
-        (low, (high - low) / bins as f64)
-    } else {
-        (low - 0.5, 1.0 / bins as f64)
-    };
-    let mut counts = vec![0; bins];
-    for value in finite() {
-        counts[(((value - low) / width) as usize).min(bins - 1)] += 1;
-    }
-    ((0..=bins).map(|i| low + width * i as f64).collect(), counts)
 }
 
 pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
@@ -158,22 +130,4 @@ fn median(values: impl Iterator<Item = f64>) -> Option<Level> {
         value: quartile(0.5)?,
         spread: FRAC_PI_2.sqrt() * deviation / (values.len() as f64).sqrt(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_finite_value_falls_into_one_bin() {
-        let values: Vec<f64> = (0..=300)
-            .map(|i| f64::from(i) * 0.1)
-            .chain([f64::NAN])
-            .collect();
-        let (edges, counts) = binned(&values);
-        assert_eq!((edges[0], edges[edges.len() - 1].round()), (0.0, 30.0));
-        assert_eq!(counts.iter().sum::<usize>(), 301);
-        assert_eq!(binned(&[2.0, 2.0]).1.iter().sum::<usize>(), 2);
-        assert!(binned(&[f64::INFINITY]).1.is_empty());
-    }
 }

@@ -33,8 +33,10 @@ pub struct DatasetPage {
     pub version: String,
     /// Seed of the sweep.
     pub seed: u64,
-    /// Rate of the channels in Hz.
+    /// Rate at which the sensors are recorded, Hz.
     pub sample_rate_hz: f64,
+    /// Samples in a revolution, where the channels are resampled over the crank angle.
+    pub samples_per_revolution: Option<u32>,
     /// Revolutions of the crank in one window.
     pub revolutions_per_window: u32,
     /// Fewest and most samples in one window; they differ where the speed does.

@@ -173,15 +173,17 @@ fn facts(page: &DatasetPage) -> Vec<(&'static str, String)> {
         )
     };
     let revolutions = text::counted(page.revolutions_per_window as usize, "revolution");
+    let recorded = format!("{}\u{a0}Hz", text::number(page.sample_rate_hz, 6));
+    let rate = match page.samples_per_revolution {
+        Some(samples) => format!("{samples} in a revolution, recorded at {recorded}"),
+        None => recorded,
+    };
     vec![
         ("Cases", text::count(cases)),
         ("Classes", text::count(page.faults.len())),
         ("Windows", text::count(windows)),
         ("In a window", format!("{revolutions}, {samples}")),
-        (
-            "Sample rate",
-            format!("{}\u{a0}Hz", text::number(page.sample_rate_hz, 6)),
-        ),
+        ("Sample rate", rate),
         ("Splits", page.splits.join(", ")),
         ("Failed cases", text::count(page.failed.len())),
         ("Seed", page.seed.to_string()),

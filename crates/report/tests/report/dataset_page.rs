@@ -228,6 +228,7 @@ fn a_page_without_data_is_a_page() {
         feature_rows: Vec::new(),
         columns: Vec::new(),
         sample_rate_hz: 0.0,
+        samples_per_revolution: None,
         ..datasets::grid()
     };
     let mut none = empty.clone();

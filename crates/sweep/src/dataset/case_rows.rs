@@ -10,6 +10,7 @@ use recordings::formats::mcap;
 use recordings::{FailedCase, Value};
 use signal::channel::Channel;
 
+use super::over_crank_angle::{self, AngleWindow};
 use super::recording::{Failure, Recording, Runner};
 use super::tables::{features_row, labels, signals_row};
 use crate::Plan;
@@ -109,33 +110,64 @@ fn rows(
 ) -> Result<CaseRows, Failure> {
     case.motion = recording.motion.take();
     check_channels(plan, &recording)?;
+    let windows = cut_up(plan, &case, &recording)?;
     let rate = recording.sample_rate_hz;
-    let windows = windows(&case, &recording)?
-        .into_iter()
-        .map(|range| cut(&recording.channels, range))
-        .collect::<Vec<_>>();
-    let row = |make: fn(&Plan, &Case, usize, &[Channel], f64) -> Vec<Value>| {
-        let windows = windows.iter().enumerate();
-        windows
-            .map(|(i, channels)| make(plan, &case, i, channels, rate))
-            .collect()
+    let features = match wanted {
+        Wanted::Dataset { .. } => (windows.iter().enumerate())
+            .map(|(i, window)| features_row(plan, &case, i, &window.recorded, rate))
+            .collect(),
+        Wanted::Signals => Vec::new(),
     };
     Ok(CaseRows {
-        features: match wanted {
-            Wanted::Dataset { .. } => row(features_row),
-            Wanted::Signals => Vec::new(),
-        },
+        features,
         signals: match (plan.format, wanted) {
             (Format::Mcap, Wanted::Dataset { sweep_yaml }) => {
                 Signals::Mcap(to_mcap(plan, &case, &recording, sweep_yaml)?)
             }
-            _ => Signals::Rows(row(signals_row)),
+            _ => Signals::Rows(
+                (windows.into_iter().enumerate())
+                    .map(|(i, window)| signals_row(plan, &case, i, window.signals(), rate))
+                    .collect(),
+            ),
         },
         split: case.split,
         case_id: case.id,
         fault: case.labels.fault,
         warnings: recording.warnings,
     })
+}
+
+/// A window of a recording.
+struct Window {
+    /// The channels as recorded.
+    recorded: Vec<Channel>,
+    /// The channels over the crank angle, where the signals are.
+    over_angle: Option<Vec<Channel>>,
+}
+
+impl Window {
+    /// The channels of its row of `signals`.
+    fn signals(self) -> Vec<Channel> {
+        self.over_angle.unwrap_or(self.recorded)
+    }
+}
+
+fn cut_up(plan: &Plan, case: &Case, recording: &Recording) -> Result<Vec<Window>, Failure> {
+    let Some(over_angle) = plan.over_angle else {
+        let ranges = windows(case, recording)?.into_iter();
+        let window = |range| Window {
+            recorded: cut(&recording.channels, range),
+            over_angle: None,
+        };
+        return Ok(ranges.map(window).collect());
+    };
+    let windows =
+        over_crank_angle::windows(case, recording, over_angle, plan.settings.revolutions)?;
+    let window = |window: AngleWindow| Window {
+        recorded: cut(&recording.channels, window.recorded),
+        over_angle: Some(window.channels),
+    };
+    Ok(windows.into_iter().map(window).collect())
 }
 
 /// Checks that a recording has the channels of the tables, in full.

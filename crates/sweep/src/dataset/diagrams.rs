@@ -3,11 +3,10 @@
 //! The chunks of all diagrams run side by side; a diagram is written when its last chunk is there,
 //! and not computed again after an interruption.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 
 use recordings::formats::parquet::TableWriter;
-use recordings::{Column, FileEntry, Kind, Schema, Value};
+use recordings::{Column, FileEntry, Kind, Role, Schema, Value};
 use simulate::bifurcation::{Chunk, Machines, Walk};
 use simulate::poincare::{Joint, Revolution, ThrowPoint};
 
@@ -142,9 +141,8 @@ impl DiagramTable {
             Joint::SmallEnd(throw) => (throw, 2),
             Joint::Guide(throw) => (throw, 3),
         });
-        let metadata = BTreeMap::from([("plan_id".to_owned(), plan.id.clone())]);
         Ok(Self {
-            schema: Schema::new(columns(plan, &joints))?.with_metadata(metadata),
+            schema: Schema::new(columns(plan, &joints))?.with_metadata(plan.metadata()),
             joints,
         })
     }
@@ -257,7 +255,8 @@ const THROW: [ThrowColumn; 3] = [
 ];
 
 fn columns(plan: &Plan, joints: &[Joint]) -> Vec<Column> {
-    let text = |name: &str, meaning: &str| Column::new(name, Kind::Text, meaning);
+    let text =
+        |name: &str, meaning: &str| Column::new(name, Kind::Text, meaning).role(Role::Identifier);
     let value = "the value; SI, or rpm for a speed";
     let mut columns = vec![
         text("bifurcation", "name of the diagram"),
@@ -267,14 +266,14 @@ fn columns(plan: &Plan, joints: &[Joint]) -> Vec<Column> {
             "direction",
             "up or down: which way the motion came to this value",
         ),
-        Column::new("value", Kind::Real, value),
+        Column::new("value", Kind::Real, value).role(Role::Condition),
         text("reason", "why the machine failed at this value").optional(),
     ];
     let mut list = |throw: &str, name: &str, unit: &str, meaning: &str| {
         let name = prefixed(throw, name);
         let meaning = format!("{meaning}, once a revolution");
         let column = Column::new(name, Kind::Samples, meaning);
-        columns.push(column.unit(unit).optional());
+        columns.push(column.unit(unit).role(Role::Signal).optional());
     };
     let throws = plan.throws();
     for joint in joints {

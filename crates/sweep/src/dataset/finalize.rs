@@ -1,28 +1,27 @@
-//! What makes a dataset complete: `README.md`, `sweep.yaml`, `SHA256SUMS` and, last, `manifest.json`.
+//! What makes a dataset complete: `README.md`, `croissant.json`, `sweep.yaml`, `SHA256SUMS` and, last, `manifest.json`.
 
 use std::collections::BTreeMap;
 
-use input::paths;
-use recordings::{CaseWarning, Counts, DatasetCard, FailedCase, FileEntry, Manifest, Subset};
+use recordings::{CaseWarning, ColumnEntry, Counts, FailedCase, FileEntry, Manifest, croissant};
 
 use super::attempts;
+use super::card::{Rows, card};
 use super::check::Check;
 use super::diagrams::DiagramTable;
 use super::fault::{Damage, Fault};
-use super::layout::{DIAGRAMS, MANIFEST, SUMS, strays};
+use super::layout::{CARD, CROISSANT, MANIFEST, SUMS, SWEEP, strays};
 use super::output::Output;
 use super::parts::{Made, scan};
 use super::record::checksum;
 use super::tables::Tables;
 use super::verify::{faults_of, sums};
 use crate::split::Split;
-use crate::sweep_file::Format;
 use crate::{Error, Plan};
 
 /// A complete dataset, as its records have it.
 pub(super) struct Contents {
     pub(super) manifest: Manifest,
-    /// What is written last, in this order: `README.md`, `sweep.yaml`, `SHA256SUMS`, `manifest.json`.
+    /// What is written last, in this order: `README.md`, `croissant.json`, `sweep.yaml`, `SHA256SUMS`, `manifest.json`.
     texts: Vec<(&'static str, String)>,
 }
 
@@ -37,9 +36,8 @@ pub fn finalize(output: &Output, plan: &Plan) -> Result<Manifest, Error> {
     contents.tidy(output)
 }
 
-/// As [`finalize`], but compares every file with its checksum before anything is written. A
-/// `README.md`, `sweep.yaml`, `SHA256SUMS` or `manifest.json` that stands there is compared too, and
-/// stays as it is.
+/// As [`finalize`], but compares every file with its checksum before anything is written. Those that are
+/// written last are compared too where they stand there, and stay as they are.
 ///
 /// # Errors
 /// As [`finalize`], and [`Error::Faults`] with all files that differ from what was written.
@@ -187,9 +185,13 @@ impl Parts {
             files.extend(output.calibration_entries()?);
         }
         let (tables, bifurcations) = (Tables::new(plan)?, DiagramTable::new(plan)?.schema);
-        let card = card(plan, &tables, &bifurcations, &rows, &files).to_string();
-        let sweep = input::yaml::to_string(plan.sweep())?;
-        let mut texts = vec![("README.md", card), ("sweep.yaml", sweep)];
+        files.sort_by(|a, b| a.path.cmp(&b.path));
+        let card = card(plan, &tables, &bifurcations, &rows, &files, failed.len());
+        let mut texts = vec![
+            (CARD, card.to_string()),
+            (CROISSANT, croissant(&card, &files)?),
+            (SWEEP, input::yaml::to_string(plan.sweep())?),
+        ];
         files.extend(texts.iter().map(|(path, text)| FileEntry {
             path: (*path).into(),
             bytes: text.len() as u64,
@@ -205,6 +207,9 @@ impl Parts {
                 failed: failed.len() as u64,
                 rows,
             },
+            columns: (card.subsets.iter().chain(&card.unsplit))
+                .map(|table| (table.name.clone(), ColumnEntry::of(&table.schema)))
+                .collect(),
             files,
             failed,
             warnings,
@@ -217,9 +222,6 @@ impl Parts {
     }
 }
 
-/// Rows by split, then by fault.
-type Rows = BTreeMap<String, BTreeMap<String, u64>>;
-
 fn add(rows: &mut Rows, more: Rows) {
     for (split, faults) in more {
         let sums = rows.entry(split).or_default();
@@ -227,96 +229,4 @@ fn add(rows: &mut Rows, more: Rows) {
             *sums.entry(fault).or_default() += count;
         }
     }
-}
-
-fn card(
-    plan: &Plan,
-    tables: &Tables,
-    bifurcations: &recordings::Schema,
-    rows: &Rows,
-    files: &[FileEntry],
-) -> DatasetCard {
-    let subset = |name: &str, schema: &recordings::Schema| Subset {
-        name: name.into(),
-        schema: schema.clone(),
-    };
-    let features = subset("features", &tables.features);
-    let mut example = files
-        .iter()
-        .map(|file| &file.path)
-        .filter(|p| p.starts_with("mcap/"));
-    let tags = [
-        "time-series",
-        "vibration",
-        "fault-diagnosis",
-        "predictive-maintenance",
-        "reciprocating-compressor",
-        "simulation",
-    ];
-    DatasetCard {
-        title: plan.name.clone(),
-        summary: format!(
-            "Simulated recordings of a reciprocating compressor, labelled with the radial clearance of \
-             its joints: {} cases, {} revolutions each at {} Hz. A joint counts as faulty where \
-             its clearance exceeds the machine's normal one.{} Splits are by group: cases that \
-             differ in noise and sensors alone are in the same split.{}",
-            plan.cases(),
-            plan.settings.revolutions,
-            plan.settings.sample_rate,
-            effects(plan),
-            match plan.is_stratified() {
-                true => " They are stratified by label.",
-                false => "",
-            },
-        ),
-        // Whose data they are is for the one who publishes them to say.
-        license: "unknown".into(),
-        tags: tags.map(String::from).to_vec(),
-        machine: machine(plan),
-        rows: rows.clone(),
-        subsets: match plan.format {
-            Format::Parquet => vec![subset("signals", &tables.signals), features],
-            Format::Mcap => vec![features],
-        },
-        unsplit: match plan.diagrams.as_slice() {
-            [] => Vec::new(),
-            _ => vec![subset(DIAGRAMS, bifurcations)],
-        },
-        mcap_example: example.next().cloned(),
-        command: "gen-dataset sweep.yaml --out another-folder".into(),
-        version: env!("CARGO_PKG_VERSION").into(),
-    }
-}
-
-/// Which effects are labels, as a sentence; empty where none is.
-fn effects(plan: &Plan) -> String {
-    let mut labels: Vec<&str> = plan.effects.iter().map(|e| e.label.as_str()).collect();
-    labels.dedup();
-    match labels.as_slice() {
-        [] => String::new(),
-        labels => format!(
-            " Effects are labels as well, where their amplitude is not 0: {}.",
-            labels.join(", ")
-        ),
-    }
-}
-
-/// The machine's main figures, as its file has them.
-fn machine(plan: &Plan) -> Vec<(String, String)> {
-    let shown = [
-        ("machine", "name"),
-        ("speed", "speed"),
-        ("crank radius", "crank.radius"),
-        ("rod length", "rod.length"),
-        ("rod mass", "rod.mass"),
-        ("crosshead mass", "crosshead.mass"),
-        ("piston radius", "cylinder.piston_radius"),
-        ("suction pressure", "cylinder.suction"),
-        ("discharge pressure", "cylinder.discharge"),
-    ];
-    let value = |path| paths::get(&plan.sweep()["machine"], path).ok().flatten();
-    let text = |path| value(path).and_then(serde_json::Value::as_str);
-    let rows = shown.into_iter();
-    rows.filter_map(|(name, path)| Some((name.into(), text(path)?.into())))
-        .collect()
 }

@@ -1,7 +1,7 @@
 //! Files and folders of a dataset.
 //!
-//! Readers see `signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`, `sweep.yaml`,
-//! `SHA256SUMS` and `manifest.json`. Beside these there is `_sweep/`:
+//! Readers see `signals/`, `features/`, `mcap/`, `bifurcations/`, `README.md`, `croissant.json`,
+//! `sweep.yaml`, `SHA256SUMS` and `manifest.json`. Beside these there is `_sweep/`:
 //!
 //! | path | what |
 //! |---|---|
@@ -20,12 +20,15 @@ use crate::Error;
 
 /// Which sweep it is.
 pub(super) const PLAN: &str = "_sweep/plan.json";
+pub(super) const CARD: &str = "README.md";
+/// The same for programs.
+pub(super) const CROISSANT: &str = "croissant.json";
 pub(super) const SWEEP: &str = "sweep.yaml";
 pub(super) const SUMS: &str = "SHA256SUMS";
 pub(super) const MANIFEST: &str = "manifest.json";
 /// What a dataset has in its folder, apart from `_sweep`.
 pub(super) const FOLDERS: [&str; 4] = ["signals", "features", "mcap", DIAGRAMS];
-pub(super) const FILES: [&str; 4] = ["README.md", SWEEP, SUMS, MANIFEST];
+pub(super) const FILES: [&str; 5] = [CARD, CROISSANT, SWEEP, SUMS, MANIFEST];
 pub(super) const WORK: [&str; 4] = ["_sweep/commits", ATTEMPTS, LOGS, "_sweep/tmp"];
 /// Markers of the processes at work on shards.
 pub(super) const ATTEMPTS: &str = "_sweep/attempts";

@@ -3,6 +3,7 @@
 
 mod adopt;
 mod attempts;
+mod card;
 mod case_rows;
 mod check;
 mod claim;
@@ -20,6 +21,7 @@ mod lock;
 mod log;
 mod options;
 mod output;
+mod over_crank_angle;
 mod parts;
 mod progress;
 mod record;
@@ -48,6 +50,7 @@ pub use options::{Existing, Options, Trial};
 pub use output::Output;
 pub use parts::run_part;
 pub use progress::Progress;
+pub(crate) use recording::CRANK_ANGLE;
 pub use recording::{Failure, Recording, Runner};
 pub use run_shards::run_shards;
 pub use signal_batches::{SignalBatch, SignalBatches, Waited};

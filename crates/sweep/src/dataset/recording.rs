@@ -5,6 +5,9 @@ use simulate::Motion;
 
 use crate::Case;
 
+/// The channel of the crank angle.
+pub(crate) const CRANK_ANGLE: &str = "crank_angle_rad";
+
 /// What a simulated case gives: the channels of the machine's sensors, in their order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {

@@ -8,7 +8,9 @@ use signal::channel::Channel;
 use simulate::Chamber;
 
 use super::judged::{judged_columns, judged_values};
+use super::recording::CRANK_ANGLE;
 use crate::Plan;
+use crate::fault_words::{fault_location, fault_type};
 use crate::plan::Case;
 
 /// The columns of both tables.
@@ -33,12 +35,7 @@ impl Tables {
             let column = Column::new(name, Kind::Samples, "the recorded channel");
             column.unit(*unit).role(Role::Signal)
         }));
-        let rate = Column::new(
-            "sample_rate_hz",
-            Kind::Real,
-            "samples per second of the channels",
-        );
-        signals.push(rate.unit("Hz").role(Role::Condition));
+        signals.extend(sampling(plan));
         let mut summed_up = about;
         let names = channels.iter().map(|(name, unit)| (name.as_str(), *unit));
         summed_up.extend(
@@ -46,12 +43,40 @@ impl Tables {
                 .into_iter()
                 .map(features::column),
         );
-        let metadata = BTreeMap::from([("plan_id".to_owned(), plan.id.clone())]);
+        let metadata = plan.metadata();
+        let mut of_signals = metadata.clone();
+        of_signals.extend(plan.over_angle.map(|over_angle| {
+            let samples = over_angle.samples_per_revolution.to_string();
+            ("samples_per_revolution".to_owned(), samples)
+        }));
         Ok(Self {
-            signals: Schema::new(signals)?.with_metadata(metadata.clone()),
+            signals: Schema::new(signals)?.with_metadata(of_signals),
             features: Schema::new(summed_up)?.with_metadata(metadata),
         })
     }
+}
+
+/// How the channels of a row are sampled.
+fn sampling(plan: &Plan) -> Vec<Column> {
+    let column =
+        |name: &str, kind, meaning: &str| Column::new(name, kind, meaning).role(Role::Condition);
+    if plan.over_angle.is_none() {
+        let meaning = "samples per second of the channels";
+        return vec![column("sample_rate_hz", Kind::Real, meaning).unit("Hz")];
+    }
+    vec![
+        column(
+            "samples_per_revolution",
+            Kind::Integer,
+            "samples of the channels in a revolution, at equal steps of the crank angle",
+        ),
+        column(
+            "start_angle_rad",
+            Kind::Real,
+            "crank angle of the first sample",
+        )
+        .unit("rad"),
+    ]
 }
 
 /// What both tables say about a case before they part: names, labels, operating point, parameters.
@@ -62,20 +87,23 @@ fn about(plan: &Plan) -> Vec<Column> {
         Column::new(name, Kind::Real, meaning).unit(unit)
     };
     let mut columns = vec![
-        text("case_id", "name of the case"),
-        integer("window", "which window of the case's recording, from 0"),
+        text("case_id", "name of the case").role(Role::Identifier),
+        integer("window", "which window of the case's recording, from 0").role(Role::Identifier),
         integer(
             "repeat",
             "which repeat, from 0; repeats differ in noise alone",
-        ),
+        )
+        .role(Role::Identifier),
         text(
             "group",
             "the same for cases that differ in noise and sensors alone",
-        ),
+        )
+        .role(Role::Identifier),
         text(
             "split",
             "train, validation or test; a group is in one split only",
-        ),
+        )
+        .role(Role::Identifier),
         text(
             "fault",
             "the joints whose clearance exceeds the normal one and the varied effects that are \
@@ -92,6 +120,25 @@ fn about(plan: &Plan) -> Vec<Column> {
         let column = real(format!("clearance_{}_m", joint.name), "m", meaning);
         column.role(Role::Label)
     }));
+    columns.extend([
+        text(
+            "fault_type",
+            "the faults in the words of bearing-datasets, joined by +: bearing for a joint but the guide and an effect on \
+             one, unbalance, misalignment, other; normal for none",
+        )
+        .role(Role::Label),
+        text(
+            "fault_location",
+            "the joint or part of the machine of each fault of fault_type, in its order, joined by +; none for none",
+        )
+        .role(Role::Label),
+        integer(
+            "fault_severity_level",
+            "rank of the size of the fault among those of its joint or effect in the dataset, of the most severe where \
+             there are several: 0 for none, then 1, 2, ... from the mildest",
+        )
+        .role(Role::Label),
+    ]);
     let speed = real("speed_rpm".into(), "rpm", "speed of the crank".into());
     columns.push(speed.role(Role::Condition));
     for throw in plan.throws() {
@@ -101,6 +148,9 @@ fn about(plan: &Plan) -> Vec<Column> {
             columns.push(pressure.role(Role::Condition));
         }
     }
+    let load = "gas load of the piston rod: discharge less suction pressure times the area of the piston, of the throw \
+                where that is largest";
+    columns.push(real("load".into(), "N", load.into()).role(Role::Condition));
     columns.extend(plan.parameters.iter().map(|parameter| {
         let kind = if parameter.is_number {
             Kind::Real
@@ -139,9 +189,15 @@ fn about_row(plan: &Plan, case: &Case, window: usize) -> Vec<Value> {
         (case.labels.faulty_joints as i64).into(),
     ];
     row.extend(case.labels.clearances_m.iter().map(|&c| Value::from(c)));
+    row.extend([
+        fault_type(&case.labels.faults).into(),
+        fault_location(&case.labels.faults).into(),
+        (plan.severity_level(&case.labels) as i64).into(),
+    ]);
     row.push(case.operating_point.speed_rpm.into());
     let pressures = case.operating_point.pressures_pa.iter().flatten();
     row.extend(pressures.map(|&p| Value::from(p)));
+    row.push(case.operating_point.gas_load_n.into());
     row.extend(plan.parameters.iter().map(|p| p.value(&case.tree)));
     if let Some(judgement) = &plan.judgement {
         row.extend(judged_values(judgement, case.motion.as_ref()));
@@ -154,12 +210,18 @@ pub(super) fn signals_row(
     plan: &Plan,
     case: &Case,
     window: usize,
-    channels: &[Channel],
+    channels: Vec<Channel>,
     sample_rate_hz: f64,
 ) -> Vec<Value> {
     let mut row = about_row(plan, case, window);
-    row.extend(channels.iter().map(|c| Value::from(c.samples.clone())));
-    row.push(sample_rate_hz.into());
+    row.extend(channels.into_iter().map(|c| Value::from(c.samples)));
+    match plan.over_angle {
+        None => row.push(sample_rate_hz.into()),
+        Some(over_angle) => row.extend([
+            i64::from(over_angle.samples_per_revolution).into(),
+            over_angle.angle(over_angle.start_of(case)).into(),
+        ]),
+    }
     row
 }
 
@@ -171,7 +233,7 @@ pub(super) fn features_row(
     channels: &[Channel],
     sample_rate_hz: f64,
 ) -> Vec<Value> {
-    let crank_angle = channels.iter().find(|c| c.name == "crank_angle_rad");
+    let crank_angle = channels.iter().find(|c| c.name == CRANK_ANGLE);
     let mut row = about_row(plan, case, window);
     let window = features::Window {
         sample_rate: sample_rate_hz,

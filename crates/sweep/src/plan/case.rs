@@ -1,6 +1,9 @@
 //! One case of a sweep.
 
+use std::f64::consts::PI;
+
 use input::Resolved;
+use mechanism::gas::Cylinder;
 use scalar::random::{Purpose, Stream, stream};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -68,16 +71,22 @@ pub struct OperatingPoint {
     pub speed_rpm: f64,
     /// Suction and discharge pressure of each throw, absolute, Pa.
     pub pressures_pa: Vec<[f64; 2]>,
+    /// Gas load: discharge less suction pressure times the area of the piston, of the throw where that is largest, N.
+    pub gas_load_n: f64,
 }
 
 impl OperatingPoint {
     pub(super) fn new(case: &Resolved) -> Self {
-        let throws = case.machine.throws.iter();
+        let cylinders = case.machine.throws.iter().map(|throw| &throw.cylinder);
+        let load = |cylinder: &Cylinder<f64>| {
+            (cylinder.discharge - cylinder.suction) * PI * cylinder.piston_radius.powi(2)
+        };
         Self {
             speed_rpm: rpm(case.speed),
-            pressures_pa: throws
-                .map(|throw| [throw.cylinder.suction, throw.cylinder.discharge])
+            pressures_pa: (cylinders.clone())
+                .map(|cylinder| [cylinder.suction, cylinder.discharge])
                 .collect(),
+            gas_load_n: cylinders.map(load).fold(f64::NEG_INFINITY, f64::max),
         }
     }
 }
@@ -85,7 +94,7 @@ impl OperatingPoint {
 /// A speed in rad/s as rev/min, to twelve digits: the way there and back rounds, and who looks for
 /// the cases at 500 rpm must find them.
 pub(super) fn rpm(speed: f64) -> f64 {
-    let rpm = speed * 30.0 / std::f64::consts::PI;
+    let rpm = speed * 30.0 / PI;
     format!("{rpm:.11e}").parse().unwrap_or(rpm)
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
+use crate::fault_words::Severities;
 use crate::labels::NONE;
 use crate::split::Split;
 
@@ -15,6 +16,7 @@ pub(super) struct Survey {
     /// The split of every group; none where the sweep is too large to be stratified.
     pub(super) splits: Option<BTreeMap<u64, Split>>,
     pub(super) census: Census,
+    pub(super) severities: Severities,
 }
 
 /// How many cases of each label there are in each split, and what is wrong with that.

@@ -1,7 +1,5 @@
 //! How large a dataset will be.
 
-use std::f64::consts::TAU;
-
 use super::Plan;
 
 /// What a sweep amounts to, judged from a few of its cases.
@@ -62,8 +60,8 @@ impl Plan {
                     .ok()
             })
             .map(|case| {
-                let seconds = self.recorded_revolutions() * TAU / case.resolved.speed;
-                seconds * self.settings.sample_rate * case.resolved.sensors.len() as f64
+                let samples = self.samples_per_revolution(case.resolved.speed);
+                self.recorded_revolutions() * samples * case.resolved.sensors.len() as f64
             })
             .collect();
         let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
@@ -71,11 +69,13 @@ impl Plan {
             simulate::Transient::Revolutions(n) => f64::from(n),
             simulate::Transient::Settled { .. } => 0.0,
         };
+        let recorded = self.settings_at(self.base.speed);
+        let recorded = recorded.map_or(self.settings.revolutions, |s| s.revolutions);
         Estimate {
             cases,
             rows: cases.saturating_mul(self.windows.map_or(1, |w| w.count.get().into())),
             shards: self.shards(),
-            revolutions: cases as f64 * (transient + f64::from(self.settings.revolutions)),
+            revolutions: cases as f64 * (transient + f64::from(recorded)),
             bytes: cases as f64 * mean * 4.0,
         }
     }

@@ -14,6 +14,7 @@ mod levels;
 mod listed;
 mod machines;
 mod name;
+mod over_angle;
 mod parameter;
 mod sampler;
 mod settings;
@@ -26,9 +27,11 @@ pub use case::{Case, Judgement, OperatingPoint};
 pub use census::Census;
 pub use diagram::Diagram;
 pub use estimate::{DiagramEstimate, Estimate};
+pub use over_angle::OverAngle;
 pub use parameter::Parameter;
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -47,7 +50,7 @@ use crate::design::hash::unit;
 use crate::effects::{VariedEffect, completed};
 use crate::labels::{Joint, joints, labels};
 use crate::split;
-use crate::sweep_file::{self, Format, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
+use crate::sweep_file::{self, Format, Licence, MOST_CASES_A_SHARD, Study, SweepFile, Windows};
 use axis::Frame;
 use block::Block;
 use census::Survey;
@@ -60,7 +63,7 @@ use varied::Varied;
 pub const MOST_CASES: u64 = 100_000_000;
 
 /// Changes when the same plan would give other bytes.
-const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 2");
+const WRITER: &str = concat!("crosshead ", env!("CARGO_PKG_VERSION"), ", layout 3");
 
 /// The plan of a sweep.
 #[derive(Clone, Debug)]
@@ -69,12 +72,16 @@ pub struct Plan {
     pub name: String,
     /// The published study that the cases repeat.
     pub study: Option<Study>,
+    /// The licence of the dataset, where one is chosen.
+    pub licence: Option<recordings::Licence>,
     /// SHA-256 of everything that the dataset's bytes depend on, in hexadecimal.
     pub id: String,
     /// The seed of all random numbers.
     pub seed: u64,
     /// How each case is run.
     pub settings: Settings,
+    /// How the signals are resampled over the crank angle; absent where they are as recorded.
+    pub over_angle: Option<OverAngle>,
     /// How the motion of each case is judged from the equations; absent if it is not.
     pub judgement: Option<Judgement>,
     /// Whether the regime is computed from the recorded signals.
@@ -165,12 +172,17 @@ impl Plan {
     }
 
     /// The same sweep with its recordings in another format.
-    #[must_use]
-    pub fn with_format(mut self, format: Format) -> Self {
+    ///
+    /// # Errors
+    /// A format with times, where the signals are over the crank angle.
+    pub fn with_format(mut self, format: Format) -> Result<Self, Error> {
+        if self.over_angle.is_some() {
+            OverAngle::check(format)?;
+        }
         self.format = format;
         self.sweep["format"] = format.name().into();
         self.id = id(&self.sweep);
-        self
+        Ok(self)
     }
 
     /// The same sweep of the machine with those sensors alone that give some of the channels of these names.
@@ -220,9 +232,11 @@ impl Plan {
         let mut plan = Self {
             name: file.name.clone(),
             study: file.study,
+            licence: file.licence.map(Licence::identifiers),
             id: id(&sweep),
             seed: file.seed.map_or(0, |n| n.get()).into(),
             settings: settings(&file.run, base.sample_rate)?,
+            over_angle: OverAngle::new(file, &base)?,
             judgement: judgement(&file.run)?,
             chaos: file.run.chaos.unwrap_or(true),
             windows: file.windows,
@@ -249,6 +263,7 @@ impl Plan {
         recordable.map_err(|Unrecordable { rate, expected }| {
             Error::found("run.sample_rate", format_args!("{rate} Hz"), expected)
         })?;
+        plan.settings_at(plan.base.speed)?;
         for (position, block) in file.cases.iter().enumerate() {
             let block = Block::new(block, position, plan.seed, &plan.frame())?;
             plan.blocks.push(block);
@@ -353,7 +368,31 @@ impl Plan {
     pub fn samples_per_window(&self) -> f64 {
         let windows = self.windows.map(|w| w.revolutions.get());
         let revolutions = f64::from(windows.unwrap_or(self.settings.revolutions));
-        revolutions * TAU / self.base.speed * self.settings.sample_rate
+        revolutions * self.samples_per_revolution(self.base.speed)
+    }
+
+    /// Samples of one channel in a revolution at this speed, rad/s.
+    pub fn samples_per_revolution(&self, speed: f64) -> f64 {
+        match self.over_angle {
+            Some(over_angle) => over_angle.samples_per_revolution.into(),
+            None => TAU / speed * self.settings.sample_rate,
+        }
+    }
+
+    /// How a case of this speed, rad/s, is run.
+    fn settings_at(&self, speed: f64) -> Result<Settings, Error> {
+        match self.over_angle {
+            Some(over_angle) => over_angle.settings(&self.settings, speed),
+            None => Ok(self.settings),
+        }
+    }
+
+    /// What holds for every table of the dataset: its plan, and its licence where one is chosen.
+    pub(crate) fn metadata(&self) -> BTreeMap<String, String> {
+        let licence = self.licence.map(|licence| ("license", licence.spdx));
+        let own = licence.into_iter().chain([("plan_id", self.id.as_str())]);
+        own.map(|(key, value)| (key.to_owned(), value.to_owned()))
+            .collect()
     }
 
     /// The sweep with everything in it that it depends on, the machine included: reading it gives
@@ -415,7 +454,7 @@ impl Plan {
             index,
             id: self.case_id(index),
             repeat,
-            settings: self.settings,
+            settings: self.settings_at(resolved.speed)?,
             judgement: self.judgement,
             motion: None,
             windows: self.windows,

@@ -7,6 +7,8 @@ use recordings::Manifest;
 use super::Plan;
 use super::case::Case;
 use super::census::{Census, Survey, Unnamed};
+use crate::fault_words::Severities;
+use crate::labels::Labels;
 use crate::split::{Split, assign, stratify};
 
 /// Points of a sweep up to which its splits are stratified by label.
@@ -38,6 +40,12 @@ impl Plan {
         self.points() <= MOST_STRATIFIED
     }
 
+    /// How severe the faults of a case are among those of the sweep: 0 for none, then 1, 2, ... from the mildest. In a
+    /// sweep that is too large for stratified splits, among those of a sample of its cases.
+    pub fn severity_level(&self, labels: &Labels) -> u64 {
+        self.survey().severities.level(&labels.faults)
+    }
+
     /// Points of the sweep: cases without their repeats.
     fn points(&self) -> u64 {
         self.cases() / self.repeats
@@ -56,6 +64,7 @@ impl Survey {
         let nth = |i: u64| (u128::from(points) * u128::from(i) / u128::from(looked_at)) as u64;
         let mut cases: Vec<(u64, String)> = Vec::new();
         let mut unnamed = BTreeMap::new();
+        let mut faults = Vec::new();
         for point in (0..looked_at).map(nth) {
             // A case with an invalid machine fails later, and has neither label nor split.
             let Ok(case) = plan.case_before_splits(point * plan.repeats) else {
@@ -63,6 +72,7 @@ impl Survey {
             };
             note_unnamed(plan, point, &case, &mut unnamed);
             cases.push((case.group, case.labels.fault));
+            faults.push(case.labels.faults);
         }
         let splits = is_whole.then(|| {
             let mut labels_of: BTreeMap<u64, BTreeSet<&str>> = BTreeMap::new();
@@ -86,7 +96,11 @@ impl Survey {
             let split = split.unwrap_or_else(|| assign(plan.shares, plan.seed, group));
             census.add(split.name(), &label, repeats);
         }
-        Self { splits, census }
+        Self {
+            splits,
+            census,
+            severities: Severities::of(faults),
+        }
     }
 }
 

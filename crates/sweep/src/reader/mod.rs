@@ -7,6 +7,7 @@ mod files;
 mod labels;
 mod like;
 mod motions;
+mod sample;
 mod sensors;
 mod signal_row;
 mod subset;
@@ -18,18 +19,17 @@ pub use error::Error;
 pub use labels::{Label, Meaning, Side, Text};
 pub use like::{Like, Unlike};
 pub use motions::Motions;
+pub use sample::{LabelledSample, matrix, numeric_features};
 pub use sensors::Sensors;
 pub use signal_row::SignalRow;
 pub use subset::Subset;
 pub use windows::{Case, Windows};
 
 use crate::Plan;
+use crate::dataset::CRANK_ANGLE;
 use files::Files;
 use recordings::{Column, Manifest, Table};
 use std::path::Path;
-
-/// The channel of the crank angle.
-const CRANK_ANGLE: &str = "crank_angle_rad";
 
 /// A finished dataset, its table of features read.
 pub struct Dataset {

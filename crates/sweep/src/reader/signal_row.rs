@@ -1,6 +1,7 @@
 //! The recording of one window, as the table of signals has it.
 
-use super::{CRANK_ANGLE, Dataset, Error, texts};
+use super::{Dataset, Error, texts};
+use crate::dataset::CRANK_ANGLE;
 use recordings::Table;
 
 /// One accelerometer's channel of one window.
@@ -13,7 +14,7 @@ pub struct SignalRow {
     pub case_id: String,
     /// Mean speed of the crank.
     pub speed_rpm: f64,
-    /// Samples per second.
+    /// Samples per second; their mean where they stand at equal steps of the crank angle.
     pub sample_rate_hz: f64,
     /// The acceleration, m/s².
     pub acceleration: Vec<f64>,
@@ -31,7 +32,11 @@ impl Dataset {
         let (file, row) = windows.place[window];
         let path = windows.files[file].replacen("features/", "signals/", 1);
         let acceleration = format!("{}_m_s2", self.sensors.channels()[sensor]);
-        let mut names = vec!["case_id", "speed_rpm", "sample_rate_hz", &acceleration];
+        let mut names = vec!["case_id", "speed_rpm", &acceleration];
+        let over_angle = self.plan.over_angle;
+        if over_angle.is_none() {
+            names.push("sample_rate_hz");
+        }
         let has_angle = self.has_crank_angle();
         if has_angle {
             names.push(CRANK_ANGLE);
@@ -40,12 +45,18 @@ impl Dataset {
         let table = files.open(&path)?;
         let shown = format!("{}: row {row}", files.place(&path).display());
         let read = files.read(&path, &table, &names, row..row + 1, |table| {
+            let speed_rpm = number(table, "speed_rpm")?;
             Ok(SignalRow {
                 file: path.clone(),
                 place: shown,
                 case_id: texts(table, "case_id")?.next().unwrap_or_default(),
-                speed_rpm: number(table, "speed_rpm")?,
-                sample_rate_hz: number(table, "sample_rate_hz")?,
+                speed_rpm,
+                sample_rate_hz: match over_angle {
+                    Some(over_angle) => {
+                        f64::from(over_angle.samples_per_revolution) * speed_rpm / 60.0
+                    }
+                    None => number(table, "sample_rate_hz")?,
+                },
                 acceleration: samples(table, &acceleration)?,
                 crank_angle: has_angle.then(|| samples(table, CRANK_ANGLE)).transpose()?,
             })

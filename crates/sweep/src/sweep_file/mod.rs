@@ -17,6 +17,7 @@
 pub mod axes;
 pub mod bifurcation;
 pub mod calibrate;
+mod licence;
 mod template;
 pub mod together;
 pub mod values;
@@ -30,6 +31,7 @@ use serde_json::{Map, Value};
 pub use axes::{Axes, Block, Design, Random};
 pub use bifurcation::{Bifurcation, Directions};
 pub use calibrate::{Calibrate, Uncertainty, Undetermined};
+pub use licence::Licence;
 pub use template::template;
 pub use together::{Gaussian, Together};
 pub use values::{Amount, Draw, Levels, Range, Spacing, Spread, Values};
@@ -44,6 +46,10 @@ pub struct SweepFile {
     /// The published study that the cases repeat; the pages test its claims. By default none.
     #[serde(default)]
     pub study: Option<Study>,
+    /// The licence of the dataset, which its card, `croissant.json` and tables state. By default its publisher has
+    /// still to choose one.
+    #[serde(default)]
+    pub licence: Option<Licence>,
     /// The machine: path of its file, from the folder of this one, or the machine itself. With
     /// `calibrate` the default is the machine section of the bundle, at the conditions of its first
     /// run.
@@ -123,6 +129,15 @@ pub struct Run {
     /// Sample rate of the recordings; default that of the machine file, or 10 kHz.
     #[serde(default)]
     pub sample_rate: Option<Positive<Frequency>>,
+    /// Samples in a revolution of the signals: the recordings are resampled over the crank angle, so that all are of one
+    /// length. They have no sample rate then; the sensors are recorded at that of the machine file, or 10 kHz, which
+    /// must give as many samples in a revolution. Features are those of the recordings before. By default signals are
+    /// as recorded, at equal times.
+    #[serde(default)]
+    pub samples_per_revolution: Option<Count<32, 65_536>>,
+    /// With `samples_per_revolution`: the crank angle at which the signals begin; default `zero`.
+    #[serde(default)]
+    pub start: Option<Start>,
     /// Relative local error of the integration, 1e-13 to 1e-3; default 1e-9.
     #[serde(default)]
     pub tolerance: Option<Number<AboveZero>>,
@@ -138,6 +153,16 @@ pub struct Run {
     /// take as long as the simulation, so a large sweep may switch it off.
     #[serde(default)]
     pub chaos: Option<bool>,
+}
+
+/// The crank angle at which signals begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// At crank angle 0.
+    Zero,
+    /// At an angle that is drawn for each case.
+    Random,
 }
 
 /// How the motion of each case is judged.

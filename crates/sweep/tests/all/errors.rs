@@ -18,9 +18,13 @@ fn plan(text: &str) -> Result<Plan, input::Error> {
 const MISTAKES: &[(&str, &str)] = &[
     (
         "caes: []",
-        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?\nsweep.yaml:4:7: caes: found no case at all, expected at least one",
+        "sweep.yaml:4:1: caes: unknown key; expected one of name, study, licence, machine, calibrate, calibrated, seed, run, repeats, windows, cases, vary, vary_together, bifurcations, splits, format, shard_size; did you mean 'cases'?\nsweep.yaml:4:7: caes: found no case at all, expected at least one",
     ),
     ("", "sweep.yaml:1:1: cases: missing; expected a list"),
+    (
+        "licence: cc-by4.0\ncases: [{grid: {speed: 500 rpm}}]",
+        "sweep.yaml:4:10: licence: found 'cc-by4.0', expected one of CC0-1.0, CC-BY-4.0, CC-BY-SA-4.0, CC-BY-NC-4.0, CC-BY-NC-SA-4.0, CC-BY-ND-4.0, CC-BY-NC-ND-4.0, CDLA-Permissive-2.0, CDLA-Sharing-1.0, ODbL-1.0, ODC-By-1.0, PDDL-1.0, MIT, Apache-2.0; did you mean 'CC-BY-4.0'?",
+    ),
     (
         "cases: []",
         "sweep.yaml:4:8: cases: found no case at all, expected at least one",

@@ -373,9 +373,14 @@ vary: {joints.big_end.contact.damping: {lognormal: {factor: 1.5}}}
         column.role.map(Role::name)
     };
     let signals = |name| role(&tables.signals, name);
-    assert_eq!(signals("case_id"), None);
-    assert_eq!(signals("split"), None);
-    for label in ["fault", "faulty_joints", "clearance_big_end_m"] {
+    assert_eq!(signals("case_id"), Some("identifier"));
+    assert_eq!(signals("split"), Some("identifier"));
+    for label in [
+        "fault",
+        "fault_type",
+        "faulty_joints",
+        "clearance_big_end_m",
+    ] {
         assert_eq!(signals(label), Some("label"), "{label}");
     }
     for condition in ["speed_rpm", "discharge_pressure_pa", "crosshead.mass_kg"] {

@@ -188,6 +188,7 @@ fn page(design: Design) -> DatasetPage {
         version: "0.1.0".to_owned(),
         seed: 42,
         sample_rate_hz: SAMPLE_RATE_HZ,
+        samples_per_revolution: None,
         revolutions_per_window: 8,
         samples_per_window: (9600, 9600),
         channels: [

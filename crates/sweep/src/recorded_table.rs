@@ -1,0 +1,109 @@
+//! The features of recordings in memory, as a dataset has them.
+
+use crate::in_order::in_order;
+use crate::reader::{Like, Unlike};
+use features::recorded::{Input, Said, Table as Columns, WindowLength, row};
+use recordings::{Kind, Table};
+
+/// What ends the reading of recordings.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A recording that cannot be used.
+    #[error(transparent)]
+    Recording(#[from] features::recorded::Error),
+    /// Recordings that do not go with the dataset.
+    #[error(transparent)]
+    Unlike(#[from] Unlike),
+    /// A row that is not one of the table.
+    #[error(transparent)]
+    Row(#[from] recordings::Error),
+    /// The caller asked for it.
+    #[error("interrupted")]
+    Stopped,
+}
+
+/// A row for each window of some recordings.
+#[derive(Debug)]
+pub struct RecordedTable {
+    /// The rows: file, window, start and what the files say of them, then the features.
+    pub rows: Table,
+    /// What looks wrong with windows.
+    pub warnings: Vec<String>,
+}
+
+/// Computes the features of all windows of `inputs`, in order, on the threads of `pool`. With `like` these are the features of
+/// that dataset, from windows as it has them. `go_on` is asked before each row.
+///
+/// # Errors
+/// [`Error`].
+pub fn recorded_table(
+    inputs: &[Input],
+    said: &Said,
+    length: WindowLength,
+    like: Option<&Like>,
+    pool: &rayon::ThreadPool,
+    mut go_on: impl FnMut() -> bool,
+) -> Result<RecordedTable, Error> {
+    let columns = Columns::new(inputs, said)?;
+    let schema = columns.schema().clone();
+    let kept = match like {
+        Some(like) => like.columns(&schema)?,
+        None => (0..schema.columns().len()).collect(),
+    };
+    let mut rows = Table::new(schema.select(&kept));
+    let mut warnings = Vec::new();
+    in_order(
+        pool,
+        2 * pool.current_num_threads(),
+        columns.windows(length),
+        |window| window.as_ref().ok().map(row),
+        |window, made| {
+            window?;
+            if !go_on() {
+                return Err(Error::Stopped);
+            }
+            let Some(mut made) = made else { return Ok(()) };
+            if let Some(like) = like {
+                like.check(&made)?;
+            }
+            warnings.extend(made.warning());
+            made.keep(&kept);
+            rows.push(made.values).map_err(Error::Row)
+        },
+    )?;
+    Ok(RecordedTable { rows, warnings })
+}
+
+impl RecordedTable {
+    /// A name for the recording of each row. Windows that follow each other in one file are of one recording; a dataset's rows
+    /// have a column `group`.
+    ///
+    /// # Errors
+    /// A table without the columns of all tables of recordings.
+    pub fn recordings(&self) -> Result<Vec<String>, recordings::Error> {
+        let schema = self.rows.schema().columns();
+        if schema
+            .iter()
+            .any(|column| column.name == "group" && column.kind == Kind::Text)
+        {
+            let groups = self.rows.values::<String>("group")?.iter();
+            return Ok(groups
+                .map(|group| group.clone().unwrap_or_default())
+                .collect());
+        }
+        let (files, starts) = (
+            self.rows.values::<String>("file")?,
+            self.rows.values::<f64>("start_s")?,
+        );
+        let mut number = 0;
+        let mut before: Option<(&Option<String>, f64)> = None;
+        let rows = files.iter().zip(starts).map(|(file, start)| {
+            let start = start.unwrap_or(0.0);
+            let goes_on = before.is_some_and(|(of, begin)| of == file && begin < start);
+            number += usize::from(!goes_on);
+            before = Some((file, start));
+            number.to_string()
+        });
+        Ok(rows.collect())
+    }
+}
