@@ -5,7 +5,7 @@
 # This map has the largest Lyapunov exponent of each case, from the equations of motion: positive where nearby motions part
 # (chaos), negative where they meet (periodic). `pipelines/chaos-map.yaml` is the larger sweep for a page.
 #
-# Takes three minutes on two cores.
+# Takes four minutes of processor time.
 
 # %%
 import os
