@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the package into a virtual environment below target/ and runs its tests; --wheel builds the release wheel and measures
-# it. Other arguments go to pytest. Exit status 77: no Python with venv.
+# Builds the package into a virtual environment below target/ and runs its tests; --torch runs those of PyTorch, too (some GB);
+# --wheel builds the release wheel and measures it. Other arguments go to pytest. Exit status 77: no Python with venv.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -24,6 +24,10 @@ build() {
     "$venv/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$wheels"/*.whl
 }
 
+if [ "${1:-}" = --torch ]; then
+    shift
+    "$venv/bin/pip" install --quiet --disable-pip-version-check -r python_tests/requirements-torch.txt
+fi
 if [ "${1:-}" = --wheel ]; then
     build --release
     "$venv/bin/python" python_tests/measure_wheel.py "$wheels"/*.whl

@@ -4,8 +4,8 @@
     crosshead sweep plan SWEEP.yaml --out URL --shards 100
     python ray_driver.py URL --address HEAD:6379
 
-A shard whose process or node ends is begun again by Ray. The program must stand at the same place on
-all nodes, and URL must be seen by all. Ray itself has no locks on its doors: use it in a network of your
+A shard whose process or node ends is begun again by Ray. All nodes need the Python package `crosshead`, or the program at the
+same place (`--program`), and all must see URL. Ray itself has no locks on its doors: use it in a network of your
 own.
 """
 
@@ -30,21 +30,25 @@ def main():
     parser = argparse.ArgumentParser(description="Makes a planned dataset on a Ray cluster.")
     parser.add_argument("url")
     parser.add_argument("--address", default="auto", help="of the cluster's head")
-    parser.add_argument("--program", default="crosshead")
+    parser.add_argument("--program", help="instead of the Python package")
     parser.add_argument("--threads", type=int, default=1, help="processors of each shard")
     asked = parser.parse_args()
 
+    def command(*arguments):
+        # Where it is called the interpreter is that of the node.
+        program = [asked.program] if asked.program else [sys.executable, "-m", "crosshead"]
+        return [*program, "sweep", *arguments]
+
     def sweep(*arguments):
-        return subprocess.run(
-            [asked.program, "sweep", *arguments], text=True, stdout=subprocess.PIPE
-        )
+        return subprocess.run(command(*arguments), text=True, stdout=subprocess.PIPE)
 
     @ray.remote(
         num_cpus=asked.threads, max_retries=6, retry_exceptions=[subprocess.CalledProcessError]
     )
     def shard(index):
-        threads = ["--index", str(index), "--threads", str(asked.threads)]
-        subprocess.run([asked.program, "sweep", "shard", asked.url, *threads], check=True)
+        # A process of its own: a case that ends it does not end Ray's.
+        which = ["--index", str(index), "--threads", str(asked.threads)]
+        subprocess.run(command("shard", asked.url, *which), check=True)
         return index
 
     ray.init(address=asked.address, log_to_driver=False)

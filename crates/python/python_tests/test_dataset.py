@@ -117,6 +117,18 @@ def test_windows_over_the_crank_angle(dataset):
         dataset.over_crank_angle("train", channels=["x"])
 
 
+def test_any_recordings_over_the_crank_angle_are_those_of_the_dataset(dataset):
+    channels = ["crosshead_acceleration_m_s2"]
+    expected, begins, _ = dataset.over_crank_angle("train", samples_per_revolution=128, channels=channels)
+    files = sorted((dataset.folder / "signals").glob("train-*"))
+    found, first = ch.over_crank_angle(files, channels, samples_per_revolution=128)
+    assert len(found) == len(expected) > 0
+    np.testing.assert_array_equal(np.concatenate(found, axis=1), np.concatenate(expected, axis=1))
+    np.testing.assert_array_equal(first, begins)
+    with pytest.raises(ch.InputError, match="channels: found 'x', expected some of case_id"):
+        ch.over_crank_angle(files, ["x"])
+
+
 def test_torch_gets_pieces_of_one_length(dataset):
     torch = pytest.importorskip("torch")
     windows = dataset.torch("train", samples_per_revolution=64)

@@ -20,7 +20,7 @@ def make():
 
 
 def test_there_are_notebooks():
-    assert len(SCRIPTS) >= 2
+    assert len(SCRIPTS) == 7
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
@@ -35,7 +35,10 @@ def test_a_notebook_is_that_of_its_script(make, script):
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 def test_a_notebook_runs_through(make, script, monkeypatch):
+    if "import torch" in script.read_text(encoding="utf-8"):
+        pytest.importorskip("torch")
     monkeypatch.setenv("CASES", "24")
+    monkeypatch.setenv("EPOCHS", "1")
     # Pictures go into the notebook.
     monkeypatch.delenv("MPLBACKEND", raising=False)
     made = make.notebook(script)
@@ -44,4 +47,4 @@ def test_a_notebook_runs_through(make, script, monkeypatch):
     drawn = [
         output for cell in made.cells for output in cell.get("outputs", []) if output.output_type == "display_data"
     ]
-    assert len(drawn) >= 2
+    assert drawn

@@ -33,7 +33,7 @@ pub fn generate(
     uncertainty: &str,
     undetermined: &str,
     channels: Option<Vec<String>>,
-    out: Option<PathBuf>,
+    out: PathBuf,
     existing: &str,
     threads: Option<usize>,
     progress: Option<Py<PyAny>>,
@@ -43,31 +43,18 @@ pub fn generate(
         "overwrite" => Existing::Overwrite,
         _ => Existing::Refuse,
     };
-    let machine = machine.map(|machine| machine.tree().clone());
-    let known = match calibration {
-        None => None,
-        Some(folder) => Some(Known {
-            folder,
-            uncertainty: named("uncertainty", uncertainty)?,
-            undetermined: named("undetermined", undetermined)?,
-        }),
-    };
+    let asked = Asked::new(machine, calibration, uncertainty, undetermined, channels)?;
     interruptible(py, progress, |shared| {
-        let (sweep, nominal) = planned(&sweep, machine, known.as_ref())?;
+        let (sweep, nominal) = asked.planned(&sweep)?;
         nominal.check_size()?;
-        let out = out.unwrap_or_else(|| Path::new("datasets").join(&nominal.name));
-        let asks = sweep.calibrate().is_some() && known.is_none();
-        let (claim, plan) = match asks {
+        let (claim, plan) = match asked.calibrates(&sweep) {
             false => {
                 check_calibration(&nominal)?;
                 (Claim::new(&out, existing)?, nominal)
             }
             true => calibrated(&sweep, &out, existing, shared)?,
         };
-        let plan = match &channels {
-            Some(channels) => plan.with_channels(channels)?,
-            None => plan,
-        };
+        let plan = asked.with_channels(plan)?;
         let mut shown = Shown {
             shared,
             warnings: plan.census().mistakes(),
@@ -85,11 +72,73 @@ pub fn generate(
     })
 }
 
+/// What the arguments put in the place of the sweep's own.
+pub struct Asked {
+    machine: Option<Value>,
+    known: Option<Known>,
+    channels: Option<Vec<String>>,
+}
+
 /// A calibration that is there, and how much of its uncertainty the cases draw.
 struct Known {
     folder: PathBuf,
     uncertainty: Uncertainty,
     undetermined: Undetermined,
+}
+
+impl Asked {
+    pub fn new(
+        machine: Option<&Machine>,
+        calibration: Option<PathBuf>,
+        uncertainty: &str,
+        undetermined: &str,
+        channels: Option<Vec<String>>,
+    ) -> PyResult<Self> {
+        let known = match calibration {
+            None => None,
+            Some(folder) => Some(Known {
+                folder,
+                uncertainty: named("uncertainty", uncertainty)?,
+                undetermined: named("undetermined", undetermined)?,
+            }),
+        };
+        Ok(Self {
+            machine: machine.map(|machine| machine.tree().clone()),
+            known,
+            channels,
+        })
+    }
+
+    /// The sweep and its plan, as far as they are known without calibrating anything.
+    pub fn planned(&self, sweep: &Path) -> Result<(Sweep, Plan), Failure> {
+        let mut sweep = Sweep::read(sweep)?;
+        if let Some(machine) = &self.machine {
+            sweep = sweep.with_machine(machine.clone())?;
+        }
+        let plan = match &self.known {
+            None => sweep.nominal()?,
+            Some(known) => {
+                let (uncertainty, undetermined) = (known.uncertainty, known.undetermined);
+                let mut plan = sweep.kept_with(&known.folder, uncertainty, undetermined)?;
+                plan.calibrated = Some(known.folder.clone());
+                plan
+            }
+        };
+        Ok((sweep, plan))
+    }
+
+    /// Whether the sweep calibrates its machine itself.
+    pub fn calibrates(&self, sweep: &Sweep) -> bool {
+        sweep.calibrate().is_some() && self.known.is_none()
+    }
+
+    /// The plan with the channels that were asked for.
+    pub fn with_channels(&self, plan: Plan) -> Result<Plan, Failure> {
+        Ok(match &self.channels {
+            Some(channels) => plan.with_channels(channels)?,
+            None => plan,
+        })
+    }
 }
 
 /// The value that files call `name`.
@@ -98,30 +147,9 @@ fn named<T: DeserializeOwned>(key: &str, name: &str) -> PyResult<T> {
     value.map_err(|error| wrong(format!("{key}: {error}")))
 }
 
-fn cores() -> usize {
+/// Threads that the processor has.
+pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, Into::into)
-}
-
-/// The sweep and its plan, as far as they are known without calibrating anything.
-fn planned(
-    sweep: &Path,
-    machine: Option<Value>,
-    known: Option<&Known>,
-) -> Result<(Sweep, Plan), Failure> {
-    let mut sweep = Sweep::read(sweep)?;
-    if let Some(machine) = machine {
-        sweep = sweep.with_machine(machine)?;
-    }
-    let plan = match known {
-        None => sweep.nominal()?,
-        Some(known) => {
-            let (uncertainty, undetermined) = (known.uncertainty, known.undetermined);
-            let mut plan = sweep.kept_with(&known.folder, uncertainty, undetermined)?;
-            plan.calibrated = Some(known.folder.clone());
-            plan
-        }
-    };
-    Ok((sweep, plan))
 }
 
 /// Calibrates the machine into the dataset's folder, as the sweep asks.

@@ -11,7 +11,7 @@ use std::thread::{self, Builder};
 use std::time::Duration;
 
 /// How often signals are looked for, and progress is shown.
-const TICK: Duration = Duration::from_millis(50);
+pub const TICK: Duration = Duration::from_millis(50);
 
 /// Stack of the thread that works: that of a main thread.
 const STACK: usize = 8 << 20;

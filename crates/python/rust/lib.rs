@@ -19,6 +19,7 @@ mod interruptible;
 mod machine;
 mod program;
 mod settings;
+mod signal_batches;
 mod simulate;
 mod stream;
 mod table;
@@ -50,6 +51,8 @@ mod _crosshead {
     use crate::machine::Machine;
     #[pymodule_export]
     use crate::program::{page, program, set_program};
+    #[pymodule_export]
+    use crate::signal_batches::{SignalBatches, signal_batches};
     #[pymodule_export]
     use crate::simulate::{Run, simulate};
     #[pymodule_export]

@@ -10,6 +10,7 @@ stops any work.
 """
 
 from ._crosshead import Table, __version__
+from .angle import over_crank_angle
 from .calibrate import Calibration, Parameter, calibrate
 from .dataset import Dataset
 from .domain_gap import DomainGap, TellingFeature, domain_gap
@@ -20,6 +21,7 @@ from .generate import generate
 from .machine import Machine
 from .page import Page
 from .programs import name_program as _name_program
+from .signal_batches import SignalBatches
 from .simulate import Run, simulate
 from .wear import Wear, estimate_wear
 
@@ -37,6 +39,7 @@ __all__ = [
     "Page",
     "Parameter",
     "Run",
+    "SignalBatches",
     "Table",
     "TellingFeature",
     "Wear",
@@ -47,5 +50,6 @@ __all__ = [
     "explain_gap",
     "features",
     "generate",
+    "over_crank_angle",
     "simulate",
 ]

@@ -113,11 +113,33 @@ def generate(
     uncertainty: str,
     undetermined: str,
     channels: Sequence[str] | None,
-    out: str | None,
+    out: str,
     existing: str,
     threads: int | None,
     progress: _Progress,
 ) -> tuple[str, list[str]]: ...
+
+class SignalBatches:
+    name: str
+    cases: int
+    mistakes: list[str]
+    done: int
+    failed: list[tuple[str, str]]
+    warnings: list[tuple[str, str]]
+    columns: Table
+    def next(self) -> Table | None: ...
+    def close(self) -> None: ...
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+
+def signal_batches(
+    sweep: str,
+    machine: Machine | None,
+    calibration: str | None,
+    uncertainty: str,
+    undetermined: str,
+    channels: Sequence[str] | None,
+    threads: int | None,
+) -> SignalBatches: ...
 def calibrate(
     calibration: str, machine: Machine | None, out: str, allow_outside: bool, overwrite: bool, progress: _Progress
 ) -> None: ...

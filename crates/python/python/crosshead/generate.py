@@ -1,4 +1,4 @@
-"""Labelled datasets from sweeps."""
+"""Labelled datasets and streams of recordings from sweeps."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import pathlib
 import warnings
 from collections.abc import Iterable
+from typing import overload
 
 from . import _crosshead
 from .calibrate import Calibration
@@ -14,10 +15,36 @@ from .errors import InputError
 from .kinds import AnyMachine, AnyPath, Progress
 from .machine import Machine
 from .progress import shown
+from .signal_batches import SignalBatches
 
 _EXISTING = ("refuse", "resume", "overwrite")
 
 
+@overload
+def generate(
+    sweep: AnyPath,
+    *,
+    machine: AnyMachine | None = None,
+    out: AnyPath,
+    existing: str = "refuse",
+    uncertainty: str | None = None,
+    undetermined: str = "nominal",
+    channels: Iterable[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Dataset: ...
+@overload
+def generate(
+    sweep: AnyPath,
+    *,
+    machine: AnyMachine | None = None,
+    out: None = None,
+    uncertainty: str | None = None,
+    undetermined: str = "nominal",
+    channels: Iterable[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> SignalBatches: ...
 def generate(
     sweep: AnyPath,
     *,
@@ -29,13 +56,13 @@ def generate(
     channels: Iterable[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
-) -> Dataset:
-    """Simulates the cases of a sweep file and writes a labelled dataset.
+) -> Dataset | SignalBatches:
+    """Simulates the cases of a sweep file: writes a labelled dataset, or hands out its recordings batch by batch.
 
     sweep: path of the sweep file.
     machine: takes the place of the sweep's own: a `Machine`, the path of its file, or a `Calibration`. The cases then
         draw from the uncertainty that the calibration leaves.
-    out: folder of the dataset. By default `datasets/NAME`, NAME being the sweep's.
+    out: folder of the dataset. Without one nothing is written, and the result is an iterator of Arrow tables.
     existing: what happens to a dataset that is there: `refuse`, `resume` or `overwrite`.
     uncertainty: of a calibration: `sampled` draws each case from the joint distribution of what was found, `ignored`
         takes the best values. By default `sampled` where the model is adequate.
@@ -53,19 +80,20 @@ def generate(
         uncertainty = "sampled" if calibration is not None and calibration.model_is_adequate else "ignored"
     if channels is None and calibration is not None:
         channels = list(calibration.noise)
+    asked = (
+        os.fspath(sweep),
+        own,
+        None if calibration is None else str(calibration.folder.absolute()),
+        uncertainty,
+        undetermined,
+        None if channels is None else list(channels),
+    )
+    if out is None:
+        if existing != "refuse":
+            raise InputError(f"existing: found {existing!r} without a folder, expected out, the folder of the dataset")
+        return SignalBatches(_crosshead.signal_batches(*asked, threads), progress)
     with shown(progress) as report:
-        folder, doubts = _crosshead.generate(
-            os.fspath(sweep),
-            own,
-            None if calibration is None else str(calibration.folder.absolute()),
-            uncertainty,
-            undetermined,
-            None if channels is None else list(channels),
-            None if out is None else os.fspath(out),
-            existing,
-            threads,
-            report,
-        )
+        folder, doubts = _crosshead.generate(*asked, os.fspath(out), existing, threads, report)
     dataset = Dataset(pathlib.Path(folder))
     failed = dataset.failed
     if failed:

@@ -37,7 +37,7 @@ class AngleWindows(torch.utils.data.Dataset):
         if y.dtype.kind in "fi":
             self._y = torch.as_tensor(y, dtype=torch.float32)
         else:
-            self.classes = sorted(set(y)) if classes is None else list(classes)
+            self.classes = [str(name) for name in (sorted(set(y)) if classes is None else classes)]
             index = {name: i for i, name in enumerate(self.classes)}
             unknown = sorted(set(y) - set(index))
             if unknown:

@@ -18,6 +18,15 @@ use crate::plan::Case;
 use crate::split::Split;
 use crate::sweep_file::Format;
 
+/// What is made of a case.
+#[derive(Clone, Copy)]
+pub(super) enum Wanted<'a> {
+    /// What a dataset has of it: signals and features. The text goes into MCAP files.
+    Dataset { sweep_yaml: &'a str },
+    /// Rows of `signals` alone, whatever the format of the dataset is.
+    Signals,
+}
+
 /// What a case leaves behind.
 pub(super) struct CaseRows {
     pub case_id: String,
@@ -53,13 +62,13 @@ impl std::error::Error for Death {}
 /// The cases whose processes died when they were tried.
 pub(super) type Dead = BTreeMap<u64, Death>;
 
-/// Runs these cases of `plan` but for those of `dead`. `sweep_yaml` goes into MCAP files.
+/// Runs these cases of `plan` but for those of `dead`.
 pub(super) fn run_cases(
     plan: &Plan,
     cases: Range<u64>,
     dead: &Dead,
     runner: &Runner,
-    sweep_yaml: &str,
+    wanted: Wanted,
 ) -> Vec<Result<CaseRows, FailedCase>> {
     let planned: Vec<Result<Case, Failure>> = cases
         .clone()
@@ -74,7 +83,7 @@ pub(super) fn run_cases(
         let case = case?;
         let missing = || Err("the case was not simulated".into());
         let recording = recordings.next().unwrap_or_else(missing)?;
-        rows(plan, case, recording, sweep_yaml)
+        rows(plan, case, recording, wanted)
     });
     cases
         .zip(rows)
@@ -97,24 +106,29 @@ fn rows(
     plan: &Plan,
     mut case: Case,
     mut recording: Recording,
-    sweep_yaml: &str,
+    wanted: Wanted,
 ) -> Result<CaseRows, Failure> {
     case.motion = recording.motion.take();
     check_channels(plan, &recording)?;
     let windows = cut_up(plan, &case, &recording)?;
     let rate = recording.sample_rate_hz;
-    let features = (windows.iter().enumerate())
-        .map(|(i, window)| features_row(plan, &case, i, &window.recorded, rate))
-        .collect();
+    let features = match wanted {
+        Wanted::Dataset { .. } => (windows.iter().enumerate())
+            .map(|(i, window)| features_row(plan, &case, i, &window.recorded, rate))
+            .collect(),
+        Wanted::Signals => Vec::new(),
+    };
     Ok(CaseRows {
         features,
-        signals: match plan.format {
-            Format::Parquet => Signals::Rows(
+        signals: match (plan.format, wanted) {
+            (Format::Mcap, Wanted::Dataset { sweep_yaml }) => {
+                Signals::Mcap(to_mcap(plan, &case, &recording, sweep_yaml)?)
+            }
+            _ => Signals::Rows(
                 (windows.into_iter().enumerate())
                     .map(|(i, window)| signals_row(plan, &case, i, window.signals(), rate))
                     .collect(),
             ),
-            Format::Mcap => Signals::Mcap(to_mcap(plan, &case, &recording, sweep_yaml)?),
         },
         split: case.split,
         case_id: case.id,

@@ -1,4 +1,5 @@
-//! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard.
+//! A plan becomes a dataset: cases are run in parallel and written in order, shard by shard; or their
+//! recordings are handed out without a folder.
 
 mod adopt;
 mod attempts;
@@ -27,6 +28,7 @@ mod record;
 mod recording;
 mod run_shards;
 mod shard;
+mod signal_batches;
 mod status;
 mod store;
 mod tables;
@@ -51,6 +53,7 @@ pub use progress::Progress;
 pub(crate) use recording::CRANK_ANGLE;
 pub use recording::{Failure, Recording, Runner};
 pub use run_shards::run_shards;
+pub use signal_batches::{SignalBatch, SignalBatches, Waited};
 pub use status::{Status, status};
 pub use tables::Tables;
 pub(crate) use tables::prefixed;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::attempts::{self, Attempts};
-use super::case_rows::{Dead, run_cases};
+use super::case_rows::{Dead, Wanted, run_cases};
 use super::check::Check;
 use super::commit::Commit;
 use super::log::Pace;
@@ -156,7 +156,10 @@ impl Shards<'_> {
             2 * threads.max(1),
             inputs.take_while(|_| !options.is_cancelled()),
             |piece| match piece {
-                Ok((_, cases)) => run_cases(plan, cases.clone(), dead, *runner, sweep_yaml),
+                Ok((_, cases)) => {
+                    let wanted = Wanted::Dataset { sweep_yaml };
+                    run_cases(plan, cases.clone(), dead, *runner, wanted)
+                }
                 Err(_) => Vec::new(),
             },
             |piece, rows| {
@@ -198,7 +201,7 @@ pub(super) fn cases_of(plan: &Plan, shards: &[u64]) -> u64 {
 }
 
 /// A range in pieces of at most `size`.
-fn pieces(range: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
+pub(super) fn pieces(range: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
     let end = range.end;
     let starts = range.step_by(size as usize);
     starts.map(move |start| start..end.min(start + size))
@@ -207,7 +210,7 @@ fn pieces(range: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
 impl Plan {
     /// How many of `cases` are simulated together, so that no thread of so many is without any for long.
     /// Judging a motion takes as long as many simulations and gains nothing by it.
-    fn together(&self, cases: u64, threads: usize) -> u64 {
+    pub(super) fn together(&self, cases: u64, threads: usize) -> u64 {
         if self.judgement.is_some() {
             return 1;
         }

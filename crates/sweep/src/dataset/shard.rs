@@ -258,7 +258,7 @@ fn write_rows(
 
 /// Rows of one row group of a table with these columns: as many as fit its size, where a recording
 /// has so many samples, and at most as many as the writer collects.
-fn rows_per_group(schema: &Schema, samples: f64) -> usize {
+pub(super) fn rows_per_group(schema: &Schema, samples: f64) -> usize {
     let bytes = |column: &Column| match column.kind {
         Kind::Samples => 4.0 * samples,
         Kind::Text | Kind::Integer | Kind::Real => 8.0,

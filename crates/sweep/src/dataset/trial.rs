@@ -20,7 +20,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::attempts::{TRIED, shard_of};
-use super::case_rows::{Dead, Death, run_cases};
+use super::case_rows::{Dead, Death, Wanted, run_cases};
 use super::layout::ATTEMPTS;
 use super::options::{Options, Trial};
 use super::output::Output;
@@ -200,6 +200,9 @@ fn judged(status: ExitStatus) -> End {
 pub fn try_here(root: &Path, case: u64, runner: &Runner) -> Result<(), Error> {
     let (_, plan) = Output::open_read_only(root)?;
     let sweep_yaml = input::yaml::to_string(plan.sweep())?;
-    run_cases(&plan, case..case + 1, &Dead::new(), runner, &sweep_yaml);
+    let wanted = Wanted::Dataset {
+        sweep_yaml: &sweep_yaml,
+    };
+    run_cases(&plan, case..case + 1, &Dead::new(), runner, wanted);
     Ok(())
 }

@@ -10,6 +10,7 @@ mod labels;
 mod over_angle;
 mod plan;
 mod schema;
+mod signal_batches;
 #[path = "../toy/mod.rs"]
 mod toy;
 #[path = "../../../../tests/readers/venv.rs"]
