@@ -11,7 +11,8 @@ from .errors import InputError
 from .folder import paths
 from .kinds import AnyPath
 
-CRANK_ANGLE = "crank_angle_rad"
+# What says at which angle each sample was taken, as far as it is there.
+ABOUT = ["crank_angle_rad", "speed_rpm", "sample_rate_hz", "samples_per_revolution", "start_angle_rad"]
 
 
 def over_crank_angle(
@@ -19,8 +20,8 @@ def over_crank_angle(
 ) -> tuple[list[np.ndarray], np.ndarray]:
     """Recordings resampled over the crank angle, without aliasing: `signals, first`.
 
-    recordings: Parquet files with a row for each recording. Without a column `crank_angle_rad` the columns `speed_rpm` and
-        `sample_rate_hz` give the angle, which then begins at 0.
+    recordings: Parquet files with a row for each recording and columns `speed_rpm` and `sample_rate_hz`. Without a column
+        `crank_angle_rad` these give the angle, which then begins at 0.
     channels: names of the columns with the samples.
     signals: an array of float32 for each recording, channels by points; whole revolutions.
     first: the point, counted from top dead centre, at which each of them begins.
@@ -32,7 +33,7 @@ def over_crank_angle(
     for name in chosen:
         if name not in names:
             raise InputError(f"channels: found {name!r}, expected some of {', '.join(names)}")
-    about = [CRANK_ANGLE] if CRANK_ANGLE in names else ["speed_rpm", "sample_rate_hz"]
+    about = [name for name in ABOUT if name in names]
     columns = [*about, *(name for name in chosen if name not in about)]
     signals: list[np.ndarray] = []
     first: list[int] = []
