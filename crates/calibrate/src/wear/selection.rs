@@ -49,6 +49,15 @@ impl Found {
     }
 }
 
+/// What a step of the selection may change.
+#[derive(Clone, Copy)]
+struct Steps {
+    /// A joint that was ideal becomes clear.
+    joints: bool,
+    /// Each contact parameter is fitted.
+    contacts: bool,
+}
+
 /// The model that the evidence favours.
 ///
 /// # Errors
@@ -98,9 +107,15 @@ pub(super) fn selected(
         let led = joined(&parts, &ends, &at);
         let starts: Vec<Vec<f64>> = led.iter().map(|led| led.x.clone()).collect();
         effort.begins(Stage::Clearances);
-        let found = search.better(best, &model, led, effort);
-        // Joints that are ideal in the file come before all that is less likely.
-        let found = found.and_then(|best| search.steps(best, (&model, &starts), round > 0, effort));
+        let before = best.criterion;
+        let found = search.better(best, &model, led, effort).and_then(|best| {
+            // Joints that are ideal in the file come before all that is less likely, and are not tried twice.
+            let steps = Steps {
+                joints: round == 0 || best.criterion < before,
+                contacts: round > 0,
+            };
+            search.stepped(best, (&model, &starts), steps, effort)
+        });
         effort.ends();
         best = found?;
         if effort.stopped || best.fit.is_at_noise() {
@@ -176,19 +191,20 @@ impl Search<'_> {
     }
 
     /// The fit after as many steps as the evidence favours. `ends` are points of a model from which they lead, the best one
-    /// first; contact parameters are fitted only where that is `last`.
-    fn steps(
+    /// first.
+    fn stepped(
         &self,
         mut best: Found,
         ends: (&Model, &[Vec<f64>]),
-        last: bool,
+        mut steps: Steps,
         effort: &mut Effort,
     ) -> Result<Found, Error> {
         while !effort.stopped && !best.fit.is_at_noise() {
-            let Some((model, led)) = self.best_step(&best, ends, last, effort)? else {
+            let Some((model, led)) = self.best_step(&best, ends, steps, effort)? else {
                 break;
             };
             let before = best.criterion;
+            steps.joints = true;
             best = self.better(best, &model, led, effort)?;
             if best.criterion >= before - STRONG {
                 break;
@@ -202,11 +218,15 @@ impl Search<'_> {
         &self,
         best: &Found,
         (first, ends): (&Model, &[Vec<f64>]),
-        last: bool,
+        steps: Steps,
         effort: &mut Effort,
     ) -> Result<Option<(Model, Vec<Led>)>, Error> {
-        let mut led = self.cleared(best, (first, ends), effort)?;
-        if last && best.model.contacts != Contacts::Fitted && !best.model.clear.is_empty() {
+        let mut led = match steps.joints {
+            true => self.cleared(best, (first, ends), effort)?,
+            false => Vec::new(),
+        };
+        if steps.contacts && best.model.contacts != Contacts::Fitted && !best.model.clear.is_empty()
+        {
             let clear = best.model.clear.clone();
             let model = Model::new(self.healthy, self.joints, clear, Contacts::Fitted)?;
             let x = model.coordinates_of(&best.model, &best.fit.coordinates());
