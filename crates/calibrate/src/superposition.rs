@@ -149,7 +149,7 @@ mod tests {
     use serde_json::json;
     use std::path::Path;
 
-    const SPEED: f64 = 50.0;
+    const TURNING: f64 = 50.0;
 
     /// The two-stage machine with a crank of constant speed, whose crosshead and frame are looked at.
     fn problem(columns: [&str; 2]) -> Problem {
@@ -160,7 +160,7 @@ mod tests {
         let file = input::machine_file::read(Path::new(&file)).unwrap();
         let mut tree = file.to_tree().clone();
         paths::set(&mut tree, "crank.drive", json!("given")).unwrap();
-        paths::set(&mut tree, "speed", json!(format!("{SPEED} rad/s"))).unwrap();
+        paths::set(&mut tree, "speed", json!(format!("{TURNING} rad/s"))).unwrap();
         let clearance = |throw| format!("throws.{throw}.joints.big_end.clearance");
         let parameter = |throw| Parameter::of(&tree, &clearance(throw)).unwrap();
         let channel = |column: &str| Observed {
@@ -179,7 +179,7 @@ mod tests {
                 id: "run".into(),
                 settings: Vec::new(),
                 crank: GivenSpeed {
-                    speed: SPEED,
+                    speed: TURNING,
                     fluctuation: Vec::new(),
                 },
                 channels: columns.map(channel).into(),

@@ -3,7 +3,7 @@
 //! Between two points of the grid the energies have valleys that are a few hundredths of a clearance wide. Many motions there do
 //! not repeat themselves and have no derivatives. So a cell is searched by a method that needs none, CMA-ES.
 
-use super::descent::Led;
+use super::descent::{KEPT, Led};
 use super::effort::Effort;
 use super::model::Model;
 use super::prior::WithPriors;
@@ -19,8 +19,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Evaluations for each coordinate of a cell, after the first and second of which a part of the cells is left.
 const EACH: [u64; 3] = [12, 25, 50];
-/// One of so many cells goes on, and at least so many.
-const KEPT: usize = 3;
+/// Cells that go on at least.
 const LEAST: usize = 2;
 /// Half the width of a cell along a coordinate that has a prior, in standard deviations of that.
 const SPREADS: f64 = 2.0;

@@ -45,7 +45,7 @@ const FINE: [Stage; 4] = [
 /// Ends of rough descents that are followed with all runs.
 const FOLLOWED: usize = 3;
 /// One of so many starts goes on after a stage.
-const KEPT: usize = 3;
+pub(super) const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
