@@ -7,13 +7,15 @@ use crate::error::Error;
 use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
 use crate::observation::{Observation, Observed, POINTS};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Prediction, prediction};
+use crate::prediction::{Accuracy, Prediction};
 use crate::problem::Problem;
+use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// The first order of the lowest band; the bands are octaves.
 const FIRST: usize = 8;
@@ -30,12 +32,32 @@ const TIMING: f64 = 0.03;
 /// The residuals of a problem's energies: differences of logarithms over [`SPREAD`].
 pub struct Energies<'a> {
     problem: &'a Problem,
+    machine: Superposition<'a>,
+    runs: Vec<Run<'a>>,
+}
+
+/// A run with the recorded energies of each channel and band.
+struct Run<'a> {
+    observed: &'a Observation,
+    channels: Vec<Vec<Recorded>>,
+    transform: Arc<dyn Fft<f64>>,
 }
 
 /// A band of one channel.
 struct Band {
     orders: std::ops::Range<usize>,
     sectors: usize,
+}
+
+/// A band with what was recorded in it.
+struct Recorded {
+    band: Band,
+    /// The sector that each point of the grid lies in, and its share in that; the rest is the next sector's.
+    shares: Vec<(usize, f64)>,
+    /// What is added to each energy before its logarithm is taken.
+    floor: f64,
+    /// The energy of each sector.
+    energies: Vec<f64>,
 }
 
 /// The bands of a channel that is compared up to the order `last`.
@@ -69,35 +91,27 @@ fn lowest(observed: &Observed) -> impl Iterator<Item = &usize> {
 
 impl Band {
     /// The signal of its orders over the grid of crank angles.
-    fn signal(&self, lines: &[Complex64]) -> Vec<Complex64> {
+    fn signal(&self, lines: &[Complex64], transform: &dyn Fft<f64>) -> Vec<Complex64> {
         let mut signal = vec![Complex64::ZERO; POINTS];
         for k in self.orders.clone() {
             signal[k] = lines.get(k).copied().unwrap_or_default();
         }
-        FftPlanner::new()
-            .plan_fft_inverse(POINTS)
-            .process(&mut signal);
+        transform.process(&mut signal);
         signal
     }
 
-    /// Means of a function of the grid over the sectors, which overlap by half.
-    fn means(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
-        let mut means = vec![0.0; self.sectors];
-        let width = TAU / self.sectors as f64;
-        for point in 0..POINTS {
-            let place = TAU * point as f64 / POINTS as f64 / width;
-            let (sector, part) = (place.floor(), place.fract());
-            let share = 0.5 * (1.0 + (PI * part).cos());
-            let sector = sector as usize;
-            let value = of(point);
-            means[sector % self.sectors] += share * value;
-            means[(sector + 1) % self.sectors] += (1.0 - share) * value;
-        }
-        let scale = self.sectors as f64 / POINTS as f64;
-        means.iter().map(|mean| mean * scale).collect()
+    /// The sector of each point of the grid, and the point's share in it. Sectors overlap by half.
+    fn shares(&self) -> Vec<(usize, f64)> {
+        let width = POINTS as f64 / self.sectors as f64;
+        let of = |point: usize| {
+            let place = point as f64 / width;
+            let share = 0.5 * (1.0 + (PI * place.fract()).cos());
+            (place.floor() as usize, share)
+        };
+        (0..POINTS).map(of).collect()
     }
 
-    /// What is added to each energy before its logarithm is taken.
+    /// A share of its own energy, and its noise.
     fn floor(&self, observed: &Observed) -> f64 {
         let sum = |of: &[f64]| -> f64 { self.orders.clone().filter_map(|k| of.get(k)).sum() };
         let energies: Vec<f64> = observed
@@ -111,49 +125,104 @@ impl Band {
     }
 }
 
-/// The residuals of a run, channel by channel: its lowest lines, then its bands; with their derivatives.
-fn compared(run: &Observation, prediction: &Prediction, count: usize) -> (Vec<f64>, DMatrix<f64>) {
-    let mut all = Vec::new();
-    let mut slopes: Vec<Vec<f64>> = vec![Vec::new(); count];
-    for (channel, (observed, predicted)) in run.channels.iter().zip(&prediction.lines).enumerate() {
-        let derivative = |parameter: usize| -> &[Complex64] {
-            let of = prediction.derivatives.get(parameter);
-            of.and_then(|of| of.get(channel)).map_or(&[], Vec::as_slice)
+impl Recorded {
+    /// What an observation shows in a band.
+    fn new(band: Band, observed: &Observed, transform: &dyn Fft<f64>) -> Self {
+        let signal = band.signal(&observed.lines.amplitude, transform);
+        let mut recorded = Self {
+            shares: band.shares(),
+            floor: band.floor(observed),
+            energies: Vec::new(),
+            band,
         };
-        let weights = weights(observed, predicted, TIMING);
-        for (k, weight) in lowest(observed).zip(weights) {
-            let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
-            push(&mut all, apart * weight, *k);
-            for (parameter, slopes) in slopes.iter_mut().enumerate() {
-                let slope = derivative(parameter).get(*k).copied().unwrap_or_default();
-                push(slopes, slope * weight, *k);
-            }
+        recorded.energies = recorded.means(|i| signal[i].norm_sqr());
+        recorded
+    }
+
+    /// Means of a function of the grid over the sectors.
+    fn means(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
+        let count = self.band.sectors;
+        let mut means = vec![0.0; count];
+        for (point, (sector, share)) in self.shares.iter().enumerate() {
+            let value = of(point);
+            means[*sector] += share * value;
+            means[(sector + 1) % count] += (1.0 - share) * value;
         }
-        for band in bands(last(observed)) {
-            let floor = band.floor(observed);
-            let energies = |signal: &[Complex64]| band.means(|i| signal[i].norm_sqr());
-            let signal = band.signal(&predicted.amplitude);
-            let there = energies(&band.signal(&observed.lines.amplitude));
-            let here = energies(&signal);
-            let apart = here.iter().zip(&there);
-            all.extend(apart.map(|(here, there)| ((here + floor) / (there + floor)).ln() / SPREAD));
-            for (parameter, slopes) in slopes.iter_mut().enumerate() {
-                let moved = band.signal(derivative(parameter));
-                let change = band.means(|i| 2.0 * (signal[i].conj() * moved[i]).re);
-                let each = change.iter().zip(&here);
-                slopes.extend(each.map(|(change, here)| change / (here + floor) / SPREAD));
-            }
+        let scale = count as f64 / POINTS as f64;
+        means.iter().map(|mean| mean * scale).collect()
+    }
+}
+
+impl<'a> Run<'a> {
+    fn new(observed: &'a Observation, transform: &Arc<dyn Fft<f64>>) -> Self {
+        let of_channel = |channel: &Observed| -> Vec<Recorded> {
+            let bands = bands(last(channel)).into_iter();
+            bands
+                .map(|band| Recorded::new(band, channel, &**transform))
+                .collect()
+        };
+        Self {
+            observed,
+            channels: observed.channels.iter().map(of_channel).collect(),
+            transform: transform.clone(),
         }
     }
-    let rows = all.len();
-    let slopes = DMatrix::from_vec(rows, count, slopes.concat());
-    (all, slopes)
+
+    /// The residuals of a run, channel by channel: its lowest lines, then its bands; with their derivatives by `count`
+    /// coordinates.
+    fn compared(&self, prediction: &Prediction, count: usize) -> (Vec<f64>, DMatrix<f64>) {
+        let mut all = Vec::new();
+        let mut slopes: Vec<Vec<f64>> = vec![Vec::new(); count];
+        let channels = self.observed.channels.iter();
+        let predicted = channels.zip(&prediction.lines).zip(&self.channels);
+        for (channel, ((observed, predicted), recorded)) in predicted.enumerate() {
+            let derivative = |parameter: usize| -> &[Complex64] {
+                let of = prediction.derivatives.get(parameter);
+                of.and_then(|of| of.get(channel)).map_or(&[], Vec::as_slice)
+            };
+            let weights = weights(observed, predicted, TIMING);
+            for (k, weight) in lowest(observed).zip(weights) {
+                let apart = amplitude(predicted, *k) - observed.lines.amplitude[*k];
+                push(&mut all, apart * weight, *k);
+                for (parameter, slopes) in slopes.iter_mut().enumerate() {
+                    let slope = derivative(parameter).get(*k).copied().unwrap_or_default();
+                    push(slopes, slope * weight, *k);
+                }
+            }
+            for recorded in recorded {
+                let floor = recorded.floor;
+                let signal_of = |lines| recorded.band.signal(lines, &*self.transform);
+                let signal = signal_of(&predicted.amplitude);
+                let here = recorded.means(|i| signal[i].norm_sqr());
+                let apart = here.iter().zip(&recorded.energies);
+                all.extend(
+                    apart.map(|(here, there)| ((here + floor) / (there + floor)).ln() / SPREAD),
+                );
+                for (parameter, slopes) in slopes.iter_mut().enumerate() {
+                    let moved = signal_of(derivative(parameter));
+                    let change = recorded.means(|i| 2.0 * (signal[i].conj() * moved[i]).re);
+                    let each = change.iter().zip(&here);
+                    slopes.extend(each.map(|(change, here)| change / (here + floor) / SPREAD));
+                }
+            }
+        }
+        let rows = all.len();
+        let slopes = DMatrix::from_vec(rows, count, slopes.concat());
+        (all, slopes)
+    }
 }
 
 impl<'a> Energies<'a> {
     /// Of this problem.
     pub fn new(problem: &'a Problem) -> Self {
-        Self { problem }
+        let transform = FftPlanner::new().plan_fft_inverse(POINTS);
+        let runs = problem.runs.iter();
+        let runs = runs.map(|run| Run::new(run, &transform)).collect();
+        Self {
+            problem,
+            machine: Superposition::new(problem),
+            runs,
+        }
     }
 
     /// The sum of the squares of the residuals.
@@ -170,16 +239,19 @@ impl<'a> Energies<'a> {
 
     fn of_run(
         &self,
-        run: &Observation,
+        run: &Run,
         x: &[f64],
         derivatives: bool,
     ) -> Result<(Vec<f64>, DMatrix<f64>), Error> {
-        let prediction = prediction(self.problem, run, x, derivatives, true)?;
-        Ok(compared(
-            run,
-            &prediction,
-            if derivatives { x.len() } else { 0 },
-        ))
+        // Derivatives are those of a motion that has settled.
+        let accuracy = match derivatives {
+            true => Accuracy::Coarse,
+            false => Accuracy::Rough,
+        };
+        let machine = &self.machine;
+        let prediction = machine.prediction(run.observed, x, derivatives, accuracy)?;
+        let count = if derivatives { x.len() } else { 0 };
+        Ok(run.compared(&prediction, count))
     }
 }
 
@@ -198,11 +270,11 @@ impl LeastSquares for Energies<'_> {
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         self.problem.once(&"energies", x, || {
-            let runs = self.problem.runs.par_iter();
+            let runs = self.runs.par_iter();
             let parts: Vec<Vec<f64>> = runs
                 .map(|run| match self.of_run(run, x, false) {
                     Ok((residuals, _)) => residuals,
-                    Err(_) => vec![FAILED; residual_count(run)],
+                    Err(_) => vec![FAILED; residual_count(run.observed)],
                 })
                 .collect();
             parts.concat()
@@ -211,9 +283,9 @@ impl LeastSquares for Energies<'_> {
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let columns = || {
-            let whole = stacked(self.problem, |run| match self.of_run(run, x, true) {
+            let whole = stacked(&self.runs, |run| match self.of_run(run, x, true) {
                 Ok((_, derivatives)) => derivatives,
-                Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+                Err(_) => DMatrix::zeros(residual_count(run.observed), x.len()),
             });
             whole.as_slice().to_vec()
         };
@@ -227,6 +299,7 @@ mod tests {
     use super::*;
     use mechanism::drive::GivenSpeed;
     use signal::order_lines::OrderLines;
+    use std::f64::consts::TAU;
 
     const LAST: usize = 70;
 
@@ -264,6 +337,10 @@ mod tests {
         }
     }
 
+    fn shown(run: &Observation) -> Run<'_> {
+        Run::new(run, &FftPlanner::new().plan_fft_inverse(POINTS))
+    }
+
     fn predicted(amplitude: Vec<Complex64>, derivatives: Vec<Vec<Vec<Complex64>>>) -> Prediction {
         Prediction {
             lines: vec![lines(amplitude)],
@@ -276,7 +353,7 @@ mod tests {
     fn a_ring_out_of_phase_has_the_same_energies_and_a_stronger_one_has_not() {
         let recorded = run(ring(1.0, 1.0));
         let norm = |amplitude| {
-            let (residuals, _) = compared(&recorded, &predicted(amplitude, Vec::new()), 0);
+            let (residuals, _) = shown(&recorded).compared(&predicted(amplitude, Vec::new()), 0);
             assert_eq!(residuals.len(), residual_count(&recorded));
             residuals.iter().map(|r| r * r).sum::<f64>().sqrt()
         };
@@ -295,9 +372,13 @@ mod tests {
         let recorded = run(ring(1.0, 1.0));
         let (here, by) = (ring(1.1, 1.4), ring(2.0, 0.7));
         let moved = |h: f64| here.iter().zip(&by).map(|(c, d)| c + d * h).collect();
-        let at = |h| compared(&recorded, &predicted(moved(h), Vec::new()), 0).0;
+        let at = |h| {
+            shown(&recorded)
+                .compared(&predicted(moved(h), Vec::new()), 0)
+                .0
+        };
         let with = predicted(here.clone(), vec![vec![by.clone()]]);
-        let (_, slopes) = compared(&recorded, &with, 1);
+        let (_, slopes) = shown(&recorded).compared(&with, 1);
         let h = 1e-5;
         for ((up, down), slope) in at(h).iter().zip(at(-h)).zip(slopes.column(0).iter()) {
             let difference = (up - down) / (2.0 * h);

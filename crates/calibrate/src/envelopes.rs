@@ -8,7 +8,7 @@
 use crate::likelihood::FAILED;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::prediction;
+use crate::prediction::{Accuracy, prediction};
 use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ impl<'a> Envelopes<'a> {
 
     /// Residuals and derivatives of a run: rows of `1 + count` values.
     fn of_run(&self, run: &Observation, x: &[f64], slopes: bool) -> Vec<Vec<f64>> {
-        let predicted = prediction(self.problem, run, x, slopes, true);
+        let predicted = prediction(self.problem, run, x, slopes, Accuracy::Coarse);
         let mut rows = Vec::with_capacity(residual_count(run));
         for (i, observed) in run.channels.iter().enumerate() {
             for octave in octaves(observed) {

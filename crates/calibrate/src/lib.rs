@@ -69,6 +69,7 @@ mod settings_check;
 pub mod shut_valve;
 pub mod sizes;
 pub mod stages;
+mod superposition;
 pub mod task;
 pub mod throw_alone;
 pub mod transfer;

@@ -3,8 +3,9 @@
 use crate::error::Error;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Prediction, prediction};
+use crate::prediction::{Accuracy, Prediction, prediction};
 use crate::problem::Problem;
+use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
@@ -28,22 +29,33 @@ pub struct Likelihood<'a> {
     problem: &'a Problem,
     /// Standard deviation of the crank angle at which a feature may stand, rad.
     timing: f64,
+    /// The throws by themselves, where they are taken apart.
+    parts: Option<Superposition<'a>>,
 }
 
 impl<'a> Likelihood<'a> {
     /// Of this problem.
     pub fn new(problem: &'a Problem) -> Self {
-        Self {
-            problem,
-            timing: 0.0,
-        }
+        Self::coarse(problem, 0.0)
     }
 
     /// The same with features that may stand `timing` away from where they are seen (a standard
     /// deviation, rad). An order k is then trusted only as far as it does not turn over this angle. The landscape
     /// becomes smoother, and the slow features of a signal count most.
     pub fn coarse(problem: &'a Problem, timing: f64) -> Self {
-        Self { problem, timing }
+        Self {
+            problem,
+            timing,
+            parts: None,
+        }
+    }
+
+    /// The same with throws that do not act on each other: the crank turns as recorded.
+    pub(crate) fn in_parts(problem: &'a Problem, timing: f64) -> Self {
+        Self {
+            parts: (timing > 0.0).then(|| Superposition::new(problem)),
+            ..Self::coarse(problem, timing)
+        }
     }
 
     /// Twice the negative logarithm of the likelihood, but for a constant: what is left over its variance, and the
@@ -96,7 +108,14 @@ impl<'a> Likelihood<'a> {
         x: &[f64],
         derivatives: bool,
     ) -> Result<Prediction, Error> {
-        prediction(self.problem, run, x, derivatives, self.timing > 0.0)
+        let accuracy = match self.timing > 0.0 {
+            true => Accuracy::Coarse,
+            false => Accuracy::Fine,
+        };
+        match &self.parts {
+            Some(parts) => parts.prediction(run, x, derivatives, accuracy),
+            None => prediction(self.problem, run, x, derivatives, accuracy),
+        }
     }
 
     /// The predictions of all runs.
@@ -135,7 +154,7 @@ impl LeastSquares for Likelihood<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let what = ("residuals", self.timing);
+        let what = ("residuals", self.timing, self.parts.is_some());
         self.problem.once(&what, x, || {
             let runs = self.problem.runs.par_iter();
             let parts: Vec<Vec<f64>> = runs
@@ -149,7 +168,7 @@ impl LeastSquares for Likelihood<'_> {
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
-        let what = ("derivatives", self.timing);
+        let what = ("derivatives", self.timing, self.parts.is_some());
         let columns = || self.evaluated_jacobian(x).as_slice().to_vec();
         let values = self.problem.once(&what, x, columns);
         DMatrix::from_vec(self.count(), x.len(), values)
@@ -158,19 +177,21 @@ impl LeastSquares for Likelihood<'_> {
 
 impl Likelihood<'_> {
     fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
-        stacked(self.problem, |run| match self.prediction(run, x, true) {
-            Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
-            Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+        stacked(&self.problem.runs, |run| {
+            match self.prediction(run, x, true) {
+                Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
+                Err(_) => DMatrix::zeros(residual_count(run), x.len()),
+            }
         })
     }
 }
 
 /// The rows of each run, one under another.
-pub(crate) fn stacked(
-    problem: &Problem,
-    of_run: impl Fn(&Observation) -> DMatrix<f64> + Sync + Send,
+pub(crate) fn stacked<R: Sync>(
+    runs: &[R],
+    of_run: impl Fn(&R) -> DMatrix<f64> + Sync + Send,
 ) -> DMatrix<f64> {
-    let parts: Vec<DMatrix<f64>> = problem.runs.par_iter().map(of_run).collect();
+    let parts: Vec<DMatrix<f64>> = runs.par_iter().map(of_run).collect();
     let rows = parts.iter().map(DMatrix::nrows).sum();
     let mut whole = DMatrix::zeros(rows, parts.first().map_or(0, DMatrix::ncols));
     let mut row = 0;

@@ -18,12 +18,51 @@ const TOLERANCE: f64 = 1e-6;
 /// it is given.
 const SETTLED: f64 = 1e-5;
 const AT_MOST: u32 = 30;
-/// By how much both are greater in a coarse prediction.
-const LOOSER: f64 = 10.0;
+/// The same in a rough prediction: what has not settled then counts as a motion that does not repeat itself.
+const AT_MOST_ROUGH: u32 = 8;
 /// Revolutions that are predicted of a motion that does not repeat itself.
 const CHAOTIC: u32 = 24;
 /// The same where the recorded motion repeats itself: their scatter is not compared then.
 const WRONG: u32 = 4;
+
+/// How accurate a prediction is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Accuracy {
+    /// Far below the noise of any sensor.
+    Fine,
+    /// To a few thousandths, with derivatives of throws that do not feel each other.
+    Coarse,
+    /// To a few hundredths: for energies, which are not compared any closer.
+    Rough,
+}
+
+impl Accuracy {
+    /// The transient, with the revolutions that are recorded of a motion that repeats itself as the recorded one does, or
+    /// does not.
+    fn lasting(self, repeats: bool) -> (Transient, u32) {
+        let (looser, at_most) = match self {
+            Self::Fine => (1.0, AT_MOST),
+            Self::Coarse => (10.0, AT_MOST),
+            Self::Rough => (1000.0, AT_MOST_ROUGH),
+        };
+        let change = SETTLED * looser;
+        let revolutions = match (repeats, self) {
+            (true, _) => WRONG,
+            (false, Self::Rough) => CHAOTIC / 2,
+            (false, _) => CHAOTIC,
+        };
+        let transient = Transient::Settled { change, at_most };
+        (transient, revolutions)
+    }
+
+    /// Relative local error of the integration.
+    fn tolerance(self) -> f64 {
+        match self {
+            Self::Fine => TOLERANCE,
+            Self::Coarse | Self::Rough => 10.0 * TOLERANCE,
+        }
+    }
+}
 
 /// The lines of a run as the model has them.
 #[derive(Clone, Debug)]
@@ -41,7 +80,7 @@ pub struct Prediction {
 /// # Errors
 /// An invalid machine, or one that cannot be integrated.
 pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
-    prediction(problem, run, x, false, false)
+    prediction(problem, run, x, false, Accuracy::Fine)
 }
 
 /// The same with the derivatives by the coordinates. On a motion that does not repeat itself they
@@ -54,17 +93,16 @@ pub fn predict_with_derivatives(
     run: &Observation,
     x: &[f64],
 ) -> Result<Prediction, Error> {
-    prediction(problem, run, x, true, false)
+    prediction(problem, run, x, true, Accuracy::Fine)
 }
 
-/// The prediction, with derivatives where they are `wanted`. A coarse one serves where a few thousandths are
-/// accurate enough, with throws that do not feel each other.
+/// The prediction of this accuracy, with derivatives where they are `wanted`.
 pub(crate) fn prediction(
     problem: &Problem,
     run: &Observation,
     x: &[f64],
     wanted: bool,
-    coarse: bool,
+    accuracy: Accuracy,
 ) -> Result<Prediction, Error> {
     let mut machine = problem.machine(run, x)?;
     let slow = Slow::taken_from(&mut machine.sensors);
@@ -76,20 +114,19 @@ pub(crate) fn prediction(
         run: run.id.clone(),
         source,
     };
-    let looser = if coarse { LOOSER } else { 1.0 };
+    let (transient, revolutions) = accuracy.lasting(run.repeats());
     let settings = Settings {
-        transient: Transient::Settled {
-            change: SETTLED * looser,
-            at_most: AT_MOST,
-        },
-        revolutions: if run.repeats() { WRONG } else { CHAOTIC },
+        transient,
+        revolutions,
         sample_rate,
         inner_rate: inner_rate(&machine),
-        tolerance: TOLERANCE * looser,
+        tolerance: accuracy.tolerance(),
     };
+    // The frame feels all throws.
+    let is_of_throw = run.channels.iter().all(|c| c.column.contains('.'));
     let mut groups = match wanted {
         false => Vec::new(),
-        true if coarse => problem.independent(),
+        true if accuracy != Accuracy::Fine && is_of_throw => problem.independent(),
         true => (0..x.len()).map(|i| vec![i]).collect(),
     };
     let moving = |i: &usize| problem.parameters[*i].moves(&run.id);

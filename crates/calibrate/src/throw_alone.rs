@@ -6,7 +6,7 @@
 
 use crate::crank_motion::CrankMotion;
 use crate::error::Error;
-use crate::observation::Observation;
+use crate::observation::{Observation, Observed};
 use crate::problem::{Problem, throw};
 use input::MachineFile;
 use serde_json::Value;
@@ -26,6 +26,34 @@ pub struct ThrowAlone {
 /// # Errors
 /// An invalid machine.
 pub fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
+    alone_with(problem, |_| false)
+}
+
+/// The same with their shares in what the frame shows. None where that is not their sum, or where a channel belongs to
+/// none of them.
+///
+/// # Errors
+/// An invalid machine.
+pub(crate) fn throws_in_parts(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
+    let runs = problem.runs.iter();
+    let mut shared = runs.flat_map(|run| &run.channels).filter(|c| is_shared(c));
+    let effects = problem.tree.get("effects").and_then(Value::as_array);
+    let is_linear = effects.is_none_or(|effects| effects.iter().all(|e| throw_of(e).is_some()));
+    if shared.any(|channel| !(is_linear && channel.column.starts_with("frame_"))) {
+        return Ok(Vec::new());
+    }
+    alone_with(problem, is_shared)
+}
+
+/// Whether a channel is not that of a throw.
+fn is_shared(channel: &Observed) -> bool {
+    !channel.column.contains('.')
+}
+
+fn alone_with(
+    problem: &Problem,
+    shares: impl Fn(&Observed) -> bool,
+) -> Result<Vec<ThrowAlone>, Error> {
     let machine = MachineFile::from_tree(&problem.tree)?.resolve()?;
     let names: Vec<&str> = machine
         .machine
@@ -36,11 +64,11 @@ pub fn throws_alone(problem: &Problem) -> Result<Vec<ThrowAlone>, Error> {
     if names.len() < 2 || machine.machine.main.clear().is_some() || machine.speed <= 0.0 {
         return Ok(Vec::new());
     }
-    let alone = names.iter().map(|name| alone(problem, name));
+    let alone = names.iter().map(|name| alone(problem, name, &shares));
     Ok(alone.filter(|a| !a.problem.runs.is_empty()).collect())
 }
 
-fn alone(problem: &Problem, name: &str) -> ThrowAlone {
+fn alone(problem: &Problem, name: &str, shares: impl Fn(&Observed) -> bool) -> ThrowAlone {
     let mut tree = problem.tree.clone();
     let effects = Effects::new(&tree, name);
     let belongs =
@@ -72,7 +100,10 @@ fn alone(problem: &Problem, name: &str) -> ThrowAlone {
         channels: run
             .channels
             .iter()
-            .filter(|c| c.column.split_once('.').is_some_and(|(of, _)| of == name))
+            .filter(|c| {
+                let own = c.column.split_once('.').is_some_and(|(of, _)| of == name);
+                own || shares(c)
+            })
             .cloned()
             .collect(),
         ..run.clone()
@@ -116,9 +147,13 @@ impl Effects {
 
 /// Whether an effect, a section by its name, acts on a throw.
 fn acts_on(effect: &Value, name: &str) -> bool {
+    throw_of(effect).is_none_or(|of| of == name)
+}
+
+/// The throw that an effect acts on; none where it names none.
+fn throw_of(effect: &Value) -> Option<&str> {
     let mut sections = effect.as_object().into_iter().flatten();
-    let throw = sections.find_map(|(_, section)| word(section, "throw"));
-    throw.is_none_or(|of| of == name)
+    sections.find_map(|(_, section)| word(section, "throw"))
 }
 
 fn keep(tree: &mut Value, list: &str, whether: impl Fn(&Value) -> bool) {

@@ -3,76 +3,82 @@
 //! Between two points of the grid the energies have valleys that are a few hundredths of a clearance wide. Many motions there do
 //! not repeat themselves and have no derivatives. So a cell is searched by a method that needs none, CMA-ES.
 
-use super::descent::Led;
+use super::descent::{KEPT, Led};
 use super::effort::Effort;
 use super::model::Model;
 use super::prior::WithPriors;
 use super::screen::{STEP, few};
 use crate::energies::Energies;
+use crate::error::Error;
 use crate::optimiser::{LeastSquares, Progress, cma_es};
-use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 
-/// Evaluations for each coordinate of a cell.
-const EACH: u64 = 50;
+/// Evaluations for each coordinate of a cell, after the first and second of which a part of the cells is left.
+const EACH: [u64; 3] = [12, 25, 50];
+/// Cells that go on at least.
+const LEAST: usize = 2;
 /// Half the width of a cell along a coordinate that has a prior, in standard deviations of that.
 const SPREADS: f64 = 2.0;
 /// Cells that are searched before the search may be stopped.
 const AT_ONCE: usize = 4;
 
-/// The best points of the cells around these, the best one first.
-pub(super) fn around(model: &Model, points: Vec<Vec<f64>>, effort: &mut Effort) -> Vec<Led> {
+/// The best points of the cells around these, the best one first. All cells are searched for a while, the better ones for
+/// longer (successive halving, Jamieson and Talwalkar 2016).
+///
+/// # Errors
+/// An optimiser that cannot start.
+pub(super) fn around(
+    model: &Model,
+    points: &[Vec<f64>],
+    effort: &mut Effort,
+) -> Result<Vec<Led>, Error> {
     let few = few(&model.problem);
-    let mut all: Vec<Led> = Vec::new();
-    for part in points.chunks(AT_ONCE) {
-        if effort.stopped {
-            break;
-        }
-        let ends = part.par_iter().map(|x| searched(model, &few, x));
-        let ends: Vec<(Led, u64)> = ends.collect();
-        effort.evaluated(ends.iter().map(|(_, spent)| spent).sum());
-        all.extend(ends.into_iter().map(|(led, _)| led));
-    }
-    all.sort_by(|a, b| a.left.total_cmp(&b.left));
-    all
-}
-
-/// The best point of the cell around `x`, and the evaluations that it took.
-fn searched(model: &Model, few: &Problem, x: &[f64]) -> (Led, u64) {
-    let energies = Energies::new(few);
+    let energies = Energies::new(&few);
     let compared = WithPriors {
         inner: &energies,
         priors: &model.priors,
     };
-    let clearances = (0..model.clear.len()).map(|place| (place, STEP));
-    let priors = model.priors.iter();
-    let cell = Cell {
-        inner: &compared,
-        x,
-        halves: clearances
-            .chain(priors.map(|prior| (prior.place, SPREADS * prior.spread)))
-            .collect(),
+    let at = |x: &[f64]| Progress {
+        x: x.to_vec(),
+        cost: f64::INFINITY,
+        count: 1,
+        evaluations: 0,
     };
-    let go = &mut |_: &Progress| ControlFlow::Continue(());
-    let most = EACH * cell.halves.len() as u64;
-    match cma_es(&cell, &cell.middle(), 0, most, go) {
-        Ok(found) => {
-            let led = Led {
-                x: cell.whole(&found.x),
-                left: 2.0 * found.cost,
-            };
-            (led, found.evaluations)
+    let mut cells: Vec<_> = points
+        .iter()
+        .map(|x| (Cell::new(model, &compared, x), at(x)))
+        .collect();
+    let mut left = Vec::new();
+    for (round, each) in EACH.into_iter().enumerate() {
+        for part in cells.chunks_mut(AT_ONCE) {
+            if effort.stopped {
+                break;
+            }
+            let spent = part.par_iter_mut().map(|(cell, best)| {
+                let before = best.evaluations;
+                *best = cell.searched(each * cell.halves.len() as u64)?;
+                Ok(best.evaluations - before)
+            });
+            effort.evaluated(spent.sum::<Result<u64, Error>>()?);
         }
-        Err(_) => {
-            let led = Led {
-                x: x.to_vec(),
-                left: f64::INFINITY,
-            };
-            (led, most)
+        cells.sort_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+        if round + 1 < EACH.len() {
+            let kept = cells.len().div_ceil(KEPT).max(LEAST).min(cells.len());
+            left.extend(cells.drain(kept..));
         }
     }
+    cells.extend(left);
+    let led = |(cell, best): (Cell<_>, Progress)| Led {
+        x: cell.whole(&best.x),
+        left: 2.0 * best.cost,
+    };
+    let mut all: Vec<Led> = cells.into_iter().map(led).collect();
+    all.sort_by(|a, b| a.left.total_cmp(&b.left));
+    Ok(all)
 }
 
 /// What is compared, around the coordinates `x`.
@@ -81,9 +87,33 @@ struct Cell<'a, T> {
     x: &'a [f64],
     /// The coordinates that move, and by how much at most.
     halves: Vec<(usize, f64)>,
+    /// Residuals that were found so far: a search that goes on repeats its way.
+    known: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
 }
 
-impl<T> Cell<'_, T> {
+impl<'a, T> Cell<'a, T> {
+    /// The cell of the grid around `x`.
+    fn new(model: &Model, inner: &'a T, x: &'a [f64]) -> Self {
+        let clearances = (0..model.clear.len()).map(|place| (place, STEP));
+        let priors = model.priors.iter();
+        let priors = priors.map(|prior| (prior.place, SPREADS * prior.spread));
+        Self {
+            inner,
+            x,
+            halves: clearances.chain(priors).collect(),
+            known: Mutex::default(),
+        }
+    }
+
+    /// The best that so many evaluations lead to.
+    fn searched(&self, most: u64) -> Result<Progress, Error>
+    where
+        T: LeastSquares,
+    {
+        let go = &mut |_: &Progress| ControlFlow::Continue(());
+        cma_es(self, &self.middle(), 0, most, go)
+    }
+
     fn middle(&self) -> Vec<f64> {
         self.halves
             .iter()
@@ -116,7 +146,14 @@ impl<T: LeastSquares> LeastSquares for Cell<'_, T> {
     }
 
     fn residuals(&self, moved: &[f64]) -> Vec<f64> {
-        self.inner.residuals(&self.whole(moved))
+        let bits: Vec<u64> = moved.iter().map(|x| x.to_bits()).collect();
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(residuals) = known().get(&bits) {
+            return residuals.clone();
+        }
+        let residuals = self.inner.residuals(&self.whole(moved));
+        known().insert(bits, residuals.clone());
+        residuals
     }
 
     fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
@@ -160,11 +197,10 @@ mod tests {
             inner: &Ripples,
             x: &[0.0, 2.5, 0.0],
             halves: vec![(0, 0.2), (2, 0.2)],
+            known: Mutex::default(),
         };
         assert_eq!(cell.bounds(), [[-0.2, 0.2]; 2]);
-        let go = &mut |_: &Progress| ControlFlow::Continue(());
-        let found = cma_es(&cell, &cell.middle(), 0, 200, go).unwrap();
-        let x = cell.whole(&found.x);
+        let x = cell.whole(&cell.searched(200).unwrap().x);
         assert!((x[0] - 0.1).abs() < 0.01, "{x:?}");
         assert_eq!(x[1], 2.5);
         assert!((x[2] - 0.05).abs() < 0.01, "{x:?}");

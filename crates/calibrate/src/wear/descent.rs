@@ -3,6 +3,7 @@
 //! Energies have few minima and come first, then lines that may stand elsewhere in the revolution, with less and less of
 //! that. Of many starts a third goes on after each stage.
 
+use super::discrepancy::FAR;
 use super::effort::Effort;
 use super::model::Model;
 use super::prior::{self, Prior, WithPriors};
@@ -12,8 +13,9 @@ use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
-use crate::optimiser::{LeastSquares, Progress};
+use crate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
 use crate::problem::Problem;
+use crate::search::CHANGE;
 use crate::secant::secant;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -43,15 +45,17 @@ const FINE: [Stage; 4] = [
 /// Ends of rough descents that are followed with all runs.
 const FOLLOWED: usize = 3;
 /// One of so many starts goes on after a stage.
-const KEPT: usize = 3;
+pub(super) const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
 /// Sizes of the discrepancy that a model may have, rad.
 pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// By how much a coordinate of a clearance is moved to where a motion repeats itself: less than the width of a minimum of lines.
 const BESIDE: [f64; 6] = [-1e-3, -3e-4, -1e-4, 1e-4, 3e-4, 1e-3];
-/// Most evaluations of the last descent.
+/// Most evaluations of the last descent, and of its beginning: what is still far from the recordings then is another minimum,
+/// which is not looked at any closer.
 const LAST: u64 = 300;
+const BEGINNING: u64 = 30;
 
 /// Where a descent has led.
 #[derive(Clone, Debug)]
@@ -116,7 +120,7 @@ fn descend(problem: &Problem, priors: &[Prior], led: &mut Led, stage: Stage) -> 
             (energies.squares(&x).map(|left| (x, left)), spent)
         }
         Stage::Lines(timing, most) => {
-            let lines = Likelihood::coarse(problem, timing);
+            let lines = Likelihood::in_parts(problem, timing);
             let (x, spent) = secants(&lines, priors, &led.x, most);
             let measured = lines.likeliest(&x, &TIMINGS);
             (measured.map(|(_, left)| (x, left)), spent)
@@ -153,14 +157,19 @@ fn secants(
 /// As [`calibrate`].
 pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
     let x = repeating(&model.problem, x, effort);
+    let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
+    let likelihood = Likelihood::new(&model.problem);
+    let begun = levenberg_marquardt(&likelihood, &x, CHANGE, BEGINNING, &mut watch)?;
+    effort.spent += begun.evaluations;
+    let most = if begun.misfit() > FAR { 1 } else { LAST };
     let mut problem = model.problem.clone();
-    for (parameter, x) in problem.parameters.iter_mut().zip(&x) {
+    for (parameter, x) in problem.parameters.iter_mut().zip(&begun.x) {
         parameter.nominal = parameter.value(*x);
     }
     let settings = FitSettings {
         optimiser: Optimiser::LevenbergMarquardt,
         seed: 0,
-        evaluations: LAST,
+        evaluations: most,
         held_out: Vec::new(),
         start: None,
     };

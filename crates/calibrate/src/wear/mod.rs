@@ -9,10 +9,11 @@
 //!    exponents are unknown around those of the file's relation ([`prior`]).
 //! 2. Descents from the clearances of the file compare energies of sectors and bands first ([`crate::energies`]), and waveforms last.
 //! 3. Where they end above the noise, the clearances of each throw are screened on a common grid, by energies. The cells of the
-//!    best points are searched without derivatives, and the best ends are descended from.
+//!    best points are searched without derivatives, all for a while and the better ones for longer. The best ends are descended from.
 //! 4. From there the file's own relation and free contact parameters are fitted too. Schwarz's criterion (1978) decides.
-//! 5. Where still more than noise is left, one joint that is ideal in the file becomes clear, or free contact parameters are searched
-//!    from all ends. What lowers Schwarz's criterion most is kept, until nothing does.
+//! 5. Where still more than noise is left, one joint that is ideal in the file becomes clear: that whose grid has the best cells. What
+//!    lowers the criterion is kept, until nothing does. Only then follow cells that are less likely, by all known relations, and free
+//!    contact parameters from all ends.
 //! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
 //!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
 

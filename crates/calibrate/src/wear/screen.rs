@@ -18,8 +18,6 @@ pub(super) const STEP: f64 = 0.2;
 const BELOW: u32 = 2;
 /// Joints that are moved together at most.
 const TOGETHER: usize = 2;
-/// Points along the grid of one joint that are handed on.
-const ALONG: usize = 2;
 /// Points that go on to the joints of the next throw.
 const BEAM: usize = 4;
 /// Runs that are looked at.
@@ -30,8 +28,10 @@ pub(super) const AT_ONCE: usize = 16;
 /// A point with its sum of squares, and the groups of joints that have moved in it.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
-    x: Vec<f64>,
-    squares: f64,
+    /// Coordinates.
+    pub x: Vec<f64>,
+    /// What is left of the energies there.
+    pub squares: f64,
     moved: Vec<usize>,
 }
 
@@ -45,7 +45,7 @@ pub(super) fn screened(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let mut all: Vec<Point> = looked_at(&energies, vec![x.to_vec()], &[], effort);
+    let mut all = looked_at(&energies, vec![x.to_vec()], &[], effort);
     let mut beam = all.clone();
     let groups = groups(model);
     for _ in 0..groups.len() {
@@ -70,25 +70,31 @@ pub(super) fn screened(
     all
 }
 
-/// The best points with the clearance at `place`, that of `joint`, moved over its grid.
-pub(super) fn along(
+/// Points where one more joint is clear: those of these starts with the clearance at `place`, that of `joint`, moved over
+/// its grid, and those of the best of them with the other joints moved over theirs, which were chosen without it.
+pub(super) fn with_one_more(
     model: &Model,
-    joint: &Joint,
+    joints: &[Joint],
     place: usize,
-    x: &[f64],
+    starts: &[Vec<f64>],
     effort: &mut Effort,
-) -> Vec<Vec<f64>> {
+) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let moved = grid(joint).into_iter().map(|clearance| {
-        let mut x = x.to_vec();
-        x[place] = model.problem.parameters[place].coordinate(clearance);
-        x
-    });
-    let mut points = looked_at(&energies, moved.collect(), &[], effort);
+    let along = starts
+        .iter()
+        .flat_map(|x| product(model, joints, &[place], x));
+    let mut points = looked_at(&energies, along.collect(), &[], effort);
     best_first(&mut points);
-    points.truncate(ALONG);
-    points.into_iter().map(|point| point.x).collect()
+    let Some(best) = points.first().map(|point| point.x.clone()) else {
+        return points;
+    };
+    for mut group in groups(model) {
+        group.retain(|other| *other != place);
+        let places = product(model, joints, &group, &best);
+        points.extend(looked_at(&energies, places, &[], effort));
+    }
+    points
 }
 
 fn best_first(points: &mut [Point]) {

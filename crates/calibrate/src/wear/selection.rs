@@ -7,10 +7,11 @@ use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
 use super::parts::{joined, parts};
-use super::screen::{along, best_of, few, screened};
+use super::screen::{Point, best_of, few, screened, with_one_more};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::likelihood::Likelihood;
+use crate::observation::Observation;
 use crate::optimiser::LeastSquares;
 use crate::problem::Problem;
 use crate::stages::Stage;
@@ -19,6 +20,9 @@ use crate::transfer::STRONG;
 /// Points of the grid whose cells are searched: the best by the relation of the machine file, then the best of the others and
 /// by all known relations.
 const FOLLOWED: [usize; 2] = [4, 12];
+/// Points that are searched where one more joint is clear, over all such joints, and points from which they are screened.
+const STEPS: usize = 4;
+const STARTS: usize = 3;
 
 /// A model with its fit.
 pub(super) struct Found {
@@ -45,13 +49,13 @@ impl Found {
     }
 }
 
-/// A step of the selection.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
+/// What a step of the selection may change.
+#[derive(Clone, Copy)]
+struct Steps {
     /// A joint that was ideal becomes clear.
-    Clear(usize),
+    joints: bool,
     /// Each contact parameter is fitted.
-    Contacts,
+    contacts: bool,
 }
 
 /// The model that the evidence favours.
@@ -76,50 +80,48 @@ pub(super) fn selected(
     if effort.stopped || best.fit.is_at_noise() {
         return Ok(best);
     }
+    // A motion that does not repeat itself has no derivatives, and no fit within the noise: the best cells are all that is searched.
+    let repeats = healthy.runs.iter().all(Observation::repeats);
+    let rounds = if repeats { FOLLOWED.len() } else { 1 };
     let parts = parts(&model)?;
     let mut points = vec![Vec::new(); parts.len()];
     let mut ends = vec![Vec::new(); parts.len()];
-    for (round, count) in FOLLOWED.into_iter().enumerate() {
+    for (round, count) in FOLLOWED.into_iter().enumerate().take(rounds) {
         for (part, (points, ends)) in parts.iter().zip(points.iter_mut().zip(&mut ends)) {
             let at = part.of_whole(&at);
-            let relations = match round {
+            let starts = match round {
                 0 => vec![at],
                 _ => part.model.related(&at),
             };
             effort.begins(Stage::Screen);
-            for x in relations {
+            for x in starts {
                 points.extend(screened(&part.model, joints, &x, effort));
             }
             effort.ends();
             effort.begins(Stage::Clearances);
-            ends.extend(around(&part.model, best_of(points, count), effort));
+            let found = around(&part.model, &best_of(points, count), effort);
             effort.ends();
+            ends.extend(found?);
             ends.sort_by(|a: &Led, b| a.left.total_cmp(&b.left));
         }
+        let led = joined(&parts, &ends, &at);
+        let starts: Vec<Vec<f64>> = led.iter().map(|led| led.x.clone()).collect();
         effort.begins(Stage::Clearances);
-        let found = search.better(best, &model, joined(&parts, &ends, &at), effort);
+        let before = best.criterion;
+        let found = search.better(best, &model, led, effort).and_then(|best| {
+            // Joints that are ideal in the file come before all that is less likely, and are not tried twice.
+            let steps = Steps {
+                joints: round == 0 || best.criterion < before,
+                contacts: round > 0,
+            };
+            search.stepped(best, (&model, &starts), steps, effort)
+        });
         effort.ends();
         best = found?;
         if effort.stopped || best.fit.is_at_noise() {
-            return Ok(best);
-        }
-    }
-    let ends: Vec<Vec<f64>> = joined(&parts, &ends, &at)
-        .into_iter()
-        .map(|led| led.x)
-        .collect();
-    effort.begins(Stage::Clearances);
-    while !effort.stopped && !best.fit.is_at_noise() {
-        let Some((model, led)) = search.best_step(&best, (&model, &ends), &at, effort)? else {
-            break;
-        };
-        let before = best.criterion;
-        best = search.better(best, &model, led, effort)?;
-        if best.criterion >= before - STRONG {
             break;
         }
     }
-    effort.ends();
     Ok(best)
 }
 
@@ -188,50 +190,103 @@ impl Search<'_> {
         Ok(best)
     }
 
-    /// The step that short descents favour, and where they have led; none where there is no step. `ends` are points of a
-    /// model from which descents with other contact parameters start.
+    /// The fit after as many steps as the evidence favours. `ends` are points of a model from which they lead, the best one
+    /// first.
+    fn stepped(
+        &self,
+        mut best: Found,
+        ends: (&Model, &[Vec<f64>]),
+        mut steps: Steps,
+        effort: &mut Effort,
+    ) -> Result<Found, Error> {
+        while !effort.stopped && !best.fit.is_at_noise() {
+            let Some((model, led)) = self.best_step(&best, ends, steps, effort)? else {
+                break;
+            };
+            let before = best.criterion;
+            steps.joints = true;
+            best = self.better(best, &model, led, effort)?;
+            if best.criterion >= before - STRONG {
+                break;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The step that short descents favour, and where they have led; none where there is no step.
     fn best_step(
         &self,
         best: &Found,
         (first, ends): (&Model, &[Vec<f64>]),
-        at: &[f64],
+        steps: Steps,
         effort: &mut Effort,
     ) -> Result<Option<(Model, Vec<Led>)>, Error> {
-        let mut next: Option<(f64, Model, Vec<Led>)> = None;
-        for step in steps(&best.model, self.joints) {
-            let model = stepped(self.healthy, self.joints, best, step)?;
+        let mut led = match steps.joints {
+            true => self.cleared(best, (first, ends), effort)?,
+            false => Vec::new(),
+        };
+        if steps.contacts && best.model.contacts != Contacts::Fitted && !best.model.clear.is_empty()
+        {
+            let clear = best.model.clear.clone();
+            let model = Model::new(self.healthy, self.joints, clear, Contacts::Fitted)?;
             let x = model.coordinates_of(&best.model, &best.fit.coordinates());
-            let led = match step {
-                Step::Clear(joint) => {
-                    let place = model.clear.len() - 1;
-                    let joint = &self.joints[joint];
-                    let mut points = along(&model, joint, place, &x, effort);
-                    let at = model.coordinates_of(first, at);
-                    points.extend(along(&model, joint, place, &at, effort));
-                    around(&model, points, effort)
-                }
-                Step::Contacts => {
-                    let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
-                    let starts: Vec<Vec<f64>> = [x].into_iter().chain(earlier).collect();
-                    roughly(&model, &starts, effort)
-                }
-            };
+            let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
+            let starts: Vec<Vec<f64>> = [x].into_iter().chain(earlier).collect();
+            let found = roughly(&model, &starts, effort);
+            led.push((model, found));
+        }
+        if effort.stopped {
+            return Ok(None);
+        }
+        let criterion = |(model, led): &(Model, Vec<Led>)| {
             let part = few(&model.problem);
             let likelihood = Likelihood::new(&part);
-            let left = led
-                .first()
-                .and_then(|led| likelihood.likeliest(&led.x, &TIMINGS).ok());
-            let left = left.map_or(f64::INFINITY, |(_, left)| left);
-            let count = likelihood.count() as f64;
-            let criterion = left + model.problem.parameters.len() as f64 * count.ln();
-            if next.as_ref().is_none_or(|(least, ..)| criterion < *least) {
-                next = Some((criterion, model, led));
-            }
-            if effort.stopped {
-                return Ok(None);
+            let x = &led.first()?.x;
+            let (_, left) = likelihood.likeliest(x, &TIMINGS).ok()?;
+            Some(left + model.problem.parameters.len() as f64 * (likelihood.count() as f64).ln())
+        };
+        let judged = led
+            .into_iter()
+            .map(|led| (criterion(&led).unwrap_or(f64::INFINITY), led));
+        let next = judged.min_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(next.map(|(_, led)| led))
+    }
+
+    /// Models in which one more joint is clear, with the ends of the best cells of their grids: these are chosen over all
+    /// such joints.
+    fn cleared(
+        &self,
+        best: &Found,
+        (first, ends): (&Model, &[Vec<f64>]),
+        effort: &mut Effort,
+    ) -> Result<Vec<(Model, Vec<Led>)>, Error> {
+        let mut models = Vec::new();
+        let mut points: Vec<(usize, Point)> = Vec::new();
+        for joint in (0..self.joints.len()).filter(|i| !best.model.clear.contains(i)) {
+            let mut clear = best.model.clear.clone();
+            clear.push(joint);
+            let place = clear.len() - 1;
+            let contacts = best.model.contacts;
+            let model = Model::new(self.healthy, self.joints, clear, contacts)?;
+            let x = model.coordinates_of(&best.model, &best.fit.coordinates());
+            let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
+            let starts: Vec<Vec<f64>> = [x].into_iter().chain(earlier).take(STARTS).collect();
+            let found = with_one_more(&model, self.joints, place, &starts, effort);
+            points.extend(found.into_iter().map(|point| (models.len(), point)));
+            models.push(model);
+        }
+        points.sort_by(|a, b| a.1.squares.total_cmp(&b.1.squares));
+        points.truncate(STEPS);
+        let mut led = Vec::new();
+        for (i, model) in models.into_iter().enumerate() {
+            let own = points.iter().filter(|(of, _)| *of == i);
+            let own: Vec<Vec<f64>> = own.map(|(_, point)| point.x.clone()).collect();
+            if !own.is_empty() {
+                let found = around(&model, &own, effort)?;
+                led.push((model, found));
             }
         }
-        Ok(next.map(|(_, model, led)| (model, led)))
+        Ok(led)
     }
 }
 
@@ -239,26 +294,6 @@ impl Search<'_> {
 fn initially(joints: &[Joint]) -> Vec<usize> {
     let all = 0..joints.len();
     all.filter(|i| joints[*i].stated.is_some()).collect()
-}
-
-fn steps(model: &Model, joints: &[Joint]) -> Vec<Step> {
-    let ideal = (0..joints.len()).filter(|i| !model.clear.contains(i));
-    let contacts = model.contacts != Contacts::Fitted && !model.clear.is_empty();
-    let contacts = contacts.then_some(Step::Contacts);
-    contacts.into_iter().chain(ideal.map(Step::Clear)).collect()
-}
-
-/// The model one step on.
-fn stepped(healthy: &Problem, joints: &[Joint], best: &Found, step: Step) -> Result<Model, Error> {
-    let mut clear = best.model.clear.clone();
-    let contacts = match step {
-        Step::Clear(joint) => {
-            clear.push(joint);
-            best.model.contacts
-        }
-        Step::Contacts => Contacts::Fitted,
-    };
-    Model::new(healthy, joints, clear, contacts)
 }
 
 /// A fit with its criterion.

@@ -1,0 +1,244 @@
+//! The lines of a machine as the sum of what each of its throws shows.
+//!
+//! Throws on a shaft in an ideal bearing do not act on each other where the crank turns as it was recorded. A channel of a throw
+//! is that throw's alone, and the frame, which is linear and does not act back, shows the sum of their shares. So each
+//! throw is simulated by itself, with its own steps, and one whose parameters have not changed is not simulated again.
+
+use crate::error::Error;
+use crate::observation::Observation;
+use crate::prediction::{Accuracy, Prediction, prediction};
+use crate::problem::Problem;
+use crate::throw_alone::{ThrowAlone, throws_in_parts};
+use signal::order_lines::OrderLines;
+use std::collections::HashMap;
+use std::ops::AddAssign;
+use std::sync::{Arc, Mutex};
+
+/// Predictions of throws that are kept.
+const KEPT: usize = 2048;
+
+/// Predictions of a problem, from those of its throws where it can be taken apart.
+pub(crate) struct Superposition<'a> {
+    problem: &'a Problem,
+    /// None where the machine is simulated as a whole.
+    throws: Vec<ThrowAlone>,
+    known: Mutex<HashMap<Asked, Arc<Prediction>>>,
+}
+
+/// A prediction of a throw: which throw, which run, with derivatives or without, how accurate, and the bits of its coordinates.
+type Asked = (usize, String, (bool, Accuracy), Vec<u64>);
+
+impl<'a> Superposition<'a> {
+    /// Of this problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        // What is wrong with a machine is said where it is simulated.
+        let throws = throws_in_parts(problem).unwrap_or_default();
+        Self {
+            problem,
+            throws,
+            known: Mutex::default(),
+        }
+    }
+
+    /// The prediction of a run with derivatives where they are `wanted`.
+    ///
+    /// # Errors
+    /// As [`prediction`].
+    pub fn prediction(
+        &self,
+        run: &Observation,
+        x: &[f64],
+        wanted: bool,
+        accuracy: Accuracy,
+    ) -> Result<Prediction, Error> {
+        if self.throws.is_empty() {
+            return prediction(self.problem, run, x, wanted, accuracy);
+        }
+        let mut sum = nothing(run, if wanted { x.len() } else { 0 });
+        for (i, throw) in self.throws.iter().enumerate() {
+            let mut runs = throw.problem.runs.iter();
+            let Some(own) = runs.find(|own| own.id == run.id) else {
+                continue;
+            };
+            let share = self.share((i, throw), own, x, (wanted, accuracy))?;
+            add(&mut sum, run, (throw, own, &share));
+        }
+        Ok(sum)
+    }
+
+    /// What a throw shows.
+    fn share(
+        &self,
+        (index, throw): (usize, &ThrowAlone),
+        run: &Observation,
+        x: &[f64],
+        (wanted, accuracy): (bool, Accuracy),
+    ) -> Result<Arc<Prediction>, Error> {
+        let x: Vec<f64> = throw.parameters.iter().map(|place| x[*place]).collect();
+        let bits = x.iter().map(|x| x.to_bits()).collect();
+        let asked = (index, run.id.clone(), (wanted, accuracy), bits);
+        let known = |of: &HashMap<Asked, Arc<Prediction>>| of.get(&asked).cloned();
+        if let Some(share) = self.known.lock().ok().and_then(|of| known(&of)) {
+            return Ok(share);
+        }
+        let share = Arc::new(prediction(&throw.problem, run, &x, wanted, accuracy)?);
+        if let Ok(mut of) = self.known.lock() {
+            if of.len() >= KEPT {
+                of.clear();
+            }
+            of.insert(asked, share.clone());
+        }
+        Ok(share)
+    }
+}
+
+/// What is there of a run before the share of any throw.
+fn nothing(run: &Observation, parameters: usize) -> Prediction {
+    let none = OrderLines {
+        amplitude: Vec::new(),
+        variance: Vec::new(),
+        revolutions: usize::MAX,
+    };
+    let channels = run.channels.len();
+    Prediction {
+        lines: vec![none; channels],
+        derivatives: vec![vec![Vec::new(); channels]; parameters],
+        periodic: true,
+    }
+}
+
+/// Adds the share of a throw.
+fn add(
+    sum: &mut Prediction,
+    run: &Observation,
+    (throw, own, share): (&ThrowAlone, &Observation, &Prediction),
+) {
+    sum.periodic &= share.periodic;
+    for (of_own, channel) in own.channels.iter().enumerate() {
+        let mut channels = run.channels.iter();
+        let Some(at) = channels.position(|c| c.column == channel.column) else {
+            continue;
+        };
+        let (whole, lines) = (&mut sum.lines[at], &share.lines[of_own]);
+        add_to(&mut whole.amplitude, &lines.amplitude);
+        add_to(&mut whole.variance, &lines.variance);
+        whole.revolutions = whole.revolutions.min(lines.revolutions);
+        for (place, derivatives) in throw.parameters.iter().zip(&share.derivatives) {
+            if let Some(whole) = sum.derivatives.get_mut(*place) {
+                add_to(&mut whole[at], &derivatives[of_own]);
+            }
+        }
+    }
+}
+
+fn add_to<T: Copy + Default + AddAssign>(sum: &mut Vec<T>, of: &[T]) {
+    sum.resize(sum.len().max(of.len()), T::default());
+    sum.iter_mut().zip(of).for_each(|(sum, of)| *sum += *of);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crank_motion::CrankMotion;
+    use crate::meter::Meter;
+    use crate::observation::Observed;
+    use crate::parameter::Parameter;
+    use input::paths;
+    use mechanism::drive::GivenSpeed;
+    use rustfft::num_complex::Complex64;
+    use serde_json::json;
+    use std::path::Path;
+
+    const TURNING: f64 = 50.0;
+
+    /// The two-stage machine with a crank of constant speed, whose crosshead and frame are looked at.
+    fn problem(columns: [&str; 2]) -> Problem {
+        let file = format!(
+            "{}/../../data/machines/two-stage.yaml",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let file = input::machine_file::read(Path::new(&file)).unwrap();
+        let mut tree = file.to_tree().clone();
+        paths::set(&mut tree, "crank.drive", json!("given")).unwrap();
+        paths::set(&mut tree, "speed", json!(format!("{TURNING} rad/s"))).unwrap();
+        let clearance = |throw| format!("throws.{throw}.joints.big_end.clearance");
+        let parameter = |throw| Parameter::of(&tree, &clearance(throw)).unwrap();
+        let channel = |column: &str| Observed {
+            column: column.into(),
+            orders: (1..100).collect(),
+            lines: OrderLines {
+                amplitude: vec![Complex64::ZERO; 100],
+                variance: vec![1.0; 100],
+                revolutions: 20,
+            },
+        };
+        Problem {
+            parameters: ["throw1", "throw2"].map(parameter).into(),
+            tree,
+            runs: vec![Observation {
+                id: "run".into(),
+                settings: Vec::new(),
+                crank: GivenSpeed {
+                    speed: TURNING,
+                    fluctuation: Vec::new(),
+                },
+                channels: columns.map(channel).into(),
+            }],
+            crank: CrankMotion::Driven,
+            meter: Meter::default(),
+        }
+    }
+
+    /// The greatest difference of lines over the greatest line, from order 1 on: the weight of the crank itself is a constant.
+    fn apart(a: &[Complex64], b: &[Complex64]) -> f64 {
+        let greatest = |of: &mut dyn Iterator<Item = f64>| of.fold(0.0, f64::max);
+        let pairs = a.iter().zip(b).skip(1).take(99);
+        let difference = greatest(&mut pairs.map(|(a, b)| (a - b).norm()));
+        difference / greatest(&mut b.iter().skip(1).map(|c| c.norm()))
+    }
+
+    #[test]
+    fn the_frame_shows_the_sum_of_the_throws_and_a_throw_itself() {
+        let problem = problem([
+            "frame_acceleration_x_m_s2",
+            "throw2.crosshead_acceleration_m_s2",
+        ]);
+        let parts = Superposition::new(&problem);
+        assert_eq!(parts.throws.len(), 2);
+        let (run, x) = (&problem.runs[0], [0.3, -0.2]);
+        let sum = parts.prediction(run, &x, true, Accuracy::Coarse).unwrap();
+        let whole = prediction(&problem, run, &x, true, Accuracy::Coarse).unwrap();
+        assert!(sum.periodic && whole.periodic);
+        for channel in 0..2 {
+            let [a, b] = [&sum, &whole].map(|of| &of.lines[channel].amplitude);
+            assert!(apart(a, b) < 2e-3, "{channel}: {}", apart(a, b));
+        }
+        for parameter in 0..2 {
+            let [a, b] = [&sum, &whole].map(|of| &of.derivatives[parameter][0]);
+            assert!(apart(a, b) < 5e-2, "{parameter}: {}", apart(a, b));
+        }
+        // Only the second throw is simulated again.
+        let before = problem.meter.steps();
+        let roughly = |x: [f64; 2]| parts.prediction(run, &x, false, Accuracy::Rough).unwrap();
+        let rough = roughly(x);
+        let both = problem.meter.steps() - before;
+        roughly([0.3, -0.1]);
+        let one = problem.meter.steps() - before - both;
+        assert!(10 * one < 7 * both, "{one} of {both}");
+        let [a, b] = [&rough, &whole].map(|of| &of.lines[0].amplitude);
+        assert!(apart(a, b) < 5e-2, "{}", apart(a, b));
+    }
+
+    #[test]
+    fn a_machine_whose_throws_act_on_each_other_is_simulated_as_a_whole() {
+        let mut problem = problem(["frame_acceleration_x_m_s2", "frame_acceleration_y_m_s2"]);
+        let taken_apart = |problem: &Problem| !Superposition::new(problem).throws.is_empty();
+        assert!(taken_apart(&problem));
+        let clear = json!("0.1 mm");
+        let mut coupled = problem.clone();
+        paths::set(&mut coupled.tree, "joints.main.clearance", clear).unwrap();
+        assert!(!taken_apart(&coupled));
+        problem.tree["effects"] = json!([{"frame_compliance": {}}]);
+        assert!(!taken_apart(&problem));
+    }
+}
