@@ -35,8 +35,7 @@ ds
 # %% [markdown]
 # ## Features and operating point
 #
-# Speed and pressures of the plant are known. Whoever leaves them out cannot know how large an amplitude should be. Other
-# conditions of the table belong to single faults and would give them away.
+# Speed and pressures of the plant are known. Whoever leaves them out cannot know how large an amplitude should be.
 
 
 # %%

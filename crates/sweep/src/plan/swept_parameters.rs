@@ -57,8 +57,18 @@ fn parameter(plan: &Plan, path: &str, role: Role) -> Parameter {
     Parameter::at(path, amount.is_some(), unit, role)
 }
 
-/// Whether `path` is that of an amplitude of a varied effect, or of something that holds one.
+/// Whether `path` is that of a value of a varied effect, or of something that holds one. All its values describe the fault: a
+/// frequency that only a fluttering valve has gives it away.
 fn is_of_a_label(plan: &Plan, path: &str) -> bool {
+    let of_effect = path.strip_prefix("effects.");
+    let named = of_effect.and_then(|value| value.split('.').next());
+    if plan
+        .effects
+        .iter()
+        .any(|effect| named == Some(effect.name()))
+    {
+        return true;
+    }
     let Some(keys) = keys(plan, path) else {
         return false;
     };
@@ -68,7 +78,8 @@ fn is_of_a_label(plan: &Plan, path: &str) -> bool {
     plan.effects.iter().any(|effect| {
         let amplitudes = effect.amplitudes.iter();
         let mut places = amplitudes.filter_map(|amplitude| keys_of(plan, effect, amplitude));
-        places.any(|place| place.starts_with(&keys))
+        let holds = |place: &Vec<String>| place.starts_with(&keys) || keys.starts_with(&place[..3]);
+        places.any(|place| holds(&place))
     })
 }
 

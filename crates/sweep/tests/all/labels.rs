@@ -240,6 +240,12 @@ fn an_effect_that_the_sweep_varies_is_a_label_with_its_size() {
     let plan = plan_of("single-stage.yaml", &hum, rest);
     assert_eq!(faults(&plan), ["none", "none"]);
     assert_eq!(plan.parameters[0].role, Role::Condition);
+    // Every value of an effect that is a label gives it away.
+    let rest = "cases: [{random: {count: 4, axes: {
+  effects.valve_flutter.suction: {uniform: [3 %, 20 %]}, effects.valve_flutter.frequency: {uniform: [60 Hz, 250 Hz]}}}}]";
+    let plan = plan_of("single-stage.yaml", &[], rest);
+    let roles = plan.parameters.iter().map(|parameter| parameter.role);
+    assert!(roles.eq([Role::Label; 2]), "{:?}", plan.parameters);
 }
 
 #[test]
