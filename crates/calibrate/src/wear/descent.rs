@@ -3,7 +3,7 @@
 //! Energies have few minima and come first, then lines that may stand elsewhere in the revolution, with less and less of
 //! that. Of many starts a third goes on after each stage.
 
-use super::discrepancy::FAR;
+use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::model::Model;
 use super::prior::{self, Prior, WithPriors};
@@ -48,8 +48,6 @@ const FOLLOWED: usize = 3;
 pub(super) const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
-/// Sizes of the discrepancy that a model may have, rad.
-pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// By how much a coordinate of a clearance is moved to where a motion repeats itself: less than the width of a minimum of lines.
 const BESIDE: [f64; 6] = [-1e-3, -3e-4, -1e-4, 1e-4, 3e-4, 1e-3];
 /// Most evaluations of the last descent, and of its beginning: what is still far from the recordings then is another minimum,

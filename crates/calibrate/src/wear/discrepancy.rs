@@ -4,7 +4,6 @@
 //! error of timing (Kennedy and O'Hagan 2001): orders count as far as they do not turn over it. Where no more is left
 //! than noise and this error, the likelihood with both has a range of the clearance. Elsewhere no range is known.
 
-use super::descent::TIMINGS;
 use super::effort::Effort;
 use crate::error::Error;
 use crate::fit::{ADEQUATE, Fit};
@@ -13,6 +12,8 @@ use crate::likelihood::{Likelihood, misfit};
 use crate::optimiser::{self, LeastSquares};
 use crate::problem::Problem;
 
+/// Sizes of the discrepancy that a model may have, rad.
+pub(super) const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Greatest size of a discrepancy that still has a range, rad: beyond it high orders say nothing, and clearances far from
 /// each other explain what is left.
 const GREATEST: f64 = 0.003;

@@ -1,8 +1,8 @@
 //! Which joints are clear, and whether the contact parameters are as stated: a selection by evidence.
 
 use super::cell::around;
-use super::descent::{Led, TIMINGS, finely, fit, roughly};
-use super::discrepancy::FAR;
+use super::descent::{Led, finely, fit, roughly};
+use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
@@ -21,7 +21,7 @@ use crate::transfer::STRONG;
 /// by all known relations.
 const FOLLOWED: [usize; 2] = [4, 12];
 /// Points that are searched where one more joint is clear, over all such joints, and points from which they are screened.
-const STEPS: usize = 4;
+const CLEAR_POINTS: usize = 4;
 const STARTS: usize = 3;
 
 /// A model with its fit.
@@ -276,7 +276,7 @@ impl Search<'_> {
             models.push(model);
         }
         points.sort_by(|a, b| a.1.squares.total_cmp(&b.1.squares));
-        points.truncate(STEPS);
+        points.truncate(CLEAR_POINTS);
         let mut led = Vec::new();
         for (i, model) in models.into_iter().enumerate() {
             let own = points.iter().filter(|(of, _)| *of == i);
