@@ -395,7 +395,8 @@ mod tests {
                 grid.resample(&x).unwrap()
             };
             let highest = 0.4 * points as f64;
-            for order in [1.0, 0.5 * highest, highest - 1.0] {
+            // Whole orders: they are alike in each revolution.
+            for order in [1.0, (0.5 * highest).floor(), highest.floor() - 1.0] {
                 let passed = of_order(order);
                 assert_eq!((passed.count(), passed.first_point()), (5, start));
                 for (j, y) in passed.samples().iter().enumerate() {
