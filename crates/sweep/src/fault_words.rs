@@ -1,7 +1,7 @@
 //! The faults of a case one by one, in words that datasets of bearings share.
 //!
-//! `fault_type`, `fault_location` and `fault_severity_level` are columns of the Python package `bearing-datasets` 0.3
-//! (schema version 2, <https://pypi.org/project/bearing-datasets>), with its meanings:
+//! `fault_type`, `fault_location` and `fault_severity_level` are columns of the Python package `bearing-datasets`
+//! (version 0.3.0, schema version 2), with its meanings:
 //!
 //! | column | there | here |
 //! |---|---|---|
