@@ -80,7 +80,7 @@ fn plate(channel: &ComparedChannel, names: &[&str]) -> Plate {
         caption: "The first window of each: the mean over its whole revolutions, and the amplitude spectrum \
                   with a Hann window."
             .to_owned(),
-        svg: figure.svg(),
+        figure,
     }
 }
 

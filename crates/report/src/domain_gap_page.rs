@@ -52,12 +52,11 @@ fn plate(compared: &Compared) -> Plate {
         caption: "Share of the simulated and of the measured windows in bins of equal width. Windows without a value are \
                   left out."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: figure::in_rows(panels.collect(), 3),
             row_height: 150.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

@@ -1,12 +1,13 @@
 //! Figures on their way into a page, and as files beside it.
 
+use crate::figure::Figure;
 use crate::text;
 
 /// A figure with its heading and caption.
 pub(crate) struct Plate {
     pub(crate) heading: String,
     pub(crate) caption: String,
-    pub(crate) svg: String,
+    pub(crate) figure: Figure,
 }
 
 /// A page and the figures on it.
@@ -49,7 +50,7 @@ pub(crate) fn numbered_files(
 ) -> Vec<FigureFile> {
     let files = plates.map(|(number, plate)| FigureFile {
         name: file_name(page, number, &plate.heading),
-        svg: plate.svg,
+        svg: plate.figure.svg(),
     });
     files.collect()
 }

@@ -149,7 +149,7 @@ fn plate(chamber: &Chamber) -> Plate {
                   Middle: the same on logarithmic axes. Enclosed gas follows a straight line there, and the slope is its \
                   exponent; the fitted stretches are bold. Right: calibrated less measured pressure over the crank angle."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![
                 over_distance(chamber, false),
                 over_distance(chamber, true),
@@ -157,8 +157,7 @@ fn plate(chamber: &Chamber) -> Plate {
             ]],
             row_height: 260.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

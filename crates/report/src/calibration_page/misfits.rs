@@ -60,11 +60,10 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
         caption: "Root mean square difference between the amplitudes of the orders in simulation and recording, divided by the \
                   standard deviation of their noise. At 1 only noise is left. Held-out runs are predicted, not fitted."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: ROW * (runs.len() as f64 + 0.5),
             ..Figure::default()
-        }
-        .svg(),
+        },
     })
 }

@@ -104,12 +104,11 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
         caption: "Estimate of each parameter with its 95 % interval, divided by the nominal value. An interval that crosses the \
                   line at 1 agrees with the nominal value."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: ROW * (ratios.len() as f64 + 0.5),
             ..Figure::default()
-        }
-        .svg(),
+        },
     })
 }
 
@@ -153,11 +152,10 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
                   combination of the two is identifiable: if one is wrong, so is the other. A dash stands for a parameter that \
                   is not identifiable."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: (1.3 * ROW * count as f64).clamp(90.0, 640.0),
             ..Figure::default()
-        }
-        .svg(),
+        },
     })
 }

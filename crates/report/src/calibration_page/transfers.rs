@@ -176,12 +176,11 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
                   follows from the calibrated parameters. A grey ring is a recording. Where the bars of two relations do not \
                   overlap, a recording at this clearance decides between them."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: in_rows(panels.collect(), 2),
             row_height: 1.6 * ROW * (runs.len() as f64 + 0.5),
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

@@ -50,13 +50,12 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
             size(run.misfit.before),
             size(run.misfit.after)
         ),
-        svg: Figure {
+        figure: Figure {
             rows: run.channels.iter().map(|c| panels(c, names)).collect(),
             row_headings: run.channels.iter().map(heading).collect(),
             row_height: 210.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

@@ -45,13 +45,12 @@ fn plate(diagram: &Bifurcation) -> Plate {
     Plate {
         heading: format!("Bifurcation diagram: {}", diagram.name),
         caption: caption(diagram, factor, unit),
-        svg: Figure {
+        figure: Figure {
             rows: panels.collect(),
             row_height: 230.0,
             share_x: Share::All,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

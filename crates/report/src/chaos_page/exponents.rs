@@ -63,14 +63,13 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
              does not show how fast neighbours converge, so rings do not follow discs below the line.{}",
             speed_words(apart, &speeds)
         ),
-        svg: Figure {
+        figure: Figure {
             rows,
             row_height: 180.0,
             share_x: Share::All,
             share_y: Share::All,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }]
 }
 
@@ -196,13 +195,12 @@ pub(super) fn scatter(page: &ChaosPage) -> Vec<Plate> {
     vec![Plate {
         heading: "Exponent from the signal against from the equations".to_owned(),
         caption: scatter_words(&agreement),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: 340.0,
             width: 760.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }]
 }
 

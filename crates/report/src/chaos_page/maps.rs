@@ -103,7 +103,7 @@ fn by_joints(
     Plate {
         heading: "Regimes by clearance and joint".to_owned(),
         caption: caption("in different joints", clearances.width),
-        svg: figure(sources, rows.collect(), 26.0 * sets.len().max(2) as f64),
+        figure: figure(sources, rows.collect(), 26.0 * sets.len().max(2) as f64),
     }
 }
 
@@ -138,7 +138,7 @@ fn by_speed(
     Plate {
         heading: "Regimes by clearance and speed".to_owned(),
         caption: caption("at different speeds", clearances.width.max(speeds.width)),
-        svg: figure(sources, rows.collect(), 26.0 * speeds.count().max(3) as f64),
+        figure: figure(sources, rows.collect(), 26.0 * speeds.count().max(3) as f64),
     }
 }
 
@@ -165,7 +165,7 @@ fn fields<'a>(
     fields.collect()
 }
 
-fn figure(sources: &[(&str, Source)], rows: Vec<Vec<Panel>>, row_height: f64) -> String {
+fn figure(sources: &[(&str, Source)], rows: Vec<Vec<Panel>>, row_height: f64) -> Figure {
     let heading = |(i, (name, _)): (usize, &(&str, Source))| match i {
         0 => format!("{name}: {KEY}"),
         _ => (*name).to_owned(),
@@ -177,7 +177,6 @@ fn figure(sources: &[(&str, Source)], rows: Vec<Vec<Panel>>, row_height: f64) ->
         share_y: crate::figure::Share::All,
         ..Figure::default()
     }
-    .svg()
 }
 
 fn caption(over: &str, bins: f64) -> String {

@@ -40,7 +40,7 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
              that repeats every second revolution; a filled band is a motion that does not repeat. {}",
             cases(page)
         ),
-        svg: small_multiples(page, panel, Share::All, HEIGHT),
+        figure: small_multiples(page, panel, Share::All, HEIGHT),
     })
 }
 
@@ -85,7 +85,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
              revolution. A curve is quasi-periodic, a scatter is chaotic or has not settled. {}",
             cases(page)
         ),
-        svg: small_multiples(page, strobe, Share::All, HEIGHT),
+        figure: small_multiples(page, strobe, Share::All, HEIGHT),
     });
     made.extend(plates(page, || Plate {
         heading: "Sections at impact".to_owned(),
@@ -95,7 +95,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
              without dots belongs to a journal that never leaves its bearing. {}",
             cases(page)
         ),
-        svg: small_multiples(page, impacts, Share::All, HEIGHT),
+        figure: small_multiples(page, impacts, Share::All, HEIGHT),
     }));
     made
 }
@@ -133,7 +133,7 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
              joints, both orbits are in one panel. Every panel has its own scale, the same along both axes. {}",
             cases(page)
         ),
-        svg: small_multiples(page, panel, Share::None, ORBIT_HEIGHT),
+        figure: small_multiples(page, panel, Share::None, ORBIT_HEIGHT),
     })
 }
 
@@ -182,7 +182,7 @@ fn small_multiples(
     panel: impl Fn(&Motion) -> Panel,
     share: Share,
     row_height: f64,
-) -> String {
+) -> Figure {
     let rows = page.motions.iter().map(|row| {
         let panels = row.motions.iter().map(|motion| match motion {
             Some(motion) => Panel {
@@ -204,5 +204,4 @@ fn small_multiples(
         share_y: share,
         ..Figure::default()
     }
-    .svg()
 }

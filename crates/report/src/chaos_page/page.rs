@@ -69,7 +69,7 @@ impl ChaosPage {
         let plates = view.sections.into_iter().flat_map(|section| section.plates);
         let figures = plates.map(|(number, plate)| FigureFile {
             name: file_name("chaos", number, &plate.heading),
-            svg: plate.svg,
+            svg: plate.figure.svg(),
         });
         Ok(Rendered {
             html,

@@ -36,7 +36,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                  left are the orders of the crank; clearance raises the level above them, and adds broad humps where parts \
                  ring. {from}"
             ),
-            svg: small_multiples(shown, "frequency (Hz)", "density (m/s²/√Hz)", |class| {
+            figure: small_multiples(shown, &Axis::linear("frequency (Hz)"), "density (m/s²/√Hz)", |class| {
                 &class.spectrum
             }),
         },
@@ -48,9 +48,9 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                  quarters, are knocks that come alike every second or fourth revolution; a floor without lines is knocking that does not \
                  repeat. {from}"
             ),
-            svg: small_multiples(
+            figure: small_multiples(
                 shown,
-                "order of the crank's speed",
+                &Axis::orders(),
                 "amplitude (m/s²)",
                 |class| &class.envelope,
             ),
@@ -60,10 +60,10 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
 
 fn small_multiples(
     classes: &[ClassSpectra],
-    x: &str,
+    x: &Axis,
     y: &str,
     of: impl Fn(&ClassSpectra) -> &Quartiles,
-) -> String {
+) -> Figure {
     let panels = classes.iter().map(|class| {
         let Quartiles { at, values } = of(class);
         let line = |which: usize| {
@@ -79,7 +79,7 @@ fn small_multiples(
         let name = text::capitalised(&classes::name(&class.class));
         Panel {
             title: format!("{name} ({})", text::counted(class.windows, "window")),
-            x: Axis::linear(x),
+            x: x.clone(),
             y: Axis::log(y),
             series: vec![
                 Series::new("middle half", Colour::Class(0), Mark::Band, band),
@@ -100,5 +100,4 @@ fn small_multiples(
         share_y: Share::All,
         ..Figure::default()
     }
-    .svg()
 }

@@ -163,6 +163,7 @@ impl Recording {
         Ok(Spectrum {
             at,
             amplitude_m_s2: squares.into_iter().map(f64::sqrt).collect(),
+            fundamental: self.sample_rate_hz / self.grid.samples_per_revolution(),
         })
     }
 
@@ -176,6 +177,7 @@ impl Recording {
         Ok(Spectrum {
             at: (1..=highest).map(|order| order as f64).collect(),
             amplitude_m_s2: spectrum.rms,
+            fundamental: 1.0,
         })
     }
 }

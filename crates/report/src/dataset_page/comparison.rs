@@ -115,7 +115,7 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
             captions::trend(&rms, "m/s²"),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
-        svg: overlaid_and_apart(grid, &drawn),
+        figure: overlaid_and_apart(grid, &drawn),
     }
 }
 
@@ -138,7 +138,7 @@ fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Pla
             captions::ends(&rms, "m/s²"),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
-        svg: overlaid_and_apart(grid, drawn),
+        figure: overlaid_and_apart(grid, drawn),
     }
 }
 
@@ -167,7 +167,7 @@ fn ideal_words(grid: &ClearanceGrid) -> &'static str {
 }
 
 /// One wide panel with all responses, the most violent at the back, and a panel for each.
-fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
+fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> Figure {
     let mut order: Vec<&Drawn<'_>> = drawn.iter().collect();
     let peak = |d: &Drawn<'_>| captions::levels(d.response).map_or(0.0, |[peak, _]| peak.value);
     order.sort_by(|a, b| peak(b).total_cmp(&peak(a)));
@@ -198,7 +198,6 @@ fn overlaid_and_apart(grid: &ClearanceGrid, drawn: &[Drawn<'_>]) -> String {
         share_y: Share::All,
         ..Figure::default()
     }
-    .svg()
 }
 
 fn one_revolution(name: &str, colour: Colour, response: &Response) -> Series {
@@ -232,7 +231,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             grid.title(),
             captions::places(rows.iter().flatten().map(|d| d.response)),
         ),
-        svg: portraits(panels.collect()),
+        figure: portraits(panels.collect()),
     }
 }
 
@@ -250,11 +249,11 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
             grid.title(),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
-        svg: portraits(crate::figure::in_rows(panels, 4)),
+        figure: portraits(crate::figure::in_rows(panels, 4)),
     }
 }
 
-fn portraits(rows: Vec<Vec<Panel>>) -> String {
+fn portraits(rows: Vec<Vec<Panel>>) -> Figure {
     Figure {
         rows,
         row_height: 190.0,
@@ -262,5 +261,4 @@ fn portraits(rows: Vec<Vec<Panel>>) -> String {
         share_y: Share::All,
         ..Figure::default()
     }
-    .svg()
 }

@@ -55,12 +55,11 @@ fn histograms(all: &[Histogram]) -> Plate {
             "How often values were drawn, of {}, in bins of equal width between the lowest and the highest.",
             text::counted(cases, "case")
         ),
-        svg: Figure {
+        figure: Figure {
             rows: figure::in_rows(panels.collect(), 3),
             row_height: 150.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 
@@ -111,12 +110,11 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
             text::counted(cases, "window"),
             super::captions::ends(&medians, y_unit)
         ),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: 300.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

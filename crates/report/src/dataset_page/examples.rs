@@ -54,12 +54,11 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
             text::capitalised(&example.operating_point),
             captions::places([&example.response])
         ),
-        svg: Figure {
+        figure: Figure {
             rows,
             row_height: 170.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 
@@ -76,7 +75,10 @@ fn panels(example: &ClassExample, colour: Colour) -> [Panel; 4] {
     };
     let spectrum = |title: &str, x: &str, spectrum: &Spectrum| Panel {
         title: title.to_owned(),
-        x: Axis::linear(x),
+        x: Axis {
+            fundamental: Some(spectrum.fundamental),
+            ..Axis::linear(x)
+        },
         y: Axis::log("amplitude (m/s²)"),
         series: vec![Series::new(
             "",

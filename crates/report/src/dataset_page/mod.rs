@@ -122,6 +122,8 @@ pub struct Spectrum {
     pub at: Vec<f64>,
     /// Amplitudes at these.
     pub amplitude_m_s2: Vec<f64>,
+    /// Where among them the crank turns: its frequency in Hz, or 1.
+    pub fundamental: f64,
 }
 
 /// A case that stands for its class.

@@ -84,11 +84,10 @@ fn plate(page: &DatasetPage, waterfall: &Waterfall) -> Plate {
             text::quantity(greatest, "m/s²"),
             orders.join(", ")
         ),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: 420.0,
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }

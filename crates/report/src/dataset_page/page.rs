@@ -62,7 +62,7 @@ impl DatasetPage {
             .flat_map(|gallery| (gallery.first..).zip(gallery.plates));
         let figures = plates.map(|(number, plate)| FigureFile {
             name: file_name("dataset", number, &plate.heading),
-            svg: plate.svg,
+            svg: plate.figure.svg(),
         });
         Ok(Rendered {
             html,
@@ -128,7 +128,7 @@ fn responses<'a>(page: &'a DatasetPage, grids: &ClearanceGrids) -> Vec<Gallery<'
     let mut drawn = Vec::new();
     for (at, grid) in grids.grids.iter().enumerate() {
         let plates = comparison::plates(page, grid);
-        bytes += plates.iter().map(|plate| plate.svg.len()).sum::<usize>();
+        bytes += plates.iter().map(|plate| plate.figure.live_svg().len()).sum::<usize>();
         if at > 0 && (plates.is_empty() || bytes > MOST_FIGURE_BYTES) {
             break;
         }

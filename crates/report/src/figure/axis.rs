@@ -8,6 +8,8 @@ use crate::text;
 const MARGIN: f64 = 0.05;
 /// A logarithmic axis shows at most this many decades below its highest value.
 const DECADES: f64 = 8.0;
+/// What is lower than this share of the lowest value of a logarithmic axis is drawn there.
+const BELOW: f64 = 1e-3;
 /// Values beyond this are not drawn: their differences would overflow.
 const LARGEST: f64 = 1e300;
 /// Ranges up to this are drawn as zero: their parts would underflow.
@@ -172,9 +174,31 @@ impl Ruler {
     pub(super) fn place(&self, value: f64) -> f64 {
         if self.scale == Scale::Log {
             let decades = |v: f64| (v / self.low).log10();
-            return decades(value.max(self.low * 1e-3)) / decades(self.high);
+            return decades(value.max(self.low * BELOW)) / decades(self.high);
         }
         (value - self.low) / (self.high - self.low)
+    }
+
+    /// The value that stands at this place: the inverse of [`Ruler::place`].
+    pub(super) fn value(&self, place: f64) -> f64 {
+        match self.scale {
+            Scale::Log => self.low * (self.high / self.low).powf(place),
+            Scale::Linear | Scale::Degrees => self.low + place * (self.high - self.low),
+        }
+    }
+
+    /// Lowest and highest value shown.
+    pub(super) fn range(&self) -> (f64, f64) {
+        (self.low, self.high)
+    }
+
+    /// How values are placed, as `page.js` calls it.
+    pub(super) fn kind(&self) -> &'static str {
+        match self.scale {
+            Scale::Linear => "linear",
+            Scale::Log => "log",
+            Scale::Degrees => "degrees",
+        }
     }
 
     /// About `count` ticks.

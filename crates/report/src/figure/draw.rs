@@ -6,7 +6,7 @@ use super::layout::{
 };
 use super::rows::Figure;
 use super::series::{Mark, Series};
-use super::{decimate, palette};
+use super::{decimate, live, palette};
 use crate::text::{escape, shortened};
 use std::fmt::Write;
 
@@ -18,9 +18,27 @@ const GRID: &str = "#e9e9e9";
 const KEY: f64 = 22.0;
 const KEY_GAP: f64 = 18.0;
 
+/// Where an image is going to stand.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// In a file or on paper: marks alone.
+    File,
+    /// On a page with `page.js`: what is switched, zoomed and read off has a name and its values.
+    Page,
+}
+
 impl Figure {
-    /// The image as an `<svg>` element that stands alone or inside an HTML page.
+    /// The image as an `<svg>` element that stands alone.
     pub fn svg(&self) -> String {
+        self.image(Place::File)
+    }
+
+    /// The same image for a page: axes and series carry what `page.js` needs to draw them again.
+    pub(crate) fn live_svg(&self) -> String {
+        self.image(Place::Page)
+    }
+
+    fn image(&self, place: Place) -> String {
         let mut body = String::new();
         let mut top = 10.0;
         if !self.title.is_empty() {
@@ -35,7 +53,7 @@ impl Figure {
             );
             top += 10.0;
         }
-        top = legend(&mut body, self, top);
+        top = legend(&mut body, self, top, place);
         let layout = layout::place(self, top);
         for (baseline, heading) in &layout.headings {
             let heading = fitted(heading, self.width - 24.0, HEADING_SIZE);
@@ -48,7 +66,7 @@ impl Figure {
             );
         }
         for cell in &layout.cells {
-            panel(&mut body, cell);
+            panel(&mut body, cell, place);
         }
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
@@ -75,7 +93,7 @@ fn name(figure: &Figure) -> &str {
 }
 
 /// The named series, each once, in lines that fit the image; returns where the panels may begin.
-fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
+fn legend(out: &mut String, figure: &Figure, top: f64, place: Place) -> f64 {
     let mut entries: Vec<&Series> = Vec::new();
     for series in figure.rows.iter().flatten().flat_map(|panel| &panel.series) {
         let known = |e: &&Series| {
@@ -93,6 +111,9 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
             (left, baseline) = (12.0, baseline + 18.0);
         }
         let middle = baseline - 4.0;
+        if place == Place::Page {
+            let _ = write!(out, "<g class=\"key\" data-series=\"{}\">", live::name(series));
+        }
         let (kind, sample) = match series.mark {
             // A dot of a pixel is too small for a sample.
             Mark::Dots | Mark::WideDots => (Mark::Points, vec![[left + KEY / 2.0, middle]]),
@@ -119,6 +140,9 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
             baseline,
         );
         write_text(out, [left + KEY + 6.0, baseline], &label, LABEL_SIZE, "");
+        if place == Place::Page {
+            out.push_str("</g>");
+        }
         left += width + KEY_GAP;
     }
     if entries.is_empty() {
@@ -129,7 +153,7 @@ fn legend(out: &mut String, figure: &Figure, top: f64) -> f64 {
 }
 
 /// One panel: grid, guides, data, frame, words.
-fn panel(out: &mut String, cell: &Placed<'_>) {
+fn panel(out: &mut String, cell: &Placed<'_>, place: Place) {
     let Frame {
         left,
         top,
@@ -150,11 +174,15 @@ fn panel(out: &mut String, cell: &Placed<'_>) {
     // The inner <svg> cuts off what lies outside the axes.
     let _ = write!(
         out,
-        "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\">",
+        "<svg x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" overflow=\"hidden\"{}>",
         px(left),
         px(top),
         px(width),
-        px(height)
+        px(height),
+        match place {
+            Place::File => String::new(),
+            Place::Page => live::axes(cell),
+        }
     );
     let xs = cell
         .x
@@ -174,7 +202,15 @@ fn panel(out: &mut String, cell: &Placed<'_>) {
     guides(out, cell);
     fields(out, cell);
     for series in &cell.panel.series {
-        mark(out, series, &in_pixels(series, cell), height);
+        let stretches = in_pixels(series, cell);
+        if place == Place::Page {
+            let values = live::values(series, &stretches, cell);
+            let _ = write!(out, "<g{values}>");
+        }
+        mark(out, series, &stretches, height);
+        if place == Place::Page {
+            out.push_str("</g>");
+        }
     }
     out.push_str("</svg>");
     let _ = write!(
@@ -197,11 +233,19 @@ fn panel(out: &mut String, cell: &Placed<'_>) {
             "text-anchor=\"middle\" fill=\"#777\" font-style=\"italic\"",
         );
     }
+    let mut axis = |name: &str, draw: &dyn Fn(&mut String)| match place {
+        Place::File => draw(out),
+        Place::Page => {
+            let _ = write!(out, "<g class=\"{name}\">");
+            draw(out);
+            out.push_str("</g>");
+        }
+    };
     if cell.x_shown {
-        x_axis(out, cell, bottom);
+        axis("x-axis", &|out| x_axis(out, cell, bottom));
     }
     if cell.y_shown {
-        y_axis(out, cell, left);
+        axis("y-axis", &|out| y_axis(out, cell, left));
     }
 }
 

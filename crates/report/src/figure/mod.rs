@@ -3,13 +3,15 @@
 //! A [`Figure`] holds rows of [`Panel`]s, a panel holds [`Series`] on two axes. Nothing here knows
 //! what is plotted. The image is for a white page, on a screen or printed. The palette is safe for
 //! colour-blind readers, text is text, and no line has more vertices than the pixels can show. A
-//! figure carries no identifiers, styles or scripts, so many can stand in one HTML page.
+//! figure carries no identifiers, styles or scripts, so many can stand in one HTML page. On a page it
+//! carries its values, too, and `templates/page.js` makes it one to work with.
 
 mod axis;
 mod colour;
 mod decimate;
 mod draw;
 mod layout;
+mod live;
 mod palette;
 mod panel;
 mod rows;

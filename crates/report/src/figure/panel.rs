@@ -35,6 +35,9 @@ pub struct Axis {
     pub range: Option<(f64, f64)>,
     /// What stands at 0, 1, 2, … in place of numbers; none on an axis of numbers.
     pub names: Vec<String>,
+    /// Where the speed of the crank stands on the axis of a spectrum: 1 on one of orders, its frequency on
+    /// one of frequencies. Cursors at its multiples can then be shown.
+    pub fundamental: Option<f64>,
 }
 
 /// How values are placed along an axis.
@@ -84,6 +87,14 @@ impl Axis {
             label: label.into(),
             scale: Scale::Log,
             ..Self::default()
+        }
+    }
+
+    /// A linear axis of orders of the crank speed.
+    pub fn orders() -> Self {
+        Self {
+            fundamental: Some(1.0),
+            ..Self::linear("order of crank speed")
         }
     }
 

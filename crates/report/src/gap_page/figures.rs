@@ -87,12 +87,11 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
                   reduction by one step: calibration first, then one effect after another. At 1 only noise is left. Held-out \
                   runs are never fitted."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             row_height: misfits::ROW * (top + 1.5),
             ..Figure::default()
-        }
-        .svg(),
+        },
     })
 }
 
@@ -119,11 +118,10 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
         caption: "Force on the crosshead with which the model fits the recordings best, estimated without a law. A named effect or \
                   a formula would have to reproduce it."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![vec![panel]],
             ..Figure::default()
-        }
-        .svg(),
+        },
     })
 }
 
@@ -166,12 +164,11 @@ fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
         heading: format!("{}, {channel}", before.run),
         caption: "Residual divided by the noise, by crank angle and order; darker is larger. White is noise alone."
             .to_owned(),
-        svg: Figure {
+        figure: Figure {
             rows: vec![panels],
             row_height: ROW * (bands.len() as f64 + 0.5),
             ..Figure::default()
-        }
-        .svg(),
+        },
     }
 }
 

@@ -287,6 +287,7 @@ fn the_largest_dataset_has_a_page_of_bounded_size() {
     example.spectrum = Spectrum {
         at: (0..samples).map(f64::from).collect(),
         amplitude_m_s2,
+        fundamental: 1.0,
     };
     example.order_spectrum = example.spectrum.clone();
     page.examples = vec![example; 64];

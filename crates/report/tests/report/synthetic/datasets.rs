@@ -156,6 +156,7 @@ fn operation() -> Operation {
         let spectrum = Spectrum {
             at: orders.clone().collect(),
             amplitude_m_s2: orders.map(|order| line(order, rpm)).collect(),
+            fundamental: 1.0,
         };
         (rpm * TAU / 60.0, spectrum)
     });
@@ -335,10 +336,12 @@ fn example(fault: usize) -> ClassExample {
         order_spectrum: Spectrum {
             amplitude_m_s2: amplitude_m_s2[..orders.len()].to_vec(),
             at: orders,
+            fundamental: 1.0,
         },
         spectrum: Spectrum {
             at: hertz,
             amplitude_m_s2,
+            fundamental: 500.0 / 60.0,
         },
     }
 }
