@@ -3,7 +3,7 @@
 use crate::{Boosting, Sample};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What gradient boosting reaches: one model for each class against all others, the most likely one is the answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,8 +29,20 @@ pub struct ClassScore {
     pub rows: usize,
     /// Share of these that are given to it.
     pub recall: f64,
-    /// The class that most of the others are given to.
-    pub confused_with: Option<String>,
+    /// How many of them are given to each class, itself included; classes that none is given to are absent.
+    pub answers: BTreeMap<String, usize>,
+}
+
+impl ClassScore {
+    /// The other class that most are given to, the first of equal ones.
+    pub fn confused_with(&self) -> Option<&str> {
+        let others = self
+            .answers
+            .iter()
+            .filter(|(class, _)| **class != self.class);
+        let most = others.rev().max_by_key(|(_, count)| **count);
+        most.map(|(class, _)| class.as_str())
+    }
 }
 
 /// Trains on one sample and tests on another. `None` where fewer than two classes are trained, or nothing is tested.
@@ -80,24 +92,17 @@ pub fn baseline(train: (&Sample, &[String]), test: (&Sample, &[String])) -> Opti
 }
 
 fn score(class: &String, truth: &[String], answers: &[&String]) -> ClassScore {
-    let own: Vec<&String> = truth
-        .iter()
-        .zip(answers)
-        .filter(|(of, _)| *of == class)
-        .map(|(_, answer)| *answer)
-        .collect();
-    let right = own.iter().filter(|answer| **answer == class).count();
-    let others: BTreeSet<&String> = own
-        .iter()
-        .copied()
-        .filter(|answer| *answer != class)
-        .collect();
-    let count = |other: &String| own.iter().filter(|answer| **answer == other).count();
-    let most = others.into_iter().rev().max_by_key(|other| count(other));
+    let given = truth.iter().zip(answers).filter(|(of, _)| *of == class);
+    let mut counts = BTreeMap::new();
+    for (_, answer) in given {
+        *counts.entry((*answer).clone()).or_default() += 1;
+    }
+    let rows = counts.values().sum();
+    let right = counts.get(class).copied().unwrap_or(0);
     ClassScore {
         class: class.clone(),
-        rows: own.len(),
-        recall: right as f64 / own.len() as f64,
-        confused_with: most.cloned(),
+        rows,
+        recall: right as f64 / rows as f64,
+        answers: counts,
     }
 }

@@ -90,9 +90,7 @@ fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
         Unit::Pure => "1",
         Unit::Of(unit) => unit,
     };
-    let stem = channel
-        .strip_suffix(&ending(channel_unit))
-        .unwrap_or(channel);
+    let stem = stem(channel, channel_unit);
     Definition {
         name: format!("{stem}.{}{}", line.name, ending(unit)),
         feature: line.name.clone(),
@@ -102,6 +100,12 @@ fn definition(channel: &str, channel_unit: &str, line: &Line) -> Definition {
         formula: line.formula,
         source: line.source,
     }
+}
+
+/// The name of a channel without its unit, which the names of its features begin with: `crosshead_acceleration` of
+/// `crosshead_acceleration_m_s2`.
+pub fn stem<'a>(channel: &'a str, unit: &str) -> &'a str {
+    channel.strip_suffix(&ending(unit)).unwrap_or(channel)
 }
 
 /// How a column name ends for a unit: `_m_s2` for `m/s^2`, nothing for a pure number.

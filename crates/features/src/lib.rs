@@ -28,7 +28,7 @@ mod statistics;
 mod table;
 mod window;
 
-pub use channel_features::{definitions, features};
+pub use channel_features::{definitions, features, stem};
 pub use definition::{Definition, Group};
 pub use missing::missing;
 pub use motion::{Motion, motion, motion_definitions};

@@ -2,6 +2,7 @@
 //!
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
+//! - [`case_table`]: the cases of a dataset, for the script of its page;
 //! - [`run_figures`]: p-V cards, rod loads and waveforms of one run;
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
@@ -22,6 +23,7 @@
 
 pub mod calibration_page;
 pub mod case_picture;
+pub mod case_table;
 pub mod chaos_page;
 pub mod classes;
 mod column;

@@ -5,9 +5,21 @@ use crate::text;
 
 /// A figure with its heading and caption.
 pub(crate) struct Plate {
+    pub(crate) about: About,
     pub(crate) heading: String,
     pub(crate) caption: String,
     pub(crate) figure: Figure,
+}
+
+/// What a figure shows alone; empty where it shows several, or there is one alone. A page offers its figures by these.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct About {
+    /// The class, in words.
+    pub(crate) class: String,
+    /// The sensor, in words.
+    pub(crate) sensor: String,
+    /// Speed and load.
+    pub(crate) operating_point: String,
 }
 
 /// A page and the figures on it.

@@ -174,9 +174,7 @@ impl RunFigures<'_> {
 
 /// The name of a channel in words, without its unit.
 fn name(channel: &Channel) -> String {
-    let name = channel.name.strip_suffix("_m_s2");
-    let name = name.or_else(|| channel.name.strip_suffix("_pa"));
-    text::words(name.unwrap_or(&channel.name))
+    text::words(features::stem(&channel.name, &channel.unit))
 }
 
 /// Values at equal crank angles over a revolution, in kN, closed at 360°.

@@ -56,7 +56,7 @@ fn classes_that_do_not_are_confused_with_each_other() {
     };
     assert!(class("none").recall > 0.95, "{found:?}");
     assert!((class("big_end").recall - 0.5).abs() < 0.2, "{found:?}");
-    assert_eq!(class("big_end").confused_with.as_deref(), Some("small_end"));
+    assert_eq!(class("big_end").confused_with(), Some("small_end"));
     // Balanced: the mean of the recalls.
     let mean = found.classes.iter().map(|class| class.recall).sum::<f64>() / 3.0;
     assert!((found.balanced_accuracy - mean).abs() < 1e-12);

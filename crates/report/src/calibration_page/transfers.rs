@@ -3,7 +3,7 @@
 use super::CalibrationPage;
 use super::misfits::ROW;
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 use calibrate::Bounded;
 use calibrate::Relation;
@@ -171,6 +171,7 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
         .iter()
         .map(|column| panel(&relations.compared, &forecasts, &runs, column));
     Plate {
+        about: About::default(),
         heading: self::state(state),
         caption: "Greatest acceleration within a revolution at this clearance for each relation, with the 95 % interval that \
                   follows from the calibrated parameters. A grey ring is a recording. Where the bars of two relations do not \

@@ -4,7 +4,7 @@ use super::misfits::{AFTER, BEFORE};
 use super::verdict::size;
 use super::{Channel, OrderResidual, Point, Run, words};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::statistics::HALF;
 use crate::text;
 
@@ -42,6 +42,7 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
         "fitted"
     };
     Plate {
+        about: About::default(),
         heading: format!("{}, {kind}", run.id),
         caption: format!(
             "The misfit is {} times the noise before and {} after. Left: the mean over the revolutions, with the \

@@ -2,7 +2,7 @@
 
 use super::{Bifurcation, ChaosPage, Recorded};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 use std::collections::BTreeMap;
 
@@ -43,6 +43,7 @@ fn plate(diagram: &Bifurcation) -> Plate {
         }]
     });
     Plate {
+        about: About::default(),
         heading: format!("Bifurcation diagram: {}", diagram.name),
         caption: caption(diagram, factor, unit),
         figure: Figure {

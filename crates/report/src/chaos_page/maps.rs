@@ -5,7 +5,7 @@ use super::exponents::MOST_SPEEDS;
 use super::levels::Levels;
 use super::{CaseChaos, ChaosPage, Regime};
 use crate::figure::{Axis, Colour, Field, Figure, Panel};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 
 /// At most this many sets of joints have a map over speed.
@@ -101,6 +101,7 @@ fn by_joints(
         .iter()
         .map(|(_, source)| groups.iter().map(|group| panel(*source, group)).collect());
     Plate {
+        about: About::default(),
         heading: "Regimes by clearance and joint".to_owned(),
         caption: caption("in different joints", clearances.width),
         figure: figure(sources, rows.collect(), 26.0 * sets.len().max(2) as f64),
@@ -136,6 +137,7 @@ fn by_speed(
         .iter()
         .map(|(_, source)| shown.iter().map(|set| panel(*source, set)).collect());
     Plate {
+        about: About::default(),
         heading: "Regimes by clearance and speed".to_owned(),
         caption: caption("at different speeds", clearances.width.max(speeds.width)),
         figure: figure(sources, rows.collect(), 26.0 * speeds.count().max(3) as f64),

@@ -3,7 +3,7 @@
 use super::{ChaosPage, ClassSpectra, Quartiles};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 
 /// At most this many classes.
@@ -30,17 +30,22 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
     );
     vec![
         Plate {
+            about: About::default(),
             heading: "Spectra of each class".to_owned(),
             caption: format!(
                 "Amplitude density of the measured acceleration (Welch 1967, Hann window, 1024 samples, half overlapping). Lines at the \
                  left are the orders of the crank; clearance raises the level above them, and adds broad humps where parts \
                  ring. {from}"
             ),
-            figure: small_multiples(shown, &Axis::linear("frequency (Hz)"), "density (m/s²/√Hz)", |class| {
-                &class.spectrum
-            }),
+            figure: small_multiples(
+                shown,
+                &Axis::linear("frequency (Hz)"),
+                "density (m/s²/√Hz)",
+                |class| &class.spectrum,
+            ),
         },
         Plate {
+            about: About::default(),
             heading: "Envelope spectra of each class".to_owned(),
             caption: format!(
                 "Amplitude spectrum of the acceleration's envelope in its most impulsive band (kurtogram, Antoni 2007), over orders of \
@@ -48,12 +53,9 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                  quarters, are knocks that come alike every second or fourth revolution; a floor without lines is knocking that does not \
                  repeat. {from}"
             ),
-            figure: small_multiples(
-                shown,
-                &Axis::orders(),
-                "amplitude (m/s²)",
-                |class| &class.envelope,
-            ),
+            figure: small_multiples(shown, &Axis::orders(), "amplitude (m/s²)", |class| {
+                &class.envelope
+            }),
         },
     ]
 }

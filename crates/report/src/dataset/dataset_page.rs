@@ -1,6 +1,8 @@
 //! The page of a dataset, from its tables.
 
-use super::{about, baseline, columns, counts, examples, features, grid, operation, random};
+use super::{
+    about, baseline, cases, columns, counts, examples, features, grid, operation, random, ranking,
+};
 use crate::Error;
 use crate::dataset_page::{DatasetPage, Design};
 use sweep::reader::Dataset;
@@ -12,6 +14,7 @@ impl DatasetPage {
     /// A table that cannot be read.
     pub fn from_dataset(dataset: &Dataset) -> Result<Self, Error> {
         let faults = counts::faults(dataset);
+        let sample = dataset.sample(None, "fault")?;
         let examples = examples::examples(dataset, &faults)?;
         let motions = match dataset.plan.study {
             Some(_) => Some(dataset.motions()?),
@@ -21,6 +24,7 @@ impl DatasetPage {
             Some(grids) => Design::Grid(grids),
             None => Design::Random(random::sweep(dataset, &faults)),
         };
+        let ranks = ranking::ranking(&sample);
         let (features, feature_rows) = features::by_fault(dataset, &faults);
         let channels = dataset.plan.channels().into_iter();
         Ok(Self {
@@ -43,6 +47,9 @@ impl DatasetPage {
             design,
             operation: operation::operation(dataset, &faults)?,
             baseline: baseline::baseline(dataset)?,
+            by_class: ranking::by_class(dataset, &faults, &sample, &ranks)?,
+            ranking: ranks,
+            cases: cases::cases(dataset, &faults, &sample)?,
             features,
             feature_rows,
             columns: columns::columns(dataset)?,

@@ -2,6 +2,7 @@
 
 mod about;
 mod baseline;
+mod cases;
 mod chaos;
 mod columns;
 mod counts;
@@ -13,6 +14,7 @@ mod grid;
 mod operating_points;
 mod operation;
 mod random;
+mod ranking;
 mod recording;
 mod scatter;
 mod words;

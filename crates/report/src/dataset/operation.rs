@@ -46,6 +46,7 @@ fn trends(dataset: &Dataset, faults: &[FaultCount], sensor: usize) -> Vec<Scatte
     };
     let rms = &windows.measured[sensor].rms;
     let trend = |label: &Label| Scatter {
+        sensor: words::sensor(dataset, sensor),
         x: (words::name(label), text::unit(&label.unit)),
         y: (scatter::feature(dataset, sensor, "rms"), "m/s²".to_owned()),
         log_y: true,

@@ -43,6 +43,7 @@ fn scatters(dataset: &Dataset, faults: &[FaultCount]) -> Vec<Scatter> {
         .collect();
     let of_sensor = |(sensor, measured): (usize, &ChannelFeatures)| {
         let against = |name: &str, unit: &str, log_y: bool, values: &[f64]| Scatter {
+            sensor: words::sensor(dataset, sensor),
             x: ("largest clearance".to_owned(), "m".to_owned()),
             y: (scatter::feature(dataset, sensor, name), unit.to_owned()),
             log_y,

@@ -55,18 +55,23 @@ impl Recording {
         })
     }
 
-    fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
+    /// The first channel of the row.
+    ///
+    /// # Errors
+    /// Samples that are no motion of a crank.
+    pub(super) fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
         let encoder = row.crank_angle.as_deref();
-        let count = row.acceleration.len();
+        let acceleration = row.channels.into_iter().next().unwrap_or_default();
+        let count = acceleration.len();
         let angle = CrankAngle::recorded(encoder, count, row.sample_rate_hz, row.speed_rpm)?;
         let points = (angle.samples_per_revolution() / 1.01).ceil() as usize;
         let grid = AngleGrid::new(&angle, points.clamp(64, 1 << 16).next_power_of_two())?;
-        let revolutions = grid.resample(&row.acceleration)?;
+        let revolutions = grid.resample(&acceleration)?;
         Ok(Self {
             case_id: row.case_id,
             file: row.file,
             sample_rate_hz: row.sample_rate_hz,
-            acceleration: row.acceleration,
+            acceleration,
             angle,
             grid,
             revolutions,
@@ -97,6 +102,38 @@ impl Recording {
             acceleration_m_s2: self.acceleration.clone(),
             velocity_m_s: self.angle.angles().iter().map(at).collect(),
         })
+    }
+
+    /// The last whole revolution from crank angle 0, in equal parts: the lowest and the highest value of each, in the order
+    /// in which they come, and what `beside` has there. A part without samples repeats the one before.
+    pub(super) fn extremes(&self, parts: usize, beside: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let angles = self.angle.angles();
+        let last = angles.last().map_or(0.0, |angle| (angle / TAU).floor());
+        let part_of = |angle: f64| ((angle / TAU - (last - 1.0)) * parts as f64).floor();
+        let mut ends: Vec<Option<[usize; 2]>> = vec![None; parts];
+        for (i, angle) in angles.iter().enumerate() {
+            let part = part_of(*angle);
+            if part < 0.0 || part >= parts as f64 {
+                continue;
+            }
+            let [low, high] = ends[part as usize].get_or_insert([i, i]);
+            if self.acceleration[i] < self.acceleration[*low] {
+                *low = i;
+            }
+            if self.acceleration[i] > self.acceleration[*high] {
+                *high = i;
+            }
+        }
+        let (mut values, mut others) = (Vec::new(), Vec::new());
+        let mut kept = ends.iter().flatten().next().copied().unwrap_or_default();
+        for end in ends {
+            kept = end.unwrap_or(kept);
+            for i in [kept[0].min(kept[1]), kept[0].max(kept[1])] {
+                values.push(self.acceleration.get(i).copied().unwrap_or(f64::NAN));
+                others.extend(beside.get(i));
+            }
+        }
+        (values, others)
     }
 
     /// What the levels of another recording of the same machine may differ by, from ten parts of

@@ -7,7 +7,7 @@ use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
 use super::{ClearanceGrid, DatasetPage, JointSet, Response};
 use crate::classes::{self, HEALTHY};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::revolutions::Revolutions;
 use crate::{Level, text};
 
@@ -98,6 +98,14 @@ fn at_clearance(set: &JointSet, clearance: f64) -> Option<&Response> {
         .map(|(_, response)| response)
 }
 
+fn about(grid: &ClearanceGrid) -> About {
+    About {
+        sensor: grid.sensor.clone(),
+        operating_point: grid.operating_point.clone(),
+        ..About::default()
+    }
+}
+
 fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     let drawn = by_colour_of_clearance(set);
     let joints = text::words(&set.joints);
@@ -105,6 +113,7 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     let peaks: Vec<Level> = levels().map(|[peak, _]| peak).collect();
     let rms: Vec<Level> = levels().map(|[_, rms]| rms).collect();
     Plate {
+        about: about(grid),
         heading: format!("Clearance in {joints}"),
         caption: format!(
             "Acceleration over one revolution with clearance in {joints}, {}; above all on one pair of axes, below each by \
@@ -127,6 +136,7 @@ fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Pla
     };
     let (peaks, rms) = (named(0), named(1));
     Plate {
+        about: about(grid),
         heading: format!("Sets of joints at {}", text::clearance(clearance)),
         caption: format!(
             "Acceleration over one revolution with a clearance of {} in different joints, {}; above all on one pair of axes, \
@@ -223,6 +233,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             .collect()
     });
     Plate {
+        about: about(grid),
         heading: "Portraits by clearance".to_owned(),
         caption: format!(
             "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer, {}: a row for each set of joints, the clearance rising from \
@@ -241,6 +252,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
         .map(|d| portrait(&text::capitalised(&d.name), d.response, d.colour))
         .collect();
     Plate {
+        about: about(grid),
         heading: format!("Portraits at {}", text::clearance(clearance)),
         caption: format!(
             "Acceleration against velocity over the last {PORTRAIT_REVOLUTIONS} revolutions or fewer with a clearance of {} in different joints, {}. Axes are the \

@@ -3,7 +3,7 @@
 use super::{DatasetPage, Histogram, RandomSweep, Scatter};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::statistics::quantile;
 use crate::{Level, histogram, text};
 use std::f64::consts::FRAC_PI_2;
@@ -50,6 +50,7 @@ fn histograms(all: &[Histogram]) -> Plate {
         }
     });
     Plate {
+        about: About::default(),
         heading: "Parameters".to_owned(),
         caption: format!(
             "How often values were drawn, of {}, in bins of equal width between the lowest and the highest.",
@@ -103,6 +104,10 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         .collect();
     let cases = scatter.classes.iter().map(|(_, points)| points.len()).sum();
     Plate {
+        about: About {
+            sensor: scatter.sensor.clone(),
+            ..About::default()
+        },
         heading: text::capitalised(&format!("{y} against {x}")),
         caption: format!(
             "{} against {x} for {}, coloured by fault. The median is {}. Data: table features.",

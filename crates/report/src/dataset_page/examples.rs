@@ -4,7 +4,7 @@ use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
 use super::{ClassExample, DatasetPage, Spectrum, captions};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::revolutions::Revolutions;
 use crate::text;
 
@@ -40,6 +40,11 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
         )
     });
     Plate {
+        about: About {
+            class: classes::name(&example.fault),
+            sensor: example.sensor.clone(),
+            ..About::default()
+        },
         heading: match example.sensor.as_str() {
             "" => text::capitalised(&classes::name(&example.fault)),
             sensor => format!(

@@ -8,6 +8,7 @@
 mod captions;
 mod claims;
 mod comparison;
+mod diagnosis;
 mod distributions;
 mod examples;
 mod levels;
@@ -18,9 +19,10 @@ mod settings;
 
 pub(crate) use examples::MOST_EXAMPLES;
 
+use crate::case_table::CaseTable;
 use crate::figure::Colour;
 use crate::{Column, Level, classes};
-use classify::Baseline;
+use classify::{Baseline, RankedFeature};
 use recordings::{CaseWarning, FailedCase};
 
 /// The content of the page. Numbers are SI; labels and names are as in the data.
@@ -66,6 +68,12 @@ pub struct DatasetPage {
     pub operation: Operation,
     /// How well a classifier does that is trained on it; none where it has no test or one class alone.
     pub baseline: Option<Baseline>,
+    /// The cases, for the script of the page.
+    pub cases: CaseTable,
+    /// What each feature says about the class by itself, that which says most first.
+    pub ranking: Vec<RankedFeature>,
+    /// The values of those that say most.
+    pub by_class: Vec<FeatureByClass>,
     /// The features of the table.
     pub features: Vec<Feature>,
     /// The values of the features for each fault.
@@ -253,6 +261,8 @@ pub struct Histogram {
 /// A feature against a parameter, by fault.
 #[derive(Clone, Debug)]
 pub struct Scatter {
+    /// The sensor; empty where the dataset has one.
+    pub sensor: String,
     /// Name and unit of the parameter.
     pub x: (String, String),
     /// Name and unit of the feature.
@@ -261,6 +271,28 @@ pub struct Scatter {
     pub log_y: bool,
     /// Label of a fault, and the points (parameter, feature) with it.
     pub classes: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+/// The values of a feature by class.
+#[derive(Clone, Debug)]
+pub struct FeatureByClass {
+    /// Its column.
+    pub name: String,
+    /// Its unit; empty for none.
+    pub unit: String,
+    /// The label of each class and the finite values of its windows.
+    pub classes: Vec<(String, Vec<f64>)>,
+}
+
+impl FeatureByClass {
+    /// Whether all values are above zero and the greatest is more than a hundred times the least.
+    fn spans_decades(&self) -> bool {
+        let values = || self.classes.iter().flat_map(|(_, values)| values).copied();
+        let (low, high) = values().fold((f64::INFINITY, 0.0_f64), |(low, high), value| {
+            (low.min(value), high.max(value))
+        });
+        low > 0.0 && high > 100.0 * low
+    }
 }
 
 /// A feature of the table.

@@ -3,7 +3,7 @@
 use super::{DatasetPage, Operation, Waterfall, distributions};
 use crate::classes;
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 use std::f64::consts::TAU;
 
@@ -73,6 +73,10 @@ fn plate(page: &DatasetPage, waterfall: &Waterfall) -> Plate {
     };
     let orders = ORDERS.map(|order| format!("{order:.0}"));
     Plate {
+        about: About {
+            sensor: waterfall.sensor.clone(),
+            ..About::default()
+        },
         heading: format!("Waterfall over the speed, {class}{place}"),
         caption: format!(
             "Order spectra of {} of one class ({class}), of each speed the one with the median rms, over frequency. Each line starts at its \

@@ -5,12 +5,12 @@ use super::examples::{self, MOST_EXAMPLES};
 use super::levels;
 use super::{
     CaseLevel, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount, FeatureRow,
-    ParameterRange, comparison, distributions, operation,
+    ParameterRange, comparison, diagnosis, distributions, operation,
 };
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
 use crate::{Column, Error, classes, text};
 use askama::Template;
-use classify::{Baseline, ClassScore};
+use classify::{Baseline, ClassScore, RankedFeature};
 use recordings::{CaseWarning, FailedCase};
 
 /// Longest tables on the page, in rows.
@@ -18,6 +18,7 @@ const MOST_FAULTS: usize = 200;
 const MOST_FAILED: usize = 100;
 const MOST_WARNINGS: usize = 20;
 const MOST_COLUMNS: usize = 500;
+const MOST_RANKED: usize = 20;
 /// Figures of further grids are left out where all would take more bytes than this: a page of five
 /// million bytes opens at once on a telephone.
 const MOST_FIGURE_BYTES: usize = 4_000_000;
@@ -114,6 +115,18 @@ fn galleries(page: &DatasetPage) -> Vec<Gallery<'_>> {
             plates: over_operation,
         });
     }
+    let diagnosis = diagnosis::plates(page);
+    if !diagnosis.is_empty() {
+        galleries.push(Gallery {
+            id: "diagnosis".to_owned(),
+            heading: "Telling the classes apart".to_owned(),
+            introduction: "What single features say about the class, and what a classifier takes for what.",
+            left_out: String::new(),
+            nothing: "",
+            first: 1,
+            plates: diagnosis,
+        });
+    }
     let mut number = 1;
     for gallery in &mut galleries {
         gallery.first = number;
@@ -128,7 +141,10 @@ fn responses<'a>(page: &'a DatasetPage, grids: &ClearanceGrids) -> Vec<Gallery<'
     let mut drawn = Vec::new();
     for (at, grid) in grids.grids.iter().enumerate() {
         let plates = comparison::plates(page, grid);
-        bytes += plates.iter().map(|plate| plate.figure.live_svg().len()).sum::<usize>();
+        bytes += plates
+            .iter()
+            .map(|plate| plate.figure.live_svg().len())
+            .sum::<usize>();
         if at > 0 && (plates.is_empty() || bytes > MOST_FIGURE_BYTES) {
             break;
         }
@@ -251,6 +267,18 @@ impl View<'_> {
         &self.page.feature_rows[..self.page.feature_rows.len().min(MOST_FAULTS)]
     }
 
+    fn ranking(&self) -> &[RankedFeature] {
+        &self.page.ranking[..self.page.ranking.len().min(MOST_RANKED)]
+    }
+
+    fn rank_cells(feature: &RankedFeature) -> [String; 3] {
+        [
+            text::decimal(feature.mutual_information, 2),
+            text::number(feature.anova_f, 3),
+            text::number(feature.kruskal_wallis_h, 3),
+        ]
+    }
+
     /// The first faults of a baseline, which is as many as a table has.
     fn classes(baseline: &Baseline) -> &[ClassScore] {
         &baseline.classes[..baseline.classes.len().min(MOST_FAULTS)]
@@ -274,6 +302,13 @@ impl View<'_> {
             text::count(shown),
             text::count(all)
         )
+    }
+
+    /// The cases for the script, in a form that cannot end its element.
+    fn case_data(&self) -> Result<String, askama::Error> {
+        let json = serde_json::to_string(&self.page.cases);
+        let json = json.map_err(|error| askama::Error::Custom(error.into()))?;
+        Ok(json.replace('<', "\\u003c"))
     }
 
     /// Cases in the split over all faults.

@@ -112,7 +112,11 @@ fn legend(out: &mut String, figure: &Figure, top: f64, place: Place) -> f64 {
         }
         let middle = baseline - 4.0;
         if place == Place::Page {
-            let _ = write!(out, "<g class=\"key\" data-series=\"{}\">", live::name(series));
+            let _ = write!(
+                out,
+                "<g class=\"key\" data-series=\"{}\">",
+                live::name(series)
+            );
         }
         let (kind, sample) = match series.mark {
             // A dot of a pixel is too small for a sample.

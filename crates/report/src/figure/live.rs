@@ -2,9 +2,9 @@
 
 use super::axis::Ruler;
 use super::layout::Placed;
+use super::palette;
 use super::panel::Axis;
 use super::series::{Mark, Series};
-use super::palette;
 use crate::text::escape;
 use base64::prelude::{BASE64_STANDARD, Engine};
 
@@ -43,12 +43,9 @@ pub(super) fn values(series: &Series, stretches: &[Vec<[f64; 2]>], cell: &Placed
     let mut bytes = Vec::new();
     for (i, stretch) in stretches.iter().enumerate() {
         let interruption = (i > 0).then_some([f64::NAN; 2]);
-        let values = stretch.iter().map(|[x, y]| {
-            [
-                cell.x.value(x / width),
-                cell.y.value(1.0 - y / height),
-            ]
-        });
+        let values = stretch
+            .iter()
+            .map(|[x, y]| [cell.x.value(x / width), cell.y.value(1.0 - y / height)]);
         for number in interruption.into_iter().chain(values).flatten() {
             bytes.extend((number as f32).to_le_bytes());
         }

@@ -3,7 +3,7 @@
 use super::GapPage;
 use crate::calibration_page::{misfits, words};
 use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
-use crate::plate::Plate;
+use crate::plate::{About, Plate};
 use crate::text;
 use gap::results::Maps;
 use gap::{MissingForce, ResidualMap, Step};
@@ -82,6 +82,7 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        about: About::default(),
         heading: "The gap, step by step".to_owned(),
         caption: "Root mean square difference between simulation and recording, by order, divided by its noise. Each bar is the \
                   reduction by one step: calibration first, then one effect after another. At 1 only noise is left. Held-out \
@@ -114,6 +115,7 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        about: About::default(),
         heading: "The missing force".to_owned(),
         caption: "Force on the crosshead with which the model fits the recordings best, estimated without a law. A named effect or \
                   a formula would have to reproduce it."
@@ -161,6 +163,7 @@ fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
         ],
     };
     Plate {
+        about: About::default(),
         heading: format!("{}, {channel}", before.run),
         caption: "Residual divided by the noise, by crank angle and order; darker is larger. White is noise alone."
             .to_owned(),

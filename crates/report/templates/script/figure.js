@@ -38,6 +38,8 @@ class InteractiveFigure {
     this.tip = box.appendChild(html('p', { class: 'tip', role: 'status' }));
     this.svg.setAttribute('role', 'group');
     for (const panel of this.panels) this.addPanel(panel);
+    // What the page itself drew has neither paths nor ticks yet.
+    this.panels.filter(panel => panel.series.some(series => series.group.values)).forEach(panel => panel.draw());
     for (const key of this.svg.querySelectorAll('.key')) this.addSwitch(key);
     box.insertBefore(this.tools(), this.svg.parentElement);
     this.svg.addEventListener('pointermove', event => this.moved(event));

@@ -11,6 +11,10 @@ function element(name, attributes = {}, ...children) {
   return made;
 }
 
+function bytesOf(text) {
+  return Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+}
+
 // A series: pairs of values in the order of drawing, NaN between stretches.
 class Series {
   constructor(group) {
@@ -20,8 +24,7 @@ class Series {
     this.colour = this.key.slice(0, this.key.indexOf('|'));
     this.mark = group.dataset.mark;
     this.guide = 'guide' in group.dataset;
-    const bytes = Uint8Array.from(atob(group.dataset.values), letter => letter.charCodeAt(0));
-    this.values = new Float32Array(bytes.buffer);
+    this.values = group.values ?? new Float32Array(bytesOf(group.dataset.values).buffer);
     this.paths = [...group.querySelectorAll('path')];
     // What stands at each point, from the middle, as it was drawn.
     this.shape = this.paths[0]?.getAttribute('d').match(/^M[^m]*(m[^M]*)/)?.[1] ?? '';

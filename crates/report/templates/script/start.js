@@ -1,15 +1,22 @@
 // What the page does when it has been read: figures become interactive when they come near the window.
 
+function makeLive(figure) {
+  if (figure.querySelector('.plot')) figure.live ??= new InteractiveFigure(figure);
+}
+
 function start() {
   const seen = new IntersectionObserver(entries => {
     for (const { isIntersecting, target } of entries) {
       if (!isIntersecting) continue;
       seen.unobserve(target);
-      target.live ??= new InteractiveFigure(target);
+      makeLive(target);
     }
   }, { rootMargin: '400px' });
-  for (const figure of document.querySelectorAll('figure')) if (figure.querySelector('.plot')) seen.observe(figure);
+  document.querySelectorAll('figure').forEach(figure => seen.observe(figure));
+  const cases = document.getElementById('case-data');
+  if (cases) new CaseTable(JSON.parse(cases.textContent), document.getElementById('case-table'));
   document.querySelectorAll('main table').forEach(sortable);
+  figureSelectors();
   document.body.prepend(themeSwitch());
 }
 

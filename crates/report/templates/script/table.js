@@ -28,6 +28,7 @@ function sortingHead(head, sort) {
 
 function sortable(table) {
   const scroll = table.closest('.wide');
+  if (table.closest('#case-table')) return;
   scroll?.setAttribute('tabindex', 0);
   const body = table.tBodies[0];
   if (!body || body.rows.length < LONG_TABLE) return;

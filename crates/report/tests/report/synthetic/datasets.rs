@@ -1,7 +1,7 @@
 //! Made-up datasets: one on a grid of clearances, one drawn at random.
 
 use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
-use classify::{Baseline, ClassScore};
+use classify::{Baseline, ClassScore, RankedFeature};
 use recordings::FailedCase;
 use report::dataset_page::{
     CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount,
@@ -114,6 +114,7 @@ pub fn random() -> DatasetPage {
         (FAULTS[fault].0.to_owned(), rms.collect())
     });
     let scatters = vec![Scatter {
+        sensor: String::new(),
         x: ("largest clearance".to_owned(), "m".to_owned()),
         y: ("rms of the acceleration".to_owned(), "m/s²".to_owned()),
         log_y: true,
@@ -161,6 +162,7 @@ fn operation() -> Operation {
         (rpm * TAU / 60.0, spectrum)
     });
     let trend = Scatter {
+        sensor: String::new(),
         x: ("speed".to_owned(), "rpm".to_owned()),
         y: ("rms".to_owned(), "m/s²".to_owned()),
         log_y: true,
@@ -213,6 +215,14 @@ fn page(design: Design) -> DatasetPage {
         no_examples: String::new(),
         design,
         operation: Operation::default(),
+        cases: report::case_table::CaseTable::default(),
+        ranking: vec![RankedFeature {
+            name: "crosshead_acceleration.kurtosis".to_owned(),
+            anova_f: 12.5,
+            kruskal_wallis_h: 31.0,
+            mutual_information: 0.8,
+        }],
+        by_class: Vec::new(),
         baseline: Some(Baseline {
             trained_on: 1200,
             tested_on: 400,
@@ -222,7 +232,7 @@ fn page(design: Design) -> DatasetPage {
                 class: "big_end".to_owned(),
                 rows: 100,
                 recall: 0.84,
-                confused_with: Some("small_end".to_owned()),
+                answers: [("big_end".to_owned(), 84), ("small_end".to_owned(), 16)].into(),
             }],
         }),
         features: vec![
