@@ -1,10 +1,10 @@
 //! How well the classes can be told apart: the features that say most, and what a baseline confuses.
 
-use super::{DatasetPage, FeatureByClass};
+use super::{DatasetPage, FaultCount, FeatureByClass};
 use crate::figure::{self, Axis, Colour, Field, Figure, Mark, Panel, Series};
 use crate::plate::{About, Plate};
 use crate::{classes, histogram, text};
-use classify::Baseline;
+use classify::{Baseline, ClassScore};
 
 /// Classes of a map of confusions.
 const MOST_CLASSES: usize = 24;
@@ -14,7 +14,10 @@ const ROW: f64 = 26.0;
 /// The features that say most about the class, and the confusions of the baseline.
 pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
     let histograms = (!page.by_class.is_empty()).then(|| histograms(page));
-    let confusions = page.baseline.as_ref().map(confusions);
+    let confusions = page
+        .baseline
+        .as_ref()
+        .map(|baseline| confusions(page, baseline));
     histograms.into_iter().chain(confusions).collect()
 }
 
@@ -74,8 +77,19 @@ fn histograms(page: &DatasetPage) -> Plate {
     }
 }
 
-fn confusions(baseline: &Baseline) -> Plate {
-    let shown = &baseline.classes[..baseline.classes.len().min(MOST_CLASSES)];
+fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
+    let score = |count: &FaultCount| {
+        baseline
+            .classes
+            .iter()
+            .find(|score| score.class == count.fault)
+    };
+    let shown: Vec<&ClassScore> = page
+        .faults
+        .iter()
+        .filter_map(score)
+        .take(MOST_CLASSES)
+        .collect();
     let names: Vec<&str> = shown.iter().map(|score| score.class.as_str()).collect();
     // The first class stands at the top.
     let row = |i: usize| (names.len() - 1 - i) as f64;

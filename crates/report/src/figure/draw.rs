@@ -204,7 +204,7 @@ fn panel(out: &mut String, cell: &Placed<'_>, place: Place) {
         xs.chain(ys).collect::<String>()
     );
     guides(out, cell);
-    fields(out, cell);
+    fields(out, cell, place);
     for series in &cell.panel.series {
         let stretches = in_pixels(series, cell);
         if place == Place::Page {
@@ -331,7 +331,7 @@ fn guides(out: &mut String, cell: &Placed<'_>) {
 }
 
 /// The fields of the panel with their letters.
-fn fields(out: &mut String, cell: &Placed<'_>) {
+fn fields(out: &mut String, cell: &Placed<'_>, place: Place) {
     for field in &cell.panel.fields {
         let [x, y] = field.at;
         let ([left, top], [right, bottom]) = (
@@ -343,7 +343,11 @@ fn fields(out: &mut String, cell: &Placed<'_>) {
         }
         let _ = write!(
             out,
-            "<path fill=\"{}\" stroke=\"#fff\" d=\"M{} {}H{}V{}H{}z\"/>",
+            "<path{} fill=\"{}\" stroke=\"#fff\" d=\"M{} {}H{}V{}H{}z\"/>",
+            match place {
+                Place::File => String::new(),
+                Place::Page => live::field(field),
+            },
             palette::hex(field.fill),
             px(left),
             px(top),

@@ -3,7 +3,7 @@
 use super::axis::Ruler;
 use super::layout::Placed;
 use super::palette;
-use super::panel::Axis;
+use super::panel::{Axis, Field};
 use super::series::{Mark, Series};
 use crate::text::escape;
 use base64::prelude::{BASE64_STANDARD, Engine};
@@ -29,6 +29,12 @@ pub(super) fn axes(cell: &Placed<'_>) -> String {
         axis(&cell.panel.x, &cell.x),
         axis(&cell.panel.y, &cell.y)
     )
+}
+
+/// The place of a field and what stands in it.
+pub(super) fn field(field: &Field) -> String {
+    let [x, y] = field.at;
+    format!(" data-field=\"{x}|{y}|{}\"", escape(&field.letters))
 }
 
 /// What tells a series from the others of a figure, and joins it to its entry in the legend.

@@ -218,6 +218,7 @@ class InteractiveFigure {
     if (this.drag) return this.dragged(event);
     const at = this.place(event);
     if (!at) return this.clear();
+    if (at.panel.fixed) return this.showField(at);
     const near = at.panel.nearest(at.x, at.y);
     return near.series ? this.show(at.panel, near) : this.clear();
   }
@@ -251,15 +252,30 @@ class InteractiveFigure {
       inWords(panel.axes.y, near.y),
       ...values.slice(0, 6).map(([label, y]) => `${label}: ${number(y)}`),
     ];
+    this.tell(lines, panel, cx, cy);
+  }
+
+  // Shows lines of text beside a place in a panel, pixels.
+  tell(lines, panel, x, y) {
     this.tip.textContent = lines.filter(Boolean).join('\n');
     this.tip.classList.add('shown');
     const matrix = this.svg.getScreenCTM();
-    const spot = new DOMPoint(panel.left + cx, panel.top + cy).matrixTransform(matrix);
+    const spot = new DOMPoint(panel.left + x, panel.top + y).matrixTransform(matrix);
     const box = this.box.getBoundingClientRect();
     const right = spot.x - box.left + 14;
     const fits = right + this.tip.offsetWidth < this.box.clientWidth;
     this.tip.style.left = `${Math.max(fits ? right : right - 28 - this.tip.offsetWidth, 0)}px`;
     this.tip.style.top = `${spot.y - box.top + 12}px`;
+  }
+
+  // Says what stands in the field under the pointer.
+  showField({ panel, x, y }) {
+    const [column, row] = [panel.value('x', x), panel.value('y', y)];
+    const field = panel.fields.find(one => Math.abs(one.x - column) <= 0.5 && Math.abs(one.y - row) <= 0.5);
+    this.clear();
+    if (!field) return;
+    const lines = [inWords(panel.axes.x, field.x), inWords(panel.axes.y, field.y), field.letters];
+    this.tell(lines, panel, panel.pixel('x', field.x), panel.pixel('y', field.y));
   }
 
   clear() {
@@ -345,13 +361,15 @@ class InteractiveFigure {
 
   // All drawn values: panel, series, x, y.
   *rows() {
+    const cell = (axis, value) => (axis.kind === 'names' ? axis.names[Math.round(value)] ?? value : value);
     for (const panel of this.panels) {
+      const { x: across, y: up } = panel.axes;
+      for (const { x, y, letters } of panel.fields) yield [panel, letters, cell(across, x), cell(up, y)];
       for (const { label, values, guide } of panel.series) {
         if (guide) continue;
         for (let i = 0; i < values.length; i += 2) {
           if (Number.isNaN(values[i])) continue;
-          const cell = (axis, value) => (axis.kind === 'names' ? axis.names[Math.round(value)] ?? value : value);
-          yield [panel, label, cell(panel.axes.x, values[i]), cell(panel.axes.y, values[i + 1])];
+          yield [panel, label, cell(across, values[i]), cell(up, values[i + 1])];
         }
       }
     }

@@ -99,7 +99,11 @@ class Panel {
     this.grid = svg.firstElementChild;
     this.under = [...svg.children].filter(child => child !== this.grid && !child.matches('.series'));
     // A map of fields is read as it stands.
-    this.fixed = this.under.some(child => child.matches('text'));
+    this.fields = [...svg.querySelectorAll('[data-field]')].map(path => {
+      const [x, y, ...letters] = path.dataset.field.split('|');
+      return { x: +x, y: +y, letters: letters.join('|') };
+    });
+    this.fixed = this.fields.length > 0;
     this.axisGroups = {};
     for (let next = svg.nextElementSibling; next && !next.matches('.plot'); next = next.nextElementSibling) {
       if (next.matches('.x-axis')) this.axisGroups.x = next;
