@@ -92,6 +92,35 @@ pub fn compare_models(
     Ok(comparisons)
 }
 
+/// The synchronous mean of a channel as it is simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulatedMean {
+    /// The run.
+    pub run: String,
+    /// Name of the channel's column.
+    pub column: String,
+    /// Means at equal steps of the crank angle from 0 on, as [`Comparison::means`] has them.
+    pub means: Vec<f64>,
+}
+
+/// The means of all channels of a problem's runs at the coordinates `x`.
+///
+/// # Errors
+/// A run that cannot be simulated.
+pub fn simulated_means(problem: &Problem, x: &[f64]) -> Result<Vec<SimulatedMean>, Error> {
+    let predictions = Likelihood::new(problem).predictions(x)?;
+    let runs = problem.runs.iter().zip(&predictions);
+    let means = runs.flat_map(|(run, prediction)| {
+        let channels = run.channels.iter().zip(&prediction.lines);
+        channels.map(|(channel, lines)| SimulatedMean {
+            run: run.id.clone(),
+            column: channel.column.clone(),
+            means: wave(lines, channel.quantity().has_mean()),
+        })
+    });
+    Ok(means.collect())
+}
+
 fn of_channel(
     run: &Observation,
     channel: &Observed,

@@ -78,7 +78,7 @@ pub mod zero;
 
 pub use bounded::Bounded;
 pub use calibration::{Calibrated, Prepared, prepare};
-pub use comparison::{Comparison, compare, compare_models};
+pub use comparison::{Comparison, compare, compare_models, simulated_means};
 pub use correction::{Corrected, Correction, Depth, correct};
 pub use crank_motion::CrankMotion;
 pub use earlier::Existing;

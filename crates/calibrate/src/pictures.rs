@@ -1,7 +1,7 @@
-//! What the pictures of a calibration or an explanation are drawn from: `waveforms.parquet`, `orders.parquet` and
-//! `indicator.parquet`.
+//! What the pictures of a calibration or an explanation are drawn from: `waveforms.parquet`, `orders.parquet`,
+//! `indicator.parquet` and `steps.parquet`.
 
-use crate::comparison::Comparison;
+use crate::comparison::{Comparison, SimulatedMean};
 use crate::error::Error;
 use crate::indicator::Indicator;
 use crate::pressure_gap::PressureGap;
@@ -14,6 +14,8 @@ use std::path::Path;
 pub const WAVEFORMS: &str = "waveforms.parquet";
 /// Name of the file of residuals by order.
 pub const ORDERS: &str = "orders.parquet";
+/// Name of the file of curves of each step of an explanation.
+pub const STEPS: &str = "steps.parquet";
 /// Name of the file of pressures over the piston's way.
 pub const INDICATOR: &str = "indicator.parquet";
 
@@ -25,6 +27,56 @@ pub fn write(folder: &Path, comparisons: &[Comparison]) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|error| Error::file(folder, error))?;
     write_table(&folder.join(WAVEFORMS), &waveforms(comparisons)?)?;
     write_table(&folder.join(ORDERS), &orders(comparisons)?)
+}
+
+/// Writes the simulated curves of each step of an explanation.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn write_steps(folder: &Path, steps: &[(String, Vec<SimulatedMean>)]) -> Result<(), Error> {
+    let [mut runs, mut channels, mut labels] = [const { Vec::new() }; 3];
+    let [mut angles, mut simulated] = [const { Vec::new() }; 2];
+    for (label, means) in steps {
+        for SimulatedMean { run, column, means } in means {
+            for (i, mean) in means.iter().enumerate() {
+                runs.push(Some(run.clone()));
+                channels.push(Some(column.clone()));
+                labels.push(Some(label.clone()));
+                angles.push(Some(360.0 * i as f64 / means.len() as f64));
+                simulated.push(Some(*mean));
+            }
+        }
+    }
+    let angle = Column::new(
+        "crank_angle_deg",
+        Kind::Real,
+        "crank angle from top dead centre",
+    );
+    let table = Table::from_columns(
+        Schema::new(vec![
+            Column::new("run", Kind::Text, "the run"),
+            Column::new("channel", Kind::Text, "column of the recording"),
+            Column::new(
+                "step",
+                Kind::Text,
+                "what the model has that the one before has not",
+            ),
+            angle.unit("deg"),
+            Column::new(
+                "simulated",
+                Kind::Real,
+                "mean of the simulation, in the unit of the channel",
+            ),
+        ])?,
+        vec![
+            Data::Text(runs),
+            Data::Text(channels),
+            Data::Text(labels),
+            Data::Real(angles),
+            Data::Real(simulated),
+        ],
+    )?;
+    write_table(&folder.join(STEPS), &table)
 }
 
 /// Writes the pressures over the crank angle and the piston's distance from the cover.

@@ -16,7 +16,7 @@ use crate::missing_force::MissingForce;
 use crate::model::Model;
 use crate::next_recording::next_recording;
 use crate::recorded::is_of_pressures;
-use crate::steps::{Step, steps};
+use crate::steps::{StepModel, steps};
 use calibrate::Problem;
 use calibrate::fit::{Estimate, Fit};
 use nalgebra::DMatrix;
@@ -41,7 +41,7 @@ pub struct Explanation {
     /// The machine as it was given.
     pub nominal: Model,
     /// The gap as it shrank, the machine as it was given first.
-    pub steps: Vec<Step>,
+    pub steps: Vec<StepModel>,
     /// What to measure to distinguish effects from their rivals, in a sentence.
     pub next_recording: Option<String>,
     /// What the parameters of the explained model are known to.
@@ -107,7 +107,7 @@ pub fn explain(
             && after.held_out.is_some_and(|held| held <= EXPLAINED)
         {
             found.push(Found {
-                gap: Some(after.gap()),
+                after: Some(after.clone()),
                 effect: tried,
                 rivals: Vec::new(),
             });
@@ -123,7 +123,7 @@ pub fn explain(
     as_in_model(&mut estimates, &model.x);
     let corrections = corrections(&estimates, &probabilities);
     let mut chain: Vec<Found> = hum.iter().filter_map(|h| mains_hum(h, &model)).collect();
-    let calibrated = baseline.gap();
+    let calibrated = baseline.clone();
     if let Some(offset) = crank_angle_offset(fitter, &estimates, &model, found.len())? {
         chain.push(offset);
         baseline = set_right(fitter, problem)?;
@@ -132,7 +132,7 @@ pub fn explain(
     let verdict = verdict(&baseline, &model, named);
     let nominal = Model::at(problem.clone(), &[], 0.0, effort)?;
     Ok(Explanation {
-        steps: steps(&nominal, &baseline, &chain, calibrated, &found, &model),
+        steps: steps(&nominal, &baseline, &chain, &calibrated, &found, &model),
         next_recording: next_recording(fitter, &found)?,
         nominal,
         corrections,
@@ -230,7 +230,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         }
     };
     if let Some(last) = found.last_mut() {
-        last.gap = Some(judged.nothing.model.gap());
+        last.after = Some(judged.nothing.model.clone());
     }
     for (found, known) in found
         .iter_mut()

@@ -2,7 +2,7 @@
 
 use crate::candidate::Candidate;
 use crate::criteria::Evidence;
-use crate::model::{Gap, Model};
+use crate::model::Model;
 use calibrate::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -26,9 +26,8 @@ pub struct Tried {
 pub struct Found {
     /// The effect as it was added, with the model with which that was decided.
     pub effect: Tried,
-    /// What the full model was left with once it had been added; none where that was not looked at by
-    /// itself.
-    pub gap: Option<Gap>,
+    /// The full model once it had been added; none where that was not looked at by itself.
+    pub after: Option<Model>,
     /// What else might have been, the most probable first.
     pub rivals: Vec<Tried>,
 }

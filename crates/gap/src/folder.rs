@@ -12,7 +12,7 @@ use crate::results::{RESULTS, Results};
 use calibrate::bundle_replay::BundleReplay;
 use calibrate::pressure_gap::pressure_gaps_of;
 use calibrate::sensors::{Fitted, Sensors};
-use calibrate::{Settings, compare_models, pictures, task};
+use calibrate::{Settings, compare_models, pictures, simulated_means, task};
 use input::MachineFile;
 use input::bundle::Bundle;
 use input::calibration::Calibration;
@@ -93,6 +93,11 @@ pub fn into_folder(
     }
     let models = [before, after].map(|model| (&model.problem, &model.x[..]));
     pictures::write(out, &compare_models(models, &task.runs)?)?;
+    let steps = explanation.steps.iter().map(|step| {
+        let means = simulated_means(&step.model.problem, &step.model.x)?;
+        Ok((step.label.clone(), means))
+    });
+    pictures::write_steps(out, &steps.collect::<Result<Vec<_>, Error>>()?)?;
     let gas = pressure_gaps_of(models, &task.runs)?;
     let sensors = Sensors::from_recordings(&Fitted {
         problem: &after.problem,

@@ -176,13 +176,13 @@ impl Judgement {
                     probability: *probability,
                     model: Some(self.believed.model.clone()),
                 },
-                gap: None,
+                after: None,
                 rivals: self.rivals(problem, i),
             })
         });
         let mut found: Vec<Found> = found.collect();
         if let Some(last) = found.last_mut() {
-            last.gap = Some(self.believed.model.gap());
+            last.after = Some(self.believed.model.clone());
         }
         found
     }

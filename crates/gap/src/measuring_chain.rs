@@ -101,7 +101,7 @@ fn finding(
             probability,
             model: None,
         },
-        gap: None,
+        after: None,
         rivals: Vec::new(),
     }
 }

@@ -18,7 +18,7 @@ use crate::parts::ByPart;
 use crate::recorded::Recorded;
 use crate::residual_map::{Place, ResidualMap, band_names, places, residual_maps};
 use crate::scaling::{Scaling, scaling};
-use crate::steps::Step;
+use crate::steps::{Step, StepModel};
 use calibrate::ShutValve;
 use calibrate::fit;
 use calibrate::pressure_gap::PressureGap;
@@ -202,6 +202,9 @@ pub struct Maps {
     pub before: Vec<ResidualMap>,
     /// With them.
     pub after: Vec<ResidualMap>,
+    /// Of each of [`Results::steps`].
+    #[serde(default)]
+    pub steps: Vec<Vec<ResidualMap>>,
 }
 
 impl Results {
@@ -221,6 +224,11 @@ impl Results {
             bands: band_names(),
             before: residual_maps(before)?,
             after: residual_maps(after)?,
+            steps: explanation
+                .steps
+                .iter()
+                .map(|step| residual_maps(&step.model))
+                .collect::<Result<_, _>>()?,
         };
         let estimates = explanation.estimates.iter();
         let runs = after.problem.runs.iter().enumerate();
@@ -248,7 +256,7 @@ impl Results {
                 heldout_after: after.held_out,
                 pressure_rms_pa: PressureRms::from_gaps(gas.iter()),
             },
-            steps: explanation.steps.clone(),
+            steps: explanation.steps.iter().map(StepModel::step).collect(),
             notes: notes(explanation, effort, recorded),
             shut_valves: recorded.shut_valves.to_vec(),
             parameters: estimates

@@ -2,7 +2,7 @@
 
 use super::{CalibrationPage, Channel, Misfit, OrderResidual, Point, Pressure, Run};
 use crate::Error;
-use calibrate::pictures::{INDICATOR, ORDERS, WAVEFORMS};
+use calibrate::pictures::{INDICATOR, ORDERS, STEPS, WAVEFORMS};
 use calibrate::results::{MACHINE, RESULTS, Results};
 use calibrate::run_condition::unit;
 use recordings::Table;
@@ -73,6 +73,18 @@ pub(crate) fn with_curves(folder: &Path, mut runs: Vec<Run>) -> Result<Vec<Run>,
             });
         }
     })?;
+    let path = folder.join(STEPS);
+    let labels = texts(&path, "step")?;
+    let mut row_labels = labels.into_iter();
+    rows(&path, ["simulated"], |run, column, [simulated]| {
+        let label = row_labels.next().unwrap_or_default();
+        if let Some(channel) = channel(&mut runs, run, column) {
+            match channel.steps.last_mut() {
+                Some((last, means)) if *last == label => means.push(simulated),
+                _ => channel.steps.push((label, vec![simulated])),
+            }
+        }
+    })?;
     let names = ["order", "before", "after"];
     rows(&folder.join(ORDERS), names, |run, column, row| {
         let [order, before, after] = row;
@@ -131,6 +143,22 @@ fn pressures(folder: &Path) -> Result<BTreeMap<String, BTreeMap<String, Vec<Pres
         });
     })?;
     Ok(pressures)
+}
+
+/// The texts of a column of a file; none where the file is not there.
+fn texts(path: &Path, name: &str) -> Result<Vec<String>, Error> {
+    if !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let wrong = |error: recordings::Error| Error::Curves {
+        path: path.to_owned(),
+        error,
+    };
+    let table: Table = read_table(path).map_err(wrong)?;
+    let values = table.values::<String>(name).map_err(wrong)?.iter();
+    Ok(values
+        .map(|text| text.clone().unwrap_or_default())
+        .collect())
 }
 
 /// Gives `add` run, channel and values of each row of a file; a file that is not there has none.

@@ -114,6 +114,8 @@ pub struct Channel {
     pub waveform: Vec<Point>,
     /// Residuals by order.
     pub orders: Vec<OrderResidual>,
+    /// Label of each step of an explanation, and the simulated mean there at the crank angles of the waveform.
+    pub steps: Vec<(String, Vec<f64>)>,
 }
 
 /// What stands at a crank angle.

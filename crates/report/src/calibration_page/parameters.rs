@@ -2,7 +2,7 @@
 
 use super::misfits::{AFTER, ROW};
 use super::{CalibrationPage, Parameter, words};
-use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
+use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use crate::plate::{About, Plate};
 use crate::text;
 use calibrate::results::Known;
@@ -133,6 +133,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
             false => "–".to_owned(),
         };
         Field {
+            layer: Layer::Always,
             at: [j as f64, (count - 1 - i) as f64],
             fill: Colour::Tint(if both && i != j { r.abs() } else { 0.0 }),
             letters,

@@ -3,7 +3,7 @@
 use super::misfits::{AFTER, BEFORE};
 use super::verdict::size;
 use super::{Channel, OrderResidual, Point, Run, words};
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::figure::{Axis, Colour, Figure, Layer, Mark, Panel, Series};
 use crate::plate::{About, Plate};
 use crate::statistics::HALF;
 use crate::text;
@@ -85,29 +85,47 @@ fn panels(channel: &Channel, [before, after]: [&str; 2]) -> Vec<Panel> {
         let outline = edge(1.0).chain(back.into_iter().rev());
         Series::new(label, MEASURED, Mark::Band, outline)
     };
-    let waveform = Panel {
+    let measured: Vec<f64> = points.iter().map(|p| p.measured).collect();
+    let at_steps = |over: &dyn Fn(f64, f64) -> f64| -> Vec<Series> {
+        let step = |(i, (label, means)): (usize, &(String, Vec<f64>))| {
+            let values = means.iter().zip(&measured).zip(points);
+            let at = values.map(|((s, m), p)| [p.crank_angle_deg, scale * over(*s, *m)]);
+            let line = Series::new(text::words(label), AFTER, Mark::Line, at);
+            line.in_layer(Layer::Step(i))
+        };
+        channel.steps.iter().enumerate().map(step).collect()
+    };
+    let of_ends = match channel.steps.is_empty() {
+        true => Layer::Always,
+        false => Layer::Ends,
+    };
+    let mut waveform = Panel {
         title: "Over the crank angle".to_owned(),
         x: Axis::crank_angle(),
         y: Axis::linear(text::with_unit("mean", unit)),
         series: vec![
             band("measured revolutions", &|p| p.measured, &|p| p.scatter),
-            line(before, BEFORE, Mark::Line, &|p| p.before),
+            line(before, BEFORE, Mark::Line, &|p| p.before).in_layer(of_ends),
             line("measured mean", MEASURED, Mark::Line, &|p| p.measured),
-            line(after, AFTER, Mark::Line, &|p| p.after),
+            line(after, AFTER, Mark::Line, &|p| p.after).in_layer(of_ends),
         ],
         ..Panel::default()
     };
-    let difference = Panel {
+    waveform.series.extend(at_steps(&|simulated, _| simulated));
+    let mut difference = Panel {
         title: "Simulated less measured".to_owned(),
         x: Axis::crank_angle(),
         y: Axis::linear(text::with_unit("difference", unit)),
         series: vec![
-            line("", BEFORE, Mark::HairLine, &|p| p.before - p.measured),
+            line("", BEFORE, Mark::HairLine, &|p| p.before - p.measured).in_layer(of_ends),
             band("", &|_| 0.0, &|p| p.noise),
-            line("", AFTER, Mark::HairLine, &|p| p.after - p.measured),
+            line("", AFTER, Mark::HairLine, &|p| p.after - p.measured).in_layer(of_ends),
         ],
         ..Panel::default()
     };
+    difference
+        .series
+        .extend(at_steps(&|simulated, measured| simulated - measured));
     vec![waveform, difference, residuals(&channel.orders)]
 }
 

@@ -4,7 +4,7 @@ use super::agreement::most_frequent;
 use super::exponents::MOST_SPEEDS;
 use super::levels::Levels;
 use super::{CaseChaos, ChaosPage, Regime};
-use crate::figure::{Axis, Colour, Field, Figure, Panel};
+use crate::figure::{Axis, Colour, Field, Figure, Layer, Panel};
 use crate::plate::{About, Plate};
 use crate::text;
 
@@ -159,6 +159,7 @@ fn fields<'a>(
     let fields = places.into_iter().filter_map(|((x, y), regimes)| {
         let (regime, others) = most_frequent(regimes.into_iter())?;
         Some(Field {
+            layer: Layer::Always,
             at: [x as f64, y as f64],
             fill: Colour::Tint(regime.tint()),
             letters: regime.letters() + if others { "*" } else { "" },

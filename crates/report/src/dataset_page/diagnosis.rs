@@ -1,7 +1,7 @@
 //! How well the classes can be told apart: the features that say most, and what a baseline confuses.
 
 use super::{DatasetPage, FaultCount, FeatureByClass};
-use crate::figure::{self, Axis, Colour, Field, Figure, Mark, Panel, Series};
+use crate::figure::{self, Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use crate::plate::{About, Plate};
 use crate::{classes, histogram, text};
 use classify::{Baseline, ClassScore};
@@ -98,6 +98,7 @@ fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
         score.answers.iter().filter_map(move |(answer, count)| {
             let column = names.iter().position(|name| name == answer)?;
             Some(Field {
+                layer: Layer::Always,
                 at: [column as f64, row(i)],
                 fill: Colour::Tint(*count as f64 / score.rows.max(1) as f64),
                 letters: text::count(*count),

@@ -94,7 +94,11 @@ fn values(panel: &Panel, direction: Direction) -> impl Iterator<Item = f64> {
         let middle = direction.coordinate(field.at);
         [middle - 0.5, middle + 0.5]
     });
-    let points = panel.series.iter().flat_map(|series| &series.points);
+    let shown = panel
+        .series
+        .iter()
+        .filter(|series| !series.layer.is_of_step());
+    let points = shown.flat_map(|series| &series.points);
     let points = points.map(move |&point| direction.coordinate(point));
     points.chain(circles).chain(fields)
 }

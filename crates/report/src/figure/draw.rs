@@ -95,7 +95,8 @@ fn name(figure: &Figure) -> &str {
 /// The named series, each once, in lines that fit the image; returns where the panels may begin.
 fn legend(out: &mut String, figure: &Figure, top: f64, place: Place) -> f64 {
     let mut entries: Vec<&Series> = Vec::new();
-    for series in figure.rows.iter().flatten().flat_map(|panel| &panel.series) {
+    let series = figure.rows.iter().flatten().flat_map(|panel| &panel.series);
+    for series in series.filter(|series| !series.layer.is_of_step()) {
         let known = |e: &&Series| {
             e.label == series.label && e.colour == series.colour && e.mark == series.mark
         };
@@ -206,6 +207,9 @@ fn panel(out: &mut String, cell: &Placed<'_>, place: Place) {
     guides(out, cell);
     fields(out, cell, place);
     for series in &cell.panel.series {
+        if place == Place::File && series.layer.is_of_step() {
+            continue;
+        }
         let stretches = in_pixels(series, cell);
         if place == Place::Page {
             let values = live::values(series, &stretches, cell);
@@ -333,6 +337,9 @@ fn guides(out: &mut String, cell: &Placed<'_>) {
 /// The fields of the panel with their letters.
 fn fields(out: &mut String, cell: &Placed<'_>, place: Place) {
     for field in &cell.panel.fields {
+        if place == Place::File && field.layer.is_of_step() {
+            continue;
+        }
         let [x, y] = field.at;
         let ([left, top], [right, bottom]) = (
             pixel([x - 0.5, y + 0.5], cell),
@@ -358,8 +365,12 @@ fn fields(out: &mut String, cell: &Placed<'_>, place: Place) {
         let letters = fitted(&field.letters, right - left, TICK_SIZE);
         let middle = [f64::midpoint(left, right), f64::midpoint(top, bottom) + 4.0];
         let style = format!(
-            "text-anchor=\"middle\" fill=\"{}\"",
-            palette::writing_on(field.fill)
+            "text-anchor=\"middle\" fill=\"{}\"{}",
+            palette::writing_on(field.fill),
+            match place {
+                Place::File => String::new(),
+                Place::Page => live::layer(field.layer),
+            }
         );
         write_text(out, middle, &letters, TICK_SIZE, &style);
     }

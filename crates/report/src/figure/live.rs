@@ -4,7 +4,7 @@ use super::axis::Ruler;
 use super::layout::Placed;
 use super::palette;
 use super::panel::{Axis, Field};
-use super::series::{Mark, Series};
+use super::series::{Layer, Mark, Series};
 use crate::text::escape;
 use base64::prelude::{BASE64_STANDARD, Engine};
 
@@ -34,7 +34,20 @@ pub(super) fn axes(cell: &Placed<'_>) -> String {
 /// The place of a field and what stands in it.
 pub(super) fn field(field: &Field) -> String {
     let [x, y] = field.at;
-    format!(" data-field=\"{x}|{y}|{}\"", escape(&field.letters))
+    format!(
+        " data-field=\"{x}|{y}|{}\"{}",
+        escape(&field.letters),
+        layer(field.layer)
+    )
+}
+
+/// The layer of a part of a panel; what is of a step is hidden until that is chosen.
+pub(super) fn layer(layer: Layer) -> String {
+    match layer {
+        Layer::Always => String::new(),
+        Layer::Ends => " data-layer=\"ends\"".to_owned(),
+        Layer::Step(step) => format!(" data-layer=\"{step}\" style=\"display:none\""),
+    }
 }
 
 /// What tells a series from the others of a figure, and joins it to its entry in the legend.
@@ -66,8 +79,9 @@ pub(super) fn values(series: &Series, stretches: &[Vec<[f64; 2]>], cell: &Placed
     // A straight line without a name is there for the eye.
     let guide = series.label.is_empty() && mark == "line" && series.points.len() <= 2;
     format!(
-        " class=\"series\" data-series=\"{}\" data-mark=\"{mark}\"{} data-values=\"{}\"",
+        " class=\"series\" data-series=\"{}\" data-mark=\"{mark}\"{}{} data-values=\"{}\"",
         name(series),
+        layer(series.layer),
         if guide { " data-guide=\"\"" } else { "" },
         BASE64_STANDARD.encode(&bytes)
     )

@@ -21,4 +21,4 @@ pub use axis::share_ranges;
 pub use colour::Colour;
 pub use panel::{Axis, Circle, Field, Panel, Scale};
 pub use rows::{Figure, Share, in_rows};
-pub use series::{Mark, Series};
+pub use series::{Layer, Mark, Series};

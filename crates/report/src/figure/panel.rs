@@ -1,7 +1,7 @@
 //! A pair of axes and what is drawn on it.
 
 use super::colour::Colour;
-use super::series::Series;
+use super::series::{Layer, Series};
 
 /// One pair of axes and what is drawn on them.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +61,8 @@ pub struct Field {
     pub fill: Colour,
     /// What stands in it.
     pub letters: String,
+    /// When it is shown.
+    pub layer: Layer,
 }
 
 /// A circle in the units of the axes.

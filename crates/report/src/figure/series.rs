@@ -13,6 +13,27 @@ pub struct Series {
     pub mark: Mark,
     /// Points (x, y). One that is not finite interrupts a line.
     pub points: Vec<[f64; 2]>,
+    /// When it is shown.
+    pub layer: Layer,
+}
+
+/// When a part of a panel is shown on a page that steps through models.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layer {
+    /// At all times.
+    #[default]
+    Always,
+    /// While no step is chosen, and in files.
+    Ends,
+    /// At the step of this number alone; never in files.
+    Step(usize),
+}
+
+impl Layer {
+    /// Whether it is shown at a step alone.
+    pub(super) fn is_of_step(self) -> bool {
+        matches!(self, Self::Step(_))
+    }
 }
 
 /// How a series is drawn.
@@ -65,7 +86,13 @@ impl Series {
             colour,
             mark,
             points: points.into_iter().collect(),
+            layer: Layer::Always,
         }
+    }
+
+    /// The same series in a layer.
+    pub fn in_layer(self, layer: Layer) -> Self {
+        Self { layer, ..self }
     }
 
     /// Upright bars from low to high at each place, for intervals: (x, low, high).

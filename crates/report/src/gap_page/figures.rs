@@ -2,7 +2,7 @@
 
 use super::GapPage;
 use crate::calibration_page::{misfits, words};
-use crate::figure::{Axis, Colour, Field, Figure, Mark, Panel, Series};
+use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use crate::plate::{About, Plate};
 use crate::text;
 use gap::results::Maps;
@@ -127,39 +127,72 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
     })
 }
 
+/// The maps of a channel: without and with the effects, and at each step.
+struct OfChannel<'a> {
+    before: &'a ResidualMap,
+    after: &'a ResidualMap,
+    steps: Vec<&'a ResidualMap>,
+}
+
 /// Where the gap was and is, for the channels in which it was greatest.
 pub(super) fn maps(page: &GapPage) -> Vec<Plate> {
     let Maps {
         bands,
         before,
         after,
+        steps,
     } = &page.results.maps;
     let greatest = |map: &ResidualMap| map.excess.iter().flatten().copied().fold(0.0, f64::max);
-    let mut maps: Vec<[&ResidualMap; 2]> = before.iter().zip(after).map(|(b, a)| [b, a]).collect();
-    maps.sort_by(|a, b| greatest(b[0]).total_cmp(&greatest(a[0])));
-    let mut columns: Vec<&str> = maps.iter().map(|map| map[0].channel.as_str()).collect();
+    let of_channel = |(i, (before, after))| OfChannel {
+        before,
+        after,
+        steps: steps.iter().filter_map(|maps| maps.get(i)).collect(),
+    };
+    let mut maps: Vec<OfChannel<'_>> = before
+        .iter()
+        .zip(after)
+        .enumerate()
+        .map(of_channel)
+        .collect();
+    maps.sort_by(|a, b| greatest(b.before).total_cmp(&greatest(a.before)));
+    let mut columns: Vec<&str> = maps.iter().map(|map| map.before.channel.as_str()).collect();
     columns.sort_unstable();
     columns.dedup();
     let each = (MOST_MAPS / columns.len().max(1)).max(1);
     let chosen = columns.iter().flat_map(|column| {
-        let own = maps
-            .iter()
-            .copied()
-            .filter(move |map| map[0].channel == *column);
+        let own = maps.iter().filter(move |map| map.before.channel == *column);
         own.take(each)
     });
     chosen.map(|map| plate(map, bands)).collect()
 }
 
 /// The map of a channel without and with the effects; a single map without any effect.
-fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
+fn plate(maps: &OfChannel<'_>, bands: &[String]) -> Plate {
+    let OfChannel {
+        before,
+        after,
+        steps,
+    } = maps;
     let (channel, _) = words::column(&before.channel);
     let bands = &bands[..bands.len().min(before.excess.len())];
+    let ends = match steps.is_empty() {
+        true => Layer::Always,
+        false => Layer::Ends,
+    };
+    // The last panel is the one that steps.
+    let stepping = |title: &str| {
+        let mut panel = panel(title, bands, &after.excess, ends);
+        let of_step = |(i, map): (usize, &&ResidualMap)| fields(&map.excess, Layer::Step(i));
+        panel
+            .fields
+            .extend(steps.iter().enumerate().flat_map(of_step));
+        panel
+    };
     let panels = match before.excess == after.excess {
-        true => vec![panel("calibrated", bands, &after.excess)],
+        true => vec![stepping("calibrated")],
         false => vec![
-            panel("without the effects", bands, &before.excess),
-            panel("with them", bands, &after.excess),
+            panel("without the effects", bands, &before.excess, Layer::Always),
+            stepping("with them"),
         ],
     };
     Plate {
@@ -175,8 +208,7 @@ fn plate([before, after]: [&ResidualMap; 2], bands: &[String]) -> Plate {
     }
 }
 
-fn panel(title: &str, bands: &[String], excess: &[Vec<f64>]) -> Panel {
-    let sectors = excess.first().map_or(1, Vec::len);
+fn fields(excess: &[Vec<f64>], layer: Layer) -> Vec<Field> {
     let mut fields = Vec::new();
     for (band, row) in excess.iter().enumerate() {
         for (sector, value) in row.iter().enumerate().filter(|(_, v)| **v > EMPTY) {
@@ -185,12 +217,18 @@ fn panel(title: &str, bands: &[String], excess: &[Vec<f64>]) -> Panel {
                 _ => String::new(),
             };
             fields.push(Field {
+                layer,
                 at: [sector as f64, band as f64],
                 fill: Colour::Tint((value.ln() / BLACK.ln()).clamp(0.0, 1.0)),
                 letters,
             });
         }
     }
+    fields
+}
+
+fn panel(title: &str, bands: &[String], excess: &[Vec<f64>], layer: Layer) -> Panel {
+    let sectors = excess.first().map_or(1, Vec::len);
     let sector = 360.0 / sectors as f64;
     let name = |i: usize| match i % 6 {
         0 => format!("{}°", text::decimal(i as f64 * sector, 0)),
@@ -200,7 +238,7 @@ fn panel(title: &str, bands: &[String], excess: &[Vec<f64>]) -> Panel {
         title: title.to_owned(),
         x: Axis::named("crank angle", (0..sectors).map(name).collect()),
         y: Axis::named("orders", bands.to_vec()),
-        fields,
+        fields: fields(excess, layer),
         ..Panel::default()
     }
 }

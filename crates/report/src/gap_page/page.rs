@@ -9,7 +9,7 @@ use askama::Template;
 use gap::parts::{Agreement, Part, Values};
 use gap::results::{Bounded, Effect};
 use gap::scaling::Exponent;
-use gap::{ByPart, Correction, Results, Scaling, Verdict};
+use gap::{ByPart, Correction, Results, Scaling, Step, Verdict};
 use input::effects::entry;
 
 #[derive(Template)]
@@ -131,6 +131,22 @@ fn digits(parameter: &Bounded) -> usize {
 
 /// What the template asks for, formatted.
 impl View<'_> {
+    /// Labels of the steps that figures can be shown at, each with the gap that is left; empty where there are none.
+    fn steps(&self) -> String {
+        let steps = self.results.steps.iter();
+        let words = |step: &Step| {
+            format!(
+                "{}, gap {}",
+                text::words(&step.label),
+                size(step.gap.fitted)
+            )
+        };
+        match self.results.maps.steps.is_empty() {
+            true => String::new(),
+            false => steps.map(words).collect::<Vec<_>>().join("|"),
+        }
+    }
+
     fn misfit(value: &f64) -> String {
         size(*value)
     }

@@ -271,7 +271,7 @@ class InteractiveFigure {
   // Says what stands in the field under the pointer.
   showField({ panel, x, y }) {
     const [column, row] = [panel.value('x', x), panel.value('y', y)];
-    const field = panel.fields.find(one => Math.abs(one.x - column) <= 0.5 && Math.abs(one.y - row) <= 0.5);
+    const field = panel.fields.find(one => isShown(one.path) && Math.abs(one.x - column) <= 0.5 && Math.abs(one.y - row) <= 0.5);
     this.clear();
     if (!field) return;
     const lines = [inWords(panel.axes.x, field.x), inWords(panel.axes.y, field.y), field.letters];
@@ -364,9 +364,9 @@ class InteractiveFigure {
     const cell = (axis, value) => (axis.kind === 'names' ? axis.names[Math.round(value)] ?? value : value);
     for (const panel of this.panels) {
       const { x: across, y: up } = panel.axes;
-      for (const { x, y, letters } of panel.fields) yield [panel, letters, cell(across, x), cell(up, y)];
-      for (const { label, values, guide } of panel.series) {
-        if (guide) continue;
+      for (const { path, x, y, letters } of panel.fields) if (isShown(path)) yield [panel, letters, cell(across, x), cell(up, y)];
+      for (const { label, values, guide, shown } of panel.series) {
+        if (guide || !shown) continue;
         for (let i = 0; i < values.length; i += 2) {
           if (Number.isNaN(values[i])) continue;
           yield [panel, label, cell(across, values[i]), cell(up, values[i + 1])];

@@ -35,7 +35,7 @@ class Series {
   }
 
   get shown() {
-    return this.group.style.display !== 'none';
+    return isShown(this.group);
   }
 
   // Path data of the values in pixels.
@@ -88,6 +88,11 @@ class Series {
   }
 }
 
+// Whether an element is in a layer that is shown.
+function isShown(one) {
+  return one.style.display !== 'none';
+}
+
 class Panel {
   constructor(svg) {
     const size = name => +svg.getAttribute(name);
@@ -101,7 +106,7 @@ class Panel {
     // A map of fields is read as it stands.
     this.fields = [...svg.querySelectorAll('[data-field]')].map(path => {
       const [x, y, ...letters] = path.dataset.field.split('|');
-      return { x: +x, y: +y, letters: letters.join('|') };
+      return { path, x: +x, y: +y, letters: letters.join('|') };
     });
     this.fixed = this.fields.length > 0;
     this.axisGroups = {};

@@ -17,6 +17,8 @@ function start() {
   if (cases) new CaseTable(JSON.parse(cases.textContent), document.getElementById('case-table'));
   document.querySelectorAll('main table').forEach(sortable);
   figureSelectors();
+  const steps = document.getElementById('steps');
+  if (steps) stepSlider(steps);
   document.body.prepend(themeSwitch());
 }
 

@@ -195,6 +195,7 @@ fn estimate(path: &str, nominal: f64, factor: f64, half: Option<f64>) -> (String
 fn run(number: usize, random: &mut Uniform) -> Run {
     let held_out = number == 4;
     let mut channel = |column: &str, size: f64, offset: f64| Channel {
+        steps: Vec::new(),
         column: column.into(),
         waveform: (0..512)
             .map(|i| {
