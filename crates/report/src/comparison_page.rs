@@ -76,6 +76,7 @@ fn plate(channel: &ComparedChannel, names: &[&str]) -> Plate {
         ..Figure::default()
     };
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: text::capitalised(&text::words(&channel.name)),
         caption: "The first window of each: the mean over its whole revolutions, and the amplitude spectrum \

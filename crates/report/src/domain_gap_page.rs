@@ -48,6 +48,7 @@ fn plate(compared: &Compared) -> Plate {
     let telling = compared.gap.features.iter().take(DRAWN);
     let panels = telling.filter_map(|telling| panel(compared, &telling.feature));
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "The most telling features".to_owned(),
         caption: "Share of the simulated and of the measured windows in bins of equal width. Windows without a value are \

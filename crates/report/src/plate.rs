@@ -9,6 +9,8 @@ pub(crate) struct Plate {
     pub(crate) heading: String,
     pub(crate) caption: String,
     pub(crate) figure: Figure,
+    /// What `page.js` shows beside the figure, as JSON; empty for nothing.
+    pub(crate) sections: String,
 }
 
 /// What a figure shows alone; empty where it shows several, or there is one alone. A page offers its figures by these.
@@ -38,6 +40,20 @@ pub struct FigureFile {
     pub name: String,
     /// Its content, the same that the page has.
     pub svg: String,
+}
+
+/// Data for the script of a page, in a form that cannot end its element; empty for a list of nothing.
+pub(crate) fn json<T: serde::Serialize>(content: &[T]) -> String {
+    match content {
+        [] => String::new(),
+        // Numbers and texts always have a form.
+        content => in_script(serde_json::to_string(content).unwrap_or_default()),
+    }
+}
+
+/// JSON that may stand in a `<script>` element.
+pub(crate) fn in_script(json: String) -> String {
+    json.replace('<', "\\u003c")
 }
 
 /// Numbers of a page's figures: each has the one after that of the figure before it.

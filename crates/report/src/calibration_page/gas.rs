@@ -144,6 +144,7 @@ pub(super) fn plates(chambers: &[Chamber]) -> Vec<Plate> {
 
 fn plate(chamber: &Chamber) -> Plate {
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: format!("Indicator diagram: {}", chamber.name()),
         caption: "Left: pressure over the distance from piston to cover, which is the volume divided by the piston's area. \

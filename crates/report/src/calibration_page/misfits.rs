@@ -56,6 +56,7 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Misfit of every run".to_owned(),
         caption: "Root mean square difference between the amplitudes of the orders in simulation and recording, divided by the \

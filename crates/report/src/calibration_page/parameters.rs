@@ -100,6 +100,7 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Parameters against their nominal values".to_owned(),
         caption: "Estimate of each parameter with its 95 % interval, divided by the nominal value. An interval that crosses the \
@@ -149,6 +150,7 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Correlations".to_owned(),
         caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 only a \

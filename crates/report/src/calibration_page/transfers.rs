@@ -171,6 +171,7 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
         .iter()
         .map(|column| panel(&relations.compared, &forecasts, &runs, column));
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: self::state(state),
         caption: "Greatest acceleration within a revolution at this clearance for each relation, with the 95 % interval that \

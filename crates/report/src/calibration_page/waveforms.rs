@@ -42,6 +42,7 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
         "fitted"
     };
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: format!("{}, {kind}", run.id),
         caption: format!(

@@ -1,6 +1,6 @@
 //! Bifurcation diagrams, both ways.
 
-use super::{Bifurcation, ChaosPage, Recorded};
+use super::{Bifurcation, ChaosPage, Recorded, Section};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::{About, Plate};
 use crate::text;
@@ -43,6 +43,7 @@ fn plate(diagram: &Bifurcation) -> Plate {
         }]
     });
     Plate {
+        sections: crate::plate::json(&scaled(&diagram.sections, factor)),
         about: About::default(),
         heading: format!("Bifurcation diagram: {}", diagram.name),
         caption: caption(diagram, factor, unit),
@@ -53,6 +54,15 @@ fn plate(diagram: &Bifurcation) -> Plate {
             ..Figure::default()
         },
     }
+}
+
+/// The sections with their values in the unit of the axis.
+fn scaled(sections: &[Section], factor: f64) -> Vec<Section> {
+    let scaled = |section: &Section| Section {
+        value: section.value * factor,
+        ..section.clone()
+    };
+    sections.iter().map(scaled).collect()
 }
 
 fn caption(diagram: &Bifurcation, factor: f64, unit: &str) -> String {

@@ -55,6 +55,7 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
         figure::in_rows(panels.collect(), 3)
     };
     vec![Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Exponent against clearance".to_owned(),
         caption: format!(
@@ -194,6 +195,7 @@ pub(super) fn scatter(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     vec![Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Exponent from the signal against from the equations".to_owned(),
         caption: scatter_words(&agreement),

@@ -101,6 +101,7 @@ fn by_joints(
         .iter()
         .map(|(_, source)| groups.iter().map(|group| panel(*source, group)).collect());
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Regimes by clearance and joint".to_owned(),
         caption: caption("in different joints", clearances.width),
@@ -137,6 +138,7 @@ fn by_speed(
         .iter()
         .map(|(_, source)| shown.iter().map(|set| panel(*source, set)).collect());
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Regimes by clearance and speed".to_owned(),
         caption: caption("at different speeds", clearances.width.max(speeds.width)),

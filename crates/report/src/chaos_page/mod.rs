@@ -100,8 +100,21 @@ pub struct Bifurcation {
     pub unit: String,
     /// What is recorded once a revolution.
     pub quantities: Vec<Recorded>,
+    /// The motion at each value, once a revolution; empty where its velocity is not recorded.
+    pub sections: Vec<Section>,
     /// Why values have no points, each reason once.
     pub reasons: Vec<String>,
+}
+
+/// The motion at a value of the parameter of a bifurcation diagram, when the crank passes angle 0.
+#[derive(Clone, Debug, Default, serde::Serialize)]
+pub struct Section {
+    /// The value.
+    pub value: f64,
+    /// Velocity in m/s and acceleration in m/s² of each revolution, the parameter rising.
+    pub up: Vec<[f64; 2]>,
+    /// The same with the parameter falling.
+    pub down: Vec<[f64; 2]>,
 }
 
 /// One quantity of a bifurcation diagram.

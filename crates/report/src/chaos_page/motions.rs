@@ -33,6 +33,7 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
         }
     };
     plates(page, || Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Portraits of the crosshead".to_owned(),
         caption: format!(
@@ -79,6 +80,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     let mut made = plates(page, || Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Sections once a revolution".to_owned(),
         caption: format!(
@@ -90,6 +92,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         figure: small_multiples(page, strobe, Share::All, HEIGHT),
     });
     made.extend(plates(page, || Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Sections at impact".to_owned(),
         caption: format!(
@@ -128,6 +131,7 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     plates(page, || Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Orbits in the clearance circle".to_owned(),
         caption: format!(

@@ -30,6 +30,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
     );
     vec![
         Plate {
+            sections: String::new(),
             about: About::default(),
             heading: "Spectra of each class".to_owned(),
             caption: format!(
@@ -45,6 +46,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
             ),
         },
         Plate {
+            sections: String::new(),
             about: About::default(),
             heading: "Envelope spectra of each class".to_owned(),
             caption: format!(

@@ -113,6 +113,7 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     let peaks: Vec<Level> = levels().map(|[peak, _]| peak).collect();
     let rms: Vec<Level> = levels().map(|[_, rms]| rms).collect();
     Plate {
+        sections: String::new(),
         about: about(grid),
         heading: format!("Clearance in {joints}"),
         caption: format!(
@@ -136,6 +137,7 @@ fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Pla
     };
     let (peaks, rms) = (named(0), named(1));
     Plate {
+        sections: String::new(),
         about: about(grid),
         heading: format!("Sets of joints at {}", text::clearance(clearance)),
         caption: format!(
@@ -233,6 +235,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             .collect()
     });
     Plate {
+        sections: String::new(),
         about: about(grid),
         heading: "Portraits by clearance".to_owned(),
         caption: format!(
@@ -252,6 +255,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
         .map(|d| portrait(&text::capitalised(&d.name), d.response, d.colour))
         .collect();
     Plate {
+        sections: String::new(),
         about: about(grid),
         heading: format!("Portraits at {}", text::clearance(clearance)),
         caption: format!(

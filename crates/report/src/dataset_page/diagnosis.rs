@@ -64,6 +64,7 @@ fn histograms(page: &DatasetPage) -> Plate {
         }
     };
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "The features that say most, by class".to_owned(),
         caption: "How often each value occurs in the windows of each class. The features are those at the top of the table \
@@ -112,6 +113,7 @@ fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
         rest => format!(" {} are not shown.", text::counted(rest, "class")),
     };
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "What the baseline confuses".to_owned(),
         caption: format!(

@@ -50,6 +50,7 @@ fn histograms(all: &[Histogram]) -> Plate {
         }
     });
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "Parameters".to_owned(),
         caption: format!(
@@ -104,6 +105,7 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         .collect();
     let cases = scatter.classes.iter().map(|(_, points)| points.len()).sum();
     Plate {
+        sections: String::new(),
         about: About {
             sensor: scatter.sensor.clone(),
             ..About::default()

@@ -40,6 +40,7 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
         )
     });
     Plate {
+        sections: String::new(),
         about: About {
             class: classes::name(&example.fault),
             sensor: example.sensor.clone(),

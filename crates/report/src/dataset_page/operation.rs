@@ -73,6 +73,7 @@ fn plate(page: &DatasetPage, waterfall: &Waterfall) -> Plate {
     };
     let orders = ORDERS.map(|order| format!("{order:.0}"));
     Plate {
+        sections: String::new(),
         about: About {
             sensor: waterfall.sensor.clone(),
             ..About::default()

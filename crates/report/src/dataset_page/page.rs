@@ -7,7 +7,7 @@ use super::{
     CaseLevel, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount, FeatureRow,
     ParameterRange, comparison, diagnosis, distributions, operation,
 };
-use crate::plate::{FigureFile, Plate, Rendered, file_name};
+use crate::plate::{FigureFile, Plate, Rendered, file_name, in_script};
 use crate::{Column, Error, classes, text};
 use askama::Template;
 use classify::{Baseline, ClassScore, RankedFeature};
@@ -308,7 +308,7 @@ impl View<'_> {
     fn case_data(&self) -> Result<String, askama::Error> {
         let json = serde_json::to_string(&self.page.cases);
         let json = json.map_err(|error| askama::Error::Custom(error.into()))?;
-        Ok(json.replace('<', "\\u003c"))
+        Ok(in_script(json))
     }
 
     /// Cases in the split over all faults.

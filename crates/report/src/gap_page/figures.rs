@@ -82,6 +82,7 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "The gap, step by step".to_owned(),
         caption: "Root mean square difference between simulation and recording, by order, divided by its noise. Each bar is the \
@@ -115,6 +116,7 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
+        sections: String::new(),
         about: About::default(),
         heading: "The missing force".to_owned(),
         caption: "Force on the crosshead with which the model fits the recordings best, estimated without a law. A named effect or \
@@ -196,6 +198,7 @@ fn plate(maps: &OfChannel<'_>, bands: &[String]) -> Plate {
         ],
     };
     Plate {
+        sections: String::new(),
         about: About::default(),
         heading: format!("{}, {channel}", before.run),
         caption: "Residual divided by the noise, by crank angle and order; darker is larger. White is noise alone."

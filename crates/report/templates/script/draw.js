@@ -57,9 +57,11 @@ function drawPanel({ title, x, y, series }, left, top, width) {
   const plot = element('svg', { ...place, class: 'plot', 'data-title': title, 'data-x': attribute(x), 'data-y': attribute(y) });
   plot.append(element('path', { fill: 'none', stroke: '#e9e9e9' }));
   for (const one of series) {
-    const group = element('g', { class: 'series', 'data-series': `${one.colour}|${one.label ?? ''}`, 'data-mark': 'line' });
+    const group = element('g', { class: 'series', 'data-series': `${one.colour}|${one.label ?? ''}`, 'data-mark': one.mark ?? 'line' });
     group.values = Float32Array.from(one.points);
-    group.append(element('path', { fill: 'none', stroke: one.colour, d: 'M0 0' }));
+    // What stands at a point that stands by itself: a disc.
+    const d = one.mark === 'points' ? 'M0 0m-2.2 0a2.2 2.2 0 1 0 4.4 0a2.2 2.2 0 1 0-4.4 0' : 'M0 0';
+    group.append(element('path', { fill: one.mark === 'points' ? one.colour : 'none', stroke: one.colour, d }));
     plot.append(group);
   }
   const axisGroup = name => element('g', { class: `${name}-axis` }, element('path', { stroke: '#8a8a8a' }));

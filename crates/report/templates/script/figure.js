@@ -42,6 +42,7 @@ class InteractiveFigure {
     this.panels.filter(panel => panel.series.some(series => series.group.values)).forEach(panel => panel.draw());
     for (const key of this.svg.querySelectorAll('.key')) this.addSwitch(key);
     box.insertBefore(this.tools(), this.svg.parentElement);
+    if (box.querySelector('.sections')) this.sections = new Sections(this);
     this.svg.addEventListener('pointermove', event => this.moved(event));
     this.svg.addEventListener('pointerleave', () => this.clear());
     this.svg.addEventListener('pointerdown', event => this.pressed(event));
@@ -227,6 +228,7 @@ class InteractiveFigure {
   show(panel, near) {
     this.clear();
     this.current = { panel, near };
+    this.sections?.show(near.x);
     const ink = { class: 'cursor' };
     const others = this.panels.filter(other => other.axes.x.label === panel.axes.x.label && !other.fixed);
     for (const other of new Set([panel, ...others])) {

@@ -1,9 +1,10 @@
 //! The bifurcation diagrams of the dataset.
 
-use crate::chaos_page::{Bifurcation, Recorded};
+use crate::case_table::rounded;
+use crate::chaos_page::{Bifurcation, Recorded, Section};
 use crate::dataset::words;
 use crate::{Error, text};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use sweep::reader::{Dataset, Diagram, Direction, Quantity};
 
 /// What the page shows of what is recorded: the ending of the column, what it is, its unit.
@@ -16,12 +17,16 @@ const SHOWN: [(&str, &str, &str); 2] = [
     ),
 ];
 
+/// With the acceleration at angle 0 it makes the section of a motion.
+const VELOCITY: &str = "crosshead_velocity_m_s";
+
 /// The diagrams in the order of their files.
 ///
 /// # Errors
 /// A table that cannot be read.
 pub(super) fn diagrams(dataset: &Dataset) -> Result<Vec<Bifurcation>, Error> {
-    let diagrams = dataset.diagrams(&SHOWN.map(|(ending, ..)| ending))?;
+    let endings = SHOWN.map(|(ending, ..)| ending);
+    let diagrams = dataset.diagrams(&[&endings[..], &[VELOCITY]].concat())?;
     Ok(diagrams.iter().map(diagram).collect())
 }
 
@@ -36,8 +41,44 @@ fn diagram(diagram: &Diagram) -> Bifurcation {
         quantities: quantities
             .filter_map(|quantity| recorded(diagram, quantity))
             .collect(),
+        sections: sections(diagram),
         reasons: reasons.into_iter().map(str::to_owned).collect(),
     }
+}
+
+fn sections(diagram: &Diagram) -> Vec<Section> {
+    let samples = |ending: &str| {
+        let of_ending = |quantity: &&Quantity| quantity.column.ends_with(ending);
+        diagram
+            .quantities
+            .iter()
+            .find(of_ending)
+            .map(|quantity| &quantity.samples)
+    };
+    let (Some(velocities), Some(accelerations)) = (samples(VELOCITY), samples(SHOWN[1].0)) else {
+        return Vec::new();
+    };
+    let mut sections: BTreeMap<u64, Section> = BTreeMap::new();
+    let rows = diagram.points.iter().zip(velocities).zip(accelerations);
+    for ((point, velocities), accelerations) in rows {
+        let (Some(value), Some(v), Some(a)) = (point.value, velocities, accelerations) else {
+            continue;
+        };
+        let new = Section {
+            value,
+            ..Section::default()
+        };
+        let section = sections.entry(value.to_bits()).or_insert(new);
+        let motion = v
+            .iter()
+            .zip(a)
+            .map(|(v, a)| [rounded(f64::from(*v)), rounded(f64::from(*a))]);
+        match point.direction {
+            Direction::Up => section.up.extend(motion),
+            Direction::Down => section.down.extend(motion),
+        }
+    }
+    sections.into_values().collect()
 }
 
 fn recorded(diagram: &Diagram, quantity: &Quantity) -> Option<Recorded> {

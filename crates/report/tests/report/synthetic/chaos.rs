@@ -3,7 +3,7 @@
 use super::{Uniform, recording, spectrum};
 use report::chaos_page::{
     Bifurcation, CaseChaos, ChaosPage, ClassSpectra, Motion, MotionRow, Orbit, Quartiles, Recorded,
-    Regime, WindowChaos,
+    Regime, Section, WindowChaos,
 };
 use std::f64::consts::TAU;
 
@@ -82,6 +82,11 @@ fn bifurcation() -> Bifurcation {
         values.flat_map(of).collect()
     };
     Bifurcation {
+        sections: vec![Section {
+            value: 0.2e-3,
+            up: vec![[0.01, -380.0], [0.02, -350.0]],
+            down: vec![[0.01, -380.0]],
+        }],
         name: "big-end".to_owned(),
         parameter: "clearance of the big end".to_owned(),
         unit: "m".to_owned(),
