@@ -58,6 +58,13 @@ fn plate(channel: &ComparedChannel, names: &[&str]) -> Plate {
         note: note.to_owned(),
         ..Panel::default()
     };
+    let difference = channel.waveforms.as_ref().map(|[a, b]| Panel {
+        title: "Difference".to_owned(),
+        x: Axis::crank_angle(),
+        y: Axis::linear(text::with_unit("B − A", &unit)),
+        series: vec![over_angle(1, &differences(a, b))],
+        ..Panel::default()
+    });
     let spectra = channel.spectra.iter().enumerate().map(|(i, spectrum)| {
         // The mean has its place in the table.
         let points = spectrum.frequencies().zip(&spectrum.amplitude).skip(1);
@@ -72,18 +79,27 @@ fn plate(channel: &ComparedChannel, names: &[&str]) -> Plate {
         ..Panel::default()
     };
     let figure = Figure {
-        rows: vec![vec![waveform], vec![spectrum]],
+        rows: [Some(waveform), difference, Some(spectrum)]
+            .into_iter()
+            .flatten()
+            .map(|panel| vec![panel])
+            .collect(),
         ..Figure::default()
     };
     Plate {
         sections: String::new(),
         about: About::default(),
         heading: text::capitalised(&text::words(&channel.name)),
-        caption: "The first window of each: the mean over its whole revolutions, and the amplitude spectrum \
-                  with a Hann window."
+        caption: "The first window of each: the mean over its whole revolutions, the difference of the two, and the \
+                  amplitude spectrum with a Hann window."
             .to_owned(),
         figure,
     }
+}
+
+/// What B exceeds A by at each crank angle; both have the same angles.
+fn differences(a: &[f64], b: &[f64]) -> Vec<f64> {
+    b.iter().zip(a).map(|(b, a)| b - a).collect()
 }
 
 impl View<'_> {

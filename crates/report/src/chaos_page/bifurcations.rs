@@ -77,7 +77,7 @@ fn caption(diagram: &Bifurcation, factor: f64, unit: &str) -> String {
         let both = both_ways(first);
         let apart: Vec<f64> = apart(first, &both);
         said += &format!(
-            " At {} of {} values the two directions have no common range of the {}",
+            " At {} of {} the two directions have no common range of the {}",
             apart.len(),
             text::counted(both.len(), "value"),
             first.name,

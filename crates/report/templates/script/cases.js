@@ -4,6 +4,13 @@ const ROWS_AT_ONCE = 100;
 const CASE_CURVE = '#0072b2';
 const CASE_PRESSURE = '#d55e00';
 
+// Some of the bytes that a text in base 64 stands for: four letters are three bytes.
+function bytesWithin(text, first, count) {
+  const group = Math.floor(first / 3);
+  const bytes = bytesOf(text.slice(4 * group, 4 * Math.ceil((first + count) / 3)));
+  return bytes.subarray(first - 3 * group, first - 3 * group + count);
+}
+
 class CaseTable {
   constructor(data, place) {
     this.data = data;
@@ -173,7 +180,7 @@ class CaseTable {
 
   curves({ name, unit, revolution, velocity, orders, envelope, volume }, at) {
     const read = ({ count, low, high, levels }) => {
-      const bytes = this.levels(levels).subarray(at * count, (at + 1) * count);
+      const bytes = bytesWithin(levels, at * count, count);
       return [...bytes].map(level => low[at] + (high[at] - low[at]) * level / 255);
     };
     const values = read(revolution);
@@ -209,12 +216,5 @@ class CaseTable {
       panels.push(panel('p-V card', x, y, [...volume, volume[0]], [...values, values[0]], colour));
     }
     return panels;
-  }
-
-  // Bytes of packed curves, decoded once.
-  levels(text) {
-    this.decoded ??= new Map();
-    if (!this.decoded.has(text)) this.decoded.set(text, bytesOf(text));
-    return this.decoded.get(text);
   }
 }

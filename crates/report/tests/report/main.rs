@@ -1,5 +1,6 @@
 //! Figures and pages, with made-up signals.
 
+mod browser;
 mod calibration_page;
 mod chaos_page;
 mod dataset_page;
