@@ -1,7 +1,7 @@
 //! The page of a comparison.
 
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::{About, Numbers, Plate, Rendered, numbered_files};
+use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, text};
 use askama::Template;
 use sweep::comparison::{ComparedChannel, ComparedFeature, Comparison};
@@ -87,13 +87,12 @@ fn plate(channel: &ComparedChannel, names: &[&str]) -> Plate {
         ..Figure::default()
     };
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: text::capitalised(&text::words(&channel.name)),
         caption: "The first window of each: the mean over its whole revolutions, the difference of the two, and the \
                   amplitude spectrum with a Hann window."
             .to_owned(),
         figure,
+        ..Plate::default()
     }
 }
 

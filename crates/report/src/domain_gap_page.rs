@@ -1,7 +1,7 @@
 //! The page of simulated windows beside measured ones.
 
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::{About, Numbers, Plate, Rendered, numbered_files};
+use crate::plate::{Numbers, Plate, Rendered, numbered_files};
 use crate::{Error, histogram, text};
 use askama::Template;
 use classify::TellingFeature;
@@ -48,8 +48,6 @@ fn plate(compared: &Compared) -> Plate {
     let telling = compared.gap.features.iter().take(DRAWN);
     let panels = telling.filter_map(|telling| panel(compared, &telling.feature));
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "The most telling features".to_owned(),
         caption: "Share of the simulated and of the measured windows in bins of equal width. Windows without a value are \
                   left out."
@@ -59,6 +57,7 @@ fn plate(compared: &Compared) -> Plate {
             row_height: 150.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

@@ -2,15 +2,26 @@
 
 use crate::figure::Figure;
 use crate::text;
+use std::cell::OnceCell;
 
 /// A figure with its heading and caption.
+#[derive(Default)]
 pub(crate) struct Plate {
-    pub(crate) about: About,
     pub(crate) heading: String,
     pub(crate) caption: String,
     pub(crate) figure: Figure,
+    pub(crate) about: About,
     /// What `page.js` shows beside the figure, as JSON; empty for nothing.
     pub(crate) sections: String,
+    /// The figure as the page has it, once that was asked for.
+    pub(crate) live: OnceCell<String>,
+}
+
+impl Plate {
+    /// The figure as the page has it.
+    pub(crate) fn live_svg(&self) -> &str {
+        self.live.get_or_init(|| self.figure.live_svg())
+    }
 }
 
 /// What a figure shows alone; empty where it shows several, or there is one alone. A page offers its figures by these.

@@ -3,7 +3,7 @@
 use super::misfits::{AFTER, BEFORE};
 use super::{CalibrationPage, words};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 use calibrate::results::{Alternative, ByName, Gas};
 
@@ -144,8 +144,6 @@ pub(super) fn plates(chambers: &[Chamber]) -> Vec<Plate> {
 
 fn plate(chamber: &Chamber) -> Plate {
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: format!("Indicator diagram: {}", chamber.name()),
         caption: "Left: pressure over the distance from piston to cover, which is the volume divided by the piston's area. \
                   Middle: the same on logarithmic axes. Enclosed gas follows a straight line there, and the slope is its \
@@ -160,6 +158,7 @@ fn plate(chamber: &Chamber) -> Plate {
             row_height: 260.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{CalibrationPage, Misfit, Run};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 
 /// The simulation with nominal parameters, in every figure.
 pub(crate) const BEFORE: Colour = Colour::Class(1);
@@ -56,8 +56,6 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Misfit of every run".to_owned(),
         caption: "Root mean square difference between the amplitudes of the orders in simulation and recording, divided by the \
                   standard deviation of their noise. At 1 only noise is left. Held-out runs are predicted, not fitted."
@@ -67,5 +65,6 @@ pub(super) fn plate(page: &CalibrationPage) -> Option<Plate> {
             row_height: ROW * (runs.len() as f64 + 0.5),
             ..Figure::default()
         },
+        ..Plate::default()
     })
 }

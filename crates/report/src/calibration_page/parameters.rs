@@ -3,7 +3,7 @@
 use super::misfits::{AFTER, ROW};
 use super::{CalibrationPage, Parameter, words};
 use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 use calibrate::results::Known;
 
@@ -100,8 +100,6 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Parameters against their nominal values".to_owned(),
         caption: "Estimate of each parameter with its 95 % interval, divided by the nominal value. An interval that crosses the \
                   line at 1 agrees with the nominal value."
@@ -111,6 +109,7 @@ pub(super) fn intervals(page: &CalibrationPage) -> Option<Plate> {
             row_height: ROW * (ratios.len() as f64 + 0.5),
             ..Figure::default()
         },
+        ..Plate::default()
     })
 }
 
@@ -150,8 +149,6 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Correlations".to_owned(),
         caption: "Correlation between the errors of each pair of estimates, darker for stronger. Near 1 or −1 only a \
                   combination of the two is identifiable: if one is wrong, so is the other. A dash stands for a parameter that \
@@ -162,5 +159,6 @@ pub(super) fn correlations(page: &CalibrationPage) -> Option<Plate> {
             row_height: (1.3 * ROW * count as f64).clamp(90.0, 640.0),
             ..Figure::default()
         },
+        ..Plate::default()
     })
 }

@@ -3,7 +3,7 @@
 use super::CalibrationPage;
 use super::misfits::ROW;
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 use calibrate::Bounded;
 use calibrate::Relation;
@@ -171,8 +171,6 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
         .iter()
         .map(|column| panel(&relations.compared, &forecasts, &runs, column));
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: self::state(state),
         caption: "Greatest acceleration within a revolution at this clearance for each relation, with the 95 % interval that \
                   follows from the calibrated parameters. A grey ring is a recording. Where the bars of two relations do not \
@@ -183,6 +181,7 @@ fn plate(relations: &Relations, all: &[&Forecast], state: &BTreeMap<String, f64>
             row_height: 1.6 * ROW * (runs.len() as f64 + 0.5),
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

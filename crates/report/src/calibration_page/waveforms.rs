@@ -4,7 +4,7 @@ use super::misfits::{AFTER, BEFORE};
 use super::verdict::size;
 use super::{Channel, OrderResidual, Point, Run, words};
 use crate::figure::{Axis, Colour, Figure, Layer, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::statistics::HALF;
 use crate::text;
 
@@ -42,8 +42,6 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
         "fitted"
     };
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: format!("{}, {kind}", run.id),
         caption: format!(
             "The misfit is {} times the noise before and {} after. Left: the mean over the revolutions, with the \
@@ -58,6 +56,7 @@ fn plate(run: &Run, names: [&str; 2]) -> Plate {
             row_height: 210.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

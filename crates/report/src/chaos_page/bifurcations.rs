@@ -2,7 +2,7 @@
 
 use super::{Bifurcation, ChaosPage, Recorded, Section};
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 use std::collections::BTreeMap;
 
@@ -44,7 +44,6 @@ fn plate(diagram: &Bifurcation) -> Plate {
     });
     Plate {
         sections: crate::plate::json(&scaled(&diagram.sections, factor)),
-        about: About::default(),
         heading: format!("Bifurcation diagram: {}", diagram.name),
         caption: caption(diagram, factor, unit),
         figure: Figure {
@@ -53,6 +52,7 @@ fn plate(diagram: &Bifurcation) -> Plate {
             share_x: Share::All,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

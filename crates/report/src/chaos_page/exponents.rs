@@ -4,7 +4,7 @@ use super::agreement::{self, Agreement};
 use super::levels::Levels;
 use super::{CaseChaos, ChaosPage};
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::statistics::HALF;
 use crate::{classes, text};
 
@@ -55,8 +55,6 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
         figure::in_rows(panels.collect(), 3)
     };
     vec![Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Exponent against clearance".to_owned(),
         caption: format!(
             "Largest Lyapunov exponent of each case: from the equations (discs, bars of ±{HALF} standard errors) and from the \
@@ -72,6 +70,7 @@ pub(super) fn against_clearance(page: &ChaosPage) -> Vec<Plate> {
             share_y: Share::All,
             ..Figure::default()
         },
+        ..Plate::default()
     }]
 }
 
@@ -195,8 +194,6 @@ pub(super) fn scatter(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     vec![Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Exponent from the signal against from the equations".to_owned(),
         caption: scatter_words(&agreement),
         figure: Figure {
@@ -205,6 +202,7 @@ pub(super) fn scatter(page: &ChaosPage) -> Vec<Plate> {
             width: 760.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }]
 }
 

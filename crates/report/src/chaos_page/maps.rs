@@ -5,7 +5,7 @@ use super::exponents::MOST_SPEEDS;
 use super::levels::Levels;
 use super::{CaseChaos, ChaosPage, Regime};
 use crate::figure::{Axis, Colour, Field, Figure, Layer, Panel};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 
 /// At most this many sets of joints have a map over speed.
@@ -101,11 +101,10 @@ fn by_joints(
         .iter()
         .map(|(_, source)| groups.iter().map(|group| panel(*source, group)).collect());
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Regimes by clearance and joint".to_owned(),
         caption: caption("in different joints", clearances.width),
         figure: figure(sources, rows.collect(), 26.0 * sets.len().max(2) as f64),
+        ..Plate::default()
     }
 }
 
@@ -138,11 +137,10 @@ fn by_speed(
         .iter()
         .map(|(_, source)| shown.iter().map(|set| panel(*source, set)).collect());
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Regimes by clearance and speed".to_owned(),
         caption: caption("at different speeds", clearances.width.max(speeds.width)),
         figure: figure(sources, rows.collect(), 26.0 * speeds.count().max(3) as f64),
+        ..Plate::default()
     }
 }
 

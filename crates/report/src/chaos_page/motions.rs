@@ -4,7 +4,7 @@
 use super::{ChaosPage, Motion};
 use crate::classes;
 use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::revolutions::last_turns;
 use crate::text;
 
@@ -33,8 +33,6 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
         }
     };
     plates(page, || Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Portraits of the crosshead".to_owned(),
         caption: format!(
             "Acceleration of the crosshead against its velocity over the last {REVOLUTIONS} revolutions or fewer. All \
@@ -43,6 +41,7 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
             cases(page)
         ),
         figure: small_multiples(page, panel, Share::All, HEIGHT),
+        ..Plate::default()
     })
 }
 
@@ -80,8 +79,6 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     let mut made = plates(page, || Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Sections once a revolution".to_owned(),
         caption: format!(
             "Velocity and acceleration of the crosshead when the crank passes angle 0, one dot per revolution. All panels \
@@ -90,10 +87,9 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
             cases(page)
         ),
         figure: small_multiples(page, strobe, Share::All, HEIGHT),
+        ..Plate::default()
     });
     made.extend(plates(page, || Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Sections at impact".to_owned(),
         caption: format!(
             "Crank angle and speed of each impact of the journal on its bearing. All panels share one scale. A periodic \
@@ -102,6 +98,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
             cases(page)
         ),
         figure: small_multiples(page, impacts, Share::All, HEIGHT),
+        ..Plate::default()
     }));
     made
 }
@@ -131,8 +128,6 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
         ..Panel::default()
     };
     plates(page, || Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Orbits in the clearance circle".to_owned(),
         caption: format!(
             "The centre of the journal in its bearing over the last {ORBIT_REVOLUTIONS} revolutions or fewer. The radius of \
@@ -142,6 +137,7 @@ pub(super) fn orbits(page: &ChaosPage) -> Vec<Plate> {
             cases(page)
         ),
         figure: small_multiples(page, panel, Share::None, ORBIT_HEIGHT),
+        ..Plate::default()
     })
 }
 

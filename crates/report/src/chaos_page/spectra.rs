@@ -3,7 +3,7 @@
 use super::{ChaosPage, ClassSpectra, Quartiles};
 use crate::classes;
 use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 
 /// At most this many classes.
@@ -30,8 +30,6 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
     );
     vec![
         Plate {
-            sections: String::new(),
-            about: About::default(),
             heading: "Spectra of each class".to_owned(),
             caption: format!(
                 "Amplitude density of the measured acceleration (Welch 1967, Hann window, 1024 samples, half overlapping). Lines at the \
@@ -44,10 +42,9 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                 "density (m/s²/√Hz)",
                 |class| &class.spectrum,
             ),
+            ..Plate::default()
         },
         Plate {
-            sections: String::new(),
-            about: About::default(),
             heading: "Envelope spectra of each class".to_owned(),
             caption: format!(
                 "Amplitude spectrum of the acceleration's envelope in its most impulsive band (kurtogram, Antoni 2007), over orders of \
@@ -58,6 +55,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
             figure: small_multiples(shown, &Axis::orders(), "amplitude (m/s²)", |class| {
                 &class.envelope
             }),
+            ..Plate::default()
         },
     ]
 }

@@ -113,7 +113,6 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
     let peaks: Vec<Level> = levels().map(|[peak, _]| peak).collect();
     let rms: Vec<Level> = levels().map(|[_, rms]| rms).collect();
     Plate {
-        sections: String::new(),
         about: about(grid),
         heading: format!("Clearance in {joints}"),
         caption: format!(
@@ -126,6 +125,7 @@ fn by_clearance(grid: &ClearanceGrid, set: &JointSet) -> Plate {
             captions::places(drawn.iter().map(|d| d.response)),
         ),
         figure: overlaid_and_apart(grid, &drawn),
+        ..Plate::default()
     }
 }
 
@@ -137,7 +137,6 @@ fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Pla
     };
     let (peaks, rms) = (named(0), named(1));
     Plate {
-        sections: String::new(),
         about: about(grid),
         heading: format!("Sets of joints at {}", text::clearance(clearance)),
         caption: format!(
@@ -151,6 +150,7 @@ fn across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f64) -> Pla
             captions::places(drawn.iter().map(|d| d.response)),
         ),
         figure: overlaid_and_apart(grid, drawn),
+        ..Plate::default()
     }
 }
 
@@ -235,7 +235,6 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             .collect()
     });
     Plate {
-        sections: String::new(),
         about: about(grid),
         heading: "Portraits by clearance".to_owned(),
         caption: format!(
@@ -246,6 +245,7 @@ fn portraits_by_clearance(grid: &ClearanceGrid, sets: &[&JointSet]) -> Plate {
             captions::places(rows.iter().flatten().map(|d| d.response)),
         ),
         figure: portraits(panels.collect()),
+        ..Plate::default()
     }
 }
 
@@ -255,7 +255,6 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
         .map(|d| portrait(&text::capitalised(&d.name), d.response, d.colour))
         .collect();
     Plate {
-        sections: String::new(),
         about: about(grid),
         heading: format!("Portraits at {}", text::clearance(clearance)),
         caption: format!(
@@ -266,6 +265,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
             captions::places(drawn.iter().map(|d| d.response)),
         ),
         figure: portraits(crate::figure::in_rows(panels, 4)),
+        ..Plate::default()
     }
 }
 

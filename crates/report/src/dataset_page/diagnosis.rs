@@ -2,7 +2,7 @@
 
 use super::{DatasetPage, FaultCount, FeatureByClass};
 use crate::figure::{self, Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::{classes, histogram, text};
 use classify::{Baseline, ClassScore};
 
@@ -64,8 +64,6 @@ fn histograms(page: &DatasetPage) -> Plate {
         }
     };
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "The features that say most, by class".to_owned(),
         caption: "How often each value occurs in the windows of each class. The features are those at the top of the table \
                   of ranks below, one of each kind."
@@ -75,6 +73,7 @@ fn histograms(page: &DatasetPage) -> Plate {
             row_height: 180.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 
@@ -113,8 +112,6 @@ fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
         rest => format!(" {} are not shown.", text::counted(rest, "class")),
     };
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "What the baseline confuses".to_owned(),
         caption: format!(
             "Tested windows of each fault (rows) by the fault that the baseline names (columns). The darker a field, the \
@@ -130,5 +127,6 @@ fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
             row_height: ROW * shown.len().max(2) as f64,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }

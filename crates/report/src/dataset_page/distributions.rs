@@ -50,8 +50,6 @@ fn histograms(all: &[Histogram]) -> Plate {
         }
     });
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "Parameters".to_owned(),
         caption: format!(
             "How often values were drawn, of {}, in bins of equal width between the lowest and the highest.",
@@ -62,6 +60,7 @@ fn histograms(all: &[Histogram]) -> Plate {
             row_height: 150.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 
@@ -105,7 +104,6 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         .collect();
     let cases = scatter.classes.iter().map(|(_, points)| points.len()).sum();
     Plate {
-        sections: String::new(),
         about: About {
             sensor: scatter.sensor.clone(),
             ..About::default()
@@ -122,6 +120,7 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
             row_height: 300.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

@@ -40,7 +40,6 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
         )
     });
     Plate {
-        sections: String::new(),
         about: About {
             class: classes::name(&example.fault),
             sensor: example.sensor.clone(),
@@ -65,6 +64,7 @@ fn plate(example: &ClassExample, rows: Vec<Vec<Panel>>) -> Plate {
             row_height: 170.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 

@@ -73,7 +73,6 @@ fn plate(page: &DatasetPage, waterfall: &Waterfall) -> Plate {
     };
     let orders = ORDERS.map(|order| format!("{order:.0}"));
     Plate {
-        sections: String::new(),
         about: About {
             sensor: waterfall.sensor.clone(),
             ..About::default()
@@ -94,5 +93,6 @@ fn plate(page: &DatasetPage, waterfall: &Waterfall) -> Plate {
             row_height: 420.0,
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }

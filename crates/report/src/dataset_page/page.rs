@@ -143,7 +143,7 @@ fn responses<'a>(page: &'a DatasetPage, grids: &ClearanceGrids) -> Vec<Gallery<'
         let plates = comparison::plates(page, grid);
         bytes += plates
             .iter()
-            .map(|plate| plate.figure.live_svg().len())
+            .map(|plate| plate.live_svg().len())
             .sum::<usize>();
         if at > 0 && (plates.is_empty() || bytes > MOST_FIGURE_BYTES) {
             break;

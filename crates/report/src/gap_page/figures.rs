@@ -3,7 +3,7 @@
 use super::GapPage;
 use crate::calibration_page::{misfits, words};
 use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
-use crate::plate::{About, Plate};
+use crate::plate::Plate;
 use crate::text;
 use gap::results::Maps;
 use gap::{MissingForce, ResidualMap, Step};
@@ -82,8 +82,6 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "The gap, step by step".to_owned(),
         caption: "Root mean square difference between simulation and recording, by order, divided by its noise. Each bar is the \
                   reduction by one step: calibration first, then one effect after another. At 1 only noise is left. Held-out \
@@ -94,6 +92,7 @@ pub(super) fn waterfall(page: &GapPage) -> Option<Plate> {
             row_height: misfits::ROW * (top + 1.5),
             ..Figure::default()
         },
+        ..Plate::default()
     })
 }
 
@@ -116,8 +115,6 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
         ..Panel::default()
     };
     Some(Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: "The missing force".to_owned(),
         caption: "Force on the crosshead with which the model fits the recordings best, estimated without a law. A named effect or \
                   a formula would have to reproduce it."
@@ -126,6 +123,7 @@ pub(super) fn forces(page: &GapPage) -> Option<Plate> {
             rows: vec![vec![panel]],
             ..Figure::default()
         },
+        ..Plate::default()
     })
 }
 
@@ -198,8 +196,6 @@ fn plate(maps: &OfChannel<'_>, bands: &[String]) -> Plate {
         ],
     };
     Plate {
-        sections: String::new(),
-        about: About::default(),
         heading: format!("{}, {channel}", before.run),
         caption: "Residual divided by the noise, by crank angle and order; darker is larger. White is noise alone."
             .to_owned(),
@@ -208,6 +204,7 @@ fn plate(maps: &OfChannel<'_>, bands: &[String]) -> Plate {
             row_height: ROW * (bands.len() as f64 + 0.5),
             ..Figure::default()
         },
+        ..Plate::default()
     }
 }
 
