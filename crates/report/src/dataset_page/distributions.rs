@@ -11,6 +11,9 @@ use std::f64::consts::FRAC_PI_2;
 /// At most this many of each kind of figure.
 const MOST_HISTOGRAMS: usize = 24;
 const MOST_SCATTERS: usize = 12;
+/// Points of a class that a median of its trend is taken from, and most medians.
+const LEAST_IN_GROUP: usize = 16;
+const MOST_GROUPS: usize = 12;
 
 /// The histograms in one figure, and a figure for each scatter.
 pub(super) fn plates(page: &DatasetPage, sweep: &RandomSweep) -> Vec<Plate> {
@@ -76,13 +79,11 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let ((x, x_unit), (y, y_unit)) = (&scatter.x, &scatter.y);
     let points = || scatter.classes.iter().flat_map(|(_, points)| points);
     let (x_factor, x_unit) = readable(points().map(|point| point[0]), x_unit);
-    let series = scatter.classes.iter().map(|(fault, points)| {
-        Series::new(
-            classes::name(fault),
-            page.class_colour(fault),
-            Mark::Points,
-            points.iter().map(|p| [p[0] * x_factor, p[1]]),
-        )
+    let series = scatter.classes.iter().flat_map(|(fault, points)| {
+        let colour = page.class_colour(fault);
+        let mut scaled: Vec<[f64; 2]> = points.iter().map(|p| [p[0] * x_factor, p[1]]).collect();
+        let points = Series::new(classes::name(fault), colour, Mark::Points, scaled.clone());
+        std::iter::once(points).chain(trend(&mut scaled, colour))
     });
     let y_label = text::with_unit(y, y_unit);
     let panel = Panel {
@@ -110,7 +111,7 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         },
         heading: text::capitalised(&format!("{y} against {x}")),
         caption: format!(
-            "{} against {x} for {}, coloured by fault. The median is {}. Data: table features.",
+            "{} against {x} for {}, coloured by fault; lines are medians, bands the middle half. The median is {}. Data: table features.",
             text::capitalised(y),
             text::counted(cases, "window"),
             super::captions::ends(&medians, y_unit)
@@ -122,6 +123,36 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
         },
         ..Plate::default()
     }
+}
+
+/// The median, and a band for the middle half, over groups of equally many points from left to right; none where the points are
+/// few or stand at one place.
+fn trend(points: &mut Vec<[f64; 2]>, colour: Colour) -> Vec<Series> {
+    points.retain(|point| point.iter().all(|value| value.is_finite()));
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let groups = (points.len() / LEAST_IN_GROUP).min(MOST_GROUPS);
+    let spread = points
+        .first()
+        .zip(points.last())
+        .is_some_and(|(a, b)| a[0] < b[0]);
+    if groups < 2 || !spread {
+        return Vec::new();
+    }
+    let quartiles = |group: &[[f64; 2]]| {
+        let place = group.iter().map(|point| point[0]).sum::<f64>() / group.len() as f64;
+        let values: Vec<f64> = group.iter().map(|point| point[1]).collect();
+        let [low, middle, high] =
+            [0.25, 0.5, 0.75].map(|part| quantile(&values, part).unwrap_or(f64::NAN));
+        [place, low, middle, high]
+    };
+    let size = points.len().div_ceil(groups);
+    let groups: Vec<[f64; 4]> = points.chunks(size).map(quartiles).collect();
+    let line = |of: usize| groups.iter().map(move |group| [group[0], group[of]]);
+    let band = line(1).chain(line(3).rev());
+    vec![
+        Series::new("", colour, Mark::Band, band),
+        Series::new("", colour, Mark::BoldLine, line(2)),
+    ]
 }
 
 /// The median of the finite values. Its standard error is √(π/2) σ/√n (normal values), σ being the
