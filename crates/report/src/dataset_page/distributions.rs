@@ -82,8 +82,9 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
     let series = scatter.classes.iter().flat_map(|(fault, points)| {
         let colour = page.class_colour(fault);
         let mut scaled: Vec<[f64; 2]> = points.iter().map(|p| [p[0] * x_factor, p[1]]).collect();
-        let points = Series::new(classes::name(fault), colour, Mark::Points, scaled.clone());
-        std::iter::once(points).chain(trend(&mut scaled, colour))
+        let name = classes::name(fault);
+        let points = Series::new(&name, colour, Mark::Points, scaled.clone());
+        std::iter::once(points).chain(trend(&mut scaled, &name, colour))
     });
     let y_label = text::with_unit(y, y_unit);
     let panel = Panel {
@@ -127,7 +128,7 @@ pub(super) fn plate(page: &DatasetPage, scatter: &Scatter) -> Plate {
 
 /// The median, and a band for the middle half, over groups of equally many points from left to right; none where the points are
 /// few or stand at one place.
-fn trend(points: &mut Vec<[f64; 2]>, colour: Colour) -> Vec<Series> {
+fn trend(points: &mut Vec<[f64; 2]>, name: &str, colour: Colour) -> Vec<Series> {
     points.retain(|point| point.iter().all(|value| value.is_finite()));
     points.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let groups = (points.len() / LEAST_IN_GROUP).min(MOST_GROUPS);
@@ -150,8 +151,8 @@ fn trend(points: &mut Vec<[f64; 2]>, colour: Colour) -> Vec<Series> {
     let line = |of: usize| groups.iter().map(move |group| [group[0], group[of]]);
     let band = line(1).chain(line(3).rev());
     vec![
-        Series::new("", colour, Mark::Band, band),
-        Series::new("", colour, Mark::BoldLine, line(2)),
+        Series::new(name, colour, Mark::Band, band),
+        Series::new(name, colour, Mark::BoldLine, line(2)),
     ]
 }
 

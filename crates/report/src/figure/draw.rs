@@ -97,9 +97,7 @@ fn legend(out: &mut String, figure: &Figure, top: f64, place: Place) -> f64 {
     let mut entries: Vec<&Series> = Vec::new();
     let series = figure.rows.iter().flatten().flat_map(|panel| &panel.series);
     for series in series.filter(|series| !series.layer.is_of_step()) {
-        let known = |e: &&Series| {
-            e.label == series.label && e.colour == series.colour && e.mark == series.mark
-        };
+        let known = |e: &&Series| e.label == series.label && e.colour == series.colour;
         if !series.label.is_empty() && !entries.iter().any(known) {
             entries.push(series);
         }

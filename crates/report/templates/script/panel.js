@@ -238,7 +238,7 @@ class Panel {
   nearest(px, py) {
     let best = { distance: Infinity };
     for (const series of this.series) {
-      if (!series.shown || series.guide) continue;
+      if (!series.shown || series.guide || series.mark === 'band') continue;
       const { values } = series;
       for (let i = 0; i < values.length; i += 2) {
         if (Number.isNaN(values[i])) continue;
