@@ -19,9 +19,9 @@ const MOST_FAILED: usize = 100;
 const MOST_WARNINGS: usize = 20;
 const MOST_COLUMNS: usize = 500;
 const MOST_RANKED: usize = 20;
-/// Figures of further grids are left out where all would take more bytes than this: a page of five
-/// million bytes opens at once on a telephone.
-const MOST_FIGURE_BYTES: usize = 4_000_000;
+/// Figures of further grids are left out where all would take more bytes than this: with the cases the page is then below
+/// six million bytes, which open at once and go by mail.
+const MOST_FIGURE_BYTES: usize = 2_500_000;
 
 /// A part of the page that holds figures.
 struct Gallery<'a> {

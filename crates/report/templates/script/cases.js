@@ -129,9 +129,12 @@ class CaseTable {
 
   // Shows the case that the address names.
   follow() {
-    const case_ = this.data.ids.indexOf(decodeURIComponent(location.hash.slice(1)));
-    if (case_ < 0) return;
-    this.show(case_);
+    const id = decodeURIComponent(location.hash.slice(1));
+    const case_ = this.data.ids.indexOf(id);
+    if (case_ >= 0) this.show(case_);
+    else if (id.startsWith('case-') && !document.getElementById(id)) {
+      this.view.replaceChildren(html('p', { class: 'missing' }, `${id} is not among the ${this.data.ids.length} cases of this page.`));
+    } else return;
     this.view.scrollIntoView();
   }
 
