@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::machine::Machine;
-use crate::outcome::{Explained, Hidden, Outcome};
+use crate::outcome::{CASES, Explained, Hidden, Outcome};
 use crate::outside::Outside;
 use crate::plan::Case;
 use crate::recordings::{Clean, Recorder};
@@ -49,7 +49,7 @@ struct Made {
 
 impl Bench<'_> {
     /// Distinguishes a case from that of the same number under other settings. SHA-256 in hexadecimal.
-    pub fn fingerprint(&self, case: &Case) -> String {
+    fn fingerprint(&self, case: &Case) -> String {
         let machine = &self.machines[case.machine];
         let runs: Vec<&[(String, Value)]> = machine.runs.iter().map(|r| &r.settings[..]).collect();
         let content = format!(
@@ -65,6 +65,29 @@ impl Bench<'_> {
             case.size,
         );
         format!("{:x}", Sha256::digest(content))
+    }
+
+    /// Those of `cases` that are not among the outcomes `done`.
+    ///
+    /// # Errors
+    /// An outcome of a case of that number under other settings.
+    pub fn open<'c>(&self, cases: &'c [Case], done: &[Outcome]) -> Result<Vec<&'c Case>, Error> {
+        let mut open = Vec::new();
+        for case in cases {
+            match done.iter().find(|outcome| outcome.case == case.number) {
+                None => open.push(case),
+                Some(earlier) if earlier.fingerprint == self.fingerprint(case) => {}
+                Some(_) => {
+                    return Err(Error::Cases(format!(
+                        "{} has another case {}: the settings, a machine or the program have changed; --out DIR \
+                         writes elsewhere",
+                        self.out.join(CASES).display(),
+                        case.number
+                    )));
+                }
+            }
+        }
+        Ok(open)
     }
 
     /// Makes the recordings of a case and has `explain` explain them into a folder; it says why where it

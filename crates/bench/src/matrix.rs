@@ -1,13 +1,16 @@
 //! What was hidden against what was named.
 
+use crate::error::Error;
 use crate::outcome::{Gap, Outcome};
 use crate::plan::NOTHING;
+use ::recordings::WholeFile;
 use calibrate::results::ByName;
 use gap::Verdict;
 use input::effects::{Proposal, entry, proposed};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
 
 /// Classes of an effect's size over the noise: the misfit of the calibrated machine without it.
 const CLASSES: [(&str, [f64; 2]); 4] = [
@@ -16,6 +19,8 @@ const CLASSES: [(&str, [f64; 2]); 4] = [
     ("10 and more", [10.0, f64::INFINITY]),
     ("3 and more", [3.0, f64::INFINITY]),
 ];
+/// Names of the files with the counts over all cases.
+pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
 /// Share of the distance to the noise that counts as closed.
 const CLOSED: f64 = 0.8;
 
@@ -216,6 +221,17 @@ impl<'a> Matrix<'a> {
             },
             hidden_against_named: self.confusion(),
         }
+    }
+
+    /// Writes the counts and the page of Markdown into the folder `out`.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn write(&self, out: &Path) -> Result<(), Error> {
+        let counts = serde_json::to_string_pretty(&self.counts())?;
+        WholeFile::write(&out.join(MATRIX[0]), counts.as_bytes())?;
+        WholeFile::write(&out.join(MATRIX[1]), self.markdown().as_bytes())?;
+        Ok(())
     }
 
     /// All of it as a page of Markdown.

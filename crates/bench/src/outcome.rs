@@ -7,6 +7,7 @@ use gap::results::{Effect, Results};
 use recordings::WholeFile;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::fmt;
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -151,6 +152,32 @@ impl Named {
             hidden.is_none() || place.is_none() || hidden == place.as_deref()
         };
         same("joint", &self.joint) && same("throw", &self.throw)
+    }
+}
+
+/// What was found, in a line.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match (&self.found, &self.error) {
+            (Some(found), _) => {
+                let named: Vec<&str> = found.named.iter().map(|n| n.effect.as_str()).collect();
+                let named = match named.is_empty() {
+                    true => "nothing named".to_owned(),
+                    false => named.join(", "),
+                };
+                let (verdict, gap) = (found.verdict.name(), &found.gap);
+                write!(
+                    f,
+                    "{verdict}, {named}, {:.2} to {:.2}",
+                    gap.before, gap.after
+                )?;
+            }
+            (None, error) => write!(f, "{}", error.as_deref().unwrap_or_default())?,
+        }
+        match self.cpu_seconds {
+            Some(seconds) => write!(f, " ({seconds:.0} s)"),
+            None => Ok(()),
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::observation::{Observation, Observed, Run};
 use crate::prediction::Prediction;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use std::f64::consts::{PI, TAU};
 
 /// Orders whose power is maximised over the speed: roughly, and then closely.

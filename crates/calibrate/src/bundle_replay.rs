@@ -2,6 +2,7 @@
 
 mod relations;
 mod results;
+mod summary;
 
 use crate::crank_motion::CrankMotion;
 use crate::error::Error;

@@ -6,7 +6,7 @@ use crate::likelihood::{Likelihood, residuals};
 use crate::observation::{self, Observation, Observed, POINTS, Run};
 use crate::prediction::Prediction;
 use crate::problem::Problem;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::order_lines::OrderLines;
 use std::f64::consts::TAU;

@@ -8,7 +8,7 @@ use crate::pressure_range::{Recorded, shut_valves};
 use crate::problem::Problem;
 use crate::shut_valve::ShutValve;
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use signal::order_lines::OrderLines;
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -7,6 +7,7 @@ use crate::observation::Run;
 use serde::{Deserialize, Serialize};
 use signal::quantisation::quantisation_step;
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// Bits of a converter whose range is not known. Recordings are stored in single precision, which has as many.
 /// A lattice that is seen in them has no more, and one of as many is stored without loss.
@@ -118,6 +119,34 @@ pub(crate) fn whole_bits(span: f64, resolution: f64) -> Option<u32> {
     let bits = (span / resolution).log2().round();
     let exact = (span / resolution / bits.exp2() - 1.0).abs() < SAME_STEP;
     (exact && bits >= 1.0 && bits <= f64::from(ASSUMED_BITS)).then_some(bits as u32)
+}
+
+/// What is known of it, in words.
+impl fmt::Display for Converter {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::RangeAssumed {
+                resolution,
+                bits_needed,
+                bits,
+                range,
+            } => write!(
+                f,
+                "steps of {resolution:.3e}, {bits_needed} bits or more; its range is not identifiable, \
+             {bits} bits are assumed, or {range:.3e}"
+            ),
+            Self::RangePerRun {
+                resolution,
+                finest,
+                bits,
+            } => write!(
+                f,
+                "steps of {finest:.3e} to {resolution:.3e}, {bits} bits over a range set to each run"
+            ),
+            Self::Encoder { bits, .. } => write!(f, "{bits} bits to the turn"),
+            Self::Unknown { converter_reason } => write!(f, "no bits: {converter_reason}"),
+        }
+    }
 }
 
 #[cfg(test)]

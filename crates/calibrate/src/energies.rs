@@ -12,10 +12,8 @@ use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
+use signal::Complex64;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// The first order of the lowest band; the bands are octaves.
 const FIRST: usize = 8;
@@ -40,7 +38,6 @@ pub struct Energies<'a> {
 struct Run<'a> {
     observed: &'a Observation,
     channels: Vec<Vec<Recorded>>,
-    transform: Arc<dyn Fft<f64>>,
 }
 
 /// A band of one channel.
@@ -91,12 +88,12 @@ fn lowest(observed: &Observed) -> impl Iterator<Item = &usize> {
 
 impl Band {
     /// The signal of its orders over the grid of crank angles.
-    fn signal(&self, lines: &[Complex64], transform: &dyn Fft<f64>) -> Vec<Complex64> {
+    fn signal(&self, lines: &[Complex64]) -> Vec<Complex64> {
         let mut signal = vec![Complex64::ZERO; POINTS];
         for k in self.orders.clone() {
             signal[k] = lines.get(k).copied().unwrap_or_default();
         }
-        transform.process(&mut signal);
+        fourier::inverse_complex(&mut signal);
         signal
     }
 
@@ -127,8 +124,8 @@ impl Band {
 
 impl Recorded {
     /// What an observation shows in a band.
-    fn new(band: Band, observed: &Observed, transform: &dyn Fft<f64>) -> Self {
-        let signal = band.signal(&observed.lines.amplitude, transform);
+    fn new(band: Band, observed: &Observed) -> Self {
+        let signal = band.signal(&observed.lines.amplitude);
         let mut recorded = Self {
             shares: band.shares(),
             floor: band.floor(observed),
@@ -154,17 +151,14 @@ impl Recorded {
 }
 
 impl<'a> Run<'a> {
-    fn new(observed: &'a Observation, transform: &Arc<dyn Fft<f64>>) -> Self {
+    fn new(observed: &'a Observation) -> Self {
         let of_channel = |channel: &Observed| -> Vec<Recorded> {
             let bands = bands(last(channel)).into_iter();
-            bands
-                .map(|band| Recorded::new(band, channel, &**transform))
-                .collect()
+            bands.map(|band| Recorded::new(band, channel)).collect()
         };
         Self {
             observed,
             channels: observed.channels.iter().map(of_channel).collect(),
-            transform: transform.clone(),
         }
     }
 
@@ -191,7 +185,7 @@ impl<'a> Run<'a> {
             }
             for recorded in recorded {
                 let floor = recorded.floor;
-                let signal_of = |lines| recorded.band.signal(lines, &*self.transform);
+                let signal_of = |lines| recorded.band.signal(lines);
                 let signal = signal_of(&predicted.amplitude);
                 let here = recorded.means(|i| signal[i].norm_sqr());
                 let apart = here.iter().zip(&recorded.energies);
@@ -215,9 +209,8 @@ impl<'a> Run<'a> {
 impl<'a> Energies<'a> {
     /// Of this problem.
     pub fn new(problem: &'a Problem) -> Self {
-        let transform = FftPlanner::new().plan_fft_inverse(POINTS);
         let runs = problem.runs.iter();
-        let runs = runs.map(|run| Run::new(run, &transform)).collect();
+        let runs = runs.map(Run::new).collect();
         Self {
             problem,
             machine: Superposition::new(problem),
@@ -338,7 +331,7 @@ mod tests {
     }
 
     fn shown(run: &Observation) -> Run<'_> {
-        Run::new(run, &FftPlanner::new().plan_fft_inverse(POINTS))
+        Run::new(run)
     }
 
     fn predicted(amplitude: Vec<Complex64>, derivatives: Vec<Vec<Vec<Complex64>>>) -> Prediction {

@@ -12,7 +12,7 @@ use crate::prediction::{Accuracy, prediction};
 use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use std::f64::consts::TAU;
 
 /// The first order of the lowest octave.

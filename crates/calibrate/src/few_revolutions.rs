@@ -1,6 +1,6 @@
 //! Recordings of one or two revolutions: they do not show how revolutions scatter.
 
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::OrderLines;
 use std::f64::consts::{LN_2, TAU};

@@ -9,8 +9,8 @@ use crate::relation::Relation;
 use crate::transfer::case::Case;
 use crate::transfer::refit::Fitted;
 use nalgebra::DVector;
-use rustfft::num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use signal::Complex64;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 

@@ -8,7 +8,7 @@ use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use signal::order_lines::OrderLines;
 
 /// A misfit below this, in standard deviations of the noise, is noise: no better fit is looked for.

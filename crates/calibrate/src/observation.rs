@@ -307,7 +307,7 @@ fn orders(lines: &OrderLines) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rustfft::num_complex::Complex64;
+    use signal::Complex64;
 
     fn run(amplitude: f64, scatter: f64) -> Observation {
         let lines = OrderLines {

@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
 use crate::problem::{Problem, throw};
 use input::Resolved;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::high_pass::HighPass;

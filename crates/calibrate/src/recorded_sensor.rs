@@ -15,6 +15,7 @@ use signal::nonsynchronous::Nonsynchronous;
 use signal::quantisation::quantisation_step;
 use signal::synchronous_average::RESAMPLING;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// Column of the crank angle.
 pub const CRANK_ANGLE: &str = "crank_angle_rad";
@@ -41,6 +42,30 @@ pub struct RecordedSensor {
     pub converter: Converter,
     /// Samples per second; none where the runs differ.
     pub sample_rate_hz: Option<f64>,
+}
+
+/// Its noise and its converter, in words.
+impl fmt::Display for RecordedSensor {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}; {}", self.noise, self.converter)
+    }
+}
+
+impl fmt::Display for RecordedNoise {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let reason = self.noise_reason.as_deref().unwrap_or_default();
+        match (self.rms, self.at_most) {
+            (Some(rms), _) => {
+                let share = self.of_signal.map_or(String::new(), |share| {
+                    format!(", {:.2} % of its signal", 100.0 * share)
+                });
+                let pink = 100.0 * self.pink_share.unwrap_or(0.0);
+                write!(f, "noise {rms:.3e} rms{share}, {pink:.0} % of it 1/f")
+            }
+            (None, Some(most)) => write!(f, "noise unknown, at most {most:.3e} rms: {reason}"),
+            (None, None) => write!(f, "noise unknown: {reason}"),
+        }
+    }
 }
 
 /// A sensor as results have it: `bits` and `range` are always there, null where they are not known.

@@ -6,6 +6,7 @@
 mod by_name;
 mod gas;
 mod relations;
+mod summary;
 
 use crate::correction::{self, Corrected};
 use crate::error::Error;

@@ -145,8 +145,8 @@ mod tests {
     use crate::parameter::Parameter;
     use input::paths;
     use mechanism::drive::GivenSpeed;
-    use rustfft::num_complex::Complex64;
     use serde_json::json;
+    use signal::Complex64;
     use std::path::Path;
 
     const TURNING: f64 = 50.0;

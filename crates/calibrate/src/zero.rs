@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::likelihood::Likelihood;
 use crate::observation::Observation;
 use crate::problem::Problem;
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use std::f64::consts::{PI, TAU};
 
 /// Orders that must agree at the zero that was found. An acceleration with the wrong sign looks in its first order

@@ -1,25 +1,15 @@
 //! Autocorrelation of a signal.
 
-use realfft::RealFftPlanner;
-
 /// Autocorrelation at the lags `0..count`, 1 at lag 0 (Wiener-Khinchin; padded with zeros so that
 /// the ends do not meet). `signal` must vary and be longer than `count`.
 pub fn autocorrelation(signal: &[f64], count: usize) -> Vec<f64> {
     let mean = signal.iter().sum::<f64>() / signal.len() as f64;
     let length = (signal.len() + count).next_power_of_two();
-    let mut planner = RealFftPlanner::new();
     let mut padded: Vec<f64> = signal.iter().map(|x| x - mean).collect();
     padded.resize(length, 0.0);
-    let forward = planner.plan_fft_forward(length);
-    let mut spectrum = forward.make_output_vec();
-    forward
-        .process(&mut padded, &mut spectrum)
-        .expect("the buffers come from the plan");
+    let mut spectrum = fourier::forward(&mut padded);
     spectrum.iter_mut().for_each(|c| *c = c.norm_sqr().into());
-    planner
-        .plan_fft_inverse(length)
-        .process(&mut spectrum, &mut padded)
-        .expect("the buffers come from the plan");
+    let mut padded = fourier::inverse(spectrum, length);
     let whole = padded[0];
     padded.truncate(count.min(signal.len()));
     padded.iter_mut().for_each(|r| *r /= whole);

@@ -1,11 +1,9 @@
 //! Surrogates: signals with the spectrum of the given one and nothing else of it.
 
+use fourier::Complex64;
 use rand::RngExt;
-use realfft::num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use scalar::random::Stream;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// The signal with the phase of every Fourier component drawn anew (Theiler et al. 1992): a
 /// stationary linear Gaussian signal with the same spectrum. Fewer than two samples, or samples that
@@ -14,13 +12,12 @@ pub fn phase_randomised(signal: &[f64], generator: &mut Stream) -> Vec<f64> {
     if !usable(signal) {
         return signal.to_vec();
     }
-    let fourier = Fourier::new(signal.len());
-    let mut spectrum = fourier.forward(signal);
+    let mut spectrum = forward(signal);
     let amplitudes: Vec<f64> = spectrum.iter().map(|c| c.norm()).collect();
     for (bin, amplitude) in spectrum.iter_mut().zip(amplitudes).skip(1) {
-        *bin = Complex::from_polar(amplitude, generator.random_range(0.0..TAU));
+        *bin = Complex64::from_polar(amplitude, generator.random_range(0.0..TAU));
     }
-    fourier.backward(spectrum)
+    backward(spectrum, signal.len())
 }
 
 /// The signal of a drive with `per_cycle` samples in each cycle. The phases of its Fourier components over
@@ -33,15 +30,14 @@ pub(crate) fn phases_randomised_alike(
     generator: &mut Stream,
 ) -> Vec<f64> {
     let cycles = signal.len() / per_cycle;
-    let fourier = Fourier::new(cycles);
-    let turns: Vec<Complex<f64>> = (0..=cycles / 2)
-        .map(|_| Complex::from_polar(1.0, generator.random_range(0.0..TAU)))
+    let turns: Vec<Complex64> = (0..=cycles / 2)
+        .map(|_| Complex64::from_polar(1.0, generator.random_range(0.0..TAU)))
         .collect();
     let mut surrogate = vec![0.0; cycles * per_cycle];
     for phase in 0..per_cycle {
         let at_phase = signal.iter().skip(phase).step_by(per_cycle);
         let series: Vec<f64> = at_phase.take(cycles).copied().collect();
-        let mut spectrum = fourier.forward(&series);
+        let mut spectrum = forward(&series);
         // The mean stays, and of an even number of cycles the alternating component: both are real.
         for (bin, turn) in spectrum
             .iter_mut()
@@ -51,7 +47,7 @@ pub(crate) fn phases_randomised_alike(
         {
             *bin *= turn;
         }
-        let turned = fourier.backward(spectrum);
+        let turned = backward(spectrum, cycles);
         let places = surrogate.iter_mut().skip(phase).step_by(per_cycle);
         places.zip(turned).for_each(|(place, x)| *place = x);
     }
@@ -70,22 +66,21 @@ pub fn iaaft(signal: &[f64], iterations: usize, generator: &mut Stream) -> Vec<f
     if !usable(signal) {
         return signal.to_vec();
     }
-    let fourier = Fourier::new(signal.len());
-    let amplitudes: Vec<f64> = fourier.forward(signal).iter().map(|c| c.norm()).collect();
+    let amplitudes: Vec<f64> = forward(signal).iter().map(|c| c.norm()).collect();
     let mut sorted = signal.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     let mut surrogate = signal.to_vec();
     shuffle(&mut surrogate, generator);
     let mut order = Vec::new();
     for _ in 0..iterations {
-        let mut spectrum = fourier.forward(&surrogate);
+        let mut spectrum = forward(&surrogate);
         for (bin, amplitude) in spectrum.iter_mut().zip(&amplitudes) {
             let norm = bin.norm();
             if norm > 0.0 {
                 *bin *= amplitude / norm;
             }
         }
-        let coloured = fourier.backward(spectrum);
+        let coloured = backward(spectrum, signal.len());
         let mut next: Vec<(f64, usize)> = coloured.into_iter().zip(0..).collect();
         next.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (&(_, place), &value) in next.iter().zip(&sorted) {
@@ -107,46 +102,16 @@ pub(crate) fn shuffle<T>(values: &mut [T], generator: &mut Stream) {
     }
 }
 
-/// The transforms of signals of one length.
-struct Fourier {
-    length: usize,
-    forward: Arc<dyn RealToComplex<f64>>,
-    inverse: Arc<dyn ComplexToReal<f64>>,
+/// The bins 0 to n/2 of a signal's spectrum.
+fn forward(signal: &[f64]) -> Vec<Complex64> {
+    fourier::forward(&mut signal.to_vec())
 }
 
-impl Fourier {
-    fn new(length: usize) -> Self {
-        let mut planner = RealFftPlanner::new();
-        Self {
-            length,
-            forward: planner.plan_fft_forward(length),
-            inverse: planner.plan_fft_inverse(length),
-        }
-    }
-
-    fn forward(&self, signal: &[f64]) -> Vec<Complex<f64>> {
-        let mut spectrum = self.forward.make_output_vec();
-        self.forward
-            .process(&mut signal.to_vec(), &mut spectrum)
-            .expect("the buffers come from the plan");
-        spectrum
-    }
-
-    fn backward(&self, mut spectrum: Vec<Complex<f64>>) -> Vec<f64> {
-        // The inverse transform of a real signal has real first and (even lengths) last bins.
-        spectrum[0].im = 0.0;
-        if self.length.is_multiple_of(2)
-            && let Some(last) = spectrum.last_mut()
-        {
-            last.im = 0.0;
-        }
-        let mut signal = self.inverse.make_output_vec();
-        self.inverse
-            .process(&mut spectrum, &mut signal)
-            .expect("the buffers come from the plan");
-        signal.iter_mut().for_each(|x| *x /= self.length as f64);
-        signal
-    }
+/// The signal of `length` samples that has this spectrum.
+fn backward(spectrum: Vec<Complex64>, length: usize) -> Vec<f64> {
+    let mut signal = fourier::inverse(spectrum, length);
+    signal.iter_mut().for_each(|x| *x /= length as f64);
+    signal
 }
 
 /// What surrogates say about a signal's statistic.
@@ -230,11 +195,9 @@ mod tests {
     fn random_phases_keep_the_spectrum() {
         let signal = Noise::Ar2.samples(1000, 1);
         let other = phase_randomised(&signal, &mut Stream::seed_from_u64(9));
-        let fourier = Fourier::new(1000);
-        for (a, b) in fourier
-            .forward(&signal)
+        for (a, b) in forward(&signal)
             .iter()
-            .zip(fourier.forward(&other))
+            .zip(forward(&other))
             .skip(1)
             .take(400)
         {

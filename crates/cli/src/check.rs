@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use crate::result_format::ResultFormat;
+use ::features::recorded::counted;
 use bench::settings::HiddenEffects;
 use clap::Args;
 use input::bundle::{self, Bundle};
@@ -110,8 +111,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         0 => Ok(()),
         count => Err(Failure::work(format!(
             "{} in {}",
-            counted(count, "mistake"),
-            counted(files.len(), "file")
+            counted(count as u64, "mistake"),
+            counted(files.len() as u64, "file")
         ))),
     }
 }
@@ -218,9 +219,4 @@ fn missing(kind: Kind, path: &Path) -> Vec<PathBuf> {
     };
     files.retain(|file| !file.exists());
     files
-}
-
-fn counted(number: usize, things: &str) -> String {
-    let plural = if number == 1 { "" } else { "s" };
-    format!("{number} {things}{plural}")
 }

@@ -1,6 +1,6 @@
 //! `crosshead compare`: two recordings, or two datasets, side by side.
 
-use crate::output::{hint, write_file};
+use crate::output::{hint, refuse_existing, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
@@ -52,15 +52,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     let [json, page] = ["comparison.json", "comparison.html"].map(|name| out.join(name));
-    if json.exists() && !arguments.overwrite {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            json.display()
-        )));
-    }
+    refuse_existing([&json], arguments.overwrite)?;
     let (said, length) = (arguments.reading.said()?, arguments.reading.window()?);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(console::threads());
-    let pool = pool.build().map_err(Failure::work)?;
+    let pool = console::pool()?;
     let progress = Progress::of_time("features of both");
     let paths = [arguments.a.as_path(), arguments.b.as_path()];
     let comparison = compare(paths, &said, length, &pool).map_err(Failure::input)?;

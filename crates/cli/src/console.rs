@@ -84,6 +84,15 @@ pub(crate) fn threads() -> usize {
     asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, Into::into))
 }
 
+/// The threads asked for.
+///
+/// # Errors
+/// A system that gives none.
+pub(crate) fn pool() -> Result<rayon::ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads());
+    pool.build().map_err(Failure::work)
+}
+
 /// When clap colours its own messages, which it may have before any argument is parsed.
 pub(crate) fn colour_of_clap(arguments: impl IntoIterator<Item = OsString>) -> ColorChoice {
     let mut choice = ColorChoice::Auto;

@@ -1,6 +1,6 @@
 //! `crosshead domain-gap`: the simulated windows of a dataset beside measured ones.
 
-use crate::output::{hint, write_file};
+use crate::output::{hint, refuse_existing, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
@@ -64,12 +64,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     let [json, page] = ["domain-gap.json", "domain-gap.html"].map(|name| out.join(name));
-    if json.exists() && !arguments.overwrite {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            json.display()
-        )));
-    }
+    refuse_existing([&json], arguments.overwrite)?;
     if arguments.reading.window()? != WindowLength::Default {
         return Err(Failure::input(
             "--window: found one beside a dataset, which says how long windows are",
@@ -80,8 +75,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut said = arguments.reading.said()?;
     like.say(&mut said);
     let inputs = inputs(&arguments.recordings, &said).map_err(Failure::input)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(console::threads());
-    let pool = pool.build().map_err(Failure::work)?;
+    let pool = console::pool()?;
     let cancel = interrupt::flag()?;
     let progress = Progress::new(
         "windows",

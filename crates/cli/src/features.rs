@@ -143,11 +143,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut output = TableFile::new(file, format, &schema).map_err(Failure::work)?;
     let mut summary = Summary::new(columns);
     let cancel = interrupt::flag()?;
-    let threads = console::threads();
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(Failure::work)?;
+    let pool = console::pool()?;
     let mut windows = table.windows(length);
     let progress = Progress::new(
         "windows",
@@ -156,7 +152,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     );
     in_order(
         &pool,
-        2 * threads,
+        2 * console::threads(),
         &mut windows,
         |window| window.as_ref().ok().map(row),
         |window, row| {

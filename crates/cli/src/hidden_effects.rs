@@ -3,19 +3,17 @@
 //! Each case goes through the disk: a bundle is made, the workflow is given its folder and nothing
 //! else, and what it writes is held against what was hidden.
 
-use crate::output::{hint, write_file};
+use crate::output::hint;
 use crate::{Failure, console, explain_gap, interrupt};
+use bench::matrix::MATRIX;
 use bench::outcome::CASES;
-use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outcome, Outside};
+use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outside};
 use bench::{Recorder, cases};
 use clap::Args;
 use input::effects::CATALOGUE;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-
-/// Names of the files with the counts over all cases.
-pub const MATRIX: [&str; 2] = ["matrix.json", "matrix.md"];
 
 /// Arguments of `crosshead hidden-effects`.
 #[derive(Args, Debug)]
@@ -103,30 +101,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         keep: arguments.keep,
     };
     let done = ledger.read().map_err(failure)?;
-    for case in &cases {
-        let earlier = done.iter().find(|outcome| outcome.case == case.number);
-        if earlier.is_some_and(|earlier| earlier.fingerprint != bench.fingerprint(case)) {
-            return Err(Failure::input(format!(
-                "{} has another case {}: the settings, a machine or the program have changed; \
-                 --out DIR writes elsewhere",
-                out.join(CASES).display(),
-                case.number
-            )));
-        }
-    }
+    let open = bench.open(&cases, &done).map_err(failure)?;
     std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
     let cancel = interrupt::flag()?;
-    let open = cases
-        .iter()
-        .filter(|case| done.iter().all(|outcome| outcome.case != case.number));
-    let count = open.clone().count();
-    for (i, case) in open.enumerate() {
+    let count = open.len();
+    for (i, case) in open.into_iter().enumerate() {
         let outcome = bench.outcome(case, |asked, folder| {
             let results = explain_gap::into_folder(asked, folder, &cancel);
             results.map_err(|failure| failure.message().to_owned())
         });
         if cancel.load(Ordering::Relaxed) {
-            write(&Matrix::new(&ledger.read().map_err(failure)?), out)?;
+            let done = ledger.read().map_err(failure)?;
+            Matrix::new(&done).write(out).map_err(failure)?;
             return Err(Failure::interrupted(format!(
                 "stopped: {i} of {count} cases are done; --resume continues from there"
             )));
@@ -134,12 +120,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let outcome = outcome.map_err(failure)?;
         ledger.add(&outcome).map_err(failure)?;
         if !console::is_quiet() {
-            eprintln!("{} of {count}: {}", i + 1, line(case, &outcome));
+            let (number, label) = (case.number, case.label());
+            eprintln!("{} of {count}: case {number}, {label}: {outcome}", i + 1);
         }
     }
     let done = ledger.read().map_err(failure)?;
     let matrix = Matrix::new(&done);
-    write(&matrix, out)?;
+    matrix.write(out).map_err(failure)?;
     print!("{}", matrix.summary());
     println!("{}", out.join(MATRIX[1]).display());
     hint(format_args!(
@@ -201,31 +188,4 @@ fn list(cases: &[Case], machines: &[Machine]) {
             case.label()
         );
     }
-}
-
-/// A case in a line.
-fn line(case: &Case, outcome: &Outcome) -> String {
-    let what = match (&outcome.found, &outcome.error) {
-        (Some(found), _) => {
-            let named: Vec<&str> = found.named.iter().map(|n| n.effect.as_str()).collect();
-            let (before, after) = (found.gap.before, found.gap.after);
-            let named = match named.is_empty() {
-                true => "nothing named".to_owned(),
-                false => named.join(", "),
-            };
-            let verdict = found.verdict.name();
-            format!("{verdict}, {named}, {before:.2} to {after:.2}")
-        }
-        (None, error) => error.clone().unwrap_or_default(),
-    };
-    let seconds = outcome.cpu_seconds;
-    let seconds = seconds.map_or(String::new(), |seconds| format!(" ({seconds:.0} s)"));
-    format!("case {}, {}: {what}{seconds}", case.number, case.label())
-}
-
-/// Writes the counts over all cases.
-fn write(matrix: &Matrix, out: &Path) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(&matrix.counts()).map_err(Failure::work)?;
-    write_file(&out.join(MATRIX[0]), text.as_bytes())?;
-    write_file(&out.join(MATRIX[1]), matrix.markdown().as_bytes())
 }

@@ -33,6 +33,24 @@ pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
     written.map(drop).map_err(Failure::work)
 }
 
+/// Refuses to write where a file of `paths` is already there.
+///
+/// # Errors
+/// The first that is, unless it may be replaced.
+pub(crate) fn refuse_existing<P: AsRef<Path>>(
+    paths: impl IntoIterator<Item = P>,
+    overwrite: bool,
+) -> Result<(), Failure> {
+    let mut paths = paths.into_iter();
+    match paths.find(|path| path.as_ref().exists() && !overwrite) {
+        None => Ok(()),
+        Some(path) => Err(Failure::input(format!(
+            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
+            path.as_ref().display()
+        ))),
+    }
+}
+
 /// Makes the folder in which the file at `path` is to be, if it is not there.
 ///
 /// # Errors

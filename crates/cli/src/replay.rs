@@ -2,17 +2,12 @@
 
 use crate::Failure;
 use crate::bundle::AllowOutside;
-use crate::output::{hint, write_file};
+use crate::output::{hint, refuse_existing, write_file};
 use crate::progress::Progress;
-use ::calibrate::bundle_replay::{BundleReplay, Possible, Results};
-use ::calibrate::relation_spread::RelationSpread;
+use ::calibrate::bundle_replay::{BundleReplay, Possible};
 use ::calibrate::{Error, bundle};
 use clap::Args;
-use serde_json::Value;
 use std::path::PathBuf;
-
-/// Relative difference of mean speeds that is worth a word.
-const SPEED: f64 = 1e-5;
 
 /// Arguments of `crosshead replay`.
 #[derive(Args, Debug)]
@@ -57,15 +52,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let replay = BundleReplay::prepare(&bundle, tree, |_| Vec::new(), left_out, out);
     let replay = replay.map_err(refused)?;
     let path = out.join("replay.json");
-    let mut files = replay.files().iter().chain([&path]);
-    if let Some(path) = files.find(|path| path.exists())
-        && !arguments.overwrite
-    {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            path.display()
-        )));
-    }
+    refuse_existing(replay.files().iter().chain([&path]), arguments.overwrite)?;
     let possible = Possible::read(machine).map_err(Failure::input)?;
     let progress = Progress::of_time("simulating the runs");
     let replays = replay.write().map_err(Failure::work)?;
@@ -73,12 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(progress);
     let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
     write_file(&path, text.as_bytes())?;
-    summary(&results);
-    for (id, run) in results.runs.iter() {
-        if let Some(spread) = &run.relation_spread {
-            summary_of_spread(id, spread);
-        }
-    }
+    print!("{results}");
     println!("{}", path.display());
     let of_machine = machine.map_or(String::new(), |m| format!(" --machine {}", m.display()));
     hint(format_args!(
@@ -93,78 +75,5 @@ fn refused(error: Error) -> Failure {
     match error {
         Error::Simulation { .. } => Failure::work(error),
         error => Failure::input(error),
-    }
-}
-
-fn summary(results: &Results) {
-    let runs = || results.runs.iter();
-    let columns = runs().flat_map(|(_, run)| run.channels.iter());
-    let wide = columns.map(|(column, _)| column.len()).max().unwrap_or(0);
-    let wide = wide.max("channel".len());
-    let long = runs().map(|(id, _)| id.len()).max().unwrap_or(0);
-    let long = long.max("run".len());
-    println!(
-        "{:long$}  {:wide$}  {:>10}  {:>11}  {:>7}",
-        "run", "channel", "difference", "noise floor", "misfit"
-    );
-    for (id, run) in runs() {
-        for (column, channel) in run.channels.iter() {
-            println!(
-                "{id:long$}  {column:wide$}  {:>8.2} %  {:>9.2} %  {:>7.2}",
-                100.0 * channel.difference,
-                100.0 * channel.noise_floor,
-                channel.misfit
-            );
-        }
-    }
-    println!(
-        "difference: of the synchronous means over the recording's RMS; misfit: 1 is noise alone"
-    );
-    for (id, run) in runs() {
-        let faster = run.simulated_speed_rpm / run.recorded_speed_rpm - 1.0;
-        if faster.abs() > SPEED {
-            println!(
-                "{id}: the simulated crank turns at {:.3} rpm, the recorded one at {:.3} rpm ({:+.3} %)",
-                run.simulated_speed_rpm,
-                run.recorded_speed_rpm,
-                100.0 * faster
-            );
-        }
-        if !run.periodic {
-            println!(
-                "{id}: the simulated motion does not repeat itself; compare its means with the recording, not its waveform"
-            );
-        }
-    }
-}
-
-fn summary_of_spread(id: &str, spread: &RelationSpread) {
-    let joints = spread.joints.iter().map(|(path, joint)| {
-        let [at, from] = [joint.clearance_m, joint.stated_for_m].map(|c| 1e3 * c);
-        format!("{path} at {at:.4} mm, its contact known at {from:.4} mm")
-    });
-    println!("{id}: {}", joints.collect::<Vec<String>>().join("; "));
-    let named = spread
-        .relations
-        .iter()
-        .map(|variant| match &variant.relation {
-            Value::String(name) => name.clone(),
-            exponents => exponents.to_string().replace('"', ""),
-        });
-    println!(
-        "  spread over the relations that the recordings do not exclude ({}):",
-        named.collect::<Vec<String>>().join(", ")
-    );
-    for (column, channel) in &spread.channels {
-        let [low, high] = channel.difference.map(|share| 100.0 * share);
-        println!(
-            "  {column}: rms {:.4e} to {:.4e}, peak {:.4e} to {:.4e}, difference {low:.2} to {high:.2} %",
-            channel.rms[0], channel.rms[1], channel.peak[0], channel.peak[1]
-        );
-    }
-    for variant in &spread.relations {
-        if let Some(failure) = &variant.failure {
-            println!("  {}: cannot be simulated: {failure}", variant.relation);
-        }
     }
 }

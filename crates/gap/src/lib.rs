@@ -47,6 +47,7 @@ mod screen;
 mod search;
 mod stability_selection;
 pub mod steps;
+mod summary;
 
 pub use amendment::Amendment;
 pub use candidate::Candidate;

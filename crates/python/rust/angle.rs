@@ -3,8 +3,9 @@
 use crate::column::Column;
 use crate::failure::{failed, wrong};
 use crate::table::Table;
-use arrow::array::{ArrayRef, AsArray, Float32Array, RecordBatch};
-use arrow::datatypes::{Float32Type, Float64Type, Int64Type};
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float32Type, Float64Type, Int64Type};
+use arrow_array::{ArrayRef, Float32Array, RecordBatch};
 use cli::Failure;
 use pyo3::prelude::*;
 use rayon::prelude::*;

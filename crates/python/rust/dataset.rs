@@ -3,7 +3,7 @@
 use crate::failure::{failed, wrong};
 use crate::stream::capsule;
 use crate::table::Table;
-use arrow::array::RecordBatchReader;
+use arrow_array::RecordBatchReader;
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 use recordings::Column;

@@ -6,8 +6,10 @@ use crate::interruptible::{Shared, interruptible};
 use crate::machine::{Machine, throws};
 use crate::table::Table;
 use ::simulate::{Record, Settings, Transient};
-use arrow::array::{ArrayRef, AsArray, Float32Array, Float64Array, RecordBatch};
-use arrow::datatypes::{DataType, Field, Float32Type, Metadata, Schema};
+use arrow_array::cast::AsArray;
+use arrow_array::types::Float32Type;
+use arrow_array::{ArrayRef, Float32Array, Float64Array, RecordBatch};
+use arrow_schema::{DataType, Field, Metadata, Schema};
 use cli::Failure;
 use input::Resolved;
 use input::quantity::{AboveZero, Frequency, Quantity};
@@ -137,7 +139,7 @@ fn run(
 fn recorded(
     channels: Vec<Channel>,
     sample_rate: f64,
-) -> Result<RecordBatch, arrow::error::ArrowError> {
+) -> Result<RecordBatch, arrow_schema::ArrowError> {
     let count = channels.first().map_or(0, |channel| channel.samples.len());
     let time: Float64Array = (0..count).map(|i| Some(i as f64 / sample_rate)).collect();
     let said = |unit: &str, about: &str| {

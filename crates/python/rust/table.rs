@@ -3,9 +3,12 @@
 use crate::column::Column;
 use crate::failure::{failed, wrong};
 use crate::stream::capsule;
-use arrow::array::{Array, ArrayRef, AsArray, Float64Array, RecordBatch, RecordBatchIterator};
-use arrow::compute::{cast, concat};
-use arrow::datatypes::{DataType, Float64Type, SchemaRef};
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float32Type, Float64Type, Int64Type};
+use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, RecordBatchIterator};
+use arrow_schema::{DataType, SchemaRef};
+use arrow_select::concat::concat;
+use arrow_select::filter::filter_record_batch;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
@@ -45,7 +48,7 @@ impl Table {
             .collect();
         match self.batches.as_slice() {
             [batch] => Ok(batch.column(index).clone()),
-            [] => Ok(arrow::array::new_empty_array(
+            [] => Ok(arrow_array::new_empty_array(
                 self.schema.field(index).data_type(),
             )),
             _ => concat(&pieces).map_err(failed),
@@ -146,7 +149,7 @@ impl Table {
         for batch in &self.batches {
             let mask = keep[from..from + batch.num_rows()].to_vec();
             from += batch.num_rows();
-            let kept = arrow::compute::filter_record_batch(batch, &mask.into());
+            let kept = filter_record_batch(batch, &mask.into());
             batches.push(kept.map_err(failed)?);
         }
         Ok(Self::new(self.schema.clone(), batches))
@@ -169,7 +172,7 @@ impl Table {
 fn numpy_of(py: Python<'_>, array: ArrayRef) -> PyResult<Bound<'_, PyAny>> {
     let array = match array.data_type() {
         DataType::Float32 | DataType::Float64 | DataType::Int64 if array.null_count() > 0 => {
-            with_nan(&array)?
+            with_nan(&array)
         }
         _ => array,
     };
@@ -199,9 +202,18 @@ fn numpy_of(py: Python<'_>, array: ArrayRef) -> PyResult<Bound<'_, PyAny>> {
 }
 
 /// Numbers with NaN where one is missing.
-fn with_nan(array: &ArrayRef) -> PyResult<ArrayRef> {
-    let numbers = cast(array, &DataType::Float64).map_err(failed)?;
-    let numbers = numbers.as_primitive::<Float64Type>().iter();
-    let numbers = numbers.map(|number| number.unwrap_or(f64::NAN));
-    Ok(std::sync::Arc::new(Float64Array::from_iter_values(numbers)))
+fn with_nan(array: &ArrayRef) -> ArrayRef {
+    let numbers: Vec<Option<f64>> = match array.data_type() {
+        DataType::Float32 => {
+            let numbers = array.as_primitive::<Float32Type>().iter();
+            numbers.map(|number| number.map(f64::from)).collect()
+        }
+        DataType::Float64 => array.as_primitive::<Float64Type>().iter().collect(),
+        _ => {
+            let numbers = array.as_primitive::<Int64Type>().iter();
+            numbers.map(|number| number.map(|n| n as f64)).collect()
+        }
+    };
+    let numbers = numbers.into_iter().map(|n| n.unwrap_or(f64::NAN));
+    std::sync::Arc::new(Float64Array::from_iter_values(numbers))
 }

@@ -1,9 +1,8 @@
 //! Amplitudes and mean squares over frequency.
 
 use crate::error::{Error, positive};
-use crate::fft;
 use crate::windows::{Window, coherent_gain};
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// A single-sided amplitude spectrum: a sine of amplitude A on a bin shows A there.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,7 +119,7 @@ pub(crate) fn sides(k: usize, n: usize) -> f64 {
 
 fn weighted_transform(x: &[f64], mean: f64, weights: &[f64]) -> Vec<Complex64> {
     let mut work: Vec<f64> = x.iter().zip(weights).map(|(x, w)| (x - mean) * w).collect();
-    fft::forward(&mut work)
+    fourier::forward(&mut work)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::decimate::Decimator;
 use crate::error::{Error, positive};
 use crate::interpolation::interpolate;
 use crate::kaiser::{HALF_WIDTH, PASS_BAND};
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 use std::f64::consts::TAU;
 use std::ops::Range;
 

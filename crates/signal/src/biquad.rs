@@ -195,7 +195,7 @@ impl Section {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rustfft::num_complex::Complex64;
+    use fourier::Complex64;
 
     /// Response to e^(iωt) from the impulse response.
     fn response(filter: &Filter, frequency: f64) -> Complex64 {

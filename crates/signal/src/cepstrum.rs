@@ -2,7 +2,6 @@
 
 use crate::amplitude_spectrum::check;
 use crate::error::Error;
-use crate::fft;
 
 /// Magnitudes below this share of the largest (−80 dB) count as that. Resampling is exact to it,
 /// and a record of whole periods is 0 between its lines, where the logarithm has no value.
@@ -25,14 +24,14 @@ pub fn real_cepstrum(x: &[f64]) -> Result<Vec<f64>, Error> {
     let n = x.len();
     let mean = x.iter().sum::<f64>() / n as f64;
     let mut work: Vec<f64> = x.iter().map(|x| x - mean).collect();
-    let spectrum = fft::forward(&mut work);
+    let spectrum = fourier::forward(&mut work);
     let largest = spectrum.iter().fold(0.0, |m: f64, c| m.max(c.norm_sqr()));
     if largest <= 0.0 {
         return Err(Error::NoFluctuation);
     }
     let logarithm = |square: f64| 0.5 * (square / largest).max(FLOOR * FLOOR).ln();
     let logarithms = spectrum.iter().map(|c| logarithm(c.norm_sqr()).into());
-    let mut cepstrum = fft::inverse(logarithms.collect(), n);
+    let mut cepstrum = fourier::inverse(logarithms.collect(), n);
     cepstrum.truncate(n / 2 + 1);
     for c in &mut cepstrum {
         *c /= n as f64;

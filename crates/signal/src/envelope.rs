@@ -2,9 +2,8 @@
 
 use crate::amplitude_spectrum::{AmplitudeSpectrum, amplitude_spectrum, check, sides};
 use crate::error::{Error, positive};
-use crate::fft;
 use crate::windows::Window;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 use std::f64::consts::PI;
 
 /// A frequency band. Its filter passes the centre whole and half the amplitude at the edges:
@@ -82,7 +81,7 @@ impl Spectrum {
         let line = |i: usize| x[0] + slope * i as f64;
         let mut work: Vec<f64> = x.iter().enumerate().map(|(i, x)| x - line(i)).collect();
         Ok(Self {
-            bins: fft::forward(&mut work),
+            bins: fourier::forward(&mut work),
             samples: n,
         })
     }
@@ -118,7 +117,7 @@ impl Spectrum {
             pointer *= turn;
             place = if place + 1 == points { 0 } else { place + 1 };
         }
-        fft::inverse_complex(&mut envelope);
+        fourier::inverse_complex(&mut envelope);
         envelope
     }
 }
@@ -181,7 +180,7 @@ mod tests {
 
     fn fft_of(x: &[Complex64]) -> Vec<Complex64> {
         let mut conjugate: Vec<Complex64> = x.iter().map(Complex64::conj).collect();
-        fft::inverse_complex(&mut conjugate);
+        fourier::inverse_complex(&mut conjugate);
         conjugate.iter().map(Complex64::conj).collect()
     }
 

@@ -1,7 +1,7 @@
 //! A coupling that does not pass what is constant: a capacitor, a charge amplifier.
 
 use crate::error::{Error, positive};
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 use std::f64::consts::PI;
 
 /// A high-pass of the first order, H(f) = if / (if + f_c).

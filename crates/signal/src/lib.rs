@@ -25,7 +25,6 @@ pub mod decimate;
 pub mod delay;
 pub mod envelope;
 pub mod error;
-mod fft;
 pub mod high_pass;
 pub mod indicated_work;
 mod interpolation;
@@ -47,4 +46,4 @@ pub mod welch;
 pub mod windows;
 
 pub use error::Error;
-pub use rustfft::num_complex::Complex64;
+pub use fourier::Complex64;

@@ -1,8 +1,7 @@
 //! 1/f noise.
 
 use crate::error::Error;
-use crate::fft;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// `n` samples of Gaussian noise whose power density falls as 1/f, from 1/T (T being the length
 /// of the record) to the Nyquist frequency, with nothing at 0 Hz.
@@ -39,7 +38,7 @@ pub fn pink_noise(n: usize, rms: f64, mut normal: impl FnMut() -> f64) -> Result
         }
     };
     let spectrum = std::iter::once(Complex64::ZERO).chain((1..=n / 2).map(bin));
-    Ok(fft::inverse(spectrum.collect(), n))
+    Ok(fourier::inverse(spectrum.collect(), n))
 }
 
 #[cfg(test)]
@@ -86,7 +85,7 @@ mod tests {
         let mut power = vec![0.0; n / 2 + 1];
         for _ in 0..3000 {
             let mut x = pink_noise(n, 1.0, &mut normal).unwrap();
-            for (sum, c) in power.iter_mut().zip(fft::forward(&mut x)) {
+            for (sum, c) in power.iter_mut().zip(fourier::forward(&mut x)) {
                 *sum += c.norm_sqr() / 3000.0;
             }
         }

@@ -2,8 +2,7 @@
 
 use crate::angle_resampling::Revolutions;
 use crate::error::Error;
-use crate::fft;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// Fewest revolutions: with fewer there are too few bins between the orders.
 const REVOLUTIONS: usize = 3;
@@ -59,7 +58,7 @@ impl Nonsynchronous {
         }
         let n = x.samples().len();
         let mut work = x.samples().to_vec();
-        let spectrum = fft::forward(&mut work);
+        let spectrum = fourier::forward(&mut work);
         let between = |k: &usize| !k.is_multiple_of(count);
         let bins: Vec<usize> = (1..highest * count).filter(between).collect();
         let scale = 2.0 / (n as f64 * n as f64);
@@ -137,7 +136,7 @@ fn steady_share(
     for k in bins {
         white[*k] = spectrum[*k] / fitted(*k).max(f64::MIN_POSITIVE).sqrt();
     }
-    let residual = fft::inverse(white, n);
+    let residual = fourier::inverse(white, n);
     let mut squares = [0.0; SECTORS];
     for (i, r) in residual.iter().enumerate() {
         squares[i % points * SECTORS / points] += r * r;

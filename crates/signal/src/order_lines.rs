@@ -2,8 +2,7 @@
 
 use crate::angle_resampling::Revolutions;
 use crate::error::Error;
-use crate::fft;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// The lines of a channel over the crank angle: index `k` holds order `k`, from 0 on.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,7 +45,7 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
     let count = x.count();
     let mut work = x.samples().to_vec();
     let scale = 2.0 / work.len() as f64;
-    let spectrum = fft::forward(&mut work);
+    let spectrum = fourier::forward(&mut work);
     let offsets: Vec<usize> = match (count - 1) / 2 {
         0 => Vec::new(),
         reach => (1..)

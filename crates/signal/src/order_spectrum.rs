@@ -2,8 +2,7 @@
 
 use crate::angle_resampling::Revolutions;
 use crate::error::Error;
-use crate::fft;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// Amplitudes at orders 1, 2, ... of the shaft; index `k - 1` holds order `k`.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +33,7 @@ pub fn order_spectrum(x: &Revolutions, highest: usize) -> Result<OrderSpectrum, 
     let mut work = vec![0.0; n];
     for revolution in x.iter() {
         work.copy_from_slice(revolution);
-        let spectrum = fft::forward(&mut work);
+        let spectrum = fourier::forward(&mut work);
         for ((sum, square), c) in sums.iter_mut().zip(&mut squares).zip(&spectrum[1..]) {
             *sum += c;
             *square += c.norm_sqr();

@@ -2,7 +2,6 @@
 
 use crate::amplitude_spectrum::{check, sides};
 use crate::error::Error;
-use crate::fft;
 use std::f64::consts::TAU;
 
 /// Share of a band's edge by which a line may miss it and still be in the band: a line that lies on the
@@ -58,7 +57,7 @@ impl OverallVibration {
         let n = x.len();
         let mean = x.iter().sum::<f64>() / n as f64;
         let mut work: Vec<f64> = x.iter().map(|x| x - mean).collect();
-        let spectrum = fft::forward(&mut work);
+        let spectrum = fourier::forward(&mut work);
         let scale = 1.0 / (n as f64 * n as f64);
         let within = low * (1.0 - AT_THE_EDGE)..=high * (1.0 + AT_THE_EDGE);
         let mut squares = [0.0; 3];

@@ -2,8 +2,7 @@
 
 use crate::angle_resampling::{AngleGrid, Revolutions, mean_revolution};
 use crate::error::{Error, positive};
-use crate::fft;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 use std::f64::consts::TAU;
 
 /// Velocity against acceleration: one loop per revolution.
@@ -121,7 +120,7 @@ impl PhasePortrait {
 fn integrate(mut increments: Vec<f64>, points: usize) -> Vec<f64> {
     let n = increments.len();
     let revolutions = n / points;
-    let mut spectrum = fft::forward(&mut increments);
+    let mut spectrum = fourier::forward(&mut increments);
     for (k, c) in spectrum.iter_mut().enumerate() {
         if 2 * k < revolutions || k == 0 || 2 * k == n {
             *c = Complex64::ZERO;
@@ -130,7 +129,7 @@ fn integrate(mut increments: Vec<f64>, points: usize) -> Vec<f64> {
             *c *= Complex64::new(0.0, -1.0 / (TAU * k as f64));
         }
     }
-    fft::inverse(spectrum, n)
+    fourier::inverse(spectrum, n)
 }
 
 fn extent(x: &[f64]) -> f64 {

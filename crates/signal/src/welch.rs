@@ -2,10 +2,9 @@
 
 use crate::amplitude_spectrum::{check, sides};
 use crate::error::Error;
-use crate::fft;
 use crate::segments::Segments;
 use crate::windows::Window;
-use rustfft::num_complex::Complex64;
+use fourier::Complex64;
 
 /// A single-sided power spectral density.
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +109,7 @@ pub(crate) fn for_each_segment(
         for ((y, x), w) in work.iter_mut().zip(samples).zip(&weights) {
             *y = (x - mean) * w;
         }
-        take(&fft::forward(&mut work));
+        take(&fourier::forward(&mut work));
     }
     match segments.starts.len() {
         0 => Err(Error::NoFluctuation),

@@ -74,7 +74,7 @@ pub fn exponents<F: Flow>(
     Ok(if count == 1 {
         Followed::<F, 1>::new(flow, settings, count)?.exponents
     } else {
-        Followed::<F, 4>::new(flow, settings, count)?.exponents
+        Followed::<F, 8>::new(flow, settings, count)?.exponents
     })
 }
 

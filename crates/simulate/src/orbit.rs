@@ -17,7 +17,8 @@ use crate::recorder::{Recorder, apart};
 use crate::run::{Run, Standing};
 use crate::sensor::Sensor;
 use crate::settings::Settings;
-use mechanism::{Machine, lift};
+use integrate::Real;
+use mechanism::{Evaluation, Machine, lift};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use scalar::{Dual, Scalar};
@@ -152,8 +153,12 @@ impl Orbit<'_> {
     fn along(&self, stretch: &Stretch) -> Result<Along, Error> {
         let parameters = self.moved.len();
         if parameters == 0 {
-            let part = self.part::<0>(stretch, 0)?;
-            return Ok((part.values, Vec::new(), part.steps));
+            let from = &stretch.from;
+            let machine = lift::constants(self.machine);
+            let mut run = Run::resume(machine, from, &from.state, self.settings.tolerance, false);
+            run.hurry();
+            let (values, ()) = self.followed(&mut run, stretch, |_| ())?;
+            return Ok((values, Vec::new(), run.steps()));
         }
         let states = stretch.disturbed.len() + stretch.remembered;
         let count = parameters + states;
@@ -218,19 +223,7 @@ impl Orbit<'_> {
                 memory.tangent[direction] = 1.0;
             }
         }
-        let mut inner: Vec<Vec<Dual<f64, N>>> = vec![Vec::new(); self.sensors.len()];
-        let mut look = |at: &mechanism::Evaluation<Dual<f64, N>>| {
-            for (sensor, inner) in self.sensors.iter().zip(&mut inner) {
-                inner.push(sensor.measured.value(at));
-            }
-        };
-        let [within, beyond] = stretch.instants.split_at(stretch.end);
-        run.show(within, &mut look)?;
-        run.advance(stretch.end)?;
-        let ends = ends(&mut run, stretch);
-        if beyond.count > 0 {
-            run.show(beyond, &mut look)?;
-        }
+        let (inner, ends) = self.followed(&mut run, stretch, |run| ends(run, stretch))?;
         let (values, tangents) = apart(&inner);
         Ok(Part {
             values,
@@ -238,6 +231,29 @@ impl Orbit<'_> {
             ends,
             steps: run.steps(),
         })
+    }
+
+    /// What the sensors measure along `run`, and what `at_end` finds at the end of the period.
+    fn followed<S: Real, E>(
+        &self,
+        run: &mut Run<S>,
+        stretch: &Stretch,
+        at_end: impl FnOnce(&mut Run<S>) -> E,
+    ) -> Result<(Vec<Vec<S>>, E), Error> {
+        let mut inner = vec![Vec::new(); self.sensors.len()];
+        let mut look = |at: &Evaluation<S>| {
+            for (sensor, inner) in self.sensors.iter().zip(&mut inner) {
+                inner.push(sensor.measured.value(at));
+            }
+        };
+        let [within, beyond] = stretch.instants.split_at(stretch.end);
+        run.show(within, &mut look)?;
+        run.advance(stretch.end)?;
+        let end = at_end(run);
+        if beyond.count > 0 {
+            run.show(beyond, &mut look)?;
+        }
+        Ok((inner, end))
     }
 }
 

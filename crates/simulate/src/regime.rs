@@ -96,7 +96,7 @@ pub fn motion<F: Flow>(
     let motion = match extent {
         Extent::Largest => judge(Followed::<F, 1>::new(flow, settings, 1)?, flow, settings),
         Extent::Spectrum => judge(
-            Followed::<F, 4>::new(flow, settings, states)?,
+            Followed::<F, 8>::new(flow, settings, states)?,
             flow,
             settings,
         ),

@@ -73,7 +73,7 @@ fn from_start(
     settings: &Settings,
 ) -> Result<Sensitivities, Error> {
     let part = |chunk: &[Moved]| match chunk.len() {
-        0 => tangents::<0>(machine, sensors, chunk, settings),
+        0 => values(machine, sensors, settings),
         1 => tangents::<1>(machine, sensors, chunk, settings),
         _ => tangents::<8>(machine, sensors, chunk, settings),
     };
@@ -85,6 +85,22 @@ fn from_start(
         all.steps += part.steps;
     }
     Ok(all)
+}
+
+fn values(
+    machine: &Machine,
+    sensors: &[Sensor],
+    settings: &Settings,
+) -> Result<Sensitivities, Error> {
+    let mut run = Run::start(lift::constants(machine), settings.tolerance, false);
+    run.hurry();
+    let (transient, period) = run.leave_transient(settings.transient)?;
+    let (recorder, inner) = recorded(&mut run, transient, sensors, settings)?;
+    Ok(Sensitivities {
+        settled: period.is_some(),
+        steps: run.steps(),
+        ..recorder.sensitivities(machine, sensors, &[], &inner, &[])?
+    })
 }
 
 fn tangents<const N: usize>(

@@ -29,6 +29,7 @@ mod prior;
 mod results;
 mod screen;
 mod selection;
+mod summary;
 mod tolerance;
 mod verdict;
 

@@ -7,7 +7,7 @@ use calibrate::problem::columns;
 use calibrate::{Channel, Observation, Parameter, Problem, Run, calibrate};
 use input::bundle::Bundle;
 use input::{MachineFile, paths};
-use rustfft::num_complex::Complex64;
+use signal::Complex64;
 use std::ops::ControlFlow;
 use std::path::Path;
 

@@ -2,7 +2,6 @@
 
 pub(crate) mod arguments;
 pub(crate) mod progress;
-pub(crate) mod summary;
 
 use crate::output::hint;
 use crate::{Failure, interrupt, report};
@@ -37,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         if done.reused {
             println!("nothing has changed since this was found:");
         }
-        summary::print(results);
+        print!("{results}");
         println!("{}", done.machine.display());
         println!("{}", out.join(report::PAGE).display());
     })?;

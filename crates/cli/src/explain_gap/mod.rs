@@ -1,11 +1,10 @@
 //! `crosshead explain-gap`: which effect a model lacks that recordings show.
 
 mod progress;
-mod summary;
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::arguments::read;
-use crate::output::hint;
+use crate::output::{hint, refuse_existing};
 use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
 use clap::Args;
@@ -65,12 +64,7 @@ pub struct Arguments {
 /// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    if out.join(RESULTS).exists() && !arguments.overwrite {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            out.join(RESULTS).display()
-        )));
-    }
+    refuse_existing([out.join(RESULTS)], arguments.overwrite)?;
     let input = std::slice::from_ref(&arguments.input);
     let (mut calibration, base, document) = read(input, arguments.machine.as_deref())?;
     if !arguments.hold_out.is_empty() {
@@ -91,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let results = into_folder(&asked, out, &cancel)?;
     arguments.format.print(&results, |results| {
-        summary::print(results);
+        print!("{results}");
         println!("{}", out.join(MACHINE).display());
         println!("{}", out.join(report::PAGE).display());
     })?;

@@ -1,7 +1,7 @@
 //! The calibration that a sweep asks for before its first case.
 
 use crate::Failure;
-use crate::calibrate::{finish, summary};
+use crate::calibrate::finish;
 use ::calibrate::Calibrated;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -53,5 +53,5 @@ fn print(done: &Calibrated, folder: &Path) {
         true => println!("calibrated before, and nothing has changed since:"),
         false => println!("calibrated into {}:", folder.display()),
     }
-    summary::print(&done.results);
+    print!("{}", done.results);
 }

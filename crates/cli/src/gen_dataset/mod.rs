@@ -82,17 +82,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (_, true) => Existing::Overwrite,
         _ => Existing::Refuse,
     };
-    let threads = console::threads();
     let options = Options {
         existing,
-        threads,
+        threads: console::threads(),
         cancel: &cancel,
         retry_failed: arguments.retry_failed,
         trial: Some(&try_case::command),
     };
     let started = Instant::now();
     let claim = || claim(&sweep, nominal, &out, existing, &cancel);
-    let (claim, plan) = on_threads(threads, claim)?;
+    let (claim, plan) = console::pool()?.install(claim)?;
     let plan = with_format(plan, arguments.format)?;
     // Before hours of simulation.
     warn(&plan.census().mistakes());
@@ -187,15 +186,6 @@ impl Arguments {
         };
         with_format(plan, self.format)
     }
-}
-
-/// Does `work`, whatever it does in parallel on so many threads.
-fn on_threads<T: Send>(
-    threads: usize,
-    work: impl FnOnce() -> Result<T, Failure> + Send,
-) -> Result<T, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(Failure::work)?.install(work)
 }
 
 fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {

@@ -97,41 +97,29 @@ fn failed(error: Error) -> Failure {
     }
 }
 
-/// Writes the page of the calibration in `folder` to the file `out`, and says where that is.
+/// Writes the page of the calibration in `folder` to the file `out`.
 ///
 /// # Errors
 /// A folder that is no calibration, or a page that cannot be made or written.
-pub fn write_calibration(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = CalibrationPage::read(folder)
-        .map_err(failed)?
-        .render()
-        .map_err(Failure::work)?;
-    write_page(out, &page.html).map_err(failed)?;
-    Ok(out.to_owned())
+pub fn write_calibration(folder: &Path, out: &Path) -> Result<(), Failure> {
+    let page = CalibrationPage::read(folder).map_err(failed)?.render();
+    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
 }
 
-/// Writes the page of the explanation in `folder` to the file `out`, and says where that is.
+/// Writes the page of the explanation in `folder` to the file `out`.
 ///
 /// # Errors
 /// A folder that is no explanation, or a page that cannot be made or written.
-pub fn write_gap(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = GapPage::read(folder)
-        .map_err(failed)?
-        .render()
-        .map_err(Failure::work)?;
-    write_page(out, &page.html).map_err(failed)?;
-    Ok(out.to_owned())
+pub fn write_gap(folder: &Path, out: &Path) -> Result<(), Failure> {
+    let page = GapPage::read(folder).map_err(failed)?.render();
+    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
 }
 
-/// Writes the page of the wear in `folder` to the file `out`, and says where that is.
+/// Writes the page of the wear in `folder` to the file `out`.
 ///
 /// # Errors
 /// A folder without an estimation of wear, or a page that cannot be made or written.
-pub fn write_wear(folder: &Path, out: &Path) -> Result<PathBuf, Failure> {
-    let page = WearPage::read(folder)
-        .map_err(failed)?
-        .render()
-        .map_err(Failure::work)?;
-    write_page(out, &page.html).map_err(failed)?;
-    Ok(out.to_owned())
+pub fn write_wear(folder: &Path, out: &Path) -> Result<(), Failure> {
+    let page = WearPage::read(folder).map_err(failed)?.render();
+    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
 }

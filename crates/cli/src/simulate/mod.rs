@@ -3,7 +3,7 @@
 mod summary;
 
 use crate::Failure;
-use crate::output::{hint, write_file};
+use crate::output::{hint, refuse_existing, write_file};
 use crate::progress::Progress;
 use ::report::case_picture::CasePicture;
 use ::report::run_figures::{FIGURES, RunFigures};
@@ -89,7 +89,7 @@ enum Format {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (machine, settings, mut noise) = what_to_run(arguments)?;
     let files = Files::new(arguments);
-    refuse_existing(&files.all(), arguments.overwrite)?;
+    refuse_existing(files.all(), arguments.overwrite)?;
 
     let recordable = settings.check(machine.speed);
     recordable.map_err(|e| Failure::input(format!("{}: {e}", machine.name)))?;
@@ -284,16 +284,6 @@ fn settings(arguments: &Arguments, of_machine: Option<f64>) -> Result<Settings, 
         tolerance,
         ..default
     })
-}
-
-fn refuse_existing(paths: &[&Path], overwrite: bool) -> Result<(), Failure> {
-    match paths.iter().find(|path| path.exists() && !overwrite) {
-        None => Ok(()),
-        Some(path) => Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            path.display()
-        ))),
-    }
 }
 
 /// Writes a file that appears whole or not at all.

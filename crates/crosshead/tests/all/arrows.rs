@@ -5,13 +5,14 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 /// What each crate may import, the lowest first. A crate that is added gets its line here.
-const MAY_IMPORT: [(&str, &str); 19] = [
+const MAY_IMPORT: [(&str, &str); 20] = [
     ("scalar", ""),
     ("files", ""),
-    ("signal", ""),
+    ("fourier", ""),
+    ("signal", "fourier"),
     ("classify", ""),
     ("integrate", "scalar"),
-    ("chaos", "scalar"),
+    ("chaos", "fourier scalar"),
     ("mechanism", "scalar integrate"),
     ("simulate", "scalar integrate mechanism signal"),
     ("input", "files scalar mechanism simulate"),
@@ -19,7 +20,7 @@ const MAY_IMPORT: [(&str, &str); 19] = [
     ("features", "chaos files input recordings signal simulate"),
     (
         "calibrate",
-        "features files input mechanism recordings scalar signal simulate",
+        "features files fourier input mechanism recordings scalar signal simulate",
     ),
     (
         "sweep",

@@ -1,12 +1,12 @@
 //! Tables as Arrow record batches.
 
 use crate::{Column, Data, Error, Kind, Schema, Table};
-use arrow::array::{
+use arrow_array::{
     ArrayRef, BooleanArray, Float32Array, Float64Array, Int64Array, ListArray, RecordBatch,
     StringArray,
 };
-use arrow::buffer::{NullBuffer, OffsetBuffer};
-use arrow::datatypes::{DataType, Field, Metadata, Schema as ArrowSchema, SchemaRef};
+use arrow_buffer::{NullBuffer, OffsetBuffer};
+use arrow_schema::{DataType, Field, Metadata, Schema as ArrowSchema, SchemaRef};
 use std::sync::Arc;
 
 /// Name of the values within a list, as the Parquet standard has it.

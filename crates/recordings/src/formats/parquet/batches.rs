@@ -2,9 +2,9 @@
 
 use super::read::{ParquetFile, damaged, guarded};
 use crate::Error;
-use arrow::array::{RecordBatch, RecordBatchReader};
-use arrow::datatypes::SchemaRef;
-use arrow::error::ArrowError;
+use arrow_array::{RecordBatch, RecordBatchReader};
+use arrow_schema::SchemaRef;
+use arrow_schema::ArrowError;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReader;
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -10,6 +10,7 @@ mod batches;
 mod pages;
 mod read;
 mod recordings;
+mod widened;
 mod write;
 
 pub use batches::Batches;

@@ -1,11 +1,12 @@
 //! Parquet to tables: our own, and those of other programs.
 
 use super::pages::{self, Announced};
+use super::widened;
 use crate::measured::expansion;
 use crate::{Column, Data, Error, Kind, Role, Schema, Table};
-use arrow::array::{Array, ArrayRef, AsArray, RecordBatch};
-use arrow::compute::cast;
-use arrow::datatypes::{DataType, Field, Float32Type, Float64Type, Int64Type};
+use arrow_array::cast::AsArray;
+use arrow_array::{Array, RecordBatch};
+use arrow_schema::{DataType, Field};
 use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{
     ArrowReaderMetadata, ArrowReaderOptions, ParquetRecordBatchReader,
@@ -349,58 +350,14 @@ fn kind(data_type: &DataType) -> Option<Kind> {
     }
 }
 
-/// Appends an array of the kind of `data`, with an error in words when a number has no place in it.
-fn append(array: &ArrayRef, data: &mut Data) -> Result<(), String> {
-    let widened = |to| cast(array, &to).map_err(|error| error.to_string());
+/// Appends an array of the kind of `data`, with an error in words when a value has no place in it.
+fn append(array: &dyn Array, data: &mut Data) -> Result<(), String> {
     match data {
-        Data::Text(values) => {
-            let texts = widened(DataType::Utf8)?;
-            values.extend(
-                texts
-                    .as_string::<i32>()
-                    .iter()
-                    .map(|text| text.map(str::to_owned)),
-            );
-        }
-        Data::Integer(values) => {
-            let integers = widened(DataType::Int64)?;
-            if integers.null_count() > array.null_count() {
-                return Err("a whole number above 2^63 - 1".into());
-            }
-            values.extend(integers.as_primitive::<Int64Type>().iter());
-        }
-        Data::Real(values) => {
-            values.extend(
-                widened(DataType::Float64)?
-                    .as_primitive::<Float64Type>()
-                    .iter(),
-            );
-        }
+        Data::Text(values) => values.extend(widened::texts(array)?),
+        Data::Integer(values) => values.extend(widened::integers(array)?),
+        Data::Real(values) => values.extend(widened::reals(array)?),
         Data::Flag(values) => values.extend(array.as_boolean().iter()),
-        Data::Samples(values) => match array.data_type() {
-            DataType::LargeList(_) => append_lists(array.as_list::<i64>().iter(), values)?,
-            _ => append_lists(array.as_list::<i32>().iter(), values)?,
-        },
-    }
-    Ok(())
-}
-
-fn append_lists(
-    lists: impl Iterator<Item = Option<ArrayRef>>,
-    values: &mut Vec<Option<Vec<f32>>>,
-) -> Result<(), String> {
-    for list in lists {
-        let samples = match &list {
-            None => None,
-            Some(list) if list.null_count() > 0 => {
-                return Err("a list with a missing sample".into());
-            }
-            Some(list) => {
-                let list = cast(list, &DataType::Float32).map_err(|error| error.to_string())?;
-                Some(list.as_primitive::<Float32Type>().values().to_vec())
-            }
-        };
-        values.push(samples);
+        Data::Samples(values) => values.extend(widened::samples(array)?),
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::{Column, Data, Error, Kind, Role, Schema, Table, Value};
-use arrow::array::{ArrayRef, RecordBatch};
+use arrow_array::{ArrayRef, RecordBatch};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding};
 use parquet::file::properties::WriterProperties;
@@ -200,8 +200,8 @@ fn foreign(folder: &tempfile::TempDir, columns: Vec<(&str, ArrayRef)>) -> PathBu
 
 #[test]
 fn files_of_other_programs_are_read_column_by_column() {
-    use arrow::array::*;
-    use arrow::datatypes::{Float32Type, Int32Type};
+    use arrow_array::types::{Float32Type, Int32Type};
+    use arrow_array::*;
 
     let lists = || vec![Some(vec![Some(1.5), Some(-2.0)]), None];
     let categories: DictionaryArray<Int32Type> = ["none", "big_end"].into_iter().collect();
@@ -356,7 +356,7 @@ fn numbers(batches: Batches) -> Result<Vec<f64>, String> {
     for batch in batches {
         let batch = batch.map_err(|error| error.to_string())?;
         let column = batch.column_by_name("x").unwrap();
-        let column = column.as_any().downcast_ref::<arrow::array::Float64Array>();
+        let column = column.as_any().downcast_ref::<arrow_array::Float64Array>();
         numbers.extend(column.unwrap().values());
     }
     Ok(numbers)
@@ -371,7 +371,7 @@ fn several_files_are_one_stream_of_record_batches() {
     let expected: Vec<f64> = (0..12).map(f64::from).collect();
     assert_eq!(numbers(both), Ok(expected));
     let some = Batches::new(vec![a.clone()], Some(vec!["x".into()])).unwrap();
-    let schema = arrow::array::RecordBatchReader::schema(&some);
+    let schema = arrow_array::RecordBatchReader::schema(&some);
     assert_eq!(schema.fields().len(), 1);
     assert_eq!(schema.field(0).metadata().get("unit").unwrap(), "m");
     let rows = Batches::of_rows(&b, None, 2..4).unwrap();

@@ -2,7 +2,7 @@
 
 use crate::formats::record_batch::{ELEMENT, fields, with_schema};
 use crate::{Error, Kind, Schema, Table, Value};
-use arrow::datatypes::{Schema as ArrowSchema, SchemaRef};
+use arrow_schema::{Schema as ArrowSchema, SchemaRef};
 use parquet::arrow::ArrowWriter;
 use parquet::basic::{Compression, Encoding, ZstdLevel};
 use parquet::errors::ParquetError;

@@ -1,11 +1,15 @@
 //! Fourier transforms, with the plans kept per thread.
+//!
+//! The transforms of `rustfft` are generic: each crate that plans one compiles all of them, half a megabyte. Here they
+//! are compiled once.
 
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+pub use rustfft::num_complex::Complex64;
 
 /// Lengths kept per thread. Windows of a sweep come in many lengths; past this number the plans
 /// are dropped, so that memory does not grow with the sweep.
@@ -40,7 +44,7 @@ thread_local! {
 }
 
 /// X_k = Σ_j x_j e^(−2πi jk/n) for k = 0 ..= n/2. Uses `x` as work space; `x` is not empty.
-pub(crate) fn forward(x: &mut [f64]) -> Vec<Complex64> {
+pub fn forward(x: &mut [f64]) -> Vec<Complex64> {
     let n = x.len();
     let plan = FORWARD.with(|plans| plans.get(n, || RealFftPlanner::new().plan_fft_forward(n)));
     let mut spectrum = plan.make_output_vec();
@@ -51,7 +55,7 @@ pub(crate) fn forward(x: &mut [f64]) -> Vec<Complex64> {
 
 /// x_j = Σ_k X_k e^(2πi jk/n) over all n bins, of which `spectrum` holds 0 ..= n/2 (no 1/n).
 /// The imaginary parts of bin 0 and of the Nyquist bin are ignored. `n` is not 0.
-pub(crate) fn inverse(mut spectrum: Vec<Complex64>, n: usize) -> Vec<f64> {
+pub fn inverse(mut spectrum: Vec<Complex64>, n: usize) -> Vec<f64> {
     spectrum[0].im = 0.0;
     if n.is_multiple_of(2) {
         spectrum[n / 2].im = 0.0;
@@ -64,58 +68,8 @@ pub(crate) fn inverse(mut spectrum: Vec<Complex64>, n: usize) -> Vec<f64> {
 }
 
 /// x_j = Σ_k X_k e^(2πi jk/n) of complex values, in place (no 1/n). `x` is not empty.
-pub(crate) fn inverse_complex(x: &mut [Complex64]) {
+pub fn inverse_complex(x: &mut [Complex64]) {
     let n = x.len();
     let plan = COMPLEX_INVERSE.with(|p| p.get(n, || FftPlanner::new().plan_fft_inverse(n)));
     plan.process(x);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn samples(n: usize) -> Vec<f64> {
-        (0..n).map(|i| ((i * i) as f64 * 0.37).sin()).collect()
-    }
-
-    #[test]
-    fn inverse_undoes_forward() {
-        for n in [1, 2, 3, 8, 17, 1200] {
-            let back = inverse(forward(&mut samples(n)), n);
-            for (b, x) in back.iter().zip(samples(n)) {
-                assert!((b / n as f64 - x).abs() < 1e-13, "n = {n}");
-            }
-        }
-    }
-
-    #[test]
-    fn complex_inverse_agrees_with_the_real_one() {
-        for n in [2, 16, 45] {
-            let half = forward(&mut samples(n));
-            let mut whole: Vec<Complex64> = (0..n)
-                .map(|k| half.get(k).copied().unwrap_or_else(|| half[n - k].conj()))
-                .collect();
-            inverse_complex(&mut whole);
-            for (c, x) in whole.iter().zip(inverse(half, n)) {
-                assert!((c - x).norm() < 1e-12, "n = {n}");
-            }
-        }
-    }
-
-    #[test]
-    fn bits_do_not_depend_on_earlier_lengths() {
-        let lengths = [8192, 6144, 4608];
-        let fresh = lengths.map(|n| {
-            std::thread::spawn(move || forward(&mut samples(n)))
-                .join()
-                .unwrap()
-        });
-        let used = std::thread::spawn(move || {
-            for n in (1..400).map(|i| 16 * i) {
-                forward(&mut samples(n));
-            }
-            lengths.map(|n| forward(&mut samples(n)))
-        });
-        assert_eq!(fresh, used.join().unwrap());
-    }
 }

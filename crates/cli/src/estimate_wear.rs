@@ -1,9 +1,8 @@
 //! `crosshead estimate-wear`: which joints are worn, and how much, from recordings.
 
-mod summary;
-
 use crate::bundle::AllowOutside;
 use crate::calibrate::progress::Bar;
+use crate::output::refuse_existing;
 use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
 use ::calibrate::Settings;
@@ -64,12 +63,7 @@ fn times(text: &str) -> Result<f64, String> {
 /// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    if out.join(WEAR).exists() && !arguments.overwrite {
-        return Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
-            out.join(WEAR).display()
-        )));
-    }
+    refuse_existing([out.join(WEAR)], arguments.overwrite)?;
     let machine = input::machine_file::read(&arguments.machine).map_err(Failure::input)?;
     let mut calibration = Calibration::with_defaults(vec![arguments.bundle.clone()]);
     let offset = ::calibrate::run_condition::CRANK_ANGLE_OFFSET.to_owned();
@@ -92,9 +86,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let done = prepared
         .finish(&mut Bar::new(&cancel))
         .map_err(Failure::work)?;
-    let page = report::write_wear(out, &out.join(report::PAGE))?;
+    let page = out.join(report::PAGE);
+    report::write_wear(out, &page)?;
     arguments.format.print(&done.results, |results| {
-        summary::print(results);
+        print!("{results}");
         println!("{}", done.machine.display());
         println!("{}", page.display());
     })?;

@@ -1,0 +1,69 @@
+//! What an explanation found, in words.
+
+use crate::results::{Other, Results};
+use std::fmt;
+
+/// The verdict, and a line for each effect, correction, run and sensor.
+impl fmt::Display for Results {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(f, "{}", self.verdict.name())?;
+        for effect in &self.effects {
+            writeln!(
+                f,
+                "{} ({:.2}): {}",
+                effect.label, effect.probability, effect.sentence
+            )?;
+            if let Some(expression) = &effect.expression {
+                writeln!(f, "  F = {expression}")?;
+            }
+            for (key, parameter) in effect.parameters.iter() {
+                writeln!(f, "  {key}: {:.4e}", parameter.value)?;
+            }
+            for other in &effect.rivals {
+                writeln!(f, "  rival: {}, {}", other.label, rival(other))?;
+            }
+        }
+        for wrong in &self.corrections {
+            writeln!(
+                f,
+                "{} ({:.2}): {:.4e} in place of {:.4e}",
+                wrong.path, wrong.probability, wrong.value, wrong.nominal
+            )?;
+        }
+        let gap = &self.gap;
+        let held_out = gap.heldout_after.map_or(String::new(), |after| {
+            let before = gap.heldout_before.unwrap_or(f64::NAN);
+            format!("; of runs held out {before:.2} before, {after:.2} after")
+        });
+        writeln!(
+            f,
+            "gap: {:.2} before, {:.2} after{held_out}; noise is 1",
+            gap.before, gap.after
+        )?;
+        for (run, content) in self.runs.iter() {
+            if let Some(rms) = content.pressure_rms_pa.both() {
+                let [before, after] = rms.map(|pa| pa / 1e3);
+                writeln!(
+                    f,
+                    "{run}: {before:.1} kPa RMS from the recorded pressure before, {after:.1} after"
+                )?;
+            }
+        }
+        for note in &self.notes {
+            writeln!(f, "{note}")?;
+        }
+        for refused in &self.refused {
+            let [before, after] = refused.evidence.misfit;
+            writeln!(f, "refused: {} [{before:?},{after:?}]", refused.label)?;
+        }
+        for (column, sensor) in &self.noise {
+            writeln!(f, "sensor {column}: {sensor}")?;
+        }
+        Ok(())
+    }
+}
+
+/// How probable a rival is, and what it leaves.
+fn rival(other: &Other) -> String {
+    format!("{:.2}, leaves {:.2}", other.probability, other.leaves)
+}
