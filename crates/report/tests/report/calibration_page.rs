@@ -1,6 +1,7 @@
 //! The page of a calibration: every section, its numbers, and what it says where data are missing.
 
-use crate::synthetic::{calibration, markup};
+use crate::markup::markup;
+use crate::synthetic::calibration;
 use calibrate::results::{Estimate, Results};
 use report::calibration_page::{CalibrationPage, Channel, Misfit, Run};
 

@@ -1,6 +1,7 @@
 //! The page about chaos: every section, what it says where data are missing, and its numbers.
 
-use crate::synthetic::{chaos, markup};
+use crate::markup::markup;
+use crate::synthetic::chaos;
 use report::chaos_page::{CaseChaos, ChaosPage, Regime, WindowChaos};
 
 /// The figures of an HTML page, as they stand in it.

@@ -1,5 +1,6 @@
 //! The page of a dataset stands alone, is bounded and takes nothing from the data for markup.
 
+use crate::markup::markup;
 use crate::synthetic::{self, datasets};
 use recordings::FailedCase;
 use report::dataset_page::{DatasetPage, Design, JointSet, Response, Spectrum};
@@ -9,7 +10,7 @@ const LARGEST: usize = 5_000_000;
 
 /// The attributes and functions through which a page loads something.
 fn loads_nothing(html: &str) {
-    let places = synthetic::markup(html).replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    let places = markup(html).replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for forbidden in [
         "http:", "https:", "src=", "url(", "@import", "<link", "<img", "<iframe",
     ] {
@@ -226,7 +227,7 @@ fn text_from_the_data_is_never_markup() {
     page.columns[0].meaning.clone_from(&hostile);
     page.features[0].name.clone_from(&hostile);
     let html = page.render().unwrap().html;
-    synthetic::markup(&html);
+    markup(&html);
 }
 
 #[test]

@@ -6,4 +6,5 @@ mod chaos_page;
 mod dataset_page;
 mod features_page;
 mod figures;
+mod markup;
 mod synthetic;
