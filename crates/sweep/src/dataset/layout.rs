@@ -29,7 +29,9 @@ pub(super) const MANIFEST: &str = "manifest.json";
 /// What a dataset has in its folder, apart from `_sweep`.
 pub(super) const FOLDERS: [&str; 4] = ["signals", "features", "mcap", DIAGRAMS];
 pub(super) const FILES: [&str; 5] = [CARD, CROISSANT, SWEEP, SUMS, MANIFEST];
-pub(super) const WORK: [&str; 4] = ["_sweep/commits", ATTEMPTS, LOGS, "_sweep/tmp"];
+/// The records of finished shards.
+pub(super) const COMMITS: &str = "_sweep/commits";
+pub(super) const WORK: [&str; 4] = [COMMITS, ATTEMPTS, LOGS, "_sweep/tmp"];
 /// Markers of the processes at work on shards.
 pub(super) const ATTEMPTS: &str = "_sweep/attempts";
 /// The logs of all processes.

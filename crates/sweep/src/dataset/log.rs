@@ -126,7 +126,7 @@ impl Display for Pace {
 
 /// A time as `2026-11-22T14:40:23Z`, by the calendar of Gregory (days from the civil date after
 /// Hinnant 2013).
-fn utc(time: SystemTime) -> String {
+pub fn utc(time: SystemTime) -> String {
     let seconds = time
         .duration_since(UNIX_EPOCH)
         .map_or(0, |since| since.as_secs());

@@ -27,7 +27,7 @@ pub struct Parameter {
 
 impl Parameter {
     /// Its value in the case with the machine file `tree`; none where that does not have it.
-    pub(crate) fn value(&self, tree: &Value) -> recordings::Value {
+    pub fn value(&self, tree: &Value) -> recordings::Value {
         if let Some((effect, amplitude)) = &self.amplitude {
             return effect.value(amplitude, tree).into();
         }
