@@ -40,9 +40,16 @@ pub struct ClearJoint<'a> {
 impl<'a> CasePicture<'a> {
     /// Of the first throw of a run and its joints with clearance; none without a throw.
     pub fn new(title: &'a str, trace: &'a Trace) -> Option<Self> {
-        let throw = trace.throws.first()?;
+        Self::of_throw(title, trace, 0)
+    }
+
+    /// Of throw number `index` of a run and its joints with clearance; the main bearing stands with the first.
+    /// None without that throw.
+    pub fn of_throw(title: &'a str, trace: &'a Trace, index: usize) -> Option<Self> {
+        let throw = trace.throws.get(index)?;
+        let main = if index == 0 { &trace.main } else { &None };
         let joints = [
-            ("main", &trace.main),
+            ("main", main),
             ("big_end", &throw.big_end),
             ("small_end", &throw.small_end),
         ];
@@ -68,13 +75,7 @@ impl<'a> CasePicture<'a> {
     /// The picture as SVG: acceleration and contact force against crank angle, the
     /// velocity-acceleration portrait, and the orbit of each journal in its clearance circle.
     pub fn svg(&self) -> String {
-        let mut second = vec![self.portrait()];
-        second.extend(
-            self.joints
-                .iter()
-                .enumerate()
-                .map(|(i, joint)| orbit(joint, joint_colour(i))),
-        );
+        let mut second = self.motion();
         if self.joints.is_empty() {
             second.push(Panel {
                 title: "Journal orbit".to_owned(),
@@ -93,6 +94,13 @@ impl<'a> CasePicture<'a> {
             ..Figure::default()
         }
         .svg()
+    }
+
+    /// The velocity-acceleration portrait, and the orbit of each journal.
+    pub(crate) fn motion(&self) -> Vec<Panel> {
+        let joints = self.joints.iter().enumerate();
+        let orbits = joints.map(|(i, joint)| orbit(joint, joint_colour(i)));
+        std::iter::once(self.portrait()).chain(orbits).collect()
     }
 
     fn acceleration(&self) -> Panel {

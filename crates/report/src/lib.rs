@@ -3,6 +3,7 @@
 //! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
 //! - [`case_table`]: the cases of a dataset, for the script of its page;
+//! - [`case_view`]: one case simulated again, for a page;
 //! - [`run_figures`]: p-V cards, rod loads and waveforms of one run;
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
@@ -12,6 +13,8 @@
 //! - [`calibration_page`]: the HTML page of a calibration;
 //! - [`gap_page`]: the HTML page of an explanation;
 //! - [`wear_page`]: the HTML page of an estimation of wear;
+//! - [`folder_page`], [`progress_page`]: the live pages of a folder and of a sweep under way;
+//! - [`folder_kind`]: what a folder holds, and its pages by name;
 //! - [`text`]: numbers with units, words, escaping.
 //!
 //! A page is a plain struct that renders itself. The same struct gives the same bytes, and a page
@@ -24,6 +27,7 @@
 pub mod calibration_page;
 pub mod case_picture;
 pub mod case_table;
+pub mod case_view;
 pub mod chaos_page;
 pub mod classes;
 mod column;
@@ -34,11 +38,15 @@ pub mod domain_gap_page;
 pub mod features_page;
 pub mod figure;
 mod files;
+pub mod folder_kind;
+pub mod folder_page;
 pub mod gap_page;
 mod histogram;
 mod level;
+mod live;
 mod over_crank_angle;
 mod plate;
+pub mod progress_page;
 mod revolutions;
 pub mod run_figures;
 mod statistics;
@@ -67,7 +75,10 @@ pub enum Error {
     /// The results of an explanation cannot be read.
     #[error(transparent)]
     Explanation(#[from] gap::Error),
-    /// The machine file beside them cannot be read.
+    /// The progress of a sweep cannot be read.
+    #[error(transparent)]
+    Progress(Box<sweep::Error>),
+    /// A machine file or a sweep cannot be read.
     #[error(transparent)]
     Machine(#[from] input::Error),
     /// The curves beside them cannot be read.
@@ -117,6 +128,7 @@ impl Error {
     pub fn is_input(&self) -> bool {
         match self {
             Self::Dataset(error) => error.is_input(),
+            Self::Progress(error) => error.is_input(),
             Self::Calibration(_) | Self::Explanation(_) | Self::Machine(_) => true,
             Self::Curves { .. } | Self::Recording { .. } => true,
             _ => false,

@@ -32,6 +32,17 @@ impl RunFigures<'_> {
     /// The p-V card of each chamber, the rod load of each throw over the crank angle, and pressures and
     /// accelerations together over the crank angle.
     pub fn files(&self) -> Vec<FigureFile> {
+        let named = FIGURES.iter().zip(self.figures());
+        named
+            .map(|(name, figure)| FigureFile {
+                name: (*name).to_owned(),
+                svg: figure.svg(),
+            })
+            .collect()
+    }
+
+    /// The figures in the order of [`FIGURES`].
+    pub(crate) fn figures(&self) -> [Figure; FIGURES.len()] {
         let analysis = self.analysis;
         let cards = analysis.cards.iter().map(|card| self.card(card)).collect();
         let loads = analysis.rod_loads.iter().enumerate();
@@ -41,18 +52,11 @@ impl RunFigures<'_> {
             row_height: 180.0,
             ..self.figure(self.waveforms(), 1)
         };
-        let figures = [
+        [
             self.figure(cards, COLUMNS),
             self.figure(loads, COLUMNS),
             waveform,
-        ];
-        let named = FIGURES.iter().zip(figures);
-        named
-            .map(|(name, figure)| FigureFile {
-                name: (*name).to_owned(),
-                svg: figure.svg(),
-            })
-            .collect()
+        ]
     }
 
     fn figure(&self, panels: Vec<Panel>, columns: usize) -> Figure {
@@ -173,7 +177,7 @@ impl RunFigures<'_> {
 }
 
 /// The name of a channel in words, without its unit.
-fn name(channel: &Channel) -> String {
+pub(crate) fn name(channel: &Channel) -> String {
     text::words(features::stem(&channel.name, &channel.unit))
 }
 

@@ -15,6 +15,6 @@ mod operating_points;
 mod operation;
 mod random;
 mod ranking;
-mod recording;
+pub(crate) mod recording;
 mod scatter;
-mod words;
+pub(crate) mod words;

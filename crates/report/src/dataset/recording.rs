@@ -29,7 +29,7 @@ pub(super) struct Spread {
 }
 
 /// One channel of one window, over the crank angle.
-pub(super) struct Recording {
+pub(crate) struct Recording {
     case_id: String,
     file: String,
     sample_rate_hz: f64,
@@ -59,7 +59,7 @@ impl Recording {
     ///
     /// # Errors
     /// Samples that are no motion of a crank.
-    pub(super) fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
+    pub(crate) fn analyse(row: SignalRow) -> Result<Self, signal::Error> {
         let encoder = row.crank_angle.as_deref();
         let acceleration = row.channels.into_iter().next().unwrap_or_default();
         let count = acceleration.len();
@@ -183,7 +183,7 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: a recording has a revolution.
-    pub(super) fn spectrum(&self) -> Result<Spectrum, Error> {
+    pub(crate) fn spectrum(&self) -> Result<Spectrum, Error> {
         let revolution = self.angle.samples_per_revolution().round() as usize;
         let length = (2 * revolution).min(self.acceleration.len());
         let mut squares = vec![0.0; length / 2 + 1];
@@ -208,7 +208,7 @@ impl Recording {
     ///
     /// # Errors
     /// None in practice: no order is asked for that the grid does not have.
-    pub(super) fn order_spectrum(&self) -> Result<Spectrum, Error> {
+    pub(crate) fn order_spectrum(&self) -> Result<Spectrum, Error> {
         let highest = self.grid.highest_order().min(HIGHEST_ORDER);
         let spectrum = order_spectrum(&self.revolutions, highest)?;
         Ok(Spectrum {
@@ -247,7 +247,7 @@ impl Recording {
 
     /// Orders of the crank's speed and the highest amplitude of the envelope's spectrum about each,
     /// in m/s²: the envelope in the most impulsive band. None for a recording without such a band.
-    pub(super) fn envelope_spectrum(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub(crate) fn envelope_spectrum(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let shaft = self.sample_rate_hz / self.grid.samples_per_revolution();
         let kurtogram = kurtogram(
             &self.acceleration,

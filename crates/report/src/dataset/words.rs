@@ -34,7 +34,7 @@ pub(super) fn sensor(dataset: &Dataset, sensor: usize) -> String {
 
 /// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
-pub(super) fn of_path(path: &str) -> String {
+pub(crate) fn of_path(path: &str) -> String {
     let sections = ["joints.", "sensors.", "throws.", "effects."];
     let path = sections.iter().fold(path, |path, section| {
         path.strip_prefix(section).unwrap_or(path)
