@@ -32,6 +32,8 @@ pub mod replay;
 pub mod report;
 mod result_format;
 pub mod schema;
+#[cfg(feature = "serve")]
+pub mod serve;
 pub mod simulate;
 pub mod sweep;
 pub mod try_case;

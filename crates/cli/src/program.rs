@@ -1,6 +1,8 @@
 //! The programs `crosshead` and `gen-dataset`: their verbs, and which is called.
 
 use crate::console::{Console, colour_of_clap};
+#[cfg(feature = "serve")]
+use crate::serve;
 use crate::{
     Failure, calibrate, check, compare, completions, domain_gap, estimate_wear, explain_gap,
     features, gen_dataset, hidden_effects, init,
@@ -49,6 +51,9 @@ enum Verb {
     Verify(verify::Arguments),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
     Report(report::Arguments),
+    /// Show the pages of a folder in a browser, live while the folder grows
+    #[cfg(feature = "serve")]
+    Serve(serve::Arguments),
     /// Fit a machine's parameters to recordings of it
     Calibrate(calibrate::Arguments),
     /// Estimate which joints are worn, and how much, from recordings
@@ -105,6 +110,8 @@ impl Program for Crosshead {
             Verb::DomainGap(arguments) => domain_gap::run(arguments),
             Verb::Verify(arguments) => verify::run(arguments),
             Verb::Report(arguments) => report::run(arguments),
+            #[cfg(feature = "serve")]
+            Verb::Serve(arguments) => serve::run(arguments),
             Verb::Calibrate(arguments) => calibrate::run(arguments),
             Verb::EstimateWear(arguments) => estimate_wear::run(arguments),
             Verb::ExplainGap(arguments) => explain_gap::run(arguments),

@@ -27,6 +27,7 @@ mod recorded_sensors;
 mod recovery;
 mod replay;
 mod report;
+mod serve;
 mod several_files;
 mod shards;
 mod small_sweep;

@@ -38,10 +38,11 @@ const MAY_IMPORT: [(&str, &str); 20] = [
         "report",
         "calibrate chaos classify features gap input recordings signal simulate sweep",
     ),
+    ("serve", "recordings report sweep"),
     (
         "cli",
         "bench calibrate chaos classify features files gap input mechanism recordings report scalar \
-         signal simulate sweep",
+         serve signal simulate sweep",
     ),
     (
         "python",
