@@ -11,7 +11,7 @@ const PROGRAMS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/chromium-browser"];
 #[test]
 fn figures_of_a_page_get_their_tools_in_a_browser() {
     let Some(program) = PROGRAMS.iter().find(|path| Path::new(path).is_file()) else {
-        println!("no Chromium: not tested");
+        eprintln!("no Chromium: not tested");
         return;
     };
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("browser");
@@ -37,7 +37,7 @@ fn figures_of_a_page_get_their_tools_in_a_browser() {
         }
         // What keeps it from starting is the machine's.
         other => {
-            println!(
+            eprintln!(
                 "Chromium does not start: not tested ({:?})",
                 other.map(|o| o.status)
             );
