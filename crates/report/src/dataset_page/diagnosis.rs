@@ -9,7 +9,7 @@ use classify::{Baseline, ClassScore};
 /// Classes of a map of confusions.
 const MOST_CLASSES: usize = 24;
 /// Height of a row of the map, pixels.
-const ROW: f64 = 26.0;
+const CLASS_HEIGHT: f64 = 26.0;
 
 /// The features that say most about the class, and the confusions of the baseline.
 pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
@@ -124,7 +124,7 @@ fn confusions(page: &DatasetPage, baseline: &Baseline) -> Plate {
                 fields: fields.collect(),
                 ..Panel::default()
             }]],
-            row_height: ROW * shown.len().max(2) as f64,
+            row_height: CLASS_HEIGHT * shown.len().max(2) as f64,
             ..Figure::default()
         },
         ..Plate::default()

@@ -1,7 +1,5 @@
 //! Where the colours of a figure come from.
 
-use super::palette;
-
 /// Where a colour comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colour {
@@ -13,11 +11,4 @@ pub enum Colour {
     Tint(f64),
     /// Dark grey, for a reference.
     Ink,
-}
-
-impl Colour {
-    /// The colour as `#rrggbb`.
-    pub(crate) fn hex(self) -> String {
-        palette::hex(self)
-    }
 }

@@ -50,6 +50,13 @@ fn between(stops: &[[f64; 3]; 4], place: f64) -> [u8; 3] {
     })
 }
 
+impl Colour {
+    /// The colour as `#rrggbb`.
+    pub(crate) fn hex(self) -> String {
+        hex(self)
+    }
+}
+
 /// Black or white: what can be read on the colour.
 pub(super) fn writing_on(colour: Colour) -> &'static str {
     match colour {
