@@ -108,7 +108,7 @@ fn a_machine_with_a_frame_sensor_alone_has_figures() {
     assert!(dataset.report(&[]).status.success());
     let html = dataset.html();
     assert!(html.contains("Figures show the channel frame_acceleration_x_m_s2"));
-    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 + 1 + 2);
+    assert_eq!(html.matches("<figcaption>").count(), 3 + 2 + 1 + 2 + 1);
     let chaos = fs::read_to_string(dataset.path().join("chaos.html")).unwrap();
     assert!(!chaos.contains("There are no recordings in tables"));
 }
@@ -132,10 +132,10 @@ fn every_operating_point_is_on_the_page() {
             "{speed}"
         );
     }
-    // And what goes with the speed.
+    // And what goes with the speed, and the features that say most.
     assert_eq!(
         html.matches("<figcaption>").count(),
-        3 + 2 * (2 + 1 + 2) + 2
+        3 + 2 * (2 + 1 + 2) + 2 + 1
     );
     // The claims have a row for each.
     let printed = String::from_utf8(output.stdout).unwrap();
