@@ -7,6 +7,7 @@ use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
 use ::calibrate::Settings;
 use ::calibrate::wear::{Asked, WEAR, prepare};
+use ::report::folder_kind::FolderKind;
 use clap::Args;
 use input::calibration::{Calibration, Parameters};
 use std::path::PathBuf;
@@ -87,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .finish(&mut Bar::new(&cancel))
         .map_err(Failure::work)?;
     let page = out.join(report::PAGE);
-    report::write_wear(out, &page)?;
+    report::write_result(FolderKind::Wear, out, &page)?;
     arguments.format.print(&done.results, |results| {
         print!("{results}");
         println!("{}", done.machine.display());

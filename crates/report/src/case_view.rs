@@ -4,6 +4,7 @@ use crate::case_picture::CasePicture;
 use crate::dataset::recording::Recording;
 use crate::dataset::words;
 use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
+use crate::plate::Plate;
 use crate::run_figures::{self, RunFigures};
 use crate::{Error, classes, text};
 use askama::Template;
@@ -34,17 +35,10 @@ pub struct CaseView {
     again: String,
 }
 
-/// A figure of the view, which has no number among those of the page that it is shown on.
-struct CaseFigure {
-    heading: String,
-    caption: String,
-    figure: Figure,
-}
-
 #[derive(Template)]
 #[template(path = "case_view.html")]
 struct View<'a> {
-    plates: Vec<CaseFigure>,
+    plates: Vec<Plate>,
     labels: &'a [[String; 2]],
     again: &'a str,
 }
@@ -107,7 +101,7 @@ impl CaseView {
         Ok(view.render()?)
     }
 
-    fn plates(&self) -> Vec<CaseFigure> {
+    fn plates(&self) -> Vec<Plate> {
         let Some(trace) = &self.record.trace else {
             return Vec::new();
         };
@@ -127,10 +121,11 @@ impl CaseView {
         });
         let [cards, loads, waveforms] = figures.map_or_else(Default::default, |all| all.map(Some));
         let mut add = |heading: &str, caption: &str, figure: Option<Figure>| {
-            plates.extend(figure.map(|figure| CaseFigure {
+            plates.extend(figure.map(|figure| Plate {
                 heading: heading.to_owned(),
                 caption: caption.to_owned(),
                 figure,
+                ..Plate::default()
             }));
         };
         add(

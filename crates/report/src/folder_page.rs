@@ -1,7 +1,7 @@
 //! The HTML page of a folder: what is in it that has pages.
 
 use crate::folder_kind::FolderKind;
-use crate::live::{self, Row, Shown};
+use crate::refreshed::{self, Row, Shown};
 use crate::{Error, text};
 use askama::Template;
 use serde::Serialize;
@@ -69,7 +69,7 @@ impl FolderPage {
     /// # Errors
     /// None in practice.
     pub fn json(&self) -> Result<String, Error> {
-        live::json(self, self.shown())
+        refreshed::json(self, self.shown())
     }
 
     fn shown(&self) -> Shown {

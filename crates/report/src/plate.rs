@@ -11,7 +11,7 @@ pub(crate) struct Plate {
     pub(crate) caption: String,
     pub(crate) figure: Figure,
     pub(crate) about: About,
-    /// What `page.js` shows beside the figure, as JSON; empty for nothing.
+    /// What the script of the page shows beside the figure, as JSON; empty for nothing.
     pub(crate) sections: String,
     /// The figure as the page has it, once that was asked for.
     pub(crate) live: OnceCell<String>,

@@ -1,6 +1,6 @@
 //! The HTML page of a sweep under way: how far it is, and the cases that failed.
 
-use crate::live::{self, Row, Shown};
+use crate::refreshed::{self, Row, Shown};
 use crate::{Error, text};
 use askama::Template;
 use recordings::shell;
@@ -139,7 +139,7 @@ impl ProgressPage {
     /// # Errors
     /// None in practice.
     pub fn json(&self) -> Result<String, Error> {
-        live::json(self, self.shown())
+        refreshed::json(self, self.shown())
     }
 
     fn shown(&self) -> Shown {

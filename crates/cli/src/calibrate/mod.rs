@@ -6,6 +6,7 @@ pub(crate) mod progress;
 use crate::output::hint;
 use crate::{Failure, interrupt, report};
 use ::calibrate::{Calibrated, Prepared, Settings, prepare};
+use ::report::folder_kind::FolderKind;
 use std::sync::atomic::AtomicBool;
 
 pub use arguments::Arguments;
@@ -62,7 +63,7 @@ pub fn finish(prepared: Prepared, cancel: &AtomicBool) -> Result<Calibrated, Fai
     let done = prepared.finish(&mut progress::Bar::new(cancel));
     let done = done.map_err(Failure::work)?;
     if let (false, Some(folder)) = (done.reused, done.machine.parent()) {
-        report::write_calibration(folder, &folder.join(report::PAGE))?;
+        report::write_result(FolderKind::Calibration, folder, &folder.join(report::PAGE))?;
     }
     Ok(done)
 }

@@ -7,6 +7,7 @@ use crate::calibrate::arguments::read;
 use crate::output::{hint, refuse_existing};
 use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
+use ::report::folder_kind::FolderKind;
 use clap::Args;
 use gap::folder::MACHINE;
 use gap::results::RESULTS;
@@ -117,6 +118,6 @@ pub(crate) fn into_folder(
         gap::Error::Stopped => Failure::interrupted(gap::Error::Stopped),
         error => Failure::work(error),
     })?;
-    report::write_gap(out, &out.join(report::PAGE))?;
+    report::write_result(FolderKind::Explanation, out, &out.join(report::PAGE))?;
     Ok(results)
 }

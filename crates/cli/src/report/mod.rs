@@ -3,12 +3,10 @@
 use crate::Failure;
 use crate::output::hint;
 use crate::progress::Progress;
-use ::report::calibration_page::CalibrationPage;
 use ::report::chaos_page::ChaosPage;
 use ::report::dataset_page::{DatasetPage, Design};
 use ::report::features_page::FeaturesPage;
-use ::report::gap_page::GapPage;
-use ::report::wear_page::WearPage;
+use ::report::folder_kind::FolderKind;
 use ::report::{Error, write_page, write_pages};
 use ::sweep::reader::Dataset;
 use clap::Args;
@@ -64,16 +62,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// # Errors
 /// A folder that holds nothing with a page, or a page that cannot be made or written.
 pub fn write(dir: &Path, out: &Path) -> Result<Option<DatasetPage>, Failure> {
-    if CalibrationPage::is_at(dir) {
-        write_calibration(dir, out)?;
-    } else if WearPage::is_at(dir) {
-        write_wear(dir, out)?;
-    } else if GapPage::is_at(dir) {
-        write_gap(dir, out)?;
-    } else {
-        return write_dataset(dir, out).map(Some).map_err(failed);
+    match FolderKind::of(dir) {
+        Some(kind) if !matches!(kind, FolderKind::Dataset | FolderKind::UnderWay) => {
+            write_result(kind, dir, out).map(|()| None)
+        }
+        _ => write_dataset(dir, out).map(Some).map_err(failed),
     }
-    Ok(None)
+}
+
+/// Writes the page of the result of this kind in `folder` to the file `out`.
+///
+/// # Errors
+/// A folder that holds no such result, or a page that cannot be made or written.
+pub fn write_result(kind: FolderKind, folder: &Path, out: &Path) -> Result<(), Failure> {
+    let rendered = kind.render(folder, PAGE).map_err(failed)?;
+    rendered.map_or(Ok(()), |page| write_page(out, &page.html).map_err(failed))
 }
 
 /// Writes the pages of the dataset in `folder`, its own to the file `out` and last: where it is, the others are.
@@ -95,31 +98,4 @@ fn failed(error: Error) -> Failure {
         true => Failure::input(error),
         false => Failure::work(error),
     }
-}
-
-/// Writes the page of the calibration in `folder` to the file `out`.
-///
-/// # Errors
-/// A folder that is no calibration, or a page that cannot be made or written.
-pub fn write_calibration(folder: &Path, out: &Path) -> Result<(), Failure> {
-    let page = CalibrationPage::read(folder).map_err(failed)?.render();
-    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
-}
-
-/// Writes the page of the explanation in `folder` to the file `out`.
-///
-/// # Errors
-/// A folder that is no explanation, or a page that cannot be made or written.
-pub fn write_gap(folder: &Path, out: &Path) -> Result<(), Failure> {
-    let page = GapPage::read(folder).map_err(failed)?.render();
-    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
-}
-
-/// Writes the page of the wear in `folder` to the file `out`.
-///
-/// # Errors
-/// A folder without an estimation of wear, or a page that cannot be made or written.
-pub fn write_wear(folder: &Path, out: &Path) -> Result<(), Failure> {
-    let page = WearPage::read(folder).map_err(failed)?.render();
-    write_page(out, &page.map_err(Failure::work)?.html).map_err(failed)
 }

@@ -12,11 +12,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 impl CalibrationPage {
-    /// Whether a calibration has written into `folder`.
-    pub fn is_at(folder: &Path) -> bool {
-        folder.join(RESULTS).is_file()
-    }
-
     /// The page of the calibration in `folder`.
     ///
     /// # Errors

@@ -196,7 +196,7 @@ impl Ruler {
         (self.low, self.high)
     }
 
-    /// How values are placed, as `page.js` calls it.
+    /// How values are placed, as the script of a page calls it.
     pub(super) fn kind(&self) -> &'static str {
         match self.scale {
             Scale::Linear => "linear",

@@ -23,7 +23,7 @@ const KEY_GAP: f64 = 18.0;
 enum Place {
     /// In a file or on paper: marks alone.
     File,
-    /// On a page with `page.js`: what is switched, zoomed and read off has a name and its values.
+    /// On a page, whose script has it to work with: what is switched, zoomed and read off has a name and its values.
     Page,
 }
 
@@ -33,7 +33,7 @@ impl Figure {
         self.image(Place::File)
     }
 
-    /// The same image for a page: axes and series carry what `page.js` needs to draw them again.
+    /// The same image for a page: axes and series carry what its script needs to draw them again.
     pub(crate) fn live_svg(&self) -> String {
         self.image(Place::Page)
     }

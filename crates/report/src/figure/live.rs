@@ -1,4 +1,4 @@
-//! What a figure on a page carries for `page.js`: its axes, its series and their values.
+//! What a figure on a page carries for its script: its axes, its series and their values.
 
 use super::axis::Ruler;
 use super::layout::Placed;

@@ -4,7 +4,7 @@
 //! what is plotted. The image is for a white page, on a screen or printed. The palette is safe for
 //! colour-blind readers, text is text, and no line has more vertices than the pixels can show. A
 //! figure carries no identifiers, styles or scripts, so many can stand in one HTML page. On a page it
-//! carries its values, too, and `templates/page.js` makes it one to work with.
+//! carries its values, too, and the scripts in `templates/script` make it one to work with.
 
 mod axis;
 mod colour;

@@ -9,11 +9,6 @@ use gap::results::{RESULTS, Results};
 use std::path::Path;
 
 impl GapPage {
-    /// Whether an explanation has been written into `folder`.
-    pub fn is_at(folder: &Path) -> bool {
-        folder.join(RESULTS).is_file()
-    }
-
     /// The page of the explanation in `folder`.
     ///
     /// # Errors

@@ -9,11 +9,6 @@ use calibrate::wear::{Results, WEAR};
 use std::path::Path;
 
 impl WearPage {
-    /// Whether an estimation has been written into `folder`.
-    pub fn is_at(folder: &Path) -> bool {
-        folder.join(WEAR).is_file()
-    }
-
     /// The page of the estimation in `folder`.
     ///
     /// # Errors

@@ -165,6 +165,8 @@ class CaseTable {
     if (!answer?.ok || decodeURIComponent(location.hash.slice(1)) !== id) return;
     const whole = html('div');
     whole.innerHTML = await answer.text();
+    // It has all that the page has of the case, and more.
+    this.view.querySelectorAll('figure, .facts').forEach(one => one.remove());
     this.view.append(whole);
     for (const figure of whole.querySelectorAll('figure')) makeLive(figure);
   }

@@ -32,7 +32,7 @@ function show(content) {
   const main = document.querySelector('main');
   fill(document, content.shown.texts);
   fillRows(main.querySelector('table.live').tBodies[0], main.querySelector('template'), content.shown.rows);
-  const bar = main.querySelector('progress');
+  const bar = document.querySelector('progress');
   if (bar) [bar.max, bar.value] = [content.cases, content.cases_done];
 }
 

@@ -1,5 +1,5 @@
 //! What a page shows that asks for its content again: texts by name, and rows of a table. The page is filled with it
-//! when it is made, and by `templates/live.js` from the same as JSON.
+//! when it is made, and by `templates/script/refresh.js` from the same as JSON.
 
 use crate::Error;
 use serde::Serialize;
