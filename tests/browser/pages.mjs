@@ -1,18 +1,20 @@
 // Works with the pages as their users do, in Chromium.
 //
-//     node pages.mjs GALLERY DATASET [--update]
+//     node pages.mjs GALLERY DATASET UNDERWAY PROGRAM [--update]
 //
-// GALLERY holds the pages of `cargo run -p crosshead-report --example gallery`, DATASET a dataset with its report.
+// GALLERY holds the pages of `cargo run -p crosshead-report --example gallery`, DATASET a dataset with its report, UNDERWAY one of
+// which shard 0 of several is made. Both stand in the same folder, which PROGRAM serves.
 // --update stores the screenshots anew.
 
 import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, writeFileSync, existsSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { join, resolve } from 'node:path';
+import { basename, dirname, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { launch, open, reach } from './browser.mjs';
 
-const [gallery, dataset] = process.argv.slice(2).map(path => resolve(path));
+const [gallery, dataset, underWay, program] = process.argv.slice(2).map(path => resolve(path));
 const update = process.argv.includes('--update');
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const PAGES = ['grid', 'random', 'calibration', 'chaos'];
@@ -160,6 +162,34 @@ await check('the theme switches to dark', async errors => {
   await page.locator('.theme').click();
   await page.locator('.theme').click();
   assert.equal(await background(), 'rgb(23, 23, 23)');
+});
+
+await check('served: a case has all figures, a sweep under way moves on', async errors => {
+  const server = spawn(program, ['serve', dirname(dataset), '--port', '0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    const address = await new Promise((found, failed) => {
+      server.stdout.on('data', text => found(String(text).trim()));
+      server.on('exit', status => failed(new Error(`the server ended with ${status}`)));
+    });
+    const index = await open(browser, address, {}, errors);
+    await index.getByRole('link', { name: basename(underWay) }).click();
+    await index.waitForURL(/progress\.html$/);
+    const done = () => index.evaluate(() => document.querySelector('progress').value);
+    const before = await done();
+    const cases = await index.evaluate(() => document.querySelector('progress').max);
+    assert.ok(before > 0 && before < cases, `${before} of ${cases}`);
+    spawnSync(program, ['sweep', 'shard', underWay, '--index', '1']);
+    await index.waitForFunction(old => document.querySelector('progress').value > old, before);
+
+    const page = await open(browser, `${address}${basename(dataset)}/report.html`, {}, errors);
+    await page.locator('#case-table tbody a').first().click();
+    await page.waitForFunction(() => [...document.querySelectorAll('.case h3')].some(one => one.textContent === 'Motion in the joints'));
+    const headings = await page.locator('.case figure h3').allTextContents();
+    assert.ok(!headings.includes('Recording') && headings.includes('p-V cards'), headings.join());
+    await page.waitForFunction(() => [...document.querySelectorAll('.case figure')].every(one => one.live));
+  } finally {
+    server.kill();
+  }
 });
 
 for (const [folder, name] of [...PAGES.map(name => [gallery, name]), [dataset, 'report'], [dataset, 'features']]) {

@@ -166,11 +166,12 @@ class Panel {
     return valueAt(this.axes[direction], direction === 'x' ? pixel / this.width : 1 - pixel / this.height);
   }
 
-  // Whether an axis can be changed between linear and logarithmic.
+  // Whether an axis can be changed between linear and logarithmic: nothing on it may be below zero.
   canBeLog(direction) {
     const axis = this.axes[direction];
     if (this.fixed || this.under.length || !['linear', 'log'].includes(axis.kind)) return false;
-    return axis.kind === 'log' || this.extent(direction, true)[1] > 0;
+    const [low, high] = this.extent(direction);
+    return axis.kind === 'log' || (low >= 0 && high > 0);
   }
 
   // Lowest and highest value, of those above zero alone if asked.
