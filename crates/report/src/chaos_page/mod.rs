@@ -19,6 +19,9 @@ mod table;
 pub use regime::Regime;
 pub(crate) use spectra::MOST_CLASSES;
 
+use crate::classes;
+use crate::figure::Colour;
+
 /// The content of the page. Numbers are SI, speeds in rpm; labels are as in the data.
 #[derive(Clone, Debug, Default)]
 pub struct ChaosPage {
@@ -200,5 +203,14 @@ impl Quartiles {
             }
         }
         quartiles
+    }
+}
+
+impl ChaosPage {
+    /// The colour that a class has on all pages of the dataset.
+    fn class_colour(&self, label: &str) -> Colour {
+        let of_cases = self.cases.iter().map(|case| case.joints.as_str());
+        let labels = self.spectra.iter().map(|class| class.class.as_str());
+        classes::colour(label, &self.joints, labels.chain(of_cases))
     }
 }

@@ -28,7 +28,12 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
         Panel {
             x: Axis::linear("velocity (m/s)"),
             y: Axis::linear("acceleration (m/s²)"),
-            series: vec![Series::new("", Colour::Class(0), Mark::HairLine, points)],
+            series: vec![Series::new(
+                "",
+                colour(page, motion),
+                Mark::HairLine,
+                points,
+            )],
             ..Panel::default()
         }
     };
@@ -45,6 +50,16 @@ pub(super) fn portraits(page: &ChaosPage) -> Vec<Plate> {
     })
 }
 
+/// The colour of the class of a motion: the joints with clearance.
+fn colour(page: &ChaosPage, motion: &Motion) -> Colour {
+    let joints: Vec<&str> = motion
+        .joints
+        .iter()
+        .map(|orbit| orbit.name.as_str())
+        .collect();
+    page.class_colour(&joints.join("+"))
+}
+
 /// Once a revolution, and at every impact.
 pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
     let strobe = |motion: &Motion| Panel {
@@ -52,7 +67,7 @@ pub(super) fn sections(page: &ChaosPage) -> Vec<Plate> {
         y: Axis::linear("acceleration (m/s²)"),
         series: vec![Series::new(
             "",
-            Colour::Class(0),
+            colour(page, motion),
             Mark::Points,
             motion.strobe.iter().copied(),
         )],

@@ -2,7 +2,7 @@
 
 use super::{ChaosPage, ClassSpectra, Quartiles};
 use crate::classes;
-use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
+use crate::figure::{self, Axis, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
 use crate::text;
 
@@ -14,8 +14,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
     if page.spectra.is_empty() {
         return Vec::new();
     }
-    let shown = &page.spectra[..page.spectra.len().min(MOST_CLASSES)];
-    let left_out = if shown.len() < page.spectra.len() {
+    let left_out = if MOST_CLASSES < page.spectra.len() {
         format!(
             " Shown are the first {MOST_CLASSES} of {} classes.",
             page.spectra.len()
@@ -37,7 +36,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                  ring. {from}"
             ),
             figure: small_multiples(
-                shown,
+                page,
                 &Axis::linear("frequency (Hz)"),
                 "density (m/s²/√Hz)",
                 |class| &class.spectrum,
@@ -52,7 +51,7 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
                  quarters, are knocks that come alike every second or fourth revolution; a floor without lines is knocking that does not \
                  repeat. {from}"
             ),
-            figure: small_multiples(shown, &Axis::orders(), "amplitude (m/s²)", |class| {
+            figure: small_multiples(page, &Axis::orders(), "amplitude (m/s²)", |class| {
                 &class.envelope
             }),
             ..Plate::default()
@@ -61,12 +60,14 @@ pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {
 }
 
 fn small_multiples(
-    classes: &[ClassSpectra],
+    page: &ChaosPage,
     x: &Axis,
     y: &str,
     of: impl Fn(&ClassSpectra) -> &Quartiles,
 ) -> Figure {
-    let panels = classes.iter().map(|class| {
+    let shown = page.spectra.iter().take(MOST_CLASSES);
+    let panels = shown.map(|class| {
+        let colour = page.class_colour(&class.class);
         let Quartiles { at, values } = of(class);
         let line = |which: usize| {
             at.iter()
@@ -84,8 +85,8 @@ fn small_multiples(
             x: x.clone(),
             y: Axis::log(y),
             series: vec![
-                Series::new("middle half", Colour::Class(0), Mark::Band, band),
-                Series::new("median", Colour::Class(0), Mark::Line, line(1)),
+                Series::new("", colour, Mark::Band, band),
+                Series::new("", colour, Mark::Line, line(1)),
             ],
             note: if at.is_empty() {
                 "no band found".to_owned()
