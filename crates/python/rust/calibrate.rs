@@ -6,7 +6,7 @@ use crate::settings::settings;
 use ::calibrate::optimiser::Progress;
 use ::calibrate::{Existing, Settings, Stage, Watcher, prepare};
 use cli::Failure;
-use cli::report::{PAGE, write_calibration};
+use cli::report::{self, PAGE};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ pub fn calibrate(
         let prepared = prepare(&settings, &out, existing).map_err(Failure::input)?;
         let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
         if !done.reused {
-            write_calibration(&out, &out.join(PAGE))?;
+            report::write(&out, &out.join(PAGE))?;
         }
         match done.results.complete {
             true => Ok(()),

@@ -3,7 +3,7 @@
 use crate::interruptible::interruptible;
 use crate::settings::settings;
 use cli::Failure;
-use cli::report::{PAGE, write_gap};
+use cli::report::{self, PAGE};
 use gap::{Asked, Error, Stage};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
@@ -48,6 +48,6 @@ pub fn explain_gap(
             Error::Stopped => Failure::interrupted(Error::Stopped),
             error => Failure::work(error),
         })?;
-        write_gap(&out, &out.join(PAGE)).map(drop)
+        report::write(&out, &out.join(PAGE)).map(drop)
     })
 }

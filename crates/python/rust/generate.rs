@@ -5,7 +5,7 @@ use crate::failure::wrong;
 use crate::interruptible::{Shared, interruptible};
 use crate::machine::Machine;
 use cli::Failure;
-use cli::report::{PAGE, write_calibration};
+use cli::report::{self, PAGE};
 use cli::try_case;
 use pyo3::prelude::*;
 use serde::de::DeserializeOwned;
@@ -164,7 +164,7 @@ fn calibrated(
     let folder = claim.calibration(prepared.is_done())?;
     let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
     if !done.reused {
-        write_calibration(&folder, &folder.join(PAGE))?;
+        report::write(&folder, &folder.join(PAGE))?;
     }
     if !done.results.complete {
         return Err(Failure::interrupted("stopped during the calibration"));

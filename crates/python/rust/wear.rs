@@ -7,7 +7,7 @@ use ::calibrate::Settings;
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::wear::{Asked, prepare};
 use cli::Failure;
-use cli::report::{PAGE, write_wear};
+use cli::report::{self, PAGE};
 use input::calibration::{Calibration, Parameters};
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -47,7 +47,7 @@ pub fn estimate_wear(
         };
         let prepared = prepare(&asked, &out).map_err(Failure::input)?;
         let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
-        write_wear(&out, &out.join(PAGE))?;
+        report::write(&out, &out.join(PAGE))?;
         match done.results.complete {
             true => Ok(()),
             false => Err(Failure::interrupted("stopped before the end")),

@@ -74,7 +74,7 @@ pub fn write(dir: &Path, out: &Path) -> Result<Option<DatasetPage>, Failure> {
 ///
 /// # Errors
 /// A folder that holds no such result, or a page that cannot be made or written.
-pub fn write_result(kind: FolderKind, folder: &Path, out: &Path) -> Result<(), Failure> {
+pub(crate) fn write_result(kind: FolderKind, folder: &Path, out: &Path) -> Result<(), Failure> {
     let rendered = kind.render(folder, PAGE).map_err(failed)?;
     rendered.map_or(Ok(()), |page| write_page(out, &page.html).map_err(failed))
 }
