@@ -17,13 +17,13 @@ const PRINTED: usize = 10;
 /// Arguments of `crosshead compare`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
-A and B are recordings as crosshead features reads them: files, bundles or datasets. Of each the
-features are averaged over its windows. comparison.json has them side by side, with difference and
+A and B are recordings as crosshead features reads them: files, bundles, datasets or folders of
+crosshead simulate. Of each the features are averaged over its windows. comparison.json has them side by side, with difference and
 ratio; comparison.html has them as a table, and the channels of both over the crank angle and over
 frequency.
 
 Examples:
-  crosshead compare healthy-run/signals.parquet worn-run/signals.parquet --out compared
+  crosshead compare healthy-run worn-run --out compared
   crosshead compare january.csv june.csv --unit m/s^2 --speed '500 rpm' --out compared
   crosshead compare datasets/measured datasets/simulated --out compared
 

@@ -1,7 +1,8 @@
 //! One case: a machine file, recordings, and the clearances that they were made with.
 
+use calibrate::likelihood::{Likelihood, misfit};
 use calibrate::meter::Meter;
-use calibrate::optimiser::Progress;
+use calibrate::optimiser::{LeastSquares, Progress};
 use calibrate::problem::columns;
 use calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use calibrate::wear::{Results, estimate};
@@ -38,25 +39,16 @@ pub fn case(
     mut runs: Vec<Run>,
     truth: BTreeMap<String, f64>,
 ) -> Result<Case, Box<dyn Error>> {
-    for run in &mut runs {
-        run.settings
-            .retain(|(path, _)| !path.ends_with(".clearance"));
-    }
-    for (path, value) in &runs[0].settings {
-        paths::set(&mut tree, path, value.clone())?;
-    }
-    let columns = columns(&MachineFile::from_tree(&tree)?.resolve()?);
-    let observed = runs.iter().map(|run| Observation::from_run(run, &columns));
-    let problem = Problem {
-        parameters: vec![Parameter::named(&tree, &[], CRANK_ANGLE_OFFSET, None)?],
-        runs: observed.collect::<Result<_, _>>()?,
-        tree,
-        crank: CrankMotion::Driven,
-        meter: Meter::default(),
-    };
+    let problem = problem(&mut tree, &mut runs)?;
     eprintln!("{name}: {truth:?}, {} runs", runs.len());
     let start = cpu_seconds()?;
-    let results = estimate(&problem, &[0.0], WORN_FROM, &mut Quiet)?;
+    let results = estimate(&problem, &[0.0], WORN_FROM, &mut Lines::default())?;
+    for (path, joint) in results.joints.iter() {
+        eprintln!(
+            "  {path}: {:?} {:?} {}",
+            joint.verdict, joint.clearance_m, joint.reason
+        );
+    }
     Ok(Case {
         name,
         truth,
@@ -64,6 +56,31 @@ pub fn case(
         runs: runs.len(),
         repeats: problem.runs.iter().all(|run| run.repeats_like(&[])),
         cpu_seconds: cpu_seconds()? - start,
+    })
+}
+
+/// The misfit of the machine file `tree` itself, over the noise.
+pub fn misfit_of(tree: &Value, runs: &[Run]) -> Result<f64, Box<dyn Error>> {
+    let problem = problem(&mut tree.clone(), &mut runs.to_vec())?;
+    Ok(misfit(&Likelihood::new(&problem).residuals(&[0.0])))
+}
+
+fn problem(tree: &mut Value, runs: &mut [Run]) -> Result<Problem, Box<dyn Error>> {
+    for run in runs.iter_mut() {
+        run.settings
+            .retain(|(path, _)| !path.ends_with(".clearance"));
+    }
+    for (path, value) in &runs[0].settings {
+        paths::set(tree, path, value.clone())?;
+    }
+    let columns = columns(&MachineFile::from_tree(tree)?.resolve()?);
+    let observed = runs.iter().map(|run| Observation::from_run(run, &columns));
+    Ok(Problem {
+        parameters: vec![Parameter::named(tree, &[], CRANK_ANGLE_OFFSET, None)?],
+        runs: observed.collect::<Result<_, _>>()?,
+        tree: tree.clone(),
+        crank: CrankMotion::Driven,
+        meter: Meter::default(),
     })
 }
 
@@ -77,13 +94,28 @@ fn cpu_seconds() -> Result<f64, Box<dyn Error>> {
     Ok(hundredths / 100.0)
 }
 
-/// Nobody watches.
-struct Quiet;
+/// A line on standard error after each stage.
+#[derive(Default)]
+struct Lines {
+    stage: Option<Stage>,
+    evaluations: u64,
+    misfit: f64,
+}
 
-impl Watcher for Quiet {
-    fn begins(&mut self, _: Stage, _: u64) {}
-    fn progress(&mut self, _: &Progress) -> ControlFlow<()> {
+impl Watcher for Lines {
+    fn begins(&mut self, stage: Stage, _: u64) {
+        self.stage = Some(stage);
+    }
+    fn progress(&mut self, progress: &Progress) -> ControlFlow<()> {
+        (self.evaluations, self.misfit) = (progress.evaluations, progress.misfit());
         ControlFlow::Continue(())
     }
-    fn ends(&mut self) {}
+    fn ends(&mut self) {
+        let Self {
+            stage,
+            evaluations,
+            misfit,
+        } = self;
+        eprintln!("  {stage:?}: {evaluations} evaluations, misfit {misfit:.2}");
+    }
 }

@@ -10,7 +10,7 @@
 //! clearance by other exponents. The recordings are the accelerations of the crossheads or of the frame, with or without the
 //! pressures of the cylinders, in one or two runs of different speed.
 
-use super::case::{Case, WORN_FROM, case};
+use super::case::{Case, WORN_FROM, case, misfit_of};
 use crate::recording::{clean, noisy};
 use calibrate::{Parameter, Relation};
 use input::unit::{Dimension, Measure};
@@ -71,7 +71,13 @@ pub fn case_of(seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
     let mut last = None;
     for _ in 0..DRAWS {
         match drawn(&mut random, seed, number) {
-            Ok(drawn) => return case(name(seed, number), drawn.file, drawn.runs, drawn.truth),
+            Ok(drawn) => {
+                eprintln!(
+                    "misfit of the true machine {:.3}",
+                    misfit_of(&drawn.machine, &drawn.runs)?
+                );
+                return case(name(seed, number), drawn.file, drawn.runs, drawn.truth);
+            }
             Err(error) => last = Some(error),
         }
     }
@@ -81,6 +87,7 @@ pub fn case_of(seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
 /// What is drawn for a case.
 struct Drawn {
     file: Value,
+    machine: Value,
     runs: Vec<calibrate::Run>,
     truth: BTreeMap<String, f64>,
 }
@@ -121,7 +128,12 @@ fn drawn(random: &mut Stream, seed: u64, number: u64) -> Result<Drawn, Box<dyn E
         let clean = clean(&format!("run{}", i + 1), &settings, &tree, &measured)?;
         runs.push(noisy(&clean, seed, 100 * number + i)?);
     }
-    Ok(Drawn { file, runs, truth })
+    Ok(Drawn {
+        file,
+        machine: tree,
+        runs,
+        truth,
+    })
 }
 
 /// The healthy machine of one throw or two, with its nominal contact parameters.

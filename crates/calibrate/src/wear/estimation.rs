@@ -184,7 +184,8 @@ fn conclude(
     let problem = &found.model.problem;
     let whole = fit.complete && !effort.stopped;
     let adequate = fit.model_is_adequate();
-    let wrong = match whole && !adequate {
+    // An adequate model may leave more than noise, and then the noise alone is no measure of what is known.
+    let wrong = match whole && !fit.is_at_noise() {
         true => discrepancy(problem, fit, effort)?,
         false => None,
     };
@@ -217,10 +218,10 @@ fn conclude(
         joints: verdicts,
         together: pairs,
         model_is_adequate: adequate,
-        interval: match (adequate && whole, discrepancy) {
-            (true, _) => Interval::Noise,
-            (false, Some(_)) => Interval::Discrepancy,
-            (false, None) => Interval::None,
+        interval: match discrepancy {
+            Some(_) => Interval::Discrepancy,
+            None if adequate && whole => Interval::Noise,
+            None => Interval::None,
         },
         timing_rad: discrepancy.map(|d| d.timing),
         contact: match found.model.contacts {

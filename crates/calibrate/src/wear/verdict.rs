@@ -57,7 +57,15 @@ impl Grounds<'_> {
                 (value, ends.map(|ends| ends.map(of)))
             }
             None if self.found.fit.model_is_adequate() && self.found.fit.complete => {
-                (estimate.value, estimate.interval)
+                // What is left counts as noise.
+                let by = self.found.misfit().max(1.0);
+                let [least, greatest] = estimate.parameter.bounds;
+                let wider = |end: f64| {
+                    let end = estimate.value + by * (end - estimate.value);
+                    end.clamp(least, greatest)
+                };
+                let interval = estimate.interval.map(|ends| ends.map(wider));
+                (estimate.value, interval)
             }
             None => (estimate.value, None),
         };

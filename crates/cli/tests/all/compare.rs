@@ -11,7 +11,7 @@ fn run(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The signals of a run with this clearance at the big end.
+/// The folder of a run with this clearance at the big end.
 fn simulated(folder: &Path, clearance: &str) -> String {
     let out = folder.join(clearance.replace(' ', "-"));
     let machine = machine();
@@ -27,7 +27,7 @@ fn simulated(folder: &Path, clearance: &str) -> String {
     ]);
     arguments.extend(["--out", out.to_str().unwrap()]);
     run(&arguments);
-    out.join("signals.parquet").to_str().unwrap().to_owned()
+    out.to_str().unwrap().to_owned()
 }
 
 fn compared(folder: &Path, a: &str, b: &str) -> (Value, String, String) {

@@ -157,9 +157,13 @@ impl Beside {
     }
 }
 
-/// The recordings of a dataset, in order.
+/// Files with the signals of a run of `crosshead simulate`.
+const OF_A_RUN: [&str; 2] = ["signals.parquet", "signals.csv"];
+
+/// The recordings of a dataset, in order, or the signals of a simulated run.
 fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let mut files = Vec::new();
+    let mut files: Vec<PathBuf> = OF_A_RUN.map(|name| folder.join(name)).into();
+    files.retain(|file| file.is_file());
     for (below, ending) in [("signals", "parquet"), ("mcap", "mcap")] {
         let Ok(entries) = std::fs::read_dir(folder.join(below)) else {
             continue;
@@ -171,7 +175,8 @@ fn of_folder(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     if files.is_empty() {
         return Err(Error::in_file(
             folder,
-            "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset)",
+            "a folder without recordings.yaml (a bundle), signals/*.parquet or mcap/*.mcap (a dataset), signals.parquet or \
+             signals.csv (a simulated run)",
         ));
     }
     Ok(files)

@@ -79,8 +79,7 @@ fn warnings(results: &Results) -> Vec<String> {
     }
     match (results.interval, results.timing_rad) {
         (Interval::Discrepancy, Some(timing)) => warnings.push(format!(
-            "The model does not explain the recordings ({misfit} times the noise). The ranges include its discrepancy, an \
-             error of timing of {} mrad.",
+            "The model leaves {misfit} times the noise. The ranges include its discrepancy, an error of timing of {} mrad.",
             text::number(1e3 * timing, 2)
         )),
         (Interval::None, _) if results.complete => warnings.push(format!(
