@@ -185,7 +185,9 @@ fn conclude(
     let whole = fit.complete && !effort.stopped;
     let adequate = fit.model_is_adequate();
     // An adequate model may leave more than noise, and then the noise alone is no measure of what is known.
-    let wrong = match whole && !fit.is_at_noise() {
+    let predictions = Likelihood::new(problem).predictions(&fit.coordinates());
+    let repeats = predictions.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic));
+    let wrong = match whole && repeats && !fit.is_at_noise() {
         true => discrepancy(problem, fit, effort)?,
         false => None,
     };
@@ -197,6 +199,7 @@ fn conclude(
         found,
         discrepancy,
         worn_from,
+        repeats,
     };
     let verdicts = (0..joints.len())
         .map(|i| Ok((joints[i].path.clone(), grounds.verdict(i, &pairs)?)))
@@ -220,7 +223,7 @@ fn conclude(
         model_is_adequate: adequate,
         interval: match discrepancy {
             Some(_) => Interval::Discrepancy,
-            None if adequate && whole => Interval::Noise,
+            None if adequate && whole && repeats => Interval::Noise,
             None => Interval::None,
         },
         timing_rad: discrepancy.map(|d| d.timing),

@@ -11,11 +11,13 @@
 //! 3. Where they end above the noise, the clearances of each throw are screened on a common grid, by energies. The cells of the
 //!    best points are searched without derivatives, all for a while and the better ones for longer. The best ends are descended from.
 //! 4. From there the file's own relation and free contact parameters are fitted too. Schwarz's criterion (1978) decides.
-//! 5. Where still more than noise is left, one joint that is ideal in the file becomes clear: that whose grid has the best cells. What
+//! 5. Where still more than noise is left, one joint that is ideal in the file becomes clear: that whose grid has the best cells by
+//!    energies, or the best points by lines. Its grid is looked at from the best fit and from the healthy machine. What
 //!    lowers the criterion is kept, until nothing does. Only then follow cells that are less likely, by all known relations, and free
 //!    contact parameters from all ends.
 //! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
-//!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
+//!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it. A
+//!    motion that does not repeat itself has no derivatives, and no interval.
 
 mod cell;
 mod descent;

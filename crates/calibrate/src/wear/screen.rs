@@ -3,19 +3,26 @@
 //! The clearance decides at which crank angle the joint's surfaces meet and everything rings. A descent finds no way
 //! from one ringing to another, so that the clearances are screened on a grid, by energies, which have few minima. The joints
 //! of a throw act on each other: where two are wide, neither shows on a grid of the other alone. So they are moved together.
+//! A joint that hardly shows changes energies less than a law somewhat off does, and lines by several times their noise. So
+//! one joint more is screened by both.
 
+use super::discrepancy::TIMINGS;
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::Model;
 use crate::energies::Energies;
+use crate::error::Error;
+use crate::likelihood::Likelihood;
 use crate::observation::Observation;
 use crate::problem::{Problem, throw};
 use rayon::prelude::*;
 
 /// Step of the logarithm of a clearance. The time in which a gap is crossed goes with its root and changes by a tenth.
 pub(super) const STEP: f64 = 0.2;
-/// Steps below the clearance of the machine file at which a grid begins: a joint may have less than is stated.
-const BELOW: u32 = 2;
+/// The same where lines are compared, whose valleys are some hundredths of a clearance wide.
+const STEP_OF_LINES: f64 = 0.05;
+/// Steps of energies below the clearance of the machine file at which a grid begins: a joint may have less than is stated.
+const BELOW: f64 = 2.0;
 /// Joints that are moved together at most.
 const TOGETHER: usize = 2;
 /// Points that go on to the joints of the next throw.
@@ -25,13 +32,13 @@ const RUNS: usize = 3;
 /// Points that are looked at, or descended from, before the search may be stopped.
 pub(super) const AT_ONCE: usize = 16;
 
-/// A point with its sum of squares, and the groups of joints that have moved in it.
+/// A point with what is left there, and the groups of joints that have moved in it.
 #[derive(Clone, Debug)]
 pub(super) struct Point {
     /// Coordinates.
     pub x: Vec<f64>,
-    /// What is left of the energies there.
-    pub squares: f64,
+    /// What is left of the energies, or of the lines.
+    pub left: f64,
     moved: Vec<usize>,
 }
 
@@ -45,7 +52,8 @@ pub(super) fn screened(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let mut all = looked_at(&energies, vec![x.to_vec()], &[], effort);
+    let left = |x: &[f64]| energies.squares(x);
+    let mut all = looked_at(left, vec![x.to_vec()], &[], effort);
     let mut beam = all.clone();
     let groups = groups(model);
     for _ in 0..groups.len() {
@@ -59,7 +67,7 @@ pub(super) fn screened(
                 // The same clearances are reached by moving the groups in another order.
                 places.retain(|x| next.iter().all(|known| known.x != *x));
                 let moved: Vec<usize> = point.moved.iter().copied().chain([i]).collect();
-                next.extend(looked_at(&energies, places, &moved, effort));
+                next.extend(looked_at(left, places, &moved, effort));
             }
         }
         best_first(&mut next);
@@ -70,8 +78,8 @@ pub(super) fn screened(
     all
 }
 
-/// Points where one more joint is clear: those of these starts with the clearance at `place`, that of `joint`, moved over
-/// its grid, and those of the best of them with the other joints moved over theirs, which were chosen without it.
+/// Points where one more joint is clear, by energies: those of these starts with the clearance at `place` moved over its grid,
+/// and those of the best of them with the other joints moved over theirs, which were chosen without it.
 pub(super) fn with_one_more(
     model: &Model,
     joints: &[Joint],
@@ -81,10 +89,11 @@ pub(super) fn with_one_more(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
+    let left = |x: &[f64]| energies.squares(x);
     let along = starts
         .iter()
         .flat_map(|x| product(model, joints, &[place], x));
-    let mut points = looked_at(&energies, along.collect(), &[], effort);
+    let mut points = looked_at(left, along.collect(), &[], effort);
     best_first(&mut points);
     let Some(best) = points.first().map(|point| point.x.clone()) else {
         return points;
@@ -92,13 +101,36 @@ pub(super) fn with_one_more(
     for mut group in groups(model) {
         group.retain(|other| *other != place);
         let places = product(model, joints, &group, &best);
-        points.extend(looked_at(&energies, places, &[], effort));
+        points.extend(looked_at(left, places, &[], effort));
     }
     points
 }
 
+/// Points where one more joint is clear, by lines: those of these starts with the clearance at `place` moved over a fine grid.
+pub(super) fn by_lines(
+    model: &Model,
+    joints: &[Joint],
+    place: usize,
+    starts: &[Vec<f64>],
+    effort: &mut Effort,
+) -> Vec<Point> {
+    let few = few(&model.problem);
+    let lines = Likelihood::new(&few);
+    let left = |x: &[f64]| Ok(lines.likeliest(x, &TIMINGS)?.1);
+    let parameter = &model.problem.parameters[place];
+    let grid = grid(&joints[model.clear[place]], STEP_OF_LINES);
+    let moved = starts.iter().flat_map(|x| {
+        grid.iter().map(|clearance| {
+            let mut x = x.clone();
+            x[place] = parameter.coordinate(*clearance);
+            x
+        })
+    });
+    looked_at(left, moved.collect(), &[], effort)
+}
+
 fn best_first(points: &mut [Point]) {
-    points.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    points.sort_by(|a, b| a.left.total_cmp(&b.left));
 }
 
 /// The best of these points, which are taken out.
@@ -129,7 +161,7 @@ fn product(model: &Model, joints: &[Joint], group: &[usize], x: &[f64]) -> Vec<V
     let mut points = vec![x.to_vec()];
     for place in group {
         let parameter = &model.problem.parameters[*place];
-        let grid = grid(&joints[model.clear[*place]]);
+        let grid = grid(&joints[model.clear[*place]], STEP);
         let moved = points.iter().flat_map(|x| {
             grid.iter().map(|clearance| {
                 let mut x = x.clone();
@@ -143,9 +175,9 @@ fn product(model: &Model, joints: &[Joint], group: &[usize], x: &[f64]) -> Vec<V
     points
 }
 
-/// These points with their sums of squares; those before a stop.
+/// These points with what is `left` there; those before a stop.
 fn looked_at(
-    energies: &Energies,
+    left: impl Fn(&[f64]) -> Result<f64, Error> + Sync,
     points: Vec<Vec<f64>>,
     moved: &[usize],
     effort: &mut Effort,
@@ -157,7 +189,7 @@ fn looked_at(
         }
         let part = part.par_iter().map(|x| Point {
             x: x.clone(),
-            squares: energies.squares(x).unwrap_or(f64::INFINITY),
+            left: left(x).unwrap_or(f64::INFINITY),
             moved: moved.to_vec(),
         });
         all.extend(part.collect::<Vec<_>>());
@@ -167,11 +199,12 @@ fn looked_at(
 }
 
 /// Clearances of equal ratio around that from which the search of a joint leads, from some below it to the greatest.
-fn grid(joint: &Joint) -> Vec<f64> {
+fn grid(joint: &Joint, step: f64) -> Vec<f64> {
     let [least, greatest] = joint.bounds;
-    let steps = |to: f64| ((to / joint.start()).ln() / STEP).floor() as i32;
-    let first = steps(least).max(-(BELOW as i32));
-    let at = |i: i32| joint.start() * (STEP * f64::from(i)).exp();
+    let steps = |to: f64| ((to / joint.start()).ln() / step).floor() as i32;
+    let below = (BELOW * STEP / step).round() as i32;
+    let first = steps(least).max(-below);
+    let at = |i: i32| joint.start() * (step * f64::from(i)).exp();
     let all = (first..=steps(greatest).max(1)).map(at);
     all.filter(|c| (least..=greatest).contains(c)).collect()
 }
@@ -200,7 +233,7 @@ mod tests {
             normal: 1e-4,
             bounds: [3e-5, 1e-3],
         };
-        let points = grid(&joint);
+        let points = grid(&joint, STEP);
         // ln 10 / 0.2 = 11.5: eleven steps up, two down and the stated clearance itself.
         assert_eq!(points.len(), 14);
         assert!((points[2] - 1e-4).abs() < 1e-18, "{points:?}");
@@ -210,6 +243,6 @@ mod tests {
         }
         joint.stated = None;
         joint.bounds = [0.9e-4, 1.1e-4];
-        assert_eq!(grid(&joint), [1e-4]);
+        assert_eq!(grid(&joint, STEP), [1e-4]);
     }
 }

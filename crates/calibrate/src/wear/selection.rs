@@ -7,7 +7,7 @@ use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
 use super::parts::{joined, parts};
-use super::screen::{Point, best_of, few, screened, with_one_more};
+use super::screen::{Point, best_of, by_lines, few, screened, with_one_more};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::likelihood::Likelihood;
@@ -16,6 +16,7 @@ use crate::optimiser::LeastSquares;
 use crate::problem::Problem;
 use crate::stages::Stage;
 use crate::transfer::STRONG;
+use std::collections::BTreeMap;
 
 /// Points of the grid whose cells are searched: the best by the relation of the machine file, then the best of the others and
 /// by all known relations.
@@ -105,7 +106,9 @@ pub(super) fn selected(
             ends.sort_by(|a: &Led, b| a.left.total_cmp(&b.left));
         }
         let led = joined(&parts, &ends, &at);
-        let starts: Vec<Vec<f64>> = led.iter().map(|led| led.x.clone()).collect();
+        // What a search of other joints has led to may only make up for the one that is worn: the healthy machine is a start, too.
+        let ends = led.iter().map(|led| led.x.clone());
+        let starts: Vec<Vec<f64>> = [at.clone()].into_iter().chain(ends).collect();
         effort.begins(Stage::Clearances);
         let before = best.criterion;
         let found = search.better(best, &model, led, effort).and_then(|best| {
@@ -261,7 +264,7 @@ impl Search<'_> {
         effort: &mut Effort,
     ) -> Result<Vec<(Model, Vec<Led>)>, Error> {
         let mut models = Vec::new();
-        let mut points: Vec<(usize, Point)> = Vec::new();
+        let (mut energies, mut lines) = (Vec::new(), Vec::new());
         for joint in (0..self.joints.len()).filter(|i| !best.model.clear.contains(i)) {
             let mut clear = best.model.clear.clone();
             clear.push(joint);
@@ -271,23 +274,51 @@ impl Search<'_> {
             let x = model.coordinates_of(&best.model, &best.fit.coordinates());
             let earlier = ends.iter().map(|x| model.coordinates_of(first, x));
             let starts: Vec<Vec<f64>> = [x].into_iter().chain(earlier).take(STARTS).collect();
-            let found = with_one_more(&model, self.joints, place, &starts, effort);
-            points.extend(found.into_iter().map(|point| (models.len(), point)));
+            let of_model =
+                |points: Vec<Point>| points.into_iter().map(|point| (models.len(), point));
+            energies.extend(of_model(with_one_more(
+                &model,
+                self.joints,
+                place,
+                &starts,
+                effort,
+            )));
+            lines.extend(of_model(by_lines(
+                &model,
+                self.joints,
+                place,
+                &starts,
+                effort,
+            )));
             models.push(model);
         }
-        points.sort_by(|a, b| a.1.squares.total_cmp(&b.1.squares));
-        points.truncate(CLEAR_POINTS);
+        let (energies, lines) = (best_points(energies), best_points(lines));
         let mut led = Vec::new();
         for (i, model) in models.into_iter().enumerate() {
-            let own = points.iter().filter(|(of, _)| *of == i);
-            let own: Vec<Vec<f64>> = own.map(|(_, point)| point.x.clone()).collect();
-            if !own.is_empty() {
-                let found = around(&model, &own, effort)?;
-                led.push((model, found));
+            if let Some(own) = energies.get(&i) {
+                let own: Vec<Vec<f64>> = own.iter().map(|point| point.x.clone()).collect();
+                led.push((model.clone(), around(&model, &own, effort)?));
+            }
+            if let Some(own) = lines.get(&i) {
+                let at = |Point { x, left, .. }: &Point| Led {
+                    x: x.clone(),
+                    left: *left,
+                };
+                led.push((model, own.iter().map(at).collect()));
             }
         }
         Ok(led)
     }
+}
+
+/// The best of these points over all models, by the model.
+fn best_points(mut points: Vec<(usize, Point)>) -> BTreeMap<usize, Vec<Point>> {
+    points.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
+    let mut best: BTreeMap<usize, Vec<Point>> = BTreeMap::new();
+    for (model, point) in points.into_iter().take(CLEAR_POINTS) {
+        best.entry(model).or_default().push(point);
+    }
+    best
 }
 
 /// The joints that are clear in the machine file.

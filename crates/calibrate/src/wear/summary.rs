@@ -42,9 +42,15 @@ impl fmt::Display for Results {
         match (self.interval, self.timing_rad) {
             (Interval::Discrepancy, Some(timing)) => writeln!(
                 f,
-                "the model does not explain the recordings: the intervals include its discrepancy, {:.1} mrad of timing",
+                "more than noise is left: the intervals include the model's discrepancy, {:.1} mrad of timing",
                 1e3 * timing
             ),
+            (Interval::None, _) if self.complete && self.model_is_adequate => {
+                writeln!(
+                    f,
+                    "no interval: the motion of the best fit does not repeat itself"
+                )
+            }
             (Interval::None, _) => {
                 writeln!(f, "no interval: the model does not explain the recordings")
             }

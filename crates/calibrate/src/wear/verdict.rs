@@ -27,6 +27,8 @@ pub(super) struct Grounds<'a> {
     pub discrepancy: Option<&'a Discrepancy>,
     /// A joint counts as worn from this many times its normal clearance.
     pub worn_from: f64,
+    /// Whether the motion of the best fit repeats itself in every run; elsewhere it has no derivatives.
+    pub repeats: bool,
 }
 
 impl Grounds<'_> {
@@ -44,6 +46,12 @@ impl Grounds<'_> {
     fn of_clear(&self, index: usize, place: usize, together: &[Together]) -> JointWear {
         let estimate = &self.found.fit.estimates[place];
         let limit = self.limit(index);
+        if !self.repeats && self.found.fit.complete {
+            let reason = "the motion of the best fit does not repeat itself, so that it is not known how well the recordings \
+                          determine the clearance";
+            let value = Some(estimate.value);
+            return self.wear(index, Verdict::Unclear, reason.to_owned(), value, None);
+        }
         if estimate.interval.is_none() {
             let reason = self.not_identifiable(index, together);
             return self.wear(index, Verdict::NotIdentifiable, reason, None, None);

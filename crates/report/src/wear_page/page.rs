@@ -82,6 +82,10 @@ fn warnings(results: &Results) -> Vec<String> {
             "The model leaves {misfit} times the noise. The ranges include its discrepancy, an error of timing of {} mrad.",
             text::number(1e3 * timing, 2)
         )),
+        (Interval::None, _) if results.complete && results.model_is_adequate => warnings.push(
+            "The motion of the best fit does not repeat itself, so that no interval can be given."
+                .to_owned(),
+        ),
         (Interval::None, _) if results.complete => warnings.push(format!(
             "The model does not explain the recordings ({misfit} times the noise), and no interval can be given. \
              Calibrate the machine when it is healthy, or look for what is missing with explain-gap."
