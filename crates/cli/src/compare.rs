@@ -18,9 +18,9 @@ const PRINTED: usize = 10;
 #[derive(Args, Debug)]
 #[command(after_help = "\
 A and B are recordings as crosshead features reads them: files, bundles, datasets or folders of
-crosshead simulate. Of each the features are averaged over its windows. comparison.json has them side by side, with difference and
-ratio; comparison.html has them as a table, and the channels of both over the crank angle and over
-frequency.
+crosshead simulate. Of each the features are averaged over its windows. comparison.json has them
+side by side, with difference and ratio; comparison.html has them as a table, and the channels of
+both over the crank angle and over frequency.
 
 Examples:
   crosshead compare healthy-run worn-run --out compared
