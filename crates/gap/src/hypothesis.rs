@@ -55,6 +55,14 @@ impl Hypothesis {
         labels
     }
 
+    /// The same of the set with one amendment more.
+    pub fn labels_with(&self, amendment: &Amendment) -> Vec<String> {
+        let mut labels = self.labels();
+        labels.push(amendment.label());
+        labels.sort_unstable();
+        labels
+    }
+
     /// The kinds of its amendments, in their alphabetical order.
     pub fn kinds(&self) -> Vec<&str> {
         let mut kinds: Vec<&str> = self.set.iter().map(|one| one.amendment.kind()).collect();
@@ -188,6 +196,17 @@ impl Hypothesis {
         });
         values.collect()
     }
+}
+
+/// The least costly set of each combination of kinds.
+pub(crate) fn of_kinds<'a>(sets: impl Iterator<Item = &'a Hypothesis>) -> Vec<&'a Hypothesis> {
+    let mut best: Vec<&Hypothesis> = Vec::new();
+    for set in sets {
+        if best.iter().all(|other| other.kinds() != set.kinds()) {
+            best.push(set);
+        }
+    }
+    best
 }
 
 /// The problem with these amendments.

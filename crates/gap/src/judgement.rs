@@ -6,7 +6,7 @@ use crate::criteria::{NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
-use crate::hypothesis::{Amended, Hypothesis};
+use crate::hypothesis::{Amended, Hypothesis, of_kinds};
 use crate::recorded::is_of_pressures;
 use crate::search::{MOST, Search};
 use calibrate::Problem;
@@ -121,17 +121,6 @@ fn calibrated(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Hypot
         }
     };
     Ok(Hypothesis::new(Vec::new(), model, own))
-}
-
-/// The least costly set of each combination of kinds.
-fn of_kinds<'a>(sets: impl Iterator<Item = &'a Hypothesis>) -> Vec<&'a Hypothesis> {
-    let mut best: Vec<&Hypothesis> = Vec::new();
-    for set in sets {
-        if best.iter().all(|other| other.kinds() != set.kinds()) {
-            best.push(set);
-        }
-    }
-    best
 }
 
 /// The sets that have an amendment of another kind in the place of `believed.set[which]`.

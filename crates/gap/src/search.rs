@@ -1,14 +1,15 @@
-//! The search for what is missing: best first, over sets of amendments.
+//! The search for what is missing: a beam search (Lowerre 1976) over sets of amendments.
 //!
-//! A set is a node. From the best node that was not looked at further, every amendment is tried beside those that it has:
-//! an effect that shows only in a worn joint is found beside the wear, although wear by itself leaves much. A set of which
-//! one amendment is exchanged for another is reached from it, and from the set without it.
+//! A set is a node. From the best nodes that were not looked at further, every amendment is tried beside those that they have:
+//! an effect that shows only in a worn joint is found beside the wear, although wear by itself leaves much. Of two effects
+//! neither may explain as much by itself as a third that imitates both, so that several nodes are looked at further at the
+//! same time. A set of which one amendment is exchanged for another is reached from it, and from the set without it.
 
 use crate::amendment::Amendment;
 use crate::criteria::left;
 use crate::error::{Error, possible};
 use crate::fitter::{Few, Fitter, Start};
-use crate::hypothesis::{Amended, Hypothesis, added, start};
+use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
 use crate::screen::{Screened, screen};
 use calibrate::parameter::Scale;
@@ -21,9 +22,9 @@ use std::collections::BTreeMap;
 pub(crate) const MOST: usize = 3;
 /// Amendments of one kind (its places and orders) that are fitted beside an empty set, the most promising first.
 const OF_A_KIND: usize = 3;
-/// Amendments that are fitted by themselves and beside others, the most promising first.
-const ALONE: usize = 16;
-const BESIDE: usize = 8;
+/// Amendments that are fitted beside each node, the most promising first: what shows only beside another is not among the
+/// first by its score, and stands out once it is fitted roughly.
+const TRIED: usize = 16;
 /// How many of those that were fitted roughly are fitted further, beside an empty set and beside others (successive
 /// halving, Jamieson and Talwalkar 2016).
 const REFINED: usize = 8;
@@ -32,8 +33,9 @@ const REFINED_BESIDE: usize = 4;
 const EXCHANGED: usize = 3;
 /// Share of the gap with which no more is looked for: less than the law of an effect is usually off by.
 const LITTLE: f64 = 0.2;
-/// Nodes that are looked at further.
-const EXPANDED: usize = 2;
+/// How many times nodes are looked at further, and how many of different kinds at the same time.
+const ROUNDS: usize = 2;
+const WIDTH: usize = 2;
 
 /// Machines that are drawn about the given one, and by how much the logarithms of their parameters differ at most.
 const DRAWS: u64 = 4;
@@ -57,19 +59,18 @@ impl Search<'_> {
     pub fn sets(&self, nothing: Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         let mut nodes = vec![nothing.clone()];
         let mut expanded: Vec<Vec<String>> = Vec::new();
-        while expanded.len() < EXPANDED && self.fitter.effort.goes_on() {
-            let open =
-                |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
-            let Some(node) = nodes.iter().find(open).cloned() else {
-                break;
-            };
+        for _ in 0..ROUNDS {
             // What little the best leaves may be the form of its law.
-            if left(&nothing.model, &nodes[0].model) < LITTLE {
+            let little = left(&nothing.model, &nodes[0].model) < LITTLE;
+            if little || !self.fitter.effort.goes_on() {
                 break;
             }
-            expanded.push(node.labels());
-            let beside = self.beside(&node)?;
-            for set in beside {
+            let open =
+                |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
+            let beam = of_kinds(nodes.iter().filter(open));
+            let beam: Vec<Hypothesis> = beam.into_iter().take(WIDTH).cloned().collect();
+            expanded.extend(beam.iter().map(Hypothesis::labels));
+            for set in self.beside(&beam)? {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -135,32 +136,30 @@ impl Search<'_> {
         Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// The set of a node with each of the most promising other amendments.
-    fn beside(&self, node: &Hypothesis) -> Result<Vec<Hypothesis>, Error> {
-        (self.fitter.say)(&words(node, "screening"), node.model.fitted);
-        let others = self
-            .amendments
-            .iter()
-            .filter(|amendment| !node.has(amendment));
-        let screened = self.screened(node, node.set.is_empty(), others.cloned().collect())?;
-        let of_a_kind = if node.set.is_empty() { OF_A_KIND } else { 1 };
-        let mut chosen = best_of_each_kind(screened, of_a_kind);
-        chosen.truncate(if node.set.is_empty() { ALONE } else { BESIDE });
-        (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
-        let rough = chosen
-            .into_par_iter()
-            .map(|screened| self.roughly(node, &screened));
+    /// The sets of these nodes with each of the most promising other amendments.
+    fn beside(&self, beam: &[Hypothesis]) -> Result<Vec<Hypothesis>, Error> {
+        let alone = beam.iter().all(|node| node.set.is_empty());
+        let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
+        let mut of_each = Vec::new();
+        for node in beam {
+            (self.fitter.say)(&words(node, "screening"), node.model.fitted);
+            let others = self.amendments.iter().filter(|one| !node.has(one));
+            let screened = self.screened(node, alone, others.cloned().collect())?;
+            let of_a_kind = if alone { OF_A_KIND } else { 1 };
+            of_each.push(best_of_each_kind(screened, of_a_kind).into_iter());
+        }
+        let chosen = in_turn(beam, of_each, TRIED * beam.len());
+        let rough = chosen.into_par_iter().map(|(node, screened)| {
+            (self.fitter.say)(&words(node, "fitting roughly"), node.model.fitted);
+            self.roughly(node, &screened)
+        });
         let rough = rough.collect::<Result<Vec<_>, Error>>()?;
         let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
         // What a freer law costs counts once it has been fitted.
         rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
-        rough.truncate(if node.set.is_empty() {
-            REFINED
-        } else {
-            REFINED_BESIDE
-        });
+        rough.truncate(if alone { REFINED } else { REFINED_BESIDE });
         let fitted = rough.into_par_iter().map(|trial| {
-            (self.fitter.say)(&words(node, &trial.label()), node.model.fitted);
+            (self.fitter.say)(&trial.words(), so_far);
             let own = self.few.different.parameters.len();
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
@@ -228,6 +227,33 @@ impl Search<'_> {
     }
 }
 
+/// The first of each node, then the second of each, and so on; no set twice.
+fn in_turn<'a>(
+    beam: &'a [Hypothesis],
+    mut of_each: Vec<impl Iterator<Item = Screened>>,
+    most: usize,
+) -> Vec<(&'a Hypothesis, Screened)> {
+    let mut chosen: Vec<(&Hypothesis, Screened)> = Vec::new();
+    let mut known: Vec<Vec<String>> = Vec::new();
+    loop {
+        let before = chosen.len();
+        for (node, screened) in beam.iter().zip(&mut of_each) {
+            let next = screened.find_map(|screened| {
+                let labels = node.labels_with(&screened.amendment);
+                (!known.contains(&labels)).then_some((labels, screened))
+            });
+            if let Some((labels, screened)) = next {
+                known.push(labels);
+                chosen.push((node, screened));
+            }
+        }
+        if chosen.len() == before || chosen.len() >= most {
+            chosen.truncate(most);
+            return chosen;
+        }
+    }
+}
+
 /// No more than `most` of a kind, the first ones.
 fn best_of_each_kind(mut screened: Vec<Screened>, most: usize) -> Vec<Screened> {
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
@@ -280,10 +306,13 @@ struct Trial {
 }
 
 impl Trial {
-    fn label(&self) -> String {
-        self.set
-            .last()
-            .map_or_else(String::new, |one| one.amendment.label())
+    fn words(&self) -> String {
+        let labels: Vec<String> = self.set.iter().map(|one| one.amendment.label()).collect();
+        match labels.split_last() {
+            Some((last, [])) => last.clone(),
+            Some((last, others)) => format!("{last} beside {}", others.join(" and ")),
+            None => String::new(),
+        }
     }
 }
 
@@ -291,5 +320,55 @@ fn words(node: &Hypothesis, what: &str) -> String {
     match node.set.is_empty() {
         true => what.to_owned(),
         false => format!("{what} beside {}", node.labels().join(" and ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{effort, problem};
+
+    #[test]
+    fn nodes_are_served_in_turn_and_no_set_is_fitted_twice() {
+        let (problem, effort) = (problem(), effort());
+        let all = Amendment::all(&problem).unwrap();
+        let [a, b, c] = ["ring_friction", "misalignment", "sensor_gain"].map(|kind| {
+            let found = all.iter().find(|one| one.kind() == kind);
+            found.unwrap().clone()
+        });
+        let node = |amendment: &Amendment| {
+            let values = amendment.effect().unwrap().usual();
+            let set = vec![Amended {
+                amendment: amendment.clone(),
+                values,
+            }];
+            let model = Model::at(added(&problem, &set).unwrap(), &[], 0.0, &effort).unwrap();
+            Hypothesis::new(set, model, problem.parameters.len())
+        };
+        let beam = [node(&a), node(&b)];
+        let screened = |all: [&Amendment; 2]| {
+            let of = |amendment: &Amendment| Screened {
+                amendment: amendment.clone(),
+                starts: Vec::new(),
+            };
+            all.map(of).into_iter()
+        };
+        let of_each = || vec![screened([&b, &c]), screened([&a, &c])];
+        let sets = |most: usize| -> Vec<Vec<String>> {
+            let chosen = in_turn(&beam, of_each(), most);
+            let labels = chosen
+                .iter()
+                .map(|(node, one)| node.labels_with(&one.amendment));
+            labels.collect()
+        };
+        let [a, b, c] = [&a, &b, &c].map(Amendment::label);
+        let pair = |x: &String, y: &String| {
+            let mut pair = vec![x.clone(), y.clone()];
+            pair.sort_unstable();
+            pair
+        };
+        let expected = [pair(&a, &b), pair(&b, &c), pair(&a, &c)];
+        assert_eq!(sets(16), expected);
+        assert_eq!(sets(2), expected[..2]);
     }
 }
