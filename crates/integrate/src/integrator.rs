@@ -172,6 +172,11 @@ impl<S: Real> Integrator<S> {
         self.step.start.value()
     }
 
+    /// Relative local error of its steps.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
     /// The state reached.
     pub fn state(&self) -> &[S] {
         &self.step.from

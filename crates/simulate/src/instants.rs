@@ -16,6 +16,17 @@ impl Instants {
         self.first + index as f64 / self.rate
     }
 
+    /// The last, s.
+    pub(crate) fn end(&self) -> f64 {
+        self.at(self.count.saturating_sub(1))
+    }
+
+    /// How many of those from number `seen` on come up to the time `stop`, s.
+    pub(crate) fn within(&self, seen: usize, stop: f64) -> usize {
+        let later = (seen..self.count).take_while(|i| self.at(*i) <= stop);
+        later.count()
+    }
+
     /// Those up to `time`, and those after it.
     pub(crate) fn split_at(self, time: f64) -> [Self; 2] {
         let mut count = self.count;

@@ -26,6 +26,7 @@ mod orbit;
 pub mod penetration;
 pub mod periodic_orbit;
 pub mod poincare;
+mod polynomial;
 pub mod record;
 mod recorder;
 pub mod regime;

@@ -22,7 +22,7 @@ pub trait Lookout: Send {
         show: &mut dyn FnMut(usize, &[f64]),
     );
 
-    /// Shows `show` what each sensor sees at the instants that wait.
+    /// Shows `show` what each sensor sees at the instants that wait; of an angle, since the start.
     fn finish(&mut self, sensors: &[Sensor], show: &mut dyn FnMut(usize, &[f64]));
 }
 
@@ -119,8 +119,7 @@ impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
                 #[inline(always)]
                 || sensor.measured.unwrapped(at),
             );
-            let seen = seen.to_array().map(|x| sensor.measured.wrapped(x));
-            show(i, &seen[..count]);
+            show(i, &seen.to_array()[..count]);
         }
     }
 }

@@ -1,12 +1,14 @@
 //! What sensors see of a run: its motion at equally spaced instants.
 //!
-//! A recorded sample takes four to eight instants. Those within a step are evaluated side by side. Where
-//! several runs are in lanes, those within their steps are.
+//! A recorded sample takes four to eight instants. Where many of them lie within a step, the motion is evaluated at a few
+//! others, and a polynomial through these values gives what the sensors see. Those within a step are evaluated side by side;
+//! where several runs are in lanes, those within their steps are.
 
 use crate::chain::UnderWay;
 use crate::instants::Instants;
 use crate::lookout::{self, Lookout};
 use crate::penetration::{Penetration, Watch};
+use crate::polynomial::{NODES, Nodes, Polynomial};
 use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::trace::Trace;
@@ -21,7 +23,7 @@ pub(crate) struct Sampler<'a> {
     sensors: &'a [Sensor],
     instants: Instants,
     seen: usize,
-    series: Vec<UnderWay>,
+    series: Series,
     /// The motion itself, at the instants of which it is asked for.
     trace: Option<(Trace, Range<usize>)>,
     /// How deep joints are pressed in.
@@ -33,6 +35,21 @@ pub(crate) struct Sampler<'a> {
     state: Vec<f64>,
 }
 
+/// What the sensors have seen.
+struct Series {
+    /// What each sensor makes of it.
+    under_way: Vec<UnderWay>,
+    /// Largest magnitude that each has seen.
+    largest: Vec<f64>,
+    /// Of the integration.
+    tolerance: f64,
+    nodes: Nodes,
+    /// Scratch: shares of a step, and values there.
+    shares: Vec<f64>,
+    values: Vec<f64>,
+    polynomials: Vec<Polynomial>,
+}
+
 /// What was seen of a run.
 pub(crate) struct Seen {
     /// What each sensor has recorded.
@@ -41,6 +58,57 @@ pub(crate) struct Seen {
     pub trace: Option<Trace>,
     /// How deep each joint with clearance was pressed in.
     pub penetrations: Vec<Penetration>,
+}
+
+impl Series {
+    fn new(under_way: Vec<UnderWay>, tolerance: f64) -> Self {
+        Self {
+            largest: vec![0.0; under_way.len()],
+            polynomials: Vec::with_capacity(under_way.len()),
+            tolerance,
+            nodes: Nodes::new(),
+            shares: Vec::new(),
+            values: Vec::new(),
+            under_way,
+        }
+    }
+
+    /// Takes in what sensor number `i` sees at the next instants.
+    fn extend(&mut self, i: usize, sensor: &Sensor, seen: impl Iterator<Item = f64>) {
+        let largest = &mut self.largest[i];
+        self.under_way[i].extend(seen.map(|x| {
+            *largest = largest.max(x.abs());
+            sensor.measured.wrapped(x)
+        }));
+    }
+
+    /// Takes in what the sensors see at these shares of a step by polynomials through what `seen` gives for each sensor at
+    /// each node. False, and nothing taken in, where one of them leaves out too much.
+    fn interpolate(
+        &mut self,
+        sensors: &[Sensor],
+        shares: impl Iterator<Item = f64>,
+        seen: impl Fn(usize, usize) -> f64,
+    ) -> bool {
+        self.polynomials.clear();
+        for i in 0..sensors.len() {
+            let values = std::array::from_fn(|node| seen(i, node));
+            let through = self.nodes.through(&values, self.largest[i], self.tolerance);
+            let Some(polynomial) = through else {
+                return false;
+            };
+            self.polynomials.push(polynomial);
+        }
+        self.shares.clear();
+        self.shares.extend(shares);
+        for (i, sensor) in sensors.iter().enumerate() {
+            let mut values = std::mem::take(&mut self.values);
+            self.polynomials[i].evaluate(&self.shares, &mut values);
+            self.extend(i, sensor, values.iter().copied());
+            self.values = values;
+        }
+        true
+    }
 }
 
 impl<'a> Sampler<'a> {
@@ -58,7 +126,7 @@ impl<'a> Sampler<'a> {
             lookout: None,
             times: Vec::new(),
             state: vec![0.0; dimension],
-            series,
+            series: Series::new(series, run.tolerance()),
             sensors,
             instants,
             seen: 0,
@@ -67,6 +135,7 @@ impl<'a> Sampler<'a> {
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
+            sampler.trace(first, sampler.seen);
             sampler.sample(first);
         }
         sampler
@@ -74,77 +143,113 @@ impl<'a> Sampler<'a> {
 
     /// The last instant, s.
     pub fn end(&self) -> f64 {
-        self.instants.at(self.instants.count.saturating_sub(1))
+        self.instants.end()
     }
 
     fn sample(&mut self, at: &Evaluation<f64>) {
-        for (sensor, series) in self.sensors.iter().zip(&mut self.series) {
-            series.extend([sensor.measured.value(at)]);
-        }
-        if let Some((trace, range)) = &mut self.trace
-            && range.contains(&self.seen)
-        {
-            trace.push(at);
+        for (i, sensor) in self.sensors.iter().enumerate() {
+            let seen = sensor.measured.unwrapped(at);
+            self.series.extend(i, sensor, std::iter::once(seen));
         }
         self.seen += 1;
     }
 
-    /// How many instants come up to the time `stop`, s.
-    fn within(&self, stop: f64) -> usize {
-        let left = self.instants.count - self.seen;
-        let mut within = 0;
-        while within < left && self.instants.at(self.seen + within) <= stop {
-            within += 1;
+    fn trace(&mut self, at: &Evaluation<f64>, instant: usize) {
+        if let Some((trace, range)) = &mut self.trace
+            && range.contains(&instant)
+        {
+            trace.push(at);
         }
-        within
+    }
+
+    /// Takes in the instants within a step by what `seen` gives for each sensor at each node. False, and nothing taken in,
+    /// where that is not exact enough.
+    fn interpolate(
+        &mut self,
+        [start, length]: [f64; 2],
+        within: usize,
+        seen: impl Fn(usize, usize) -> f64,
+    ) -> bool {
+        let instants = self.instants;
+        let shares = (self.seen..self.seen + within).map(|i| (instants.at(i) - start) / length);
+        let taken = self.series.interpolate(self.sensors, shares, seen);
+        if taken {
+            self.seen += within;
+        }
+        taken
     }
 
     /// Looks at the instants within a step.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
         self.joints.update(|i| step.to[i]);
-        let within = self.within(step.start + step.length);
+        let within = self.instants.within(self.seen, step.start + step.length);
         if within == 0 {
             return;
         }
         step.extend(dynamics);
         if self.trace.is_some() {
-            for _ in 0..within {
-                let t = self.instants.at(self.seen);
-                let mut state = std::mem::take(&mut self.state);
+            let mut state = std::mem::take(&mut self.state);
+            for instant in self.seen..self.seen + within {
+                let t = self.instants.at(instant);
                 step.interpolate((t - step.start) / step.length, &mut state);
-                self.sample(dynamics.evaluate(t, &state));
-                self.state = state;
+                self.trace(dynamics.evaluate(t, &state), instant);
             }
+            self.state = state;
+        }
+        self.face(dynamics);
+        if NODES < within {
+            let (shares, start, length) = (self.series.nodes.shares, step.start, step.length);
+            let seen = self.see(step, &shares.map(|share| start + length * share));
+            if self.interpolate([start, length], within, |i, node| seen[i][node]) {
+                return;
+            }
+        }
+        let mut times = std::mem::take(&mut self.times);
+        times.clear();
+        times.extend((self.seen..self.seen + within).map(|i| self.instants.at(i)));
+        let (sensors, series) = (self.sensors, &mut self.series);
+        let mut show = |i: usize, seen: &[f64]| series.extend(i, &sensors[i], seen.iter().copied());
+        if let Some((lookout, _)) = &mut self.lookout {
+            lookout.look(step, &times, sensors, &mut show);
+        }
+        self.times = times;
+        self.seen += within;
+    }
+
+    /// Has a lookout at the machine in the mode that it is in.
+    fn face(&mut self, dynamics: &Dynamics<f64>) {
+        if (self.lookout.as_ref()).is_some_and(|(_, mode)| mode == dynamics.mode()) {
             return;
         }
-        if (self.lookout.as_ref()).is_none_or(|(_, mode)| mode != dynamics.mode()) {
-            self.finish();
-            let (mut lookout, mut mode) = self.lookout.take().unwrap_or_else(|| {
-                let ledger = dynamics.layout().ledger.is_some();
-                let lookout = lookout::at(dynamics.machine(), ledger);
-                (lookout, dynamics.mode().clone())
-            });
-            mode.clone_from(dynamics.mode());
-            lookout.set_mode(&mode);
-            self.lookout = Some((lookout, mode));
-        }
-        let instants = self.seen..self.seen + within;
-        self.times.clear();
-        self.times.extend(instants.map(|i| self.instants.at(i)));
-        let series = &mut self.series;
-        let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
+        self.finish();
+        let (mut lookout, mut mode) = self.lookout.take().unwrap_or_else(|| {
+            let ledger = dynamics.layout().ledger.is_some();
+            let lookout = lookout::at(dynamics.machine(), ledger);
+            (lookout, dynamics.mode().clone())
+        });
+        mode.clone_from(dynamics.mode());
+        lookout.set_mode(&mode);
+        self.lookout = Some((lookout, mode));
+    }
+
+    /// What each sensor sees at these times within a step. No instant waits after it.
+    fn see(&mut self, step: &Step<f64>, times: &[f64]) -> Vec<Vec<f64>> {
+        self.finish();
+        let mut all = vec![Vec::with_capacity(times.len()); self.sensors.len()];
+        let mut show = |i: usize, seen: &[f64]| all[i].extend_from_slice(seen);
         if let Some((lookout, _)) = &mut self.lookout {
-            lookout.look(step, &self.times, self.sensors, &mut show);
+            lookout.look(step, times, self.sensors, &mut show);
+            lookout.finish(self.sensors, &mut show);
         }
-        self.seen += within;
+        all
     }
 
     /// Looks at the instants that wait.
     fn finish(&mut self) {
-        let series = &mut self.series;
-        let mut show = |i: usize, seen: &[f64]| series[i].extend(seen.iter().copied());
+        let (sensors, series) = (self.sensors, &mut self.series);
+        let mut show = |i: usize, seen: &[f64]| series.extend(i, &sensors[i], seen.iter().copied());
         if let Some((lookout, _)) = &mut self.lookout {
-            lookout.finish(self.sensors, &mut show);
+            lookout.finish(sensors, &mut show);
         }
     }
 
@@ -154,11 +259,12 @@ impl<'a> Sampler<'a> {
         self.finish();
         let last = run.evaluate();
         while self.seen < self.instants.count {
+            self.trace(last, self.seen);
             self.sample(last);
         }
-        let series = self.series.into_iter().map(|series| series.end(start));
+        let series = self.series.under_way.into_iter();
         Seen {
-            series: series.collect(),
+            series: series.map(|series| series.end(start)).collect(),
             trace: self.trace.map(|(trace, _)| trace),
             penetrations: self.joints.end(),
         }
@@ -179,26 +285,73 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
             && stands[lane]
         {
             sampler.joints.update(|i| step.to[i].get(lane));
-            within[lane] = sampler.within(stop.get(lane));
+            within[lane] = sampler.instants.within(sampler.seen, stop.get(lane));
         }
     }
-    let Some(sensors) = samplers.iter().flatten().map(|s| s.sensors).next() else {
-        return;
-    };
-    let most = within.into_iter().max().unwrap_or(0);
-    if most == 0 {
+    if within == [0; W] {
         return;
     }
     step.extend(machines);
+    let times = |sampler: &Sampler, lane: usize, i: usize| match NODES < within[lane] {
+        true => {
+            let share = sampler.series.nodes.shares[i];
+            step.start.get(lane) + step.length.get(lane) * share
+        }
+        false => sampler.instants.at(sampler.seen + i),
+    };
+    let seen = see_lanes(
+        samplers,
+        machines,
+        step,
+        within.map(|n| n.min(NODES)),
+        times,
+    );
+    let mut left = [0; W];
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
+        let Some(sampler) = sampler else { continue };
+        if within[lane] <= NODES {
+            sampler.take(lane, within[lane], &seen);
+            continue;
+        }
+        let (count, here) = (sampler.sensors.len(), [step.start, step.length]);
+        let seen = |i: usize, node: usize| seen[node * count + i].get(lane);
+        if !sampler.interpolate(here.map(|x| x.get(lane)), within[lane], seen) {
+            left[lane] = within[lane];
+        }
+    }
+    if left == [0; W] {
+        return;
+    }
+    let times = |sampler: &Sampler, _: usize, i: usize| sampler.instants.at(sampler.seen + i);
+    let seen = see_lanes(samplers, machines, step, left, times);
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
+        if let Some(sampler) = sampler {
+            sampler.take(lane, left[lane], &seen);
+        }
+    }
+}
+
+/// What the sensors see at so many instants within the steps of the lanes, sensor after sensor at each. `times` gives
+/// the instants of a lane.
+fn see_lanes<L: Lanes<W>, const W: usize>(
+    samplers: &[Option<&mut Sampler>; W],
+    machines: &mut SideBySide<L>,
+    step: &Step<L>,
+    counts: [usize; W],
+    times: impl Fn(&Sampler, usize, usize) -> f64,
+) -> Vec<L> {
+    let most = counts.into_iter().max().unwrap_or(0);
+    let sensors = samplers.iter().flatten().map(|s| s.sensors).next();
+    let sensors = sensors.unwrap_or_default();
     let mut state = vec![L::zero(); step.from.len()];
-    let mut found: Vec<L> = Vec::with_capacity(most * sensors.len());
+    let mut seen = Vec::with_capacity(most * sensors.len());
     for i in 0..most {
         let mut instants = step.start;
         for (lane, sampler) in samplers.iter().enumerate() {
             if let Some(sampler) = sampler
-                && i < within[lane]
+                && i < counts[lane]
             {
-                instants.set(lane, sampler.instants.at(sampler.seen + i));
+                instants.set(lane, times(sampler, lane, i));
             }
         }
         let share = L::vectorised(
@@ -208,24 +361,23 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
         step.interpolate(share, &mut state);
         let at = machines.evaluate_sensed(instants, &state);
         for sensor in sensors {
-            found.push(L::vectorised(
+            seen.push(L::vectorised(
                 #[inline(always)]
                 || sensor.measured.unwrapped(at),
             ));
         }
     }
-    for (lane, sampler) in samplers.iter_mut().enumerate() {
-        if let Some(sampler) = sampler {
-            let series = sampler.sensors.iter().zip(&mut sampler.series);
-            for (i, (sensor, series)) in series.enumerate() {
-                let seen = found
-                    .iter()
-                    .skip(i)
-                    .step_by(sensors.len())
-                    .take(within[lane]);
-                series.extend(seen.map(|x| sensor.measured.wrapped(x.get(lane))));
-            }
-            sampler.seen += within[lane];
+    seen
+}
+
+impl Sampler<'_> {
+    /// Takes in what is seen of this lane at the next instants.
+    fn take<L: Lanes<W>, const W: usize>(&mut self, lane: usize, count: usize, seen: &[L]) {
+        for (i, sensor) in self.sensors.iter().enumerate() {
+            let of_sensor = seen.iter().skip(i).step_by(self.sensors.len()).take(count);
+            self.series
+                .extend(i, sensor, of_sensor.map(|x| x.get(lane)));
         }
+        self.seen += count;
     }
 }

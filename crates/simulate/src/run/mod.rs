@@ -104,6 +104,11 @@ impl<S: Real> Run<S> {
         self.time() + ahead / speed
     }
 
+    /// Relative local error of its steps.
+    pub(crate) fn tolerance(&self) -> f64 {
+        self.integrator.tolerance()
+    }
+
     /// The time reached, s.
     pub(crate) fn time(&self) -> f64 {
         self.integrator.time()

@@ -13,6 +13,7 @@ mod lyapunov;
 mod measure;
 mod poincare;
 mod record;
+mod sampling;
 mod sensitivity;
 mod switches;
 mod verdicts;
