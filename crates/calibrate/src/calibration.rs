@@ -2,7 +2,7 @@
 //! pictures are drawn from.
 
 use crate::comparison::compare;
-use crate::earlier::{self, Earlier, Existing};
+use crate::earlier::{self, Existing, Outcome};
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::meter::Meter;
@@ -34,7 +34,7 @@ pub struct Prepared {
     fingerprint: String,
     out: PathBuf,
     existing: Existing,
-    earlier: Option<Earlier>,
+    earlier: Option<Results>,
 }
 
 /// Reads everything that a calibration into the folder `out` needs, and what is there of it already.
@@ -44,7 +44,7 @@ pub struct Prepared {
 /// Settings, a bundle, a machine or recordings that cannot be used or contradict each other, or a
 /// folder that is in the way.
 pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Prepared, Error> {
-    earlier::check_folder(out, existing)?;
+    earlier::check_folder::<Results>(out, existing)?;
     let task = task(settings)?;
     let fingerprint = task.fingerprint();
     Ok(Prepared {
@@ -56,10 +56,23 @@ pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Pr
     })
 }
 
+impl Outcome for Results {
+    const FILE: &str = RESULTS;
+    const NAME: &str = "a calibration";
+
+    fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    fn is_complete(&self) -> bool {
+        self.complete
+    }
+}
+
 impl Prepared {
     /// Whether it is there already, complete.
     pub fn is_done(&self) -> bool {
-        self.earlier.as_ref().is_some_and(Earlier::is_complete)
+        self.earlier.as_ref().is_some_and(Results::is_complete)
     }
 
     /// Searches, unless it is done. Where `watcher` stops the search, the best result so far is written,
@@ -77,10 +90,10 @@ impl Prepared {
             earlier,
         } = self;
         let machine = out.join(MACHINE);
-        if let Some(earlier) = earlier.filter(Earlier::is_complete) {
+        if let Some(results) = earlier.filter(Results::is_complete) {
             return Ok(Calibrated {
                 machine,
-                results: earlier.results,
+                results,
                 reused: true,
             });
         }

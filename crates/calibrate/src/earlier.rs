@@ -1,56 +1,59 @@
-//! A calibration that is in the folder already.
+//! Results of a search that are in the folder already.
 
 use crate::checkpoint::Checkpoint;
 use crate::error::Error;
-use crate::results::{MACHINE, RESULTS, Results};
+use crate::results::MACHINE;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::path::Path;
 
-/// Name of the file of what was evaluated, which is there while a calibration is not complete.
+/// Name of the file of what was evaluated, which is there while a search is not complete.
 const CHECKPOINT: &str = "checkpoint.bin";
 
-/// What becomes of a calibration that is there already.
+/// What becomes of results that are there already.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// It is left alone, and that is an error.
+    /// They are left alone, and that is an error.
     Refuse,
-    /// It is kept where it is complete, and continued where it is not. One of other recordings,
-    /// another machine or other settings is an error.
+    /// They are kept where they are complete, and the search goes on where they are not. Those of other recordings,
+    /// another machine or other settings are an error.
     Resume,
-    /// The same, but one that was made from something else is made anew.
+    /// The same, but what was made from something else is made anew.
     Renew,
-    /// It is made anew.
+    /// They are made anew.
     Overwrite,
 }
 
-/// What an earlier calibration of the same inputs has left.
-pub(crate) struct Earlier {
-    /// The content of its `calibration.json`.
-    pub results: Results,
-}
+/// What a search into a folder comes to.
+pub(crate) trait Outcome: DeserializeOwned {
+    /// Name of its file.
+    const FILE: &str;
+    /// What it is, with its article.
+    const NAME: &str;
 
-impl Earlier {
-    /// Whether it went to its end.
-    pub fn is_complete(&self) -> bool {
-        self.results.complete
-    }
+    /// The digest of its inputs.
+    fn fingerprint(&self) -> &str;
+
+    /// Whether the search went to its end.
+    fn is_complete(&self) -> bool;
 }
 
 /// Checks that the folder may be written into, before any work. One that is renewed is known to be
 /// ours.
 ///
 /// # Errors
-/// A calibration that is not to be touched, or a folder with something else in it.
-pub(crate) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Error> {
+/// Results that are not to be touched, or a folder with something else in it.
+pub(crate) fn check_folder<R: Outcome>(folder: &Path, existing: Existing) -> Result<(), Error> {
     if existing == Existing::Renew {
         return Ok(());
     }
-    if folder.join(RESULTS).is_file() {
+    if folder.join(R::FILE).is_file() {
         return match existing {
             Existing::Refuse => Err(Error::Refused(format!(
-                "{} holds a calibration already: --resume goes on with it, --overwrite replaces it, \
+                "{} holds {} already: --resume goes on with it, --overwrite replaces it, \
                  --out DIR writes elsewhere",
-                folder.display()
+                folder.display(),
+                R::NAME
             ))),
             _ => Ok(()),
         };
@@ -67,29 +70,31 @@ pub(crate) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Erro
     match names.iter().any(|name| name == CHECKPOINT) {
         _ if names.is_empty() => Ok(()),
         true if existing == Existing::Refuse => Err(Error::Refused(format!(
-            "{} holds a calibration that was interrupted: --resume goes on with it, --overwrite begins anew, \
+            "{} holds {} that was interrupted: --resume goes on with it, --overwrite begins anew, \
              --out DIR writes elsewhere",
-            folder.display()
+            folder.display(),
+            R::NAME
         ))),
         true => Ok(()),
         false => Err(Error::Refused(format!(
-            "{} is not empty and no calibration, so it is left alone: choose another folder",
-            folder.display()
+            "{} is not empty and not {}, so it is left alone: choose another folder",
+            folder.display(),
+            R::NAME
         ))),
     }
 }
 
-/// The calibration in `folder`, if it is of these inputs and to be gone on with.
+/// The results in `folder`, if they are of these inputs and to be gone on with.
 ///
 /// # Errors
-/// One of other inputs that is to be resumed, or a file that cannot be read.
-pub(crate) fn read_existing(
+/// Those of other inputs that are to be resumed, or a file that cannot be read.
+pub(crate) fn read_existing<R: Outcome>(
     folder: &Path,
     existing: Existing,
     fingerprint: &str,
-) -> Result<Option<Earlier>, Error> {
+) -> Result<Option<R>, Error> {
     let checkpoint = folder.join(CHECKPOINT);
-    let path = folder.join(RESULTS);
+    let path = folder.join(R::FILE);
     if existing == Existing::Resume && !path.is_file() && checkpoint.is_file() {
         return match Checkpoint::is_of(&checkpoint, fingerprint) {
             true => Ok(None),
@@ -104,10 +109,10 @@ pub(crate) fn read_existing(
         files::read_text(&path, files::LONGEST_TEXT).map_err(|error| wrong(error.to_string()))?;
     let content: Value = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     // Results of another version may have another form: they are of something else.
-    let results = serde_json::from_value::<Results>(content).ok();
-    let same = results.filter(|r| r.fingerprint == fingerprint && folder.join(MACHINE).is_file());
+    let results = serde_json::from_value::<R>(content).ok();
+    let same = results.filter(|r| r.fingerprint() == fingerprint && folder.join(MACHINE).is_file());
     match (same, existing) {
-        (Some(results), _) => Ok(Some(Earlier { results })),
+        (Some(results), _) => Ok(Some(results)),
         (None, Existing::Resume) => Err(other(&path)),
         (None, _) => Ok(None),
     }
@@ -121,7 +126,7 @@ fn other(path: &Path) -> Error {
     ))
 }
 
-/// The checkpoint of a calibration into `folder`: what was evaluated before, if it goes on, or nothing yet.
+/// The checkpoint of a search into `folder`: what was evaluated before, if it goes on, or nothing yet.
 ///
 /// # Errors
 /// A file that cannot be written, or that another process is at work with.
@@ -137,7 +142,7 @@ pub(crate) fn checkpoint(
     Checkpoint::open(&path, fingerprint, anew).map_err(unwritten)
 }
 
-/// Takes the checkpoint of a calibration away that is complete.
+/// Takes the checkpoint of a search away that is complete.
 ///
 /// # Errors
 /// A file that cannot be removed.

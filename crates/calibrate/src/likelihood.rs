@@ -73,12 +73,24 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn likeliest(&self, x: &[f64], timings: &[f64]) -> Result<(f64, f64), Error> {
-        let predictions = self.predictions(x)?;
-        let all = timings
-            .iter()
-            .map(|timing| (*timing, self.deviance_of(&predictions, *timing)));
-        let best = all.min_by(|a, b| a.1.total_cmp(&b.1));
-        best.ok_or(Error::Nothing("no allowance"))
+        let what = ("likeliest", self.timing, self.parts.is_some(), timings);
+        let mut failure = None;
+        let best = self.problem.once(&what, x, || match self.predictions(x) {
+            Ok(predictions) => {
+                let left = |timing: &f64| self.deviance_of(&predictions, *timing);
+                let all = timings.iter().map(|timing| [*timing, left(timing)]);
+                let best = all.min_by(|a, b| a[1].total_cmp(&b[1]));
+                best.map_or_else(Vec::new, Vec::from)
+            }
+            Err(error) => {
+                failure = Some(error);
+                Vec::new()
+            }
+        });
+        match best[..] {
+            [timing, left] => Ok((timing, left)),
+            _ => Err(failure.unwrap_or(Error::Nothing("a run cannot be simulated"))),
+        }
     }
 
     fn deviance_of(&self, predictions: &[Prediction], timing: f64) -> f64 {

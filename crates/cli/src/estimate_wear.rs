@@ -2,11 +2,10 @@
 
 use crate::bundle::AllowOutside;
 use crate::calibrate::progress::Bar;
-use crate::output::refuse_existing;
 use crate::result_format::ResultFormat;
 use crate::{Failure, interrupt, report};
-use ::calibrate::Settings;
-use ::calibrate::wear::{Asked, WEAR, prepare};
+use ::calibrate::wear::{Asked, prepare};
+use ::calibrate::{Existing, Settings};
 use ::report::folder_kind::FolderKind;
 use clap::Args;
 use input::calibration::{Calibration, Parameters};
@@ -42,6 +41,9 @@ pub struct Arguments {
     leave_out: Vec<String>,
     #[command(flatten)]
     outside: AllowOutside,
+    /// Continue an estimation that was stopped
+    #[arg(long, conflicts_with = "overwrite")]
+    resume: bool,
     /// Replace an earlier estimation
     #[arg(long)]
     overwrite: bool,
@@ -64,7 +66,6 @@ fn times(text: &str) -> Result<f64, String> {
 /// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    refuse_existing([out.join(WEAR)], arguments.overwrite)?;
     let machine = input::machine_file::read(&arguments.machine).map_err(Failure::input)?;
     let mut calibration = Calibration::with_defaults(vec![arguments.bundle.clone()]);
     let offset = ::calibrate::run_condition::CRANK_ANGLE_OFFSET.to_owned();
@@ -83,20 +84,30 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         worn_from: arguments.worn_from,
     };
     let cancel = interrupt::flag()?;
-    let prepared = prepare(&asked, out).map_err(Failure::input)?;
+    let existing = match (arguments.resume, arguments.overwrite) {
+        (true, _) => Existing::Resume,
+        (_, true) => Existing::Overwrite,
+        _ => Existing::Refuse,
+    };
+    let prepared = prepare(&asked, out, existing).map_err(Failure::input)?;
     let done = prepared
         .finish(&mut Bar::new(&cancel))
         .map_err(Failure::work)?;
     let page = out.join(report::PAGE);
-    report::write_result(FolderKind::Wear, out, &page)?;
+    if !done.reused {
+        report::write_result(FolderKind::Wear, out, &page)?;
+    }
     arguments.format.print(&done.results, |results| {
+        if done.reused {
+            println!("nothing has changed since this was found:");
+        }
         print!("{results}");
         println!("{}", done.machine.display());
         println!("{}", page.display());
     })?;
     if !done.results.complete {
         return Err(Failure::interrupted(format!(
-            "stopped before the end: {} has the best so far",
+            "stopped before the end: {} has the best so far; --resume continues from there",
             out.display()
         )));
     }

@@ -3,9 +3,9 @@
 use crate::calibrate::Watch;
 use crate::interruptible::interruptible;
 use crate::machine::Machine;
-use ::calibrate::Settings;
 use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::wear::{Asked, prepare};
+use ::calibrate::{Existing, Settings};
 use cli::Failure;
 use cli::report::{self, PAGE};
 use input::calibration::{Calibration, Parameters};
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// An invalid bundle, work that fails, or Ctrl-C.
 #[pyfunction]
-#[pyo3(signature = (bundle, machine, out, worn_from, leave_out, allow_outside, progress))]
+#[pyo3(signature = (bundle, machine, out, worn_from, leave_out, allow_outside, overwrite, progress))]
 pub fn estimate_wear(
     py: Python<'_>,
     bundle: PathBuf,
@@ -26,6 +26,7 @@ pub fn estimate_wear(
     worn_from: f64,
     leave_out: Vec<String>,
     allow_outside: bool,
+    overwrite: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
     let machine = machine.tree();
@@ -45,7 +46,11 @@ pub fn estimate_wear(
             },
             worn_from,
         };
-        let prepared = prepare(&asked, &out).map_err(Failure::input)?;
+        let existing = match overwrite {
+            true => Existing::Overwrite,
+            false => Existing::Resume,
+        };
+        let prepared = prepare(&asked, &out, existing).map_err(Failure::input)?;
         let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
         report::write(&out, &out.join(PAGE))?;
         match done.results.complete {

@@ -10,9 +10,11 @@ use super::selection::{Found, selected};
 use super::tolerance::widen;
 use super::verdict::{Grounds, together};
 use crate::comparison::compare_models;
+use crate::earlier::{self, Existing, Outcome};
 use crate::error::Error;
 use crate::fit::RunFit;
 use crate::likelihood::{Likelihood, misfit};
+use crate::meter::Meter;
 use crate::pictures;
 use crate::problem::Problem;
 use crate::results::{ByName, Estimate, MACHINE};
@@ -35,7 +37,10 @@ pub struct Prepared {
     task: Task,
     joints: Vec<Joint>,
     worn_from: f64,
+    fingerprint: String,
     out: PathBuf,
+    existing: Existing,
+    earlier: Option<Results>,
 }
 
 /// An estimation that is on the disk.
@@ -45,14 +50,17 @@ pub struct Estimated {
     pub machine: PathBuf,
     /// The content of `wear.json`.
     pub results: Results,
+    /// True where it was there before, and nothing was to be done.
+    pub reused: bool,
 }
 
-/// Reads everything that an estimation into the folder `out` needs. Nothing is written.
+/// Reads everything that an estimation into the folder `out` needs, and what is there of it already. Nothing is written.
 ///
 /// # Errors
 /// A bundle, a machine or recordings that cannot be used or contradict each other, a machine without joints that may be
-/// worn, recordings without a channel that shows clearances.
-pub fn prepare(asked: &Asked, out: &Path) -> Result<Prepared, Error> {
+/// worn, recordings without a channel that shows clearances, or a folder that is in the way.
+pub fn prepare(asked: &Asked, out: &Path, existing: Existing) -> Result<Prepared, Error> {
+    earlier::check_folder::<Results>(out, existing)?;
     let task = task(&asked.settings)?;
     let joints = Joint::of_machine(&task.problem.tree)?;
     if joints.is_empty() {
@@ -71,21 +79,36 @@ pub fn prepare(asked: &Asked, out: &Path) -> Result<Prepared, Error> {
             ));
         }
     }
+    let fingerprint = format!("{} worn from {}", task.fingerprint(), asked.worn_from);
     Ok(Prepared {
+        earlier: earlier::read_existing(out, existing, &fingerprint)?,
         task,
         joints,
         worn_from: asked.worn_from,
+        fingerprint,
         out: out.to_owned(),
+        existing,
     })
 }
 
 impl Prepared {
-    /// Estimates the clearances, and writes `wear.json`, the machine file with them, and what pictures are drawn from.
-    /// Where `watcher` stops the search, the best so far is written, marked as incomplete.
+    /// Estimates the clearances, unless that is done, and writes `wear.json`, the machine file with them, and what pictures
+    /// are drawn from. Where `watcher` stops the search, the best so far is written, marked as incomplete. Each evaluation is
+    /// written to the disk at once: an estimation that was stopped or killed continues from there, and ends with the same results.
     ///
     /// # Errors
     /// A machine that cannot be simulated, or files that cannot be written.
     pub fn finish(mut self, watcher: &mut dyn Watcher) -> Result<Estimated, Error> {
+        let machine = self.out.join(MACHINE);
+        if let Some(results) = self.earlier.take_if(|earlier| earlier.is_complete()) {
+            return Ok(Estimated {
+                machine,
+                results,
+                reused: true,
+            });
+        }
+        let checkpoint = earlier::checkpoint(&self.out, self.existing, &self.fingerprint)?;
+        self.task.problem.meter = Meter::with_checkpoint(checkpoint);
         let mut effort = Effort::new(watcher);
         let healthy = self.task.problem.clone();
         let x = start(&self.task);
@@ -106,9 +129,9 @@ impl Prepared {
         )?;
         let problem = &found.model.problem;
         concluded.results.pulse_angles_rad = self.task.pulses(problem, &concluded.x);
+        concluded.results.fingerprint.clone_from(&self.fingerprint);
         let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
         pictures::write(&self.out, &compare_models(models, &self.task.runs)?)?;
-        let machine = self.out.join(MACHINE);
         let tree = problem.fitted(&concluded.x)?;
         let text = MachineFile::from_tree(&tree).and_then(|file| file.to_yaml())?;
         WholeFile::write(&machine, text.as_bytes())?;
@@ -117,9 +140,13 @@ impl Prepared {
         let text = serde_json::to_string_pretty(&concluded.results);
         let text = text.map_err(|error| Error::file(&path, error))?;
         WholeFile::write(&path, text.as_bytes())?;
+        if concluded.results.complete {
+            earlier::remove_checkpoint(&self.out)?;
+        }
         Ok(Estimated {
             machine,
             results: concluded.results,
+            reused: false,
         })
     }
 
@@ -216,6 +243,7 @@ fn conclude(
     let others = fit.estimates.iter().skip(found.model.clear.len());
     let results = Results {
         complete: whole,
+        fingerprint: String::new(),
         evaluations: effort.spent,
         worn_from,
         joints: verdicts,

@@ -3,6 +3,7 @@
 //! Values are SI, clearances are radial unless their key says otherwise, misfits are in standard deviations of the noise:
 //! 1 is noise alone. The same inputs give the same bytes.
 
+use crate::earlier::Outcome;
 use crate::error::Error;
 use crate::results::{ByName, Estimate};
 use serde::{Deserialize, Serialize};
@@ -19,6 +20,9 @@ pub const WEAR: &str = "wear.json";
 pub struct Results {
     /// False where the search was stopped before its end.
     pub complete: bool,
+    /// Digest of the inputs: the recordings, the machine, what is asked for and the version of this program.
+    #[serde(default)]
+    pub fingerprint: String,
     /// Evaluations of the model, all runs being one.
     pub evaluations: u64,
     /// A joint counts as worn from this many times its normal clearance.
@@ -46,6 +50,19 @@ pub struct Results {
     pub channels: Vec<String>,
     /// What was fitted beside the clearances, by path.
     pub parameters: ByName<Estimate>,
+}
+
+impl Outcome for Results {
+    const FILE: &str = WEAR;
+    const NAME: &str = "an estimation of wear";
+
+    fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    fn is_complete(&self) -> bool {
+        self.complete
+    }
 }
 
 /// How worn a joint is.

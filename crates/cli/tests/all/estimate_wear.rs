@@ -6,7 +6,7 @@ use ::calibrate::wear::{Interval, Results, Verdict};
 use one_run::{bundle, crosshead, machine, said};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Command, Output, Stdio};
 
 /// The machine of the bundle with a big end of 0.03 mm and no other joint that may be worn.
 fn healthy(folder: &Path) -> PathBuf {
@@ -75,6 +75,48 @@ fn a_worn_big_end_is_found_with_its_clearance() {
     let again = estimate(folder.path(), &machine, &[]);
     assert_eq!(again.status.code(), Some(2));
     assert!(said(&again).contains("--overwrite"), "{again:?}");
+    let other = estimate(folder.path(), &machine, &["--resume", "--worn-from", "3"]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(said(&other).contains("other settings"), "{other:?}");
+
+    one_that_was_stopped_goes_on_to_the_same_results(folder.path(), &machine);
+}
+
+fn one_that_was_stopped_goes_on_to_the_same_results(folder: &Path, machine: &Path) {
+    let stopped = folder.join("stopped");
+    let command = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_crosshead"));
+        command.arg("estimate-wear").arg(folder);
+        command.arg("--machine").arg(machine);
+        command.arg("--out").arg(&stopped).args(more);
+        command
+    };
+    let silent = || Stdio::null();
+    let mut child = command(&[])
+        .stdout(silent())
+        .stderr(silent())
+        .spawn()
+        .unwrap();
+    let evaluated = || fs::metadata(stopped.join("checkpoint.bin")).map_or(0, |m| m.len());
+    while evaluated() < 50_000 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = Command::new("kill").arg(child.id().to_string()).status();
+    assert!(kill.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let so_far = Results::read(&stopped.join("wear.json")).unwrap();
+    assert!(!so_far.complete);
+
+    let resumed = command(&["--resume"]).output().unwrap();
+    assert!(resumed.status.success(), "{resumed:?}");
+    assert!(!stopped.join("checkpoint.bin").exists());
+    for file in ["wear.json", "machine.yaml", "report.html"] {
+        let of = |folder: &Path| fs::read(folder.join(file)).unwrap();
+        assert!(of(&stopped) == of(&folder.join("wear")), "{file}");
+    }
+    let again = command(&["--resume"]).output().unwrap();
+    let words = String::from_utf8(again.stdout).unwrap();
+    assert!(words.starts_with("nothing has changed"), "{words}");
 }
 
 #[test]

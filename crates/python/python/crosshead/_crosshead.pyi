@@ -151,6 +151,7 @@ def estimate_wear(
     worn_from: float,
     leave_out: Sequence[str],
     allow_outside: bool,
+    overwrite: bool,
     progress: _Progress,
 ) -> None: ...
 def features(

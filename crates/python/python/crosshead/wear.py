@@ -21,6 +21,7 @@ def estimate_wear(
     worn_from: float = 1.5,
     leave_out: Iterable[str] = (),
     allow_outside: bool = False,
+    overwrite: bool = False,
     progress: Progress = None,
 ) -> Wear:
     """Estimates the radial clearance of each joint from recordings of a machine in one state.
@@ -31,6 +32,7 @@ def estimate_wear(
     worn_from: a joint counts as worn from this many times its normal clearance.
     leave_out: runs that are not used.
     allow_outside: whether the bundle may name recordings outside of its folder.
+    overwrite: whether an estimation in `out` is replaced. One of the same inputs that was stopped is continued otherwise.
     """
     if not 1 < worn_from < float("inf"):
         raise InputError(f"worn_from: found {worn_from}, expected a number above 1")
@@ -43,6 +45,7 @@ def estimate_wear(
             worn_from,
             list(leave_out),
             allow_outside,
+            overwrite,
             report,
         )
     return Wear(folder)
