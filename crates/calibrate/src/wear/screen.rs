@@ -63,9 +63,9 @@ pub(super) fn screened(
                 if point.moved.contains(&i) {
                     continue;
                 }
-                let mut places = product(model, joints, group, &point.x);
-                // The same clearances are reached by moving the groups in another order.
-                places.retain(|x| next.iter().all(|known| known.x != *x));
+                let mut places = product(model, joints, group, STEP, &point.x);
+                // Nothing has moved, or the same clearances are reached by moving the groups in another order.
+                places.retain(|x| *x != point.x && next.iter().all(|known| known.x != *x));
                 let moved: Vec<usize> = point.moved.iter().copied().chain([i]).collect();
                 next.extend(looked_at(left, places, &moved, effort));
             }
@@ -92,7 +92,7 @@ pub(super) fn with_one_more(
     let left = |x: &[f64]| energies.squares(x);
     let along = starts
         .iter()
-        .flat_map(|x| product(model, joints, &[place], x));
+        .flat_map(|x| product(model, joints, &[place], STEP, x));
     let mut points = looked_at(left, along.collect(), &[], effort);
     best_first(&mut points);
     let Some(best) = points.first().map(|point| point.x.clone()) else {
@@ -100,7 +100,7 @@ pub(super) fn with_one_more(
     };
     for mut group in groups(model) {
         group.retain(|other| *other != place);
-        let places = product(model, joints, &group, &best);
+        let places = product(model, joints, &group, STEP, &best);
         points.extend(looked_at(left, places, &[], effort));
     }
     points
@@ -117,16 +117,8 @@ pub(super) fn by_lines(
     let few = few(&model.problem);
     let lines = Likelihood::new(&few);
     let left = |x: &[f64]| Ok(lines.likeliest(x, &TIMINGS)?.1);
-    let parameter = &model.problem.parameters[place];
-    let grid = grid(&joints[model.clear[place]], STEP_OF_LINES);
-    let moved = starts.iter().flat_map(|x| {
-        grid.iter().map(|clearance| {
-            let mut x = x.clone();
-            x[place] = parameter.coordinate(*clearance);
-            x
-        })
-    });
-    looked_at(left, moved.collect(), &[], effort)
+    let along = |x: &Vec<f64>| product(model, joints, &[place], STEP_OF_LINES, x);
+    looked_at(left, starts.iter().flat_map(along).collect(), &[], effort)
 }
 
 fn best_first(points: &mut [Point]) {
@@ -156,12 +148,18 @@ fn groups(model: &Model) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The point `x` with the clearances of a group at all points of their common grid. Where nothing has moved is left out.
-fn product(model: &Model, joints: &[Joint], group: &[usize], x: &[f64]) -> Vec<Vec<f64>> {
+/// The point `x` with the clearances of a group at all points of their common grid.
+fn product(
+    model: &Model,
+    joints: &[Joint],
+    group: &[usize],
+    step: f64,
+    x: &[f64],
+) -> Vec<Vec<f64>> {
     let mut points = vec![x.to_vec()];
     for place in group {
         let parameter = &model.problem.parameters[*place];
-        let grid = grid(&joints[model.clear[*place]], STEP);
+        let grid = grid(&joints[model.clear[*place]], step);
         let moved = points.iter().flat_map(|x| {
             grid.iter().map(|clearance| {
                 let mut x = x.clone();
@@ -171,7 +169,6 @@ fn product(model: &Model, joints: &[Joint], group: &[usize], x: &[f64]) -> Vec<V
         });
         points = moved.collect();
     }
-    points.retain(|point| point != x);
     points
 }
 

@@ -373,5 +373,8 @@ fn a_stopped_calibration_goes_on_and_a_whole_one_stays() {
     );
     // A folder with something else in it is left alone.
     let full = into_folder(&settings, folder.path(), Existing::Overwrite, false);
-    assert!(format!("{full:?}").contains("not a calibration"), "{full:?}");
+    assert!(
+        format!("{full:?}").contains("not a calibration"),
+        "{full:?}"
+    );
 }
