@@ -228,11 +228,11 @@ impl Search<'_> {
 }
 
 /// The first of each node, then the second of each, and so on; no set twice.
-fn in_turn<'a>(
-    beam: &'a [Hypothesis],
+fn in_turn(
+    beam: &[Hypothesis],
     mut of_each: Vec<impl Iterator<Item = Screened>>,
     most: usize,
-) -> Vec<(&'a Hypothesis, Screened)> {
+) -> Vec<(&Hypothesis, Screened)> {
     let mut chosen: Vec<(&Hypothesis, Screened)> = Vec::new();
     let mut known: Vec<Vec<String>> = Vec::new();
     loop {
