@@ -170,6 +170,9 @@ fn effects() -> impl Strategy<Value = Vec<Effect>> {
         discharge: 0.2,
         suction_linear: 0.0,
         discharge_linear: 0.0,
+        suction_overshoot: 0.0,
+        discharge_overshoot: 0.0,
+        overshoot_angle: 0.2,
     });
     let all = [rings, valves].map(Law::everywhere).to_vec();
     proptest::sample::subsequence(all, 0..=2)
@@ -192,6 +195,9 @@ pub fn catalogue() -> Vec<Effect> {
                 discharge: 0.2,
                 suction_linear: 0.02,
                 discharge_linear: 0.03,
+                suction_overshoot: 0.05,
+                discharge_overshoot: 0.04,
+                overshoot_angle: 0.3,
             }),
             None,
             None,

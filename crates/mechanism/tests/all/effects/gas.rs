@@ -20,6 +20,9 @@ fn valve_loss_lifts_the_plateaus_by_the_square_of_the_speed_and_costs_its_work()
         discharge,
         suction_linear: 0.0,
         discharge_linear: 0.0,
+        suction_overshoot: 0.0,
+        discharge_overshoot: 0.0,
+        overshoot_angle: 0.2,
     }));
     let found = at_angles(machine.clone(), &[100.0, 310.0], pressure);
     let u = [100.0, 310.0].map(|degrees: f64| speed(degrees.to_radians()));
@@ -445,6 +448,9 @@ fn a_spring_loaded_plate_adds_a_loss_that_grows_with_the_speed() {
             discharge: 0.1,
             suction_linear,
             discharge_linear,
+            suction_overshoot: 0.0,
+            discharge_overshoot: 0.0,
+            overshoot_angle: 0.2,
         }));
         at_angles(machine, &[100.0, 310.0], pressure)
     };
@@ -452,4 +458,45 @@ fn a_spring_loaded_plate_adds_a_loss_that_grows_with_the_speed() {
     let u = [100.0, 310.0].map(|degrees: f64| speed(degrees.to_radians()));
     near(square[0] - both[0], PS * 0.05 * u[0], 1e-6);
     near(square[1] - both[1], PD * 0.04 * u[1], 1e-6);
+}
+
+#[test]
+fn a_plate_that_lags_adds_an_overshoot_that_fades_over_the_angle_since_it_let_go() {
+    let (share, angle) = (0.1, 15_f64.to_radians());
+    let machine = ideal(Law::ValveLoss(ValveLoss {
+        suction: 0.0,
+        discharge: 0.0,
+        suction_linear: 0.0,
+        discharge_linear: 0.0,
+        suction_overshoot: share,
+        discharge_overshoot: share,
+        overshoot_angle: angle,
+    }));
+    // Where the polytrope reaches the pressure at which each valve lets go.
+    let reaches = |volume: f64, falls: bool| {
+        let (mut low, mut high) = if falls { (PI, TAU) } else { (0.0, PI) };
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let beyond = (distance(middle) > volume) != falls;
+            (low, high) = if beyond {
+                (low, middle)
+            } else {
+                (middle, high)
+            };
+        }
+        low
+    };
+    let intake = reaches(DEAD * (PD / PS / (1.0 - share)).powf(1.0 / M), false);
+    let outlet = reaches(
+        (STROKE + DEAD) / (PD / PS * (1.0 + share)).powf(1.0 / M),
+        true,
+    );
+    let found = at_angles(machine, &[70.0, 120.0, 330.0, 350.0], pressure);
+    let faded = |degrees: f64, since: f64| (-(degrees.to_radians() - since) / angle).exp();
+    for (found, degrees) in found[..2].iter().zip([70.0, 120.0]) {
+        near(*found, PS * (1.0 - share * faded(degrees, intake)), 1e-9);
+    }
+    for (found, degrees) in found[2..].iter().zip([330.0, 350.0]) {
+        near(*found, PD * (1.0 + share * faded(degrees, outlet)), 1e-9);
+    }
 }
