@@ -136,6 +136,12 @@ impl Amendment {
         probes
     }
 
+    /// These values in the other forms of its law; nothing where that has one form.
+    pub(crate) fn other_forms_of(&self, values: &[f64]) -> Vec<Vec<f64>> {
+        self.effect()
+            .map_or(Vec::new(), |effect| effect.other_forms_of(values))
+    }
+
     /// A probe at which hardly anything of it is left, so that a descent can leave it out.
     pub(crate) fn faint(&self, probe: &[f64]) -> Vec<f64> {
         match self {

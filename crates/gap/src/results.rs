@@ -24,7 +24,7 @@ use calibrate::fit;
 use calibrate::pressure_gap::PressureGap;
 use calibrate::recorded_sensor::RecordedSensor;
 use calibrate::results::{ByName, Estimate};
-use input::effects::Proposal;
+use input::effects::{Proposal, entry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -125,6 +125,19 @@ pub struct Bounded {
     pub low: Option<f64>,
     /// The upper end.
     pub high: Option<f64>,
+}
+
+impl Effect {
+    /// Its parameters with their SI units; not those of the form of its law that are as usual.
+    pub fn stated(&self) -> impl Iterator<Item = (&str, &'static str, &Bounded)> {
+        let entry = entry(&self.effect);
+        self.parameters.iter().filter_map(move |(key, bounded)| {
+            let parameter = entry.and_then(|entry| entry.parameter(key));
+            let usual = parameter.is_some_and(|p| p.shape)
+                && bounded.interval() == Some([bounded.value; 2]);
+            (!usual).then(|| (key, parameter.map_or("", |p| p.unit), bounded))
+        })
+    }
 }
 
 /// A candidate that was not added.

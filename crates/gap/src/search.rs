@@ -11,6 +11,7 @@ use crate::error::{Error, possible};
 use crate::fitter::{Few, Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
+use crate::recorded::is_of_pressures;
 use crate::screen::{Screened, screen};
 use calibrate::parameter::Scale;
 use rand::RngExt;
@@ -194,6 +195,12 @@ impl Search<'_> {
         let mut probes: Vec<(&[f64], Vec<f64>)> = Vec::new();
         for point in &screened.starts {
             probes.push((&point.x, point.values.clone()));
+            // Two leaks of other forms are alike where each form is at its bound, and nothing leads from there to a third. Pressures
+            // by themselves cost little.
+            if is_of_pressures(problem) {
+                let forms = amendment.other_forms_of(&point.values).into_iter();
+                probes.extend(forms.map(|values| (&point.x[..], values)));
+            }
         }
         // A descent that can leave it out does no worse than the node.
         if let Some(first) = screened.starts.first() {

@@ -16,8 +16,9 @@ impl fmt::Display for Results {
             if let Some(expression) = &effect.expression {
                 writeln!(f, "  F = {expression}")?;
             }
-            for (key, parameter) in effect.parameters.iter() {
-                writeln!(f, "  {key}: {:.4e}", parameter.value)?;
+            for (key, unit, parameter) in effect.stated() {
+                let value = format!("{:.4e} {unit}", parameter.value);
+                writeln!(f, "  {key}: {}", value.trim_end())?;
             }
             for other in &effect.rivals {
                 writeln!(f, "  rival: {}, {}", other.label, rival(other))?;
@@ -54,7 +55,11 @@ impl fmt::Display for Results {
         }
         for refused in &self.refused {
             let [before, after] = refused.evidence.misfit;
-            writeln!(f, "refused: {} [{before:?},{after:?}]", refused.label)?;
+            writeln!(
+                f,
+                "refused: {}: {before:.2} before, {after:.2} after",
+                refused.label
+            )?;
         }
         for (column, sensor) in &self.noise {
             writeln!(f, "sensor {column}: {sensor}")?;

@@ -100,7 +100,8 @@ pub(super) fn with_one_more(
     };
     for mut group in groups(model) {
         group.retain(|other| *other != place);
-        let places = product(model, joints, &group, STEP, &best);
+        let mut places = product(model, joints, &group, STEP, &best);
+        places.retain(|x| *x != best);
         points.extend(looked_at(left, places, &[], effort));
     }
     points

@@ -137,3 +137,19 @@ fn an_encoder_that_is_set_wrong_is_reported_as_such() {
     assert!((found.chain[0].effect.values[0] - 0.03).abs() < 1e-4);
     assert!(found.baseline.fitted > 5.0 * found.explained.fitted);
 }
+
+/// What is named where an effect of this name has these values, and what it leaves of the fitted and the held-out runs.
+fn named(name: &str, values: &[f64]) -> (Vec<String>, [f64; 2]) {
+    let item = entry(name).unwrap().item(&[], values);
+    let found = explained(&json!([item]));
+    let labels = found.found.iter().map(|f| f.candidate().label());
+    let left = [found.explained.fitted, found.explained.held_out.unwrap()];
+    (labels.collect(), left)
+}
+
+#[test]
+fn valves_that_overshoot_where_they_open_are_no_other_effect() {
+    let (labels, left) = named("valve_loss", &[0.06, 0.05, 0.04, 0.03, 0.12, 0.1, 0.26]);
+    assert_eq!(labels, ["valve_loss"]);
+    assert!(left.iter().all(|left| *left < 1.0), "{left:?}");
+}

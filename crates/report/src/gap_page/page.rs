@@ -10,7 +10,6 @@ use gap::parts::{Agreement, Part, Values};
 use gap::results::{Bounded, Effect};
 use gap::scaling::Exponent;
 use gap::{ByPart, Correction, Results, Scaling, Step, Verdict};
-use input::effects::entry;
 
 #[derive(Template)]
 #[template(path = "gap_page.html")]
@@ -149,12 +148,6 @@ impl View<'_> {
 
     fn misfit(value: &f64) -> String {
         size(*value)
-    }
-
-    /// The SI unit of a parameter of an effect; empty for a plain number.
-    fn unit(effect: &Effect, key: &str) -> &'static str {
-        let parameter = entry(&effect.effect).and_then(|entry| entry.parameter(key));
-        parameter.map_or("", |parameter| parameter.unit)
     }
 
     fn value(unit: &str, parameter: &Bounded) -> String {
