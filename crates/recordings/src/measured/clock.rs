@@ -23,6 +23,8 @@ pub(crate) struct TimeColumn {
 pub(crate) struct Clock {
     column: TimeColumn,
     step_s: f64,
+    /// To what the times are rounded where that is more than a step, s; 0 elsewhere.
+    rounding_s: f64,
     last_s: Option<f64>,
     sample: u64,
 }
@@ -50,6 +52,20 @@ impl Clock {
                 let alike = |step: &&f64| (*step - median).abs() <= 0.5 * median + slack;
                 let alike: Vec<f64> = steps.iter().filter(alike).copied().collect();
                 if median <= 0.0 || (alike.len() as f64) < REGULAR * steps.len() as f64 {
+                    let rounding_s = rounding(&steps);
+                    if rounding_s.is_some_and(|rounding| are_even(&steps, stated_hz, rounding)) {
+                        let Some(stated) = stated_hz else {
+                            return refuse(format!(
+                                "the times are rounded to {:.3e} s, too coarsely to determine the sample rate: state it",
+                                rounding_s.unwrap_or_default()
+                            ));
+                        };
+                        return Ok(Self::of_step(
+                            column,
+                            1.0 / stated,
+                            rounding_s.unwrap_or_default(),
+                        ));
+                    }
                     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
                     let most = steps.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                     return refuse(format!(
@@ -70,12 +86,21 @@ impl Clock {
                 "the times are those of {found_hz:.6} Hz, but the sample rate is said to be {stated} Hz"
             ));
         }
-        Ok(Self {
-            step_s: 1.0 / stated_hz.unwrap_or(found_hz),
+        Ok(Self::of_step(
             column,
+            1.0 / stated_hz.unwrap_or(found_hz),
+            0.0,
+        ))
+    }
+
+    fn of_step(column: TimeColumn, step_s: f64, rounding_s: f64) -> Self {
+        Self {
+            column,
+            step_s,
+            rounding_s,
             last_s: None,
             sample: 0,
-        })
+        }
     }
 
     pub(crate) fn sample_rate_hz(&self) -> f64 {
@@ -94,7 +119,7 @@ impl Clock {
         let Some(last_s) = self.last_s.replace(time_s) else {
             return Ok(None);
         };
-        let slack = 0.5 * self.step_s + resolution(&self.column, time);
+        let slack = 0.5 * self.step_s + self.rounding_s + resolution(&self.column, time);
         let excess = time_s - last_s - self.step_s;
         if excess < -slack {
             return Err(Error::time(
@@ -105,6 +130,28 @@ impl Clock {
         }
         Ok((excess > slack).then_some(excess))
     }
+}
+
+/// To what times with these steps may be rounded, s: the least of them that is one.
+fn rounding(steps: &[f64]) -> Option<f64> {
+    let least = steps
+        .iter()
+        .copied()
+        .filter(|step| *step > 0.0)
+        .min_by(f64::total_cmp)?;
+    steps.iter().all(|step| *step >= 0.0).then_some(least)
+}
+
+/// Whether these are the steps of even times of this rate, or of any, that were rounded.
+fn are_even(steps: &[f64], rate_hz: Option<f64>, rounding_s: f64) -> bool {
+    let mean = steps.iter().sum::<f64>() / steps.len() as f64;
+    let step_s = rate_hz.map_or(mean, |rate| 1.0 / rate);
+    let mut off = 0.0_f64;
+    // Each of two times is off by up to half of the rounding, or by all of it where times are cut.
+    steps.iter().all(|step| {
+        off += step - step_s;
+        off.abs() <= rounding_s * (1.0 + 1e-6)
+    })
 }
 
 /// Whether two sample rates are meant to be the same.
@@ -197,6 +244,24 @@ mod tests {
             "`a`, column `t`: sample 3 is at 0.4 s, the one before at 0.5022 s"
         );
         assert!(clock.tick(path, f64::NAN).is_err());
+    }
+
+    #[test]
+    fn times_that_are_rounded_to_more_than_a_step_need_the_rate() {
+        let rounded: Vec<f64> = times(4000.0, 400)
+            .iter()
+            .map(|t| (t * 1e3).round() / 1e3)
+            .collect();
+        let message = clock(&rounded, None).unwrap_err().to_string();
+        assert!(message.contains("rounded to 1.000e-3 s"), "{message}");
+        let mut clock = clock(&rounded, Some(4000.0)).unwrap();
+        assert_eq!(clock.sample_rate_hz(), 4000.0);
+        let path = Path::new("a");
+        for time in &rounded {
+            assert_eq!(clock.tick(path, *time).unwrap(), None);
+        }
+        assert!(clock.tick(path, 0.2).unwrap().unwrap() > 0.09);
+        assert!(clock.tick(path, 0.1).is_err());
     }
 
     #[test]

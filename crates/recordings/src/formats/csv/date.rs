@@ -1,6 +1,6 @@
 //! Times of day and dates in the cells of a table.
 
-use chrono::{NaiveDateTime, NaiveTime};
+use chrono::{NaiveDate, NaiveDateTime, NaiveTime};
 
 /// How a time is written: ISO 8601 and what loggers make of it, day or month first.
 const FORMATS: [&str; 5] = [
@@ -25,6 +25,16 @@ pub(super) fn nanoseconds(cell: &[u8]) -> Option<i64> {
             time.signed_duration_since(NaiveTime::MIN).num_nanoseconds()
         }
     }
+}
+
+/// How a day is written.
+const DAYS: [&str; 4] = ["%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y", "%m/%d/%Y"];
+
+/// Nanoseconds from 1970 to a day; none where a cell holds none.
+pub(super) fn day(cell: &[u8]) -> Option<i64> {
+    let text = std::str::from_utf8(cell).ok()?;
+    let day = DAYS.iter().find_map(|format| NaiveDate::parse_from_str(text, format).ok())?;
+    day.and_time(NaiveTime::MIN).and_utc().timestamp_nanos_opt()
 }
 
 #[cfg(test)]

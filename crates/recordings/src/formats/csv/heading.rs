@@ -2,7 +2,7 @@
 //! before those what a data logger says of itself.
 
 use super::cells::{number, separator, texts};
-use super::date::nanoseconds;
+use super::date::{day, nanoseconds};
 use super::lines::Lines;
 use crate::Error;
 use crate::measured::is_unit;
@@ -110,7 +110,8 @@ fn find(path: &Path, skipped: u64) -> Result<Option<Found>, Error> {
         let has_numbers = cells.iter().any(|cell| is_number(&cell));
         // What a logger says of itself begins with a word.
         let begins = cells.first().is_some_and(|cell| {
-            cell.is_empty() || is_number(&cell) || nanoseconds(cell.as_bytes()).is_some()
+            let dated = |cell: &[u8]| nanoseconds(cell).or_else(|| day(cell)).is_some();
+            cell.is_empty() || is_number(&cell) || dated(cell.as_bytes())
         });
         if let Some((names, last)) = &before[1]
             && has_numbers

@@ -1,20 +1,17 @@
 //! The lines of a text file, one at a time.
 
+use super::encoding::{self, Text};
 use crate::Error;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
 /// A longer line does not belong to a table.
 const LONGEST_LINE: u64 = 1 << 20;
 
-/// Bytes that are read at a time.
-const BUFFER: usize = 1 << 18;
-
 /// A file, and the line that was read last.
 pub(super) struct Lines {
     pub path: PathBuf,
-    file: BufReader<File>,
+    text: Text,
     /// Without its end.
     pub line: Vec<u8>,
     /// Number of the line, from 1.
@@ -23,24 +20,18 @@ pub(super) struct Lines {
 
 impl Lines {
     pub fn open(path: &Path) -> Result<Self, Error> {
-        let file = files::open(path).map_err(Error::io("open", path))?;
-        let mut lines = Self {
+        Ok(Self {
             path: path.to_owned(),
-            file: BufReader::with_capacity(BUFFER, file),
+            text: encoding::open(path)?,
             line: Vec::new(),
             number: 0,
-        };
-        let start = lines.file.fill_buf().map_err(Error::io("read", path))?;
-        if start.starts_with(b"\xef\xbb\xbf") {
-            lines.file.consume(3);
-        }
-        Ok(lines)
+        })
     }
 
     /// Reads the next line; false at the end of the file.
     pub fn advance(&mut self) -> Result<bool, Error> {
         self.line.clear();
-        let read = (&mut self.file)
+        let read = (&mut self.text)
             .take(LONGEST_LINE)
             .read_until(b'\n', &mut self.line);
         let read = read.map_err(Error::io("read", &self.path))?;

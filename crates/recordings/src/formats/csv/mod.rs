@@ -2,6 +2,7 @@
 
 mod cells;
 mod date;
+mod encoding;
 mod heading;
 mod lines;
 mod read;
@@ -20,8 +21,11 @@ pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     open: read::open,
 };
 
-/// Text in UTF-8 or Latin-1: no control characters but those of lines and columns.
+/// Text in UTF-8, UTF-16 or Windows-1252: no control characters but those of lines and columns.
 fn is_text(head: &[u8]) -> bool {
+    if encoding::UTF_16.iter().any(|mark| head.starts_with(mark)) {
+        return true;
+    }
     let control = |b: &u8| *b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r');
     !head.iter().any(control)
 }

@@ -5,17 +5,19 @@
 //! - The line before the first row has their names, with the unit in brackets or at the end (`acc [m/s^2]`, `acc_m_s2`), or in
 //!   a line of its own between. A file without names has the columns `column_1`, `column_2`, ... What a data logger writes
 //!   before is skipped but for the sample rate.
-//! - The time is the column that is called so, or the first one where its unit is one of time or it holds dates.
+//! - The time is the column that is called so, the first one where its unit is one of time, or the first that holds dates or
+//!   times of day. A column of days may stand before one of times of day.
 //! - An empty cell is a missing sample, and so is an empty line within a single column.
-//! - A column that does not begin with a number is left out.
+//! - A column without a name (row numbers) is left out, and one that does not begin with a number. One whose heading has a unit
+//!   has to.
 
 use super::cells::{cells, number};
-use super::date::nanoseconds;
+use super::date::{day, nanoseconds};
 use super::heading::Heading;
 use super::lines::Lines;
 use crate::Error;
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, name_and_unit,
+    MeasuredChannel, MeasuredFile, Options, Recording, Samples, TimeColumn, is_unit, name_and_unit,
     seconds_of_unit, seconds_per_unit, selected,
 };
 use std::path::Path;
@@ -34,6 +36,8 @@ struct CsvSamples {
     held: bool,
     /// Empty lines before it that are missing samples: those within a single column.
     empty: u64,
+    /// The day of the row, ns since 1970; 0 where no column has it.
+    day: i64,
     /// The first of the dates, ns.
     start: Option<i64>,
 }
@@ -42,6 +46,7 @@ struct CsvSamples {
 enum Target {
     Nowhere,
     Time,
+    Day,
     Date,
     Channel(usize),
 }
@@ -67,8 +72,13 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let headings: Vec<(String, Option<String>)> = names.iter().map(|n| name_and_unit(n)).collect();
     let time = time_column(&headings, &numeric, &row);
     let index = time.as_ref().map(|(index, _)| *index);
+    let days = row.iter().position(|cell| day(cell).is_some());
+    let quantity = |i: &usize| Some(*i) != index && headings[*i].1.as_deref().is_some_and(is_unit);
+    if let Some(i) = (0..row.len().min(names.len())).filter(quantity).find(|&i| !numeric[i]) {
+        return Err(not_a(Target::Nowhere, &lines, &names[i], row[i]));
+    }
     let candidates: Vec<usize> = (0..names.len())
-        .filter(|&i| numeric[i] && Some(i) != index)
+        .filter(|&i| numeric[i] && Some(i) != index && !names[i].is_empty())
         .collect();
     let all: Vec<MeasuredChannel> = candidates
         .iter()
@@ -93,7 +103,10 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let time = time.map(|(i, time)| {
         let (target, seconds_per_unit) = match time {
             Time::Number(seconds) => (Target::Time, seconds),
-            Time::Date => (Target::Date, 1.0),
+            Time::Date => {
+                days.into_iter().for_each(|i| targets[i] = Target::Day);
+                (Target::Date, 1.0)
+            }
         };
         targets[i] = target;
         TimeColumn {
@@ -110,6 +123,7 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         names,
         held: true,
         empty: 0,
+        day: 0,
         start: None,
     };
     let count = channels.len();
@@ -131,7 +145,7 @@ enum Time {
     Date,
 }
 
-/// The column of time: one that is called so, the first one where its unit is one of time, or where it holds dates. A
+/// The column of time: one that is called so, the first one where its unit is one of time, or the first that holds dates or times of day. A
 /// quantity that is measured has another unit.
 fn time_column(
     headings: &[(String, Option<String>)],
@@ -149,15 +163,28 @@ fn time_column(
         Some((0, Time::Number(seconds)))
     };
     let dated = || {
-        let first = row.first()?;
-        nanoseconds(first).map(|_| (0, Time::Date))
+        let at = row.iter().position(|cell| nanoseconds(cell).is_some())?;
+        Some((at, Time::Date))
     };
     named.or_else(by_unit).or_else(dated)
 }
 
-/// Seconds from the first date to that of a cell.
-fn seconds(cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
-    let at = nanoseconds(cell)?;
+/// A cell in which something else stands than belongs there.
+fn not_a(target: Target, lines: &Lines, name: &str, cell: &[u8]) -> Error {
+    let text: String = String::from_utf8_lossy(cell).chars().take(40).collect();
+    let expected = match target {
+        Target::Day => "a day",
+        Target::Date => "a time",
+        _ => "a number",
+    };
+    let line = lines.number;
+    let reason = format!("line {line}, column `{name}`: found `{text}`, expected {expected}");
+    damaged(&lines.path, reason)
+}
+
+/// Seconds from the first date to that of a cell on this day.
+fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
+    let at = day.checked_add(nanoseconds(cell)?)?;
     let start = *start.get_or_insert(at);
     Some((at - start) as f64 * 1e-9)
 }
@@ -177,25 +204,20 @@ impl CsvSamples {
                 continue;
             }
             let number = match target {
-                Target::Date => seconds(cell, &mut self.start),
+                Target::Day => day(cell).map(|day| {
+                    self.day = day;
+                    0.0
+                }),
+                Target::Date => seconds(self.day, cell, &mut self.start),
                 _ => number(cell, self.separator),
             };
             let Some(number) = number else {
-                let text: String = String::from_utf8_lossy(cell).chars().take(40).collect();
-                return Err(damaged(
-                    &self.lines.path,
-                    format!(
-                        "line {}, column `{}`: found `{text}`, expected {}",
-                        self.lines.number,
-                        self.names[found - 1],
-                        if target == Target::Date { "a time" } else { "a number" },
-                    ),
-                ));
+                return Err(not_a(target, &self.lines, &self.names[found - 1], cell));
             };
             match target {
                 Target::Time | Target::Date => times.push(number),
                 Target::Channel(channel) => channels[channel].push(number as f32),
-                Target::Nowhere => {}
+                Target::Day | Target::Nowhere => {}
             }
         }
         if found == self.columns {

@@ -156,6 +156,48 @@ fn csv_of_many_dialects() {
     assert_eq!(rate, Some(5.0));
 }
 
+/// As Windows programs write them: UTF-16 with its mark, or one byte a character.
+#[test]
+fn csv_in_the_characters_of_windows() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    let text = "Zeit [s];Stößel [m/s²]\r\n0;1,5\r\n0,001;-2\r\n0,002;30\r\n";
+    let mark = "\u{feff}";
+    let units: Vec<u16> = format!("{mark}{text}").encode_utf16().collect();
+    let little = units.iter().flat_map(|unit| unit.to_le_bytes()).collect();
+    let big = units.iter().flat_map(|unit| unit.to_be_bytes()).collect();
+    let one_byte = text
+        .chars()
+        .map(|c| u8::try_from(u32::from(c)).unwrap())
+        .collect();
+    for bytes in [text.as_bytes().to_vec(), little, big, one_byte] {
+        fs::write(&path, bytes).unwrap();
+        let (channels, rate) = read(&path, &Options::default());
+        assert_eq!(channels["Stößel [m/s²]"], [1.5, -2.0, 30.0]);
+        assert_eq!(rate, Some(1000.0));
+    }
+}
+
+#[test]
+fn csv_columns_that_cannot_be_what_they_are_called() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for found in ["n/a", "1,234.5"] {
+        fs::write(
+            &path,
+            format!("t_s;acc [g];p [bar]\n0;{found};1\n0.001;2;1\n"),
+        )
+        .unwrap();
+        let error = message(&path, &Options::default());
+        let expected = format!("line 2, column `acc [g]`: found `{found}`, expected a number");
+        assert!(error.contains(&expected), "{error}");
+    }
+    // The row numbers of a data frame have no name.
+    fs::write(&path, ",t_s,acc\n0,0,5\n1,0.001,6\n").unwrap();
+    let (channels, _) = read(&path, &Options::default());
+    assert_eq!(channels.keys().collect::<Vec<_>>(), ["acc"]);
+}
+
 /// As data loggers write them: what they say of themselves first, units in a line of their own, dates for times.
 #[test]
 fn csv_as_loggers_write_it() {
@@ -184,6 +226,14 @@ fn csv_as_loggers_write_it() {
         ),
         (format!("when,acc\n{clock}"), "acc", 1000.0),
         (format!("when,acc\n{dated}"), "acc", 2000.0),
+        (
+            format!(
+                "Datum;Uhrzeit;acc\n{}",
+                dated.replace(' ', ";").replace(',', ";")
+            ),
+            "acc",
+            2000.0,
+        ),
     ] {
         fs::write(&path, &text).unwrap();
         let (channels, found) = read(&path, &Options::default());
