@@ -227,10 +227,7 @@ fn csv_as_loggers_write_it() {
         (format!("when,acc\n{clock}"), "acc", 1000.0),
         (format!("when,acc\n{dated}"), "acc", 2000.0),
         (
-            format!(
-                "Datum;Uhrzeit;acc\n{}",
-                dated.replace(' ', ";").replace(',', ";")
-            ),
+            format!("Datum;Uhrzeit;acc\n{}", dated.replace([' ', ','], ";")),
             "acc",
             2000.0,
         ),
