@@ -1,7 +1,10 @@
 //! A bundle of recordings becomes the runs that a machine is held against.
 
+mod columns;
 mod recording;
 mod series;
+
+pub use columns::wrong_columns;
 
 use crate::error::Error;
 use crate::observation::Run;
@@ -72,7 +75,7 @@ pub fn known_runs(option: &str, asked: &[String], ids: &[&str]) -> Result<(), Er
         return Ok(());
     };
     let nearest = input::nearest(unknown, ids.iter().copied());
-    let hint = nearest.map_or(String::new(), |near| format!("; did you mean {near}?"));
+    let hint = nearest.map_or(".".into(), |near| format!("; did you mean {near}?"));
     Err(Error::Refused(format!(
         "{option} {unknown}: there is no such run{hint} The runs are {}.",
         ids.join(", ")

@@ -176,10 +176,17 @@ fn check(kind: Kind, path: &Path, document: Document) -> Result<(), Error> {
     match kind {
         Kind::Machine => MachineFile::from_document(document)?.resolve().map(|_| ()),
         Kind::Sweep => Sweep::new(document, folder)?.nominal().map(|_| ()),
-        Kind::Bundle => input::check_bundle(folder, &document),
+        Kind::Bundle => check_bundle(folder, &document),
         Kind::Calibration => check_calibration(folder, &document),
         Kind::HiddenEffects => HiddenEffects::of(&document).map(|_| ()),
     }
+}
+
+/// Checks a `recordings.yaml`, and whether the recordings that are there have the columns that it names.
+fn check_bundle(folder: &Path, document: &Document) -> Result<(), Error> {
+    input::check_bundle(folder, document)?;
+    let bundle = Bundle::new(folder, document.clone())?;
+    Error::all(::calibrate::bundle::wrong_columns(&bundle)).map_or(Ok(()), Err)
 }
 
 /// Checks settings of a calibration, and the machine and the recordings that they name.
@@ -195,7 +202,7 @@ fn check_calibration(folder: &Path, document: &Document) -> Result<(), Error> {
         .map(|bundle| {
             let document = Document::open(&bundle.join(bundle::FILE));
             document
-                .and_then(|document| input::check_bundle(&bundle, &document))
+                .and_then(|document| check_bundle(&bundle, &document))
                 .err()
         });
     let wrong = machine.into_iter().chain(bundles).flatten();

@@ -154,7 +154,7 @@ fn chosen(arguments: &Arguments, mut cases: Vec<Case>) -> Result<Vec<Case>, Fail
         .find(|only| names().all(|n| n != *only))
     {
         let nearest = input::nearest(unknown, names());
-        let hint = nearest.map_or(String::new(), |near| format!("; did you mean {near}?"));
+        let hint = nearest.map_or(".".into(), |near| format!("; did you mean {near}?"));
         return Err(Failure::input(format!(
             "--only {unknown}: there is no such effect{hint} They are {}.",
             names().collect::<Vec<_>>().join(", ")

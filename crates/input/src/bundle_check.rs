@@ -1,6 +1,7 @@
 //! Everything that can be wrong in a `recordings.yaml`, before any recording is read.
 
 use crate::bundle::Bundle;
+use crate::bundle_channel::Meaning;
 use crate::bundle_machine::from_bundle;
 use crate::error::{Error, Problem};
 use crate::machine_file::MachineFile;
@@ -10,6 +11,9 @@ use crate::schema::bundle_schema;
 use crate::yaml::Document;
 use serde_json::Value;
 use std::path::Path;
+
+/// Any speed, rpm.
+const ANY_SPEED: f64 = 60.0;
 
 /// Checks the bundle in `folder` whose `recordings.yaml` has the content `document`: its machine section at the
 /// conditions of each run, the channels, and where the recordings are.
@@ -25,16 +29,28 @@ pub fn check(folder: &Path, document: &Document) -> Result<(), Error> {
         };
         for (i, run) in bundle.runs.iter().enumerate() {
             let key = format!("runs.{i}");
+            let meanings = bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
             if let Some(machine) = &machine {
-                at_run(machine, &run.section, &key)?;
+                at_run(machine, &with_speed(&run.section, &meanings), &key)?;
             }
-            bundle.meanings(i, machine.as_ref().unwrap_or(&Value::Null))?;
             for file in 0..run.recordings().count() {
                 bundle.path_of_file(run, file)?;
             }
         }
         Ok(())
     })
+}
+
+/// A run with any speed in the place of one that its crank angle gives.
+fn with_speed(run: &Value, channels: &[Meaning]) -> Value {
+    let mut run = run.clone();
+    let turns = |m: &Meaning| matches!(m, Meaning::CrankAngle(_) | Meaning::Tacho { .. });
+    if let Value::Object(section) = &mut run
+        && channels.iter().any(turns)
+    {
+        section.entry("speed_rpm").or_insert(ANY_SPEED.into());
+    }
+    run
 }
 
 /// The machine at the conditions of the run at `key`. What a run sets, or should, is wrong in the run.

@@ -140,7 +140,7 @@ impl Series {
         let mut file = MeasuredFile::open(path, &options).map_err(|error| match error {
             recordings::Error::NoColumn { name, among } => {
                 let nearest = input::nearest(&name, among.iter().map(String::as_str));
-                let hint = nearest.map_or(String::new(), |n| format!("; did you mean {n}?"));
+                let hint = nearest.map_or(".".into(), |n| format!("; did you mean {n}?"));
                 let all = among.join(", ");
                 let file = path.display();
                 format!("{file} has no column {name}{hint} Its columns are {all}.")

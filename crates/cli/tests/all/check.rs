@@ -188,6 +188,44 @@ fn mistakes_of_a_sweep_and_of_its_machine_are_told_together_by_every_verb() {
     assert_eq!(output.status.code(), Some(2));
 }
 
+/// Columns that a bundle names and its recordings lack are found from their headings; a recording that is not there is no
+/// mistake, and neither is a speed that the crank angle gives.
+#[test]
+fn a_bundle_is_held_against_the_headings_of_its_recordings() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("recordings.yaml");
+    let written = crosshead(&["init", "bundle", "--out"]).arg(&out).output();
+    assert!(written.unwrap().status.success());
+    assert!(check(&[folder.path()]).status.success());
+    let recording = folder.path().join("run01.csv");
+    let with_angle = "t_s,crank_angle_rad,crosshead_acceleration,p [bar]\n0,0,1,2\n0.001,0.1,1,2\n";
+    std::fs::write(&recording, with_angle).unwrap();
+    let text_of_file = std::fs::read_to_string(&out).unwrap();
+    let line = |text: &str| {
+        1 + text_of_file
+            .lines()
+            .position(|line| line.contains(text))
+            .unwrap()
+    };
+    let missing = |channel: usize, column: &str| {
+        let place = line(&format!("column: {column}"));
+        (place as u64, format!("runs.0.channels.{channel}.column"))
+    };
+    let expected = [
+        missing(2, "crosshead_acceleration_m_s2"),
+        missing(3, "cylinder_pressure_pa"),
+    ];
+    let output = check(&[folder.path()]);
+    assert_eq!(found(&output, &out), expected);
+    assert!(text(&output.stderr).contains("p [bar]"), "{output:?}");
+    std::fs::write(&recording, "x\n").unwrap();
+    let expected = [(line("file: run01.csv") as u64, "runs.0.file".to_owned())];
+    assert_eq!(found(&check(&[folder.path()]), &out), expected);
+    let real = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let real = real.join("../../data/recordings/recip-compressor-pressure");
+    assert!(check(&[&real]).status.success());
+}
+
 #[test]
 fn a_file_that_cannot_be_read_is_no_file_with_mistakes() {
     let output = check(&[Path::new("nowhere.yaml")]);
