@@ -34,18 +34,29 @@ pub fn open_itself(path: &Path) -> io::Result<File> {
 }
 
 fn regular(options: &OpenOptions, path: &Path) -> io::Result<File> {
-    let file = options.open(path)?;
+    let file = options.open(path).map_err(in_words)?;
     let kind = file.metadata()?.file_type();
     if kind.is_file() {
         return Ok(file);
     }
     Err(match kind.is_dir() {
-        true => ErrorKind::IsADirectory.into(),
+        true => in_words(ErrorKind::IsADirectory.into()),
         false => Error::new(
             ErrorKind::InvalidInput,
             "it is a pipe, a device or a socket; expected a regular file",
         ),
     })
+}
+
+/// What commonly keeps a file from being opened, without the number that the system has for it.
+fn in_words(error: Error) -> Error {
+    let words = match error.kind() {
+        ErrorKind::NotFound => "there is no such file",
+        ErrorKind::IsADirectory => "it is a directory",
+        ErrorKind::PermissionDenied => "permission denied",
+        _ => return error,
+    };
+    Error::new(error.kind(), words)
 }
 
 /// The text of a regular file of at most `most` bytes.

@@ -61,14 +61,7 @@ impl Document {
     pub fn open(path: &Path) -> Result<Self, Error> {
         let name = path.display().to_string();
         let text = files::read_text(path, files::LONGEST_TEXT).map_err(|error| {
-            let reason = match error.kind() {
-                std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-                std::io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
-                std::io::ErrorKind::InvalidData => "it is not text in UTF-8".to_owned(),
-                std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-                _ => error.to_string(),
-            };
-            Error::new("", Problem::Unreadable(reason)).in_file(&name)
+            Error::new("", Problem::Unreadable(error.to_string())).in_file(&name)
         })?;
         Self::parse(&text, &name)
     }

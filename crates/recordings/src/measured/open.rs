@@ -3,7 +3,6 @@
 use super::format::format_of_file;
 use super::{MeasuredFile, Options};
 use crate::Error;
-use std::fs;
 use std::path::Path;
 
 impl MeasuredFile {
@@ -19,11 +18,11 @@ impl MeasuredFile {
         {
             return Err(Error::SampleRate(rate));
         }
-        let metadata = fs::metadata(path).map_err(Error::io("open", path))?;
-        if metadata.is_dir() {
+        if path.is_dir() {
             return Err(Error::damaged("a recording", path, "it is a folder"));
         }
-        if metadata.is_file() && metadata.len() == 0 {
+        let found = files::open(path).and_then(|file| file.metadata());
+        if found.map_err(Error::io("open", path))?.len() == 0 {
             return Err(Error::damaged("a recording", path, "it is empty"));
         }
         (format_of_file(path)?.open)(path, options)

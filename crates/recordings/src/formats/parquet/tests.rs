@@ -297,7 +297,7 @@ fn what_is_no_parquet_file_is_named() {
         .unwrap_err()
         .to_string();
     assert!(
-        missing.starts_with("cannot open `no/such.parquet`: No such file"),
+        missing.starts_with("cannot open `no/such.parquet`: there is no such file"),
         "{missing}"
     );
     let path = on_disk(&folder, b"t_s,acceleration_m_s2\n0,1\n");

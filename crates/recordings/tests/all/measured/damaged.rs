@@ -55,7 +55,10 @@ fn one_clear_message_for_each_mistake() {
     }
     let timed = case("t.csv", b"t,b\n0,1\n0.1,1\n0.2,1\n");
     assert!(message(&timed, &options(&[], Some(20.0))).contains("those of 10.0"));
-    assert!(message(&folder.path().join("none.csv"), &Options::default()).contains("No such file"));
+    assert!(
+        message(&folder.path().join("none.csv"), &Options::default())
+            .contains("there is no such file")
+    );
 }
 
 /// A small file of every format.
