@@ -20,11 +20,15 @@ pub(super) fn nanoseconds(cell: &[u8]) -> Option<i64> {
         .find_map(|format| NaiveDateTime::parse_from_str(&text, format).ok());
     match date {
         Some(date) => date.and_utc().timestamp_nanos_opt(),
-        None => {
-            let time = NaiveTime::parse_from_str(&text, "%H:%M:%S%.f").ok()?;
-            time.signed_duration_since(NaiveTime::MIN).num_nanoseconds()
-        }
+        None => time_of_day(cell),
     }
+}
+
+/// Nanoseconds from midnight to a time of day; none where a cell holds none.
+pub(super) fn time_of_day(cell: &[u8]) -> Option<i64> {
+    let text = std::str::from_utf8(cell).ok()?.replace(',', ".");
+    let time = NaiveTime::parse_from_str(text.trim_end_matches('Z'), "%H:%M:%S%.f").ok()?;
+    time.signed_duration_since(NaiveTime::MIN).num_nanoseconds()
 }
 
 /// How a day is written.

@@ -12,7 +12,7 @@
 //!   has to.
 
 use super::cells::{cells, number};
-use super::date::{day, nanoseconds};
+use super::date::{day, nanoseconds, time_of_day};
 use super::heading::Heading;
 use super::lines::Lines;
 use crate::Error;
@@ -62,7 +62,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     if names.len() > MOST_COLUMNS {
         return Err(damaged(path, format!("it has {} columns", names.len())));
     }
-    let row: Vec<&[u8]> = cells(&lines.line, separator).collect();
+    // A longer row is an error once it is read.
+    let row: Vec<&[u8]> = cells(&lines.line, separator).take(names.len()).collect();
     let numeric: Vec<bool> = row
         .iter()
         .map(|cell| number(cell, separator).is_some())
@@ -72,9 +73,8 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let headings: Vec<(String, Option<String>)> = names.iter().map(|n| name_and_unit(n)).collect();
     let time = time_column(&headings, &numeric, &row);
     let index = time.as_ref().map(|(index, _)| *index);
-    let days = row.iter().position(|cell| day(cell).is_some());
     let quantity = |i: &usize| Some(*i) != index && headings[*i].1.as_deref().is_some_and(is_unit);
-    if let Some(i) = (0..row.len().min(names.len())).filter(quantity).find(|&i| !numeric[i]) {
+    if let Some(i) = (0..row.len()).filter(quantity).find(|&i| !numeric[i]) {
         return Err(not_a(Target::Nowhere, &lines, &names[i], row[i]));
     }
     let candidates: Vec<usize> = (0..names.len())
@@ -104,7 +104,9 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
         let (target, seconds_per_unit) = match time {
             Time::Number(seconds) => (Target::Time, seconds),
             Time::Date => {
-                days.into_iter().for_each(|i| targets[i] = Target::Day);
+                if let Some(day) = day_column(&row, i) {
+                    targets[day] = Target::Day;
+                }
                 (Target::Date, 1.0)
             }
         };
@@ -167,6 +169,12 @@ fn time_column(
         Some((at, Time::Date))
     };
     named.or_else(by_unit).or_else(dated)
+}
+
+/// The column of days that goes with times of day in column `time`.
+fn day_column(row: &[&[u8]], time: usize) -> Option<usize> {
+    time_of_day(row[time])?;
+    row.iter().position(|cell| day(cell).is_some())
 }
 
 /// A cell in which something else stands than belongs there.

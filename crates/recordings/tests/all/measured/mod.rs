@@ -192,6 +192,12 @@ fn csv_columns_that_cannot_be_what_they_are_called() {
         let expected = format!("line 2, column `acc [g]`: found `{found}`, expected a number");
         assert!(error.contains(&expected), "{error}");
     }
+    fs::write(&path, "when,acc\n1,2,10:00:00,2026-01-01\n").unwrap();
+    let error = message(&path, &options(&[], Some(1.0)));
+    assert!(
+        error.contains("line 2 has 4 cells where the first has 2"),
+        "{error}"
+    );
     // The row numbers of a data frame have no name.
     fs::write(&path, ",t_s,acc\n0,0,5\n1,0.001,6\n").unwrap();
     let (channels, _) = read(&path, &Options::default());
@@ -228,6 +234,14 @@ fn csv_as_loggers_write_it() {
         (format!("when,acc\n{dated}"), "acc", 2000.0),
         (
             format!("Datum;Uhrzeit;acc\n{}", dated.replace([' ', ','], ";")),
+            "acc",
+            2000.0,
+        ),
+        (
+            format!(
+                "day;when;acc\n{}",
+                dated.replace("2026", "2026-01-01;2026").replace(',', ";")
+            ),
             "acc",
             2000.0,
         ),
