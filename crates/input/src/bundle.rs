@@ -20,6 +20,9 @@ use std::path::{Component, Path, PathBuf};
 /// Name of the file that makes a folder a bundle.
 pub const FILE: &str = "recordings.yaml";
 
+/// Speed that is taken for a recording over the crank angle alone, rpm: pressures over the angle do not depend on it.
+pub const ANY_SPEED: f64 = 60.0;
+
 /// A folder of measured runs.
 #[derive(Clone, Debug)]
 pub struct Bundle {

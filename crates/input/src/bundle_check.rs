@@ -1,6 +1,6 @@
 //! Everything that can be wrong in a `recordings.yaml`, before any recording is read.
 
-use crate::bundle::Bundle;
+use crate::bundle::{ANY_SPEED, Bundle};
 use crate::bundle_channel::Meaning;
 use crate::bundle_machine::from_bundle;
 use crate::error::{Error, Problem};
@@ -11,9 +11,6 @@ use crate::schema::bundle_schema;
 use crate::yaml::Document;
 use serde_json::Value;
 use std::path::Path;
-
-/// Any speed, rpm.
-const ANY_SPEED: f64 = 60.0;
 
 /// Checks the bundle in `folder` whose `recordings.yaml` has the content `document`: its machine section at the
 /// conditions of each run, the channels, and where the recordings are.

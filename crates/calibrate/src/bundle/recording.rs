@@ -2,15 +2,11 @@
 
 use super::series::{Series, samples_of};
 use crate::observation::Channel;
-use input::bundle::{self, Bundle};
+use input::bundle::{self, ANY_SPEED, Bundle};
 use input::bundle_channel::Meaning;
 use signal::crank_angle::CrankAngle;
 use signal::tacho;
 use std::f64::consts::TAU;
-
-/// Speed that is taken for a recording over the crank angle alone, rpm: pressures over the angle do
-/// not depend on it.
-const ANY_SPEED: f64 = 60.0;
 
 /// A recording.
 pub(super) struct Recording {
