@@ -3,7 +3,7 @@
 use input::bundle::{Bundle, Run};
 use input::bundle_channel::Meaning;
 use input::{Error, Problem};
-use recordings::measured::{MeasuredFile, Options};
+use recordings::measured::{MeasuredChannel, MeasuredFile, Options};
 use serde_json::Value;
 use std::path::Path;
 
@@ -29,7 +29,7 @@ fn of_run(bundle: &Bundle, run: &Run, meanings: &[Meaning]) -> Vec<Error> {
             Ok(path) if path.exists() => path,
             _ => continue,
         };
-        let known = match names(&path) {
+        let known = match channels(&path) {
             Ok(known) => known,
             Err(error) => {
                 let key = match run.files.is_empty() {
@@ -40,11 +40,9 @@ fn of_run(bundle: &Bundle, run: &Run, meanings: &[Meaning]) -> Vec<Error> {
                 continue;
             }
         };
-        let columns: Vec<&str> = known.iter().map(|(column, _)| column.as_str()).collect();
+        let columns: Vec<&str> = known.iter().map(|c| c.column.as_str()).collect();
         for (i, channel) in run.channels_of(file).filter(|(i, _)| is_used(*i)) {
-            let is_asked =
-                |(column, name): &(String, String)| [column, name].contains(&&channel.column);
-            if !known.iter().any(is_asked) {
+            if !known.iter().any(|found| found.is_called(&channel.column)) {
                 let key = format!("channels.{i}.column");
                 wrong.push(Error::unknown_name(key, &channel.column, &columns));
             }
@@ -53,11 +51,8 @@ fn of_run(bundle: &Bundle, run: &Run, meanings: &[Meaning]) -> Vec<Error> {
     wrong
 }
 
-/// Column and name without its unit of each channel of a file.
-fn names(path: &Path) -> Result<Vec<(String, String)>, recordings::Error> {
+/// The channels of a file, all of them.
+fn channels(path: &Path) -> Result<Vec<MeasuredChannel>, recordings::Error> {
     let file = MeasuredFile::open(path, &Options::default())?;
-    let channels = file.channels().iter();
-    Ok(channels
-        .map(|c| (c.column.clone(), c.name.clone()))
-        .collect())
+    Ok(file.channels().to_vec())
 }

@@ -267,8 +267,8 @@ fn every_file_is_right_as_it_is_written() {
         );
     }
     // With the columns of the template.
-    let recording =
-        "t_s,crank_angle_rad,crosshead_acceleration_m_s2,cylinder_pressure_pa\n0,0,1,1e5\n0.001,0.1,1,1e5\n";
+    let columns = "t_s,crank_angle_rad,crosshead_acceleration_m_s2,cylinder_pressure_pa";
+    let recording = format!("{columns}\n0,0,1,1e5\n0.001,0.1,1,1e5\n");
     std::fs::write(file("a.csv"), recording).unwrap();
     for (kind, name) in [
         ("bundle", "recordings.yaml"),

@@ -121,10 +121,7 @@ fn named(
     channels: &[MeasuredChannel],
     name: &str,
 ) -> Result<(usize, Option<String>), Error> {
-    let find = |name: &str| {
-        let is = |c: &MeasuredChannel| c.column == name || c.name == name;
-        channels.iter().position(is)
-    };
+    let find = |name: &str| channels.iter().position(|c| c.is_called(name));
     if let Some(index) = find(name) {
         return Ok((index, channels[index].unit.clone()));
     }

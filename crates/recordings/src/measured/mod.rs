@@ -58,6 +58,13 @@ pub struct MeasuredChannel {
     pub unit: Option<String>,
 }
 
+impl MeasuredChannel {
+    /// Whether this is its column, or its name without the unit.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.column == name || self.name == name
+    }
+}
+
 /// A file of recordings: its heading, and its recordings one after the other.
 pub struct MeasuredFile {
     channels: Vec<MeasuredChannel>,
@@ -308,11 +315,10 @@ impl Recording {
 /// The channels to read, of all that a file has: those asked for, by their column or
 /// their name, with the crank angle; all channels by default.
 pub(crate) fn selected(all: &[MeasuredChannel], options: &Options) -> Result<Vec<usize>, Error> {
-    let is = |channel: &MeasuredChannel, name: &str| channel.column == name || channel.name == name;
     if let Some(name) = options
         .columns
         .iter()
-        .find(|name| !all.iter().any(|c| is(c, name)))
+        .find(|name| !all.iter().any(|c| c.is_called(name)))
     {
         return Err(Error::NoColumn {
             name: name.clone(),
@@ -322,7 +328,7 @@ pub(crate) fn selected(all: &[MeasuredChannel], options: &Options) -> Result<Vec
     let wanted = |channel: &MeasuredChannel| {
         options.columns.is_empty()
             || stem(&channel.name) == "crank_angle"
-            || options.columns.iter().any(|name| is(channel, name))
+            || options.columns.iter().any(|name| channel.is_called(name))
     };
     Ok((0..all.len()).filter(|&i| wanted(&all[i])).collect())
 }

@@ -73,12 +73,10 @@ pub(crate) fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error
     let headings: Vec<(String, Option<String>)> = names.iter().map(|n| name_and_unit(n)).collect();
     let time = time_column(&headings, &numeric, &row);
     let index = time.as_ref().map(|(index, _)| *index);
-    let quantity = |i: &usize| Some(*i) != index && headings[*i].1.as_deref().is_some_and(is_unit);
-    if let Some(i) = (0..row.len()).filter(quantity).find(|&i| !numeric[i]) {
-        return Err(not_a(Target::Nowhere, &lines, &names[i], row[i]));
-    }
+    // What its heading gives a unit is numbers; where it begins with something else, reading it says so.
+    let is_quantity = |i: usize| numeric[i] || headings[i].1.as_deref().is_some_and(is_unit);
     let candidates: Vec<usize> = (0..names.len())
-        .filter(|&i| numeric[i] && Some(i) != index && !names[i].is_empty())
+        .filter(|&i| is_quantity(i) && Some(i) != index && !names[i].is_empty())
         .collect();
     let all: Vec<MeasuredChannel> = candidates
         .iter()
@@ -171,10 +169,10 @@ fn time_column(
     named.or_else(by_unit).or_else(dated)
 }
 
-/// The column of days that goes with times of day in column `time`.
+/// The column of days that stands before times of day in column `time`.
 fn day_column(row: &[&[u8]], time: usize) -> Option<usize> {
     time_of_day(row[time])?;
-    row.iter().position(|cell| day(cell).is_some())
+    row[..time].iter().position(|cell| day(cell).is_some())
 }
 
 /// A cell in which something else stands than belongs there.
@@ -194,7 +192,7 @@ fn not_a(target: Target, lines: &Lines, name: &str, cell: &[u8]) -> Error {
 fn seconds(day: i64, cell: &[u8], start: &mut Option<i64>) -> Option<f64> {
     let at = day.checked_add(nanoseconds(cell)?)?;
     let start = *start.get_or_insert(at);
-    Some((at - start) as f64 * 1e-9)
+    Some(at.checked_sub(start)? as f64 * 1e-9)
 }
 
 impl CsvSamples {

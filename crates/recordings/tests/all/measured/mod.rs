@@ -191,6 +191,9 @@ fn csv_columns_that_cannot_be_what_they_are_called() {
         let error = message(&path, &Options::default());
         let expected = format!("line 2, column `acc [g]`: found `{found}`, expected a number");
         assert!(error.contains(&expected), "{error}");
+        // Nobody asked for it.
+        let (channels, _) = read(&path, &options(&["p"], None));
+        assert_eq!(channels.keys().collect::<Vec<_>>(), ["p [bar]"]);
     }
     fs::write(&path, "when,acc\n1,2,10:00:00,2026-01-01\n").unwrap();
     let error = message(&path, &options(&[], Some(1.0)));
