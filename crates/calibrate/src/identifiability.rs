@@ -103,6 +103,9 @@ impl Information {
 /// - Where more than noise is left, it counts most in the residuals that a parameter follows. The sandwich
 ///   H⁻¹ (Σ r² j jᵀ) H⁻¹ is the covariance of a fit whose model is wrong (Huber 1967, White 1982).
 pub fn widening(problem: &impl LeastSquares, x: &[f64], known: &[usize]) -> Vec<f64> {
+    if known.is_empty() {
+        return Vec::new();
+    }
     let residuals = problem.residuals(x);
     let jacobian = problem.jacobian(x);
     let excess = misfit(&residuals).max(1.0).powi(2);
@@ -250,5 +253,7 @@ mod tests {
         // and gives s²/4.
         let factors = widening(&Step { scale: 10.0 }, &[0.0], &[0]);
         assert!((factors[0] - 2.0_f64.sqrt()).abs() < 1e-3, "{factors:?}");
+        // Where nothing is identifiable there is nothing to widen.
+        assert!(widening(&Step { scale: 10.0 }, &[0.0], &[]).is_empty());
     }
 }
