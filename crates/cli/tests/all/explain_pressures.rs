@@ -36,6 +36,7 @@ fn of_both(rms: [f64; 2]) -> f64 {
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run pressures"]
 fn late_suction_valves_are_found_and_most_of_the_gap_is_closed() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("explained");
