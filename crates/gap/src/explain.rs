@@ -148,12 +148,9 @@ pub fn explain(
     })
 }
 
-/// Where a parameter is not identifiable, the others were estimated beside its start value. All get the values with which the
-/// model was found, coordinates `x`, as the machine file has them; their intervals include both.
+/// The values with which the model was found, coordinates `x`, as the machine file has them: the fit that gives the intervals may end
+/// beside them, and estimates the others beside the start value of one that is not identifiable. The intervals include both.
 fn as_in_model(estimates: &mut [Estimate], x: &[f64]) {
-    if estimates.iter().all(|estimate| estimate.interval.is_some()) {
-        return;
-    }
     for (estimate, x) in estimates.iter_mut().zip(x) {
         estimate.value = estimate.parameter.value(*x);
         if let Some([low, high]) = &mut estimate.interval {
@@ -353,10 +350,6 @@ mod tests {
             interval: known.then(|| [parameter.value(0.05), parameter.value(0.15)]),
         };
         let parameter = &problem.parameters[0];
-        let mut known = [estimate(parameter, true), estimate(parameter, true)];
-        let before = known.clone();
-        as_in_model(&mut known, &[0.3, 0.2]);
-        assert_eq!(known, before);
         let mut open = [estimate(parameter, true), estimate(parameter, false)];
         as_in_model(&mut open, &[0.3, 0.2]);
         assert_eq!(open[0].value, parameter.value(0.3));

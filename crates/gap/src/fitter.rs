@@ -245,6 +245,33 @@ impl Fitter<'_> {
             .once(&("search", problem, &settings), search)
     }
 
+    /// The model where a fit to its lines ends that takes as long as it needs, with the allowance that it needs there; none where a
+    /// parameter is not identifiable, or no machine there can be simulated.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub fn finished(&self, model: &Model) -> Result<Option<Model>, Error> {
+        if model.problem.parameters.is_empty() {
+            return Ok(None);
+        }
+        let fit = self.bounds(model)?;
+        if fit
+            .estimates
+            .iter()
+            .any(|estimate| estimate.interval.is_none())
+        {
+            return Ok(None);
+        }
+        let x = fit.coordinates();
+        let fitted = model.problem.with_runs(|run| self.effort.fits(&run.id));
+        let timings = timings(&fitted);
+        let likeliest = Likelihood::new(&fitted).likeliest(&x, timings);
+        let Some((timing, _)) = possible(likeliest.map_err(Error::from))? else {
+            return Ok(None);
+        };
+        possible(Model::at(model.problem.clone(), &x, timing, self.effort))
+    }
+
     /// The parameters of a model with their bounds.
     pub fn bounds(&self, model: &Model) -> Result<Fit, Error> {
         let settings = FitSettings {

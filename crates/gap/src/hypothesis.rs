@@ -106,6 +106,18 @@ impl Hypothesis {
         Ok(usual.filter(|usual| usual.cost < self.cost).unwrap_or(self))
     }
 
+    /// The same where a last fit ends, which takes as long as it needs, if the recordings are likelier there.
+    ///
+    /// # Errors
+    /// A machine that cannot be simulated; [`Error::Stopped`].
+    pub fn finished(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
+        let further = fitter.finished(&self.model)?;
+        let own = problem.parameters.len();
+        let further = further.map(|model| Self::new(self.set.clone(), model, own));
+        let likelier = further.filter(|further| further.cost < self.cost);
+        Ok(likelier.unwrap_or(self))
+    }
+
     /// The sets that have one of its amendments at one of its places alone, each with the start of a fit.
     ///
     /// # Errors

@@ -99,7 +99,7 @@ pub(crate) fn judged(
     Ok(Judgement {
         probabilities: probabilities.collect(),
         nothing,
-        believed,
+        believed: believed.clone().finished(fitter, problem)?,
         others,
     })
 }

@@ -81,6 +81,7 @@ fn what_is_hidden_is_named_and_where_nothing_is_nothing_is() {
     );
     assert!(out.join("cases/0003-nothing/gap.json").is_file());
     assert!(!out.join("cases/0003-nothing/bundle").exists());
+    results_and_machine_file_agree(&out.join("cases/0001-suction_unloading"));
 
     let again = hidden_effects(&settings, &out, &[]);
     assert_eq!(again.status.code(), Some(2));
@@ -110,6 +111,21 @@ fn what_is_hidden_is_named_and_where_nothing_is_nothing_is() {
         said(&refused).contains("has another case 1"),
         "{}",
         said(&refused)
+    );
+}
+
+/// The coefficient of an effect is the same in `gap.json` and in the machine file.
+fn results_and_machine_file_agree(case: &Path) {
+    let gap = fs::read_to_string(case.join("gap.json")).unwrap();
+    let gap: Value = serde_json::from_str(&gap).unwrap();
+    let stated = gap["effects"][0]["parameters"]["loss"]["value"].as_f64();
+    let machine = fs::read_to_string(case.join("machine.yaml")).unwrap();
+    let mut lines = machine.lines();
+    let written = lines.find_map(|line| line.trim().strip_prefix("loss: "));
+    let written: f64 = written.unwrap().parse().unwrap();
+    assert!(
+        (stated.unwrap() / written - 1.0).abs() < 1e-12,
+        "{stated:?} {written}"
     );
 }
 
