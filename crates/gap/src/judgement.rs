@@ -78,8 +78,7 @@ pub(crate) fn judged(
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
     let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
     others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let mut believed = &nothing;
-    let mut sure = 1.0;
+    let (mut believed, mut without) = (&nothing, &nothing);
     for count in 1..=MOST {
         let Some(best) = others.iter().find(|set| set.set.len() == count) else {
             continue;
@@ -87,11 +86,13 @@ pub(crate) fn judged(
         let others = believed.set.len();
         let probable = probability(left(&believed.model, &best.model), others, count - others);
         if probable > NAMED && best.cost < believed.cost && shows_in_each(believed, best)? {
-            believed = best;
-            sure = probable;
+            (believed, without) = (best, believed);
         }
     }
     let believed = believed.clone().of_usual_form(fitter, problem)?;
+    let finished = believed.clone().finished(fitter, problem)?;
+    let (before, added) = (without.set.len(), finished.set.len() - without.set.len());
+    let sure = probability(left(&without.model, &finished.model), before, added);
     let probabilities = (0..believed.set.len()).map(|i| {
         let rivals = rivals(&believed, i, &others).map(|rival| (believed.cost - rival.cost).exp());
         sure / (1.0 + rivals.sum::<f64>())
@@ -99,7 +100,7 @@ pub(crate) fn judged(
     Ok(Judgement {
         probabilities: probabilities.collect(),
         nothing,
-        believed: believed.clone().finished(fitter, problem)?,
+        believed: finished,
         others,
     })
 }
