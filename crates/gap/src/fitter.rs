@@ -17,7 +17,7 @@ use calibrate::energies::Energies;
 use calibrate::fit::{Estimate, Fit, FitSettings, Optimiser};
 use calibrate::likelihood::Likelihood;
 use calibrate::observation::Observation;
-use calibrate::optimiser::{LeastSquares, Progress};
+use calibrate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
 use calibrate::secant::secant;
 use calibrate::sizes::Sizes;
 use rayon::prelude::*;
@@ -45,6 +45,10 @@ const LEAST: f64 = 0.001;
 const TIMINGS: [f64; 6] = [0.03, 0.01, 0.003, 0.001, 0.0003, 0.0];
 /// Relative change of the sum of squares at which a descent ends.
 const CHANGE: f64 = 1e-2;
+/// The same of the last fit of what is believed.
+const LAST: f64 = 1e-4;
+/// Evaluations that it may take.
+const MOST_OF_LAST: u64 = 300;
 /// Runs that candidates are compared with.
 const FEW: usize = 3;
 
@@ -245,28 +249,38 @@ impl Fitter<'_> {
             .once(&("search", problem, &settings), search)
     }
 
-    /// The model where a fit to its lines ends that takes as long as it needs, with the allowance that it needs there; none where a
-    /// parameter is not identifiable, or no machine there can be simulated.
+    /// The model where a longer fit to its lines ends, with the allowance that it needs there; none where it leaves no more than noise
+    /// already, or no machine there can be simulated.
     ///
     /// # Errors
     /// [`Error::Stopped`].
     pub fn finished(&self, model: &Model) -> Result<Option<Model>, Error> {
-        if model.problem.parameters.is_empty() {
+        if model.problem.parameters.is_empty() || Self::is_at_noise(model) {
             return Ok(None);
         }
-        let fit = self.bounds(model)?;
-        if fit
-            .estimates
-            .iter()
-            .any(|estimate| estimate.interval.is_none())
-        {
-            return Ok(None);
-        }
-        let x = fit.coordinates();
         let fitted = model.problem.with_runs(|run| self.effort.fits(&run.id));
-        let timings = timings(&fitted);
-        let likeliest = Likelihood::new(&fitted).likeliest(&x, timings);
-        let Some((timing, _)) = possible(likeliest.map_err(Error::from))? else {
+        let fitted = fitted.metered();
+        let lines = Likelihood::new(&fitted);
+        let x = self
+            .effort
+            .journal
+            .once(&("finished", &fitted, &model.x), || {
+                let found = levenberg_marquardt(&lines, &model.x, LAST, MOST_OF_LAST, &mut |_| {
+                    (self.watch)()
+                })?;
+                if (self.watch)().is_break() {
+                    return Err(Error::Stopped);
+                }
+                Ok(Finished {
+                    numbers: found.x,
+                    cost: fitted.meter.steps(),
+                })
+            });
+        let Some(x) = possible(x)? else {
+            return Ok(None);
+        };
+        let likeliest = lines.likeliest(&x, timings(&fitted)).map_err(Error::from);
+        let Some((timing, _)) = possible(likeliest)? else {
             return Ok(None);
         };
         possible(Model::at(model.problem.clone(), &x, timing, self.effort))

@@ -106,7 +106,7 @@ impl Hypothesis {
         Ok(usual.filter(|usual| usual.cost < self.cost).unwrap_or(self))
     }
 
-    /// The same where a last fit ends, which takes as long as it needs, if the recordings are likelier there.
+    /// The same where a last, longer fit ends, if the recordings are likelier there.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
