@@ -106,11 +106,15 @@ impl Hypothesis {
         Ok(usual.filter(|usual| usual.cost < self.cost).unwrap_or(self))
     }
 
-    /// The same where a last, longer fit ends, if the recordings are likelier there.
+    /// The same where a last, longer fit ends, if the recordings are likelier there. The machine without amendments stays that with
+    /// which all others were compared.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
     pub fn finished(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
+        if self.set.is_empty() {
+            return Ok(self);
+        }
         let further = fitter.finished(&self.model)?;
         let own = problem.parameters.len();
         let further = further.map(|model| Self::new(self.set.clone(), model, own));
