@@ -106,8 +106,8 @@ impl Hypothesis {
         Ok(usual.filter(|usual| usual.cost < self.cost).unwrap_or(self))
     }
 
-    /// The same where a last, longer fit ends, if the recordings are likelier there. The machine without amendments stays that with
-    /// which all others were compared.
+    /// The same where a last, longer fit ends, if the recordings are likelier there. Its cost stays that at which it was compared with
+    /// others, whose fits were no longer; and so does the machine without amendments.
     ///
     /// # Errors
     /// A machine that cannot be simulated; [`Error::Stopped`].
@@ -115,11 +115,16 @@ impl Hypothesis {
         if self.set.is_empty() {
             return Ok(self);
         }
-        let further = fitter.finished(&self.model)?;
         let own = problem.parameters.len();
+        let further = fitter.finished(&self.model)?;
         let further = further.map(|model| Self::new(self.set.clone(), model, own));
-        let likelier = further.filter(|further| further.cost < self.cost);
-        Ok(likelier.unwrap_or(self))
+        Ok(match further {
+            Some(further) if further.cost < self.cost => Self {
+                cost: self.cost,
+                ..further
+            },
+            _ => self,
+        })
     }
 
     /// The sets that have one of its amendments at one of its places alone, each with the start of a fit.

@@ -90,9 +90,9 @@ pub(crate) fn judged(
         }
     }
     let believed = believed.clone().of_usual_form(fitter, problem)?;
-    let finished = believed.clone().finished(fitter, problem)?;
-    let (before, added) = (without.set.len(), finished.set.len() - without.set.len());
-    let sure = probability(left(&without.model, &finished.model), before, added);
+    let believed = believed.finished(fitter, problem)?;
+    let (before, added) = (without.set.len(), believed.set.len() - without.set.len());
+    let sure = probability(left(&without.model, &believed.model), before, added);
     let probabilities = (0..believed.set.len()).map(|i| {
         let rivals = rivals(&believed, i, &others).map(|rival| (believed.cost - rival.cost).exp());
         sure / (1.0 + rivals.sum::<f64>())
@@ -100,7 +100,7 @@ pub(crate) fn judged(
     Ok(Judgement {
         probabilities: probabilities.collect(),
         nothing,
-        believed: finished,
+        believed,
         others,
     })
 }
