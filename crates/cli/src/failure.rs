@@ -95,7 +95,30 @@ pub fn finish(outcome: Result<(), Failure>) -> u8 {
     // Several mistakes are a line each; what is indented belongs to the line above.
     for line in failure.message().lines() {
         let start = if line.starts_with(' ') { "" } else { "error: " };
-        eprintln!("{start}{line}");
+        eprintln!("{start}{}", without_code(line));
     }
     failure.status()
+}
+
+/// A line without the number that the operating system gives an error, which its words have said already.
+fn without_code(line: &str) -> String {
+    let (before, after) = line.split_once(" (os error ").unwrap_or((line, ""));
+    match after.split_once(')') {
+        Some((code, rest)) if code.parse::<u32>().is_ok() => format!("{before}{rest}"),
+        _ => line.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_of_the_operating_system_is_said_in_words_alone() {
+        let error = std::io::Error::from_raw_os_error(2);
+        let line = without_code(&format!("none: {error}"));
+        assert_eq!(line, "none: No such file or directory");
+        let kept = "sweep.yaml (os error here)";
+        assert_eq!(without_code(kept), kept);
+    }
 }

@@ -28,7 +28,7 @@ pub enum Error {
         index: usize,
     },
     /// A parameter lies outside its range.
-    #[error("{what} is {value}, but must be {allowed}")]
+    #[error("{what} is {}, but must be {allowed}", rounded(*value))]
     OutOfRange {
         /// The parameter, with its unit.
         what: &'static str,
@@ -74,4 +74,9 @@ pub(crate) fn positive(what: &'static str, value: f64) -> Result<(), Error> {
         value,
         allowed: "finite and above 0",
     })
+}
+
+/// A value to six digits: more would say nothing in a sentence.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
