@@ -16,7 +16,8 @@ pub mod effort;
 pub mod error;
 pub mod explain;
 mod expression;
-pub mod finding;
+pub mod far_starts;
+mod finding;
 pub mod fitter;
 #[cfg(test)]
 mod fixture;

@@ -8,6 +8,7 @@
 use crate::amendment::Amendment;
 use crate::criteria::left;
 use crate::error::{Error, possible};
+use crate::far_starts::far_starts;
 use crate::fitter::{Few, Fitter, Start};
 use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
@@ -71,7 +72,7 @@ impl Search<'_> {
             let beam = of_kinds(nodes.iter().filter(open));
             let beam: Vec<Hypothesis> = beam.into_iter().take(WIDTH).cloned().collect();
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            for set in self.beside(&beam)? {
+            for set in self.beside(&beam, &nothing.model)? {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -137,8 +138,9 @@ impl Search<'_> {
         Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// The sets of these nodes with each of the most promising other amendments.
-    fn beside(&self, beam: &[Hypothesis]) -> Result<Vec<Hypothesis>, Error> {
+    /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where
+    /// none of them leaves little, they are fitted from far away, too.
+    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Vec<Hypothesis>, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -159,19 +161,35 @@ impl Search<'_> {
         // What a freer law costs counts once it has been fitted.
         rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
         rough.truncate(if alone { REFINED } else { REFINED_BESIDE });
-        let fitted = rough.into_par_iter().map(|trial| {
+        let own = self.few.different.parameters.len();
+        let of = |trial: &Trial, model| Hypothesis::new(trial.set.clone(), model, own);
+        let fitted = rough.par_iter().map(|trial| {
             (self.fitter.say)(&trial.words(), so_far);
-            let own = self.few.different.parameters.len();
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
                 let far = self.fitter.explored(&anew(&trial.start, own))?;
                 let both = model.into_iter().chain(far.map(|(model, _)| model));
                 model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
             }
-            Ok(model.map(|model| Hypothesis::new(trial.set, model, own)))
+            Ok(model.map(|model| of(trial, model)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
-        Ok(fitted.into_iter().flatten().collect())
+        let mut fitted: Vec<Hypothesis> = fitted.into_iter().flatten().collect();
+        let explains = |set: &Hypothesis| left(nothing, &set.model) < LITTLE;
+        if fitted.iter().any(explains) || is_of_pressures(&nothing.problem) {
+            return Ok(fitted);
+        }
+        (self.fitter.say)("searching far away", so_far);
+        let starts: Vec<&Start> = rough.iter().map(|trial| &trial.start).collect();
+        let far = far_starts(self.fitter, &starts, own)?.into_par_iter();
+        let far = far.map(|(index, x)| {
+            let trial = &rough[index];
+            let model = self.fitter.settled(&(trial.start.0.clone(), x))?;
+            Ok(model.map(|model| of(trial, model)))
+        });
+        let far = far.collect::<Result<Vec<_>, Error>>()?;
+        fitted.extend(far.into_iter().flatten());
+        Ok(fitted)
     }
 
     /// The amendments that a node may get, the most promising first.

@@ -6,7 +6,6 @@
 use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::model::Model;
-use super::prior::{self, Prior, WithPriors};
 use super::screen::{AT_ONCE, few};
 use crate::energies::Energies;
 use crate::error::Error;
@@ -14,6 +13,7 @@ use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
+use crate::prior::{self, Prior, WithPriors};
 use crate::problem::Problem;
 use crate::search::CHANGE;
 use crate::secant::secant;

@@ -27,7 +27,6 @@ mod estimation;
 mod joint;
 mod model;
 mod parts;
-mod prior;
 mod results;
 mod screen;
 mod selection;

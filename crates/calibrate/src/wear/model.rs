@@ -1,9 +1,9 @@
 //! A model of the worn machine: which clearances are unknown, and what is unknown of the contacts.
 
 use super::joint::Joint;
-use super::prior::Prior;
 use crate::error::Error;
 use crate::parameter::{Parameter, Scale};
+use crate::prior::Prior;
 use crate::problem::Problem;
 use crate::relation::{self, ClearJoint, Relation};
 use input::paths;

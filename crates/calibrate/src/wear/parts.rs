@@ -5,8 +5,8 @@
 
 use super::descent::Led;
 use super::model::Model;
-use super::prior::Prior;
 use crate::error::Error;
+use crate::prior::Prior;
 use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_alone};
 

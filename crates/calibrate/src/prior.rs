@@ -8,7 +8,7 @@ use nalgebra::DMatrix;
 
 /// A normal distribution of a coordinate around 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Prior {
+pub struct Prior {
     /// The coordinate.
     pub place: usize,
     /// Its standard deviation.
@@ -22,12 +22,12 @@ impl Prior {
 }
 
 /// The sum of squares that priors add at `x`.
-pub(super) fn squares(priors: &[Prior], x: &[f64]) -> f64 {
+pub(crate) fn squares(priors: &[Prior], x: &[f64]) -> f64 {
     priors.iter().map(|p| p.residual(x).powi(2)).sum()
 }
 
 /// Residuals, and those of the priors.
-pub(super) struct WithPriors<'a, T> {
+pub struct WithPriors<'a, T> {
     /// What is compared with the recordings.
     pub inner: &'a T,
     /// What is known before.

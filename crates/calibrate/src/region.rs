@@ -1,0 +1,129 @@
+//! A region of the coordinates that is searched without derivatives.
+
+use crate::error::Error;
+use crate::optimiser::{LeastSquares, Progress, Watch, cma_es};
+use nalgebra::DMatrix;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+/// What is compared, with some of the coordinates within a region and the others held.
+pub struct Region<'a, T> {
+    inner: &'a T,
+    x: Vec<f64>,
+    /// The coordinates that move, and between what.
+    ranges: Vec<(usize, [f64; 2])>,
+    /// Residuals that were found so far: a search that goes on repeats its way.
+    known: Mutex<HashMap<Vec<u64>, Vec<f64>>>,
+}
+
+impl<'a, T: LeastSquares> Region<'a, T> {
+    /// The region around `x`, a coordinate each, in which the coordinates of these places move within these ranges. Where the
+    /// bounds of `inner` are narrower, they count.
+    pub fn new(inner: &'a T, x: &[f64], ranges: &[(usize, [f64; 2])]) -> Self {
+        let bounds = inner.bounds();
+        let within = |(place, [low, high]): &(usize, [f64; 2])| {
+            let [least, greatest] = bounds[*place];
+            (*place, [low.max(least), high.min(greatest)])
+        };
+        Self {
+            inner,
+            x: x.to_vec(),
+            ranges: ranges.iter().map(within).collect(),
+            known: Mutex::default(),
+        }
+    }
+
+    /// How many coordinates move.
+    pub fn dimensions(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// The best of so many evaluations (CMA-ES, Hansen 2016), from where the region is around: the coordinates that move. More
+    /// evaluations continue a search of fewer.
+    ///
+    /// # Errors
+    /// As [`cma_es`].
+    pub fn searched(&self, most: u64, watch: Watch) -> Result<Progress, Error> {
+        let start = |(place, [low, high]): &(usize, [f64; 2])| self.x[*place].clamp(*low, *high);
+        let start: Vec<f64> = self.ranges.iter().map(start).collect();
+        cma_es(self, &start, 0, most, watch)
+    }
+
+    /// All coordinates, with these in the places that move.
+    pub fn whole(&self, moved: &[f64]) -> Vec<f64> {
+        let mut x = self.x.clone();
+        for ((place, _), moved) in self.ranges.iter().zip(moved) {
+            x[*place] = *moved;
+        }
+        x
+    }
+}
+
+impl<T: LeastSquares> LeastSquares for Region<'_, T> {
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.ranges.iter().map(|(_, range)| *range).collect()
+    }
+
+    fn count(&self) -> usize {
+        self.inner.count()
+    }
+
+    fn residuals(&self, moved: &[f64]) -> Vec<f64> {
+        let bits: Vec<u64> = moved.iter().map(|x| x.to_bits()).collect();
+        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(residuals) = known().get(&bits) {
+            return residuals.clone();
+        }
+        let residuals = self.inner.residuals(&self.whole(moved));
+        known().insert(bits, residuals.clone());
+        residuals
+    }
+
+    fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
+        let all = self.inner.jacobian(&self.whole(moved));
+        all.select_columns(self.ranges.iter().map(|(place, _)| place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::ControlFlow;
+
+    /// A valley of many ripples, whose bottom is at (0.1, 2, 0.05).
+    struct Ripples;
+
+    impl LeastSquares for Ripples {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-1.0, 1.0], [0.0, 3.0], [-1.0, 1.0]]
+        }
+        fn count(&self) -> usize {
+            4
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            let apart = [x[0] - 0.1, x[2] - 0.05];
+            let ripple = |d: f64| 0.3 * (60.0 * d).sin();
+            vec![
+                10.0 * apart[0],
+                10.0 * apart[1],
+                ripple(apart[0]),
+                ripple(apart[1]),
+            ]
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::zeros(4, 3)
+        }
+    }
+
+    #[test]
+    fn the_bottom_of_a_region_is_found_without_derivatives_and_what_is_held_stays() {
+        let ranges = [(0, [-0.2, 0.2]), (2, [-5.0, 0.2])];
+        let region = Region::new(&Ripples, &[0.0, 2.5, 0.0], &ranges);
+        assert_eq!(region.bounds(), [[-0.2, 0.2], [-1.0, 0.2]]);
+        let go = &mut |_: &Progress| ControlFlow::Continue(());
+        let x = region.whole(&region.searched(300, go).unwrap().x);
+        assert!((x[0] - 0.1).abs() < 0.01, "{x:?}");
+        assert_eq!(x[1], 2.5);
+        assert!((x[2] - 0.05).abs() < 0.01, "{x:?}");
+    }
+}

@@ -1,0 +1,118 @@
+//! Where descents may start far away from the machine as it was given.
+//!
+//! Descents from where an amendment was screened find no way from one ringing to another. Energies by band and sector have few
+//! minima, and within the whole ranges of what is unknown CMA-ES finds its way to a low one, which takes some hundred evaluations
+//! for each coordinate. So all sets are searched for a while, the better ones for longer (successive halving, Jamieson and
+//! Talwalkar 2016).
+
+use crate::error::Error;
+use crate::fitter::{Fitter, Start};
+use crate::journal::Finished;
+use calibrate::Problem;
+use calibrate::energies::Energies;
+use calibrate::parameter::Parameter;
+use calibrate::prior::{Prior, WithPriors};
+use calibrate::region::Region;
+use rayon::prelude::*;
+
+/// Evaluations for each coordinate, after all but the last of which one of so many sets goes on.
+const EACH: [u64; 3] = [25, 75, 200];
+const KEPT: usize = 3;
+/// Standard deviation of a coordinate of the machine itself before the recordings are looked at: design values are 10 to 40 % off.
+const SPREAD: f64 = 0.3;
+/// Half the width of its range, in these.
+const SPREADS: f64 = 2.0;
+
+/// The starts that were searched longest, the most promising first: their indices, and where their searches have ended. The first
+/// `own` coordinates are the machine's.
+///
+/// # Errors
+/// [`Error::Stopped`].
+pub(crate) fn far_starts(
+    fitter: &Fitter,
+    starts: &[&Start],
+    own: usize,
+) -> Result<Vec<(usize, Vec<f64>)>, Error> {
+    let effort = fitter.effort;
+    let problems = starts.iter().map(|(problem, _)| problem);
+    let fitted = problems.map(|problem| problem.with_runs(|run| effort.fits(&run.id)).metered());
+    let fitted: Vec<_> = fitted.collect();
+    let priors: Vec<Prior> = (0..own)
+        .map(|place| Prior {
+            place,
+            spread: SPREAD,
+        })
+        .collect();
+    let energies: Vec<Energies> = fitted.iter().map(Energies::new).collect();
+    let compared = energies.iter().map(|inner| WithPriors {
+        inner,
+        priors: &priors,
+    });
+    let compared: Vec<_> = compared.collect();
+    let mut searches: Vec<_> = compared
+        .iter()
+        .zip(starts)
+        .enumerate()
+        .map(|(index, (compared, (problem, x)))| Searched {
+            index,
+            region: Region::new(compared, x, &ranges(problem, own)),
+            x: x.clone(),
+            left: f64::INFINITY,
+            steps: 0,
+        })
+        .collect();
+    let all = searches.len();
+    for (round, each) in EACH.into_iter().enumerate() {
+        let on = &mut searches[..all.div_ceil(KEPT.pow(round as u32))];
+        let searched = on.par_iter_mut().map(|search| {
+            let problem = &fitted[search.index];
+            let most = each * search.region.dimensions() as u64;
+            let input = ("far start", problem, &starts[search.index].1, own, most);
+            let numbers = effort.journal.once(&input, || {
+                let found = search.region.searched(most, &mut |_| (fitter.watch)())?;
+                if (fitter.watch)().is_break() {
+                    return Err(Error::Stopped);
+                }
+                let steps = problem.meter.steps();
+                Ok(Finished {
+                    numbers: [vec![found.cost, steps as f64], found.x].concat(),
+                    // The steps of its earlier rounds have been counted, those that were found in the journal as well.
+                    cost: steps.saturating_sub(search.steps),
+                })
+            })?;
+            if let [left, steps, moved @ ..] = &numbers[..] {
+                (search.left, search.steps) = (*left, *steps as u64);
+                search.x = search.region.whole(moved);
+            }
+            Ok(())
+        });
+        searched.collect::<Result<(), Error>>()?;
+        on.sort_by(|a, b| a.left.total_cmp(&b.left));
+    }
+    searches.truncate(all.div_ceil(KEPT));
+    let ends = searches.into_iter();
+    Ok(ends.map(|search| (search.index, search.x)).collect())
+}
+
+/// A set that is searched.
+struct Searched<'a, T> {
+    /// The index of its start.
+    index: usize,
+    region: Region<'a, T>,
+    /// The best point so far.
+    x: Vec<f64>,
+    /// Half the sum of squares there.
+    left: f64,
+    /// Steps of the integrator so far.
+    steps: u64,
+}
+
+/// The coordinates of a problem with their ranges: the whole ones of what was added to the machine.
+fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
+    let half = SPREADS * SPREAD;
+    let range = |(place, parameter): (usize, &Parameter)| match place < own {
+        true => (place, [-half, half]),
+        false => (place, parameter.box_bounds()),
+    };
+    problem.parameters.iter().enumerate().map(range).collect()
+}
