@@ -116,3 +116,52 @@ fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
     };
     problem.parameters.iter().enumerate().map(range).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::amendment::Amendment;
+    use crate::effort::Effort;
+    use crate::fixture::{effort, fitter, problem_of};
+    use crate::hypothesis::start;
+    use crate::journal::Journal;
+    use serde_json::json;
+
+    /// The sets of one amendment of these kinds, from their usual values.
+    fn sets(problem: &Problem, kinds: [&str; 2]) -> Vec<Start> {
+        let all = Amendment::all(problem).unwrap();
+        let of = |kind: &str| {
+            let one = all.iter().find(|one| one.kind() == kind).unwrap();
+            let usual = one.effect().unwrap().usual();
+            start(problem, &[0.0], one, &usual).unwrap()
+        };
+        kinds.map(of).into()
+    }
+
+    #[test]
+    fn the_set_that_explains_comes_first_and_is_found_again_in_the_journal() {
+        let hidden = json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
+        let problem = problem_of(hidden);
+        let sets = sets(&problem, ["extra_clearance", "sensor_gain"]);
+        let starts: Vec<&Start> = sets.iter().collect();
+        let path = std::env::temp_dir().join(format!("far-starts-{}", std::process::id()));
+        let searched = || {
+            let effort = Effort {
+                journal: Journal::open(&path).unwrap(),
+                ..effort()
+            };
+            let found = far_starts(&fitter(&effort), &starts, 1).unwrap();
+            (found, effort.journal.spent())
+        };
+        let (found, spent) = searched();
+        let [(1, x)] = &found[..] else {
+            panic!("{found:?}");
+        };
+        let error = sets[1].0.parameters[1].value(x[1]);
+        assert!((error - 0.4).abs() < 0.1, "{error}");
+        assert!(spent > 0);
+        // What is in the journal costs as much again.
+        assert_eq!(searched(), (found.clone(), spent));
+        std::fs::remove_file(&path).unwrap();
+    }
+}
