@@ -140,7 +140,8 @@ mod tests {
 
     #[test]
     fn the_set_that_explains_comes_first_and_is_found_again_in_the_journal() {
-        let hidden = json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
+        let hidden =
+            json!([{"sensor_gain": {"measure": "crosshead_acceleration", "error": "40 %"}}]);
         let problem = problem_of(hidden);
         let sets = sets(&problem, ["extra_clearance", "sensor_gain"]);
         let starts: Vec<&Start> = sets.iter().collect();

@@ -17,8 +17,7 @@ impl fmt::Display for Results {
                 writeln!(f, "  F = {expression}")?;
             }
             for (key, unit, parameter) in effect.stated() {
-                let value = format!("{:.4e} {unit}", parameter.value);
-                writeln!(f, "  {key}: {}", value.trim_end())?;
+                writeln!(f, "  {key}: {}", quantity(parameter.value, unit))?;
             }
             for other in &effect.rivals {
                 writeln!(f, "  rival: {}, {}", other.label, rival(other))?;
@@ -71,4 +70,23 @@ impl fmt::Display for Results {
 /// How probable a rival is, and what it leaves.
 fn rival(other: &Other) -> String {
     format!("{:.2}, leaves {:.2}", other.probability, other.leaves)
+}
+
+/// A value of this SI unit in words; a share is in percent, as a machine file has it.
+fn quantity(value: f64, unit: &str) -> String {
+    let factor = if unit == "%" { 100.0 } else { 1.0 };
+    let text = format!("{:.4e} {unit}", factor * value);
+    text.trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_in_percent() {
+        assert_eq!(quantity(0.01462, "%"), "1.4620e0 %");
+        assert_eq!(quantity(1.78e-8, "m/N"), "1.7800e-8 m/N");
+        assert_eq!(quantity(1.0, ""), "1.0000e0");
+    }
 }
