@@ -176,7 +176,8 @@ impl Search<'_> {
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         let mut fitted: Vec<Hypothesis> = fitted.into_iter().flatten().collect();
         let explains = |set: &Hypothesis| left(nothing, &set.model) < LITTLE;
-        if fitted.iter().any(explains) || is_of_pressures(&nothing.problem) {
+        let goes_on = self.fitter.effort.goes_on() && !is_of_pressures(&nothing.problem);
+        if fitted.iter().any(explains) || !goes_on {
             return Ok(fitted);
         }
         (self.fitter.say)("searching far away", so_far);
