@@ -6,6 +6,11 @@ use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
+/// Of searches that are held against each other one of so many goes on (successive halving, Jamieson and Talwalkar 2016).
+pub const KEPT: usize = 3;
+/// Half the width of a region along a coordinate that has a prior, in standard deviations of that.
+pub const SPREADS: f64 = 2.0;
+
 /// What is compared, with some of the coordinates within a region and the others held.
 pub struct Region<'a, T> {
     inner: &'a T,

@@ -11,17 +11,12 @@ use crate::journal::Finished;
 use calibrate::Problem;
 use calibrate::energies::Energies;
 use calibrate::parameter::Parameter;
-use calibrate::prior::{Prior, WithPriors};
-use calibrate::region::Region;
+use calibrate::prior::{DESIGN, Prior, WithPriors};
+use calibrate::region::{KEPT, Region, SPREADS};
 use rayon::prelude::*;
 
-/// Evaluations for each coordinate, after all but the last of which one of so many sets goes on.
+/// Evaluations for each coordinate.
 const EACH: [u64; 3] = [25, 75, 200];
-const KEPT: usize = 3;
-/// Standard deviation of a coordinate of the machine itself before the recordings are looked at: design values are 10 to 40 % off.
-const SPREAD: f64 = 0.3;
-/// Half the width of its range, in these.
-const SPREADS: f64 = 2.0;
 
 /// The starts that were searched longest, the most promising first: their indices, and where their searches have ended. The first
 /// `own` coordinates are the machine's.
@@ -40,7 +35,7 @@ pub(crate) fn far_starts(
     let priors: Vec<Prior> = (0..own)
         .map(|place| Prior {
             place,
-            spread: SPREAD,
+            spread: DESIGN,
         })
         .collect();
     let energies: Vec<Energies> = fitted.iter().map(Energies::new).collect();
@@ -109,7 +104,7 @@ struct Searched<'a, T> {
 
 /// The coordinates of a problem with their ranges: the whole ones of what was added to the machine.
 fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
-    let half = SPREADS * SPREAD;
+    let half = SPREADS * DESIGN;
     let range = |(place, parameter): (usize, &Parameter)| match place < own {
         true => (place, [-half, half]),
         false => (place, parameter.box_bounds()),

@@ -3,7 +3,7 @@
 //! Between two points of the grid the energies have valleys that are a few hundredths of a clearance wide. Many motions there do
 //! not repeat themselves and have no derivatives. So a cell is searched by a method that needs none, CMA-ES.
 
-use super::descent::{KEPT, Led};
+use super::descent::Led;
 use super::effort::Effort;
 use super::model::Model;
 use super::screen::{STEP, few};
@@ -11,7 +11,7 @@ use crate::energies::Energies;
 use crate::error::Error;
 use crate::optimiser::Progress;
 use crate::prior::WithPriors;
-use crate::region::Region;
+use crate::region::{KEPT, Region, SPREADS};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -19,8 +19,6 @@ use std::ops::ControlFlow;
 const EACH: [u64; 3] = [12, 25, 50];
 /// Cells that go on at least.
 const LEAST: usize = 2;
-/// Half the width of a cell along a coordinate that has a prior, in standard deviations of that.
-const SPREADS: f64 = 2.0;
 /// Cells that are searched before the search may be stopped.
 const AT_ONCE: usize = 4;
 

@@ -15,6 +15,7 @@ use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
 use crate::prior::{self, Prior, WithPriors};
 use crate::problem::Problem;
+use crate::region::KEPT;
 use crate::search::CHANGE;
 use crate::secant::secant;
 use rayon::prelude::*;
@@ -44,8 +45,6 @@ const FINE: [Stage; 4] = [
 ];
 /// Ends of rough descents that are followed with all runs.
 const FOLLOWED: usize = 3;
-/// One of so many starts goes on after a stage.
-pub(super) const KEPT: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
 const ENDED: f64 = 1e-2;
 /// By how much a coordinate of a clearance is moved to where a motion repeats itself: less than the width of a minimum of lines.

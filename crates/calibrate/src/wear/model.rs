@@ -3,7 +3,7 @@
 use super::joint::Joint;
 use crate::error::Error;
 use crate::parameter::{Parameter, Scale};
-use crate::prior::Prior;
+use crate::prior::{DESIGN, Prior};
 use crate::problem::Problem;
 use crate::relation::{self, ClearJoint, Relation};
 use input::paths;
@@ -19,8 +19,6 @@ const CONTACT: [&str; 3] = [
 /// Standard deviation of an exponent of the clearance before the recordings are looked at: the known relations differ by 0.2 in
 /// that of the damping.
 const EXPONENT: f64 = 0.2;
-/// The same of the logarithm of a contact parameter: design values are 10 to 40 % off.
-const DESIGN: f64 = 0.3;
 
 /// What is unknown of the contacts of clear joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
