@@ -23,17 +23,18 @@ pub struct Region<'a, T> {
 
 impl<'a, T: LeastSquares> Region<'a, T> {
     /// The region around `x`, a coordinate each, in which the coordinates of these places move within these ranges. Where the
-    /// bounds of `inner` are narrower, they count.
+    /// bounds of `inner` are narrower, they count; what cannot move within both is held.
     pub fn new(inner: &'a T, x: &[f64], ranges: &[(usize, [f64; 2])]) -> Self {
         let bounds = inner.bounds();
         let within = |(place, [low, high]): &(usize, [f64; 2])| {
             let [least, greatest] = bounds[*place];
-            (*place, [low.max(least), high.min(greatest)])
+            let range = [low.max(least), high.min(greatest)];
+            (range[0] < range[1]).then_some((*place, range))
         };
         Self {
             inner,
             x: x.to_vec(),
-            ranges: ranges.iter().map(within).collect(),
+            ranges: ranges.iter().filter_map(within).collect(),
             known: Mutex::default(),
         }
     }
@@ -122,7 +123,7 @@ mod tests {
 
     #[test]
     fn the_bottom_of_a_region_is_found_without_derivatives_and_what_is_held_stays() {
-        let ranges = [(0, [-0.2, 0.2]), (2, [-5.0, 0.2])];
+        let ranges = [(0, [-0.2, 0.2]), (1, [3.5, 4.0]), (2, [-5.0, 0.2])];
         let region = Region::new(&Ripples, &[0.0, 2.5, 0.0], &ranges);
         assert_eq!(region.bounds(), [[-0.2, 0.2], [-1.0, 0.2]]);
         let go = &mut |_: &Progress| ControlFlow::Continue(());

@@ -64,13 +64,18 @@ pub(crate) fn far_starts(
             let most = each * search.region.dimensions() as u64;
             let input = ("far start", problem, &starts[search.index].1, own, most);
             let numbers = effort.journal.once(&input, || {
-                let found = search.region.searched(most, &mut |_| (fitter.watch)())?;
+                let found = search.region.searched(most, &mut |_| (fitter.watch)());
                 if (fitter.watch)().is_break() {
                     return Err(Error::Stopped);
                 }
                 let steps = problem.meter.steps();
+                // A search that cannot begin leaves everything.
+                let numbers = found.map_or_else(
+                    |_| Vec::new(),
+                    |found| [vec![found.cost, steps as f64], found.x].concat(),
+                );
                 Ok(Finished {
-                    numbers: [vec![found.cost, steps as f64], found.x].concat(),
+                    numbers,
                     // The steps of its earlier rounds have been counted, those that were found in the journal as well.
                     cost: steps.saturating_sub(search.steps),
                 })
