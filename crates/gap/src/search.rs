@@ -14,10 +14,7 @@ use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use crate::screen::{Screened, screen};
-use calibrate::parameter::Scale;
-use rand::RngExt;
 use rayon::prelude::*;
-use scalar::random::{Purpose, stream};
 use std::collections::BTreeMap;
 
 /// Most amendments of a set.
@@ -38,10 +35,6 @@ const LITTLE: f64 = 0.2;
 /// How many times nodes are looked at further, and how many of different kinds at the same time.
 const ROUNDS: usize = 2;
 const WIDTH: usize = 2;
-
-/// Machines that are drawn about the given one, and by how much the logarithms of their parameters differ at most.
-const DRAWS: u64 = 4;
-const DRAWN: f64 = 0.5;
 
 /// What a search looks for, and in what.
 pub(crate) struct Search<'a> {
@@ -162,35 +155,39 @@ impl Search<'_> {
         rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
         rough.truncate(if alone { REFINED } else { REFINED_BESIDE });
         let own = self.few.different.parameters.len();
-        let of = |trial: &Trial, model| Hypothesis::new(trial.set.clone(), model, own);
         let fitted = rough.par_iter().map(|trial| {
             (self.fitter.say)(&trial.words(), so_far);
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
-                let far = self.fitter.explored(&anew(&trial.start, own))?;
-                let both = model.into_iter().chain(far.map(|(model, _)| model));
+                let given = self.fitter.explored(&[as_given(&trial.start, own)])?;
+                let both = model.into_iter().chain(given.map(|(model, _)| model));
                 model = both.min_by(|a, b| a.deviance.total_cmp(&b.deviance));
             }
-            Ok(model.map(|model| of(trial, model)))
+            Ok(model.map(|model| Hypothesis::new(trial.set.clone(), model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         let mut fitted: Vec<Hypothesis> = fitted.into_iter().flatten().collect();
         let explains = |set: &Hypothesis| left(nothing, &set.model) < LITTLE;
         let goes_on = self.fitter.effort.goes_on() && !is_of_pressures(&nothing.problem);
-        if fitted.iter().any(explains) || !goes_on {
-            return Ok(fitted);
+        if goes_on && !fitted.iter().any(explains) {
+            (self.fitter.say)("searching far away", so_far);
+            fitted.extend(self.from_far_away(&rough)?);
         }
-        (self.fitter.say)("searching far away", so_far);
-        let starts: Vec<&Start> = rough.iter().map(|trial| &trial.start).collect();
-        let far = far_starts(self.fitter, &starts, own)?.into_par_iter();
-        let far = far.map(|(index, x)| {
-            let trial = &rough[index];
-            let model = self.fitter.settled(&(trial.start.0.clone(), x))?;
-            Ok(model.map(|model| of(trial, model)))
-        });
-        let far = far.collect::<Result<Vec<_>, Error>>()?;
-        fitted.extend(far.into_iter().flatten());
         Ok(fitted)
+    }
+
+    /// The most promising of these trials, fitted from where their energies are low, however far away that is.
+    fn from_far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
+        let own = self.few.different.parameters.len();
+        let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
+        let far = far_starts(self.fitter, &starts, own)?.into_par_iter();
+        let fitted = far.map(|(index, x)| {
+            let Trial { set, start, .. } = &trials[index];
+            let model = self.fitter.settled(&(start.0.clone(), x))?;
+            Ok(model.map(|model| Hypothesis::new(set.clone(), model, own)))
+        });
+        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+        Ok(fitted.into_iter().flatten().collect())
     }
 
     /// The amendments that a node may get, the most promising first.
@@ -302,25 +299,11 @@ fn add(nodes: &mut Vec<Hypothesis>, set: Hypothesis) {
     }
 }
 
-/// The same amendments in the machine as it was given, and in machines drawn about it: without the amendments its parameters
-/// may have been led far astray, and what is known of them to a factor only has many local minima.
-fn anew((problem, x): &Start, own: usize) -> Vec<Start> {
-    let drawn = |draw: u64| {
-        let mut random = stream(0, draw, Purpose::Design);
-        let mut x = x.clone();
-        for (x, parameter) in x.iter_mut().zip(&problem.parameters[..own]) {
-            let by: f64 = random.random_range(-DRAWN..DRAWN);
-            let [low, high] = parameter.box_bounds();
-            let to_a_factor = draw > 0 && parameter.scale == Scale::Logarithmic;
-            *x = if to_a_factor {
-                by.clamp(low, high)
-            } else {
-                0.0
-            };
-        }
-        (problem.clone(), x)
-    };
-    (0..=DRAWS).map(drawn).collect()
+/// The same amendments in the machine as it was given: without them its parameters may have been led far astray.
+fn as_given((problem, x): &Start, own: usize) -> Start {
+    let mut x = x.clone();
+    x[..own].fill(0.0);
+    (problem.clone(), x)
 }
 
 /// A set that was fitted roughly.

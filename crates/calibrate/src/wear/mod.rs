@@ -6,7 +6,7 @@
 //! ```
 //!
 //! 1. All joints that are clear in the machine file have an unknown clearance. Their contact parameters follow it by powers, whose
-//!    exponents are unknown around those of the file's relation ([`prior`]).
+//!    exponents are unknown around those of the file's relation ([`crate::prior`]).
 //! 2. Descents from the clearances of the file compare energies of sectors and bands first ([`crate::energies`]), and waveforms last.
 //! 3. Where they end above the noise, the clearances of each throw are screened on a common grid, by energies. The cells of the
 //!    best points are searched without derivatives, all for a while and the better ones for longer. The best ends are descended from.
