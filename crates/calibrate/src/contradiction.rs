@@ -20,6 +20,9 @@ const PHASE: f64 = 45.0;
 /// Relative difference of two runs' pressures from which their order counts. Valve losses, which grow with the
 /// speed, raise the greatest pressure of a run by up to a fifth. Two runs have to differ by as much in all.
 const ORDER: f64 = 0.1;
+/// Share of its range within which the mean of a pressure is none: its sensor passes no slow changes. A range of absolute or
+/// gauge pressures lies on one side of it.
+const NO_MEAN: f64 = 0.02;
 /// Points over a revolution at which a mean is looked at.
 const POINTS: usize = 360;
 
@@ -55,7 +58,7 @@ pub fn check(problem: &Problem, x: &[f64]) -> Result<Vec<ShutValve>, Error> {
             };
             if observed.column.contains("crosshead_acceleration") {
                 acceleration(&observed.lines, predicted).map_err(of_channel)?;
-            } else if observed.quantity().is_pressure() {
+            } else if observed.quantity().is_pressure() && has_mean(&observed.lines) {
                 let recorded = recorded(&observed.lines, offset, machine.speed >= 0.0);
                 let valves = shut_valves(&machine.machine, &observed.column, &recorded);
                 let valves = valves.map_err(of_channel)?.into_iter();
@@ -158,6 +161,12 @@ fn is_high_passed(ratio: Complex64) -> bool {
     let lead = ratio.arg();
     let passed = ratio.norm() / lead.cos();
     (0.0..FRAC_PI_2).contains(&lead) && (1.0 / FACTOR..=FACTOR).contains(&passed)
+}
+
+/// Whether a pressure has a zero to count from.
+fn has_mean(lines: &OrderLines) -> bool {
+    let [least, greatest] = extremes(lines);
+    lines.amplitude[0].norm() > NO_MEAN * (greatest - least)
 }
 
 /// Least and greatest value of a synchronous mean, from its first orders.
