@@ -125,15 +125,18 @@ pub(crate) fn probability(left: f64, others: usize, more: usize) -> f64 {
     odds * right / (odds * right + wrong)
 }
 
+/// Whether a model leaves hardly more than noise of fitted and held-out runs.
+pub(crate) fn explains(model: &Model) -> bool {
+    let held_out = model.held_out.unwrap_or(model.fitted);
+    model.fitted.max(held_out) <= EXPLAINED
+}
+
 /// What a model with so many effects comes to.
 pub(crate) fn verdict(baseline: &Model, model: &Model, effects: usize) -> Verdict {
-    let worst = model
-        .held_out
-        .map_or(model.fitted, |held| held.max(model.fitted));
     match effects {
         0 if baseline.fitted <= NOISE => Verdict::NoGap,
         0 => Verdict::Unexplained,
-        _ if worst <= EXPLAINED => Verdict::Explained,
+        _ if explains(model) => Verdict::Explained,
         _ => Verdict::PartlyExplained,
     }
 }

@@ -6,7 +6,7 @@
 //! same time. A set of which one amendment is exchanged for another is reached from it, and from the set without it.
 
 use crate::amendment::Amendment;
-use crate::criteria::left;
+use crate::criteria::explains;
 use crate::error::{Error, possible};
 use crate::far_starts::far_starts;
 use crate::fitter::{Few, Fitter, Start};
@@ -30,8 +30,6 @@ const REFINED: usize = 8;
 const REFINED_BESIDE: usize = 4;
 /// Other kinds that are fitted in the place of an amendment, the most promising first.
 const EXCHANGED: usize = 3;
-/// Share of the gap with which no more is looked for: less than the law of an effect is usually off by.
-const LITTLE: f64 = 0.2;
 /// How many times nodes are looked at further, and how many of different kinds at the same time.
 const ROUNDS: usize = 2;
 const WIDTH: usize = 2;
@@ -47,7 +45,7 @@ pub(crate) struct Search<'a> {
 
 impl Search<'_> {
     /// All sets that were fitted, the least costly first; `nothing` is the empty one. The search ends where the best of
-    /// them leaves little.
+    /// them explains the recordings.
     ///
     /// # Errors
     /// [`Error::Stopped`].
@@ -55,9 +53,7 @@ impl Search<'_> {
         let mut nodes = vec![nothing.clone()];
         let mut expanded: Vec<Vec<String>> = Vec::new();
         for _ in 0..ROUNDS {
-            // What little the best leaves may be the form of its law.
-            let little = left(&nothing.model, &nodes[0].model) < LITTLE;
-            if little || !self.fitter.effort.goes_on() {
+            if explains(&nodes[0].model) || !self.fitter.effort.goes_on() {
                 break;
             }
             let open =
@@ -65,7 +61,7 @@ impl Search<'_> {
             let beam = of_kinds(nodes.iter().filter(open));
             let beam: Vec<Hypothesis> = beam.into_iter().take(WIDTH).cloned().collect();
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            for set in self.beside(&beam, &nothing.model)? {
+            for set in self.beside(&beam)? {
                 add(&mut nodes, set);
             }
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -131,9 +127,9 @@ impl Search<'_> {
         Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where
-    /// none of them leaves little, they are fitted from far away, too.
-    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Vec<Hypothesis>, Error> {
+    /// The sets of these nodes with each of the most promising other amendments. Where none of them explains the recordings, they
+    /// are fitted from far away, too.
+    fn beside(&self, beam: &[Hypothesis]) -> Result<Vec<Hypothesis>, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -167,9 +163,9 @@ impl Search<'_> {
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
         let mut fitted: Vec<Hypothesis> = fitted.into_iter().flatten().collect();
-        let explains = |set: &Hypothesis| left(nothing, &set.model) < LITTLE;
-        let goes_on = self.fitter.effort.goes_on() && !is_of_pressures(&nothing.problem);
-        if goes_on && !fitted.iter().any(explains) {
+        let of_pressures = is_of_pressures(&self.few.different);
+        let goes_on = self.fitter.effort.goes_on() && !of_pressures;
+        if goes_on && !fitted.iter().any(|set| explains(&set.model)) {
             (self.fitter.say)("searching far away", so_far);
             fitted.extend(self.from_far_away(&rough)?);
         }
