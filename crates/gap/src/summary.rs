@@ -26,8 +26,11 @@ impl fmt::Display for Results {
         for wrong in &self.corrections {
             writeln!(
                 f,
-                "{} ({:.2}): {:.4e} in place of {:.4e}",
-                wrong.path, wrong.probability, wrong.value, wrong.nominal
+                "{} ({:.2}): {} in place of {}",
+                wrong.path,
+                wrong.probability,
+                number(wrong.value),
+                number(wrong.nominal)
             )?;
         }
         let gap = &self.gap;
@@ -75,8 +78,17 @@ fn rival(other: &Other) -> String {
 /// A value of this SI unit in words; a share is in percent, as a machine file has it.
 fn quantity(value: f64, unit: &str) -> String {
     let factor = if unit == "%" { 100.0 } else { 1.0 };
-    let text = format!("{:.4e} {unit}", factor * value);
+    let text = format!("{} {unit}", number(factor * value));
     text.trim_end().to_owned()
+}
+
+/// A number to five digits, with an exponent where zeros would be many.
+fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    match rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) {
+        true => format!("{rounded}"),
+        false => format!("{rounded:e}"),
+    }
 }
 
 #[cfg(test)]
@@ -85,8 +97,8 @@ mod tests {
 
     #[test]
     fn a_share_is_in_percent() {
-        assert_eq!(quantity(0.01462, "%"), "1.4620e0 %");
-        assert_eq!(quantity(1.78e-8, "m/N"), "1.7800e-8 m/N");
-        assert_eq!(quantity(1.0, ""), "1.0000e0");
+        assert_eq!(quantity(0.01462, "%"), "1.462 %");
+        assert_eq!(quantity(1.78e-8, "m/N"), "1.78e-8 m/N");
+        assert_eq!(quantity(1.0, ""), "1");
     }
 }
