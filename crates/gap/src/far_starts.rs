@@ -58,6 +58,9 @@ pub(crate) fn far_starts(
         .collect();
     let all = searches.len();
     for (round, each) in EACH.into_iter().enumerate() {
+        if round > 0 && !effort.goes_on() {
+            break;
+        }
         let on = &mut searches[..all.div_ceil(KEPT.pow(round as u32))];
         let searched = on.par_iter_mut().map(|search| {
             let problem = &fitted[search.index];

@@ -152,9 +152,9 @@ impl Search<'_> {
         let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
         // What a freer law costs counts once it has been fitted.
         rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
-        rough.truncate(if alone { REFINED } else { REFINED_BESIDE });
+        let refined = if alone { REFINED } else { REFINED_BESIDE };
         let own = self.few.different.parameters.len();
-        let fitted = rough.par_iter().map(|trial| {
+        let fitted = rough.par_iter().take(refined).map(|trial| {
             (self.fitter.say)(&trial.words(), so_far);
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
@@ -170,12 +170,14 @@ impl Search<'_> {
         let goes_on = self.fitter.effort.goes_on() && !of_pressures;
         if goes_on && !fitted.iter().any(|set| left(nothing, &set.model) < LITTLE) {
             (self.fitter.say)("searching far away", so_far);
+            rough.truncate(TRIED);
             fitted.extend(self.from_far_away(&rough)?);
         }
         Ok(fitted)
     }
 
-    /// The most promising of these trials, fitted from where their energies are low, however far away that is.
+    /// The most promising of these trials, fitted from where their energies are low, however far away that is. What rough descents
+    /// left of them does not count: it is the ringing in which they ended.
     fn from_far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
