@@ -171,14 +171,14 @@ impl Search<'_> {
         if goes_on && !fitted.iter().any(|set| left(nothing, &set.model) < LITTLE) {
             (self.fitter.say)("searching far away", so_far);
             rough.truncate(TRIED);
-            fitted.extend(self.from_far_away(&rough)?);
+            fitted.extend(self.far_away(&rough)?);
         }
         Ok(fitted)
     }
 
     /// The most promising of these trials, fitted from where their energies are low, however far away that is. What rough descents
     /// left of them does not count: it is the ringing in which they ended.
-    fn from_far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
+    fn far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
         let far = far_starts(self.fitter, &starts, own)?.into_par_iter();
