@@ -215,6 +215,22 @@ mod tests {
     }
 
     #[test]
+    fn a_pressure_has_a_mean_unless_its_sensor_passes_nothing_slow() {
+        let of = |mean: f64| OrderLines {
+            amplitude: vec![
+                mean.into(),
+                Complex64::new(-1e5, 2e4),
+                Complex64::new(3e4, 0.0),
+            ],
+            variance: vec![0.0; 3],
+            revolutions: 30,
+        };
+        // Absolute, gauge, with a drifted zero; and behind a capacitor, which leaves little more than noise of the mean.
+        assert!([2e5, 1e5, -3e4].map(of).iter().all(has_mean));
+        assert!(![0.0, 400.0, -400.0].map(of).iter().any(has_mean));
+    }
+
+    #[test]
     fn pairs_are_opposed_where_both_differ_clearly() {
         assert!(are_opposed([3.0, 3.9], [3.9, 3.0]));
         assert!(!are_opposed([3.0, 3.9], [3.0, 3.9]));
