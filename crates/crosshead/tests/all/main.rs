@@ -4,4 +4,5 @@
 mod arrows;
 mod circles;
 mod constants;
+mod links;
 mod sources;
