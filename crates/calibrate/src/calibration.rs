@@ -46,6 +46,7 @@ pub struct Prepared {
 pub fn prepare(settings: &Settings, out: &Path, existing: Existing) -> Result<Prepared, Error> {
     earlier::check_folder::<Results>(out, existing)?;
     let task = task(settings)?;
+    task.refuse_without_mean()?;
     let fingerprint = task.fingerprint();
     Ok(Prepared {
         earlier: earlier::read_existing(out, existing, &fingerprint)?,

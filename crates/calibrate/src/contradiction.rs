@@ -42,6 +42,28 @@ pub fn speed(run: &Run, measured: f64) -> Result<(), Error> {
     Err(Error::unusable(&run.id, error))
 }
 
+/// Refuses a pressure that has no mean, where the machine does not state the high pass of its sensor: what it shows would be fitted
+/// as it is to an absolute pressure.
+///
+/// # Errors
+/// The first channel that is so; an invalid machine.
+pub fn refuse_without_mean(problem: &Problem, x: &[f64]) -> Result<(), Error> {
+    for run in &problem.runs {
+        let sensors = problem.machine(run, x)?.sensors;
+        for (observed, sensor) in run.channels.iter().zip(&sensors) {
+            let has_high_pass = sensor.chain.high_pass.is_some();
+            if observed.quantity().is_pressure() && !has_high_pass && !has_mean(&observed.lines) {
+                let reason = format!(
+                    "channel {}: its mean is 0, so that its sensor passes no slow changes: state its `high_pass` in the machine                      file, or find it with crosshead explain-gap",
+                    observed.column
+                );
+                return Err(Error::unusable(&run.id, reason));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// Holds every run against what the machine shows at the coordinates `x`, and returns the valves that stay shut.
 ///
 /// # Errors

@@ -149,6 +149,15 @@ impl Task {
         Ok(())
     }
 
+    /// Refuses pressures without a mean, unless the machine states what their sensors pass. What looks for that needs them.
+    ///
+    /// # Errors
+    /// The first channel that is so; an invalid machine.
+    pub fn refuse_without_mean(&self) -> Result<(), Error> {
+        let nominal = vec![0.0; self.problem.parameters.len()];
+        contradiction::refuse_without_mean(&self.problem, &nominal)
+    }
+
     /// Takes the pressures of discharge lines that no recording shows as they are stated.
     fn leave_out_unseen_lines(&mut self) {
         let unseen = parameters::unseen_lines(&self.runs, &self.shut_valves);

@@ -62,6 +62,7 @@ pub struct Estimated {
 pub fn prepare(asked: &Asked, out: &Path, existing: Existing) -> Result<Prepared, Error> {
     earlier::check_folder::<Results>(out, existing)?;
     let task = task(&asked.settings)?;
+    task.refuse_without_mean()?;
     let joints = Joint::of_machine(&task.problem.tree)?;
     if joints.is_empty() {
         return Err(Error::Refused(
