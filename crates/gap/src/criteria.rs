@@ -102,23 +102,16 @@ pub(crate) fn freedom(problem: &Problem, parameters: usize) -> f64 {
 
 /// Share of the distance to the noise that is left of fitted or held-out runs, whichever is more.
 pub(crate) fn left(before: &Model, after: &Model) -> f64 {
-    let held_out = before.held_out.zip(after.held_out);
-    let held_out = held_out.map_or(0.0, |(before, after)| share(before, after));
-    left_of_fitted(before, after).max(held_out)
-}
-
-/// The same of fitted runs.
-pub(crate) fn left_of_fitted(before: &Model, after: &Model) -> f64 {
-    share(before.fitted, after.fitted)
-}
-
-/// The share of a misfit's distance to the noise that another one is away, 1 at most.
-fn share(before: f64, after: f64) -> f64 {
     let above = |misfit: f64| (misfit * misfit - 1.0).max(0.0).sqrt();
-    match above(before) > 0.0 {
-        true => (above(after) / above(before)).min(1.0),
+    let share = |before: f64, after: f64| match above(before) > 0.0 {
+        true => above(after) / above(before),
         false => 1.0,
-    }
+    };
+    let held_out = before.held_out.zip(after.held_out);
+    let fitted = share(before.fitted, after.fitted);
+    held_out
+        .map_or(fitted, |(before, after)| fitted.max(share(before, after)))
+        .min(1.0)
 }
 
 /// Probability that amendments which leave this share of the gap are of the right kinds, where `others` were believed

@@ -2,7 +2,7 @@
 //! might have been.
 
 use crate::amendment::Amendment;
-use crate::criteria::{NAMED, evidence, explains, left, left_of_fitted, probability};
+use crate::criteria::{NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
@@ -78,24 +78,18 @@ pub(crate) fn judged(
     let settled = settled.collect::<Result<Vec<_>, Error>>()?;
     let mut others: Vec<Hypothesis> = settled.into_iter().flatten().collect();
     others.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let (mut believed, mut without) = (nothing.clone(), nothing.clone());
+    let (mut believed, mut without) = (&nothing, &nothing);
     for count in 1..=MOST {
         let Some(best) = others.iter().find(|set| set.set.len() == count) else {
             continue;
         };
         let others = believed.set.len();
-        let is_probable = |left: f64| probability(left, others, count - others) > NAMED;
-        let mut best = best.clone();
-        // Where a descent ended early, a held-out run may still ring otherwise.
-        if is_probable(left_of_fitted(&believed.model, &best.model)) && !explains(&best.model) {
-            best = best.finished(fitter, problem)?;
-        }
-        let probable = is_probable(left(&believed.model, &best.model));
-        if probable && best.cost < believed.cost && shows_in_each(&believed, &best)? {
-            without = std::mem::replace(&mut believed, best);
+        let probable = probability(left(&believed.model, &best.model), others, count - others);
+        if probable > NAMED && best.cost < believed.cost && shows_in_each(believed, best)? {
+            (believed, without) = (best, believed);
         }
     }
-    let believed = believed.of_usual_form(fitter, problem)?;
+    let believed = believed.clone().of_usual_form(fitter, problem)?;
     let believed = believed.finished(fitter, problem)?;
     let (before, added) = (without.set.len(), believed.set.len() - without.set.len());
     let sure = probability(left(&without.model, &believed.model), before, added);
