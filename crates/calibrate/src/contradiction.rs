@@ -20,8 +20,8 @@ const PHASE: f64 = 45.0;
 /// Relative difference of two runs' pressures from which their order counts. Valve losses, which grow with the
 /// speed, raise the greatest pressure of a run by up to a fifth. Two runs have to differ by as much in all.
 const ORDER: f64 = 0.1;
-/// Share of its range within which the mean of a pressure is none: its sensor passes no slow changes. A range of absolute or
-/// gauge pressures lies on one side of it.
+/// Share of its range within which the mean of a pressure counts as 0: its sensor passes no slow changes. Absolute and gauge
+/// pressures lie on one side of 0.
 const NO_MEAN: f64 = 0.02;
 /// Points over a revolution at which a mean is looked at.
 const POINTS: usize = 360;
@@ -54,7 +54,8 @@ pub fn refuse_without_mean(problem: &Problem, x: &[f64]) -> Result<(), Error> {
             let has_high_pass = sensor.chain.high_pass.is_some();
             if observed.quantity().is_pressure() && !has_high_pass && !has_mean(&observed.lines) {
                 let reason = format!(
-                    "channel {}: its mean is 0, so that its sensor passes no slow changes: state its `high_pass` in the machine                      file, or find it with crosshead explain-gap",
+                    "channel {}: its mean is 0, so that its sensor passes no slow changes: state its `high_pass` in the \
+                     machine file, or find it with crosshead explain-gap",
                     observed.column
                 );
                 return Err(Error::unusable(&run.id, reason));

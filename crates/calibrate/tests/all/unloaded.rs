@@ -120,7 +120,10 @@ fn a_pressure_without_a_mean_says_nothing_of_valves_and_is_not_calibrated_to() {
     let task = task_of(|angle| -1e5 * angle.cos(), "Pa", 1.0).unwrap();
     assert!(task.shut_valves.is_empty());
     let refused = task.refuse_without_mean().unwrap_err().to_string();
-    assert!(refused.contains("state its `high_pass`"), "{refused}");
+    assert!(
+        refused.contains("state its `high_pass` in the machine file"),
+        "{refused}"
+    );
     let absolute = task_of(|angle| SUCTION * (1.0 - 0.04 * angle.sin()), "Pa", 1.0).unwrap();
     absolute.refuse_without_mean().unwrap();
 }
