@@ -35,7 +35,8 @@ pub(crate) fn form(
     let unusual: Vec<String> = unusual
         .map(|(parameter, value, low, high)| {
             let [value, low, high] = [value, low, high].map(|si| written(parameter, *si));
-            format!("{} {value} ({low} to {high})", name(parameter))
+            let key = parameter.key.replace('_', " ");
+            format!("{key} {value} ({low} to {high}), {}", meaning(parameter))
         })
         .collect();
     match (identified.is_empty(), unusual.is_empty()) {
@@ -46,7 +47,7 @@ pub(crate) fn form(
 }
 
 /// What a parameter means, in short: its words up to what is said of a file.
-fn name(parameter: &Parameter) -> String {
+fn meaning(parameter: &Parameter) -> String {
     let first = parameter.words.split([';', ':', '.']).next();
     let mut letters = first.unwrap_or_default().trim().chars();
     let head = letters
@@ -87,7 +88,7 @@ mod tests {
         let item = friction();
         let stated = form(&item, viscous(Some([20.0, 29.0]))).unwrap();
         assert!(
-            stated.ends_with(" 24.7 N s/m (20 N s/m to 29 N s/m)"),
+            stated.starts_with("viscous 24.7 N s/m (20 N s/m to 29 N s/m), "),
             "{stated}"
         );
         assert_eq!(form(&item, viscous(None)), None);
