@@ -57,9 +57,63 @@ impl Failure {
     }
 }
 
-impl From<input::Error> for Failure {
-    fn from(error: input::Error) -> Self {
-        Self::Input(error.to_string())
+/// Errors that are always of the input, always of the work, or of which they say themselves.
+macro_rules! failures {
+    ($($of:ident: $($error:ty),*;)*) => {$($(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                failures!($of error)
+            }
+        }
+    )*)*};
+    (input $error:ident) => { Self::input($error) };
+    (work $error:ident) => { Self::work($error) };
+    (either $error:ident) => {
+        match $error.is_input() {
+            true => Self::input($error),
+            false => Self::work($error),
+        }
+    };
+}
+
+failures! {
+    input: input::Error, features::recorded::Error;
+    work: recordings::Error, serde_json::Error, rayon::ThreadPoolBuildError;
+    either: report::Error;
+}
+
+#[cfg(feature = "serve")]
+failures! { either: serve::Error; }
+
+impl From<gap::Error> for Failure {
+    fn from(error: gap::Error) -> Self {
+        match error {
+            gap::Error::Input(error) => Self::input(error),
+            gap::Error::Stopped => Self::interrupted(error),
+            error => Self::work(error),
+        }
+    }
+}
+
+impl From<bench::Error> for Failure {
+    fn from(error: bench::Error) -> Self {
+        match error {
+            bench::Error::Stopped { .. } => Self::interrupted(error),
+            error if error.is_input() => Self::input(error),
+            error => Self::work(error),
+        }
+    }
+}
+
+impl From<sweep::recorded_table::Error> for Failure {
+    fn from(error: sweep::recorded_table::Error) -> Self {
+        match error {
+            sweep::recorded_table::Error::Stopped => {
+                Self::interrupted("interrupted; nothing was written")
+            }
+            error if error.is_input() => Self::input(error),
+            error => Self::work(error),
+        }
     }
 }
 

@@ -8,7 +8,6 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Arguments of `crosshead serve`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -31,11 +30,7 @@ pub struct Arguments {
     port: u16,
 }
 
-/// Prints the address, and answers there until a signal ends it.
-///
-/// # Errors
-/// No folder, a port in use, and the signal that ends it.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = interrupt::flag()?;
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, arguments.port));
     let server = Server::bind(&arguments.dir, address).map_err(failed)?;
