@@ -1,5 +1,6 @@
 //! `crosshead domain-gap`: the simulated windows of a dataset beside measured ones.
 
+use crate::output::warn;
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::{ResultFiles, ResultFormat};
@@ -70,8 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let table = recorded_table(&inputs, &said, like.length(), Some(&like), &pool, go_on)?;
     drop(progress);
-    let warnings = table.warnings.iter();
-    warnings.for_each(|line| eprintln!("warning: {line}"));
+    warn(&table.warnings);
     let compared = Progress::during("classifiers", || {
         pool.install(|| domain_gap(&dataset, &table, arguments.seed))
     });

@@ -108,6 +108,13 @@ pub(crate) fn message(text: Arguments) {
     };
 }
 
+/// Says what is wrong, a line each.
+pub(crate) fn warn(warnings: &[String]) {
+    for warning in warnings {
+        message(format_args!("warning: {warning}\n"));
+    }
+}
+
 /// Says what its user may do next, in a line that can be copied; nothing with `--quiet`.
 pub(crate) fn hint(next: Arguments) {
     if !console::is_quiet() {

@@ -2,7 +2,7 @@
 
 use crate::output::hint;
 use crate::{Failure, interrupt};
-use ::serve::{Error, Server};
+use ::serve::Server;
 use clap::Args;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
@@ -33,21 +33,14 @@ pub struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = interrupt::flag()?;
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, arguments.port));
-    let server = Server::bind(&arguments.dir, address).map_err(failed)?;
+    let server = Server::bind(&arguments.dir, address)?;
     println!("http://{}/", server.address());
     hint(format_args!(
         "open the address in a browser; Ctrl-C ends the server"
     ));
-    server.run(Arc::clone(&stop)).map_err(failed)?;
+    server.run(Arc::clone(&stop))?;
     let dir = arguments.dir.display();
     Err(Failure::interrupted(format!(
         "interrupted: {dir} is no longer served"
     )))
-}
-
-fn failed(error: Error) -> Failure {
-    match error.is_input() {
-        true => Failure::input(error),
-        false => Failure::work(error),
-    }
 }

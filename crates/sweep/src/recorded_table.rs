@@ -30,7 +30,7 @@ pub enum Error {
     #[error(transparent)]
     Write(recordings::Error),
     /// The caller asked for it.
-    #[error("interrupted")]
+    #[error("interrupted; nothing was written")]
     Stopped,
 }
 

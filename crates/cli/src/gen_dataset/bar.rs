@@ -1,6 +1,6 @@
 //! The progress of a sweep.
 
-use super::warn;
+use crate::output::warn;
 use crate::progress::Progress;
 
 /// Cases done: rate and time left.

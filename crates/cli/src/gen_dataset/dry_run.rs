@@ -1,20 +1,13 @@
 //! `gen-dataset --dry-run`.
 
-use super::{warn, with_format};
 use crate::Failure;
+use crate::output::warn;
 use std::path::Path;
 use sweep::plan::MOST_CASES;
-use sweep::sweep_file::Format;
 use sweep::{Plan, Sweep};
 
 /// Says how large the dataset will be and how long it will take, from a few simulated cases.
-pub(super) fn run(
-    sweep: &Sweep,
-    nominal: Plan,
-    out: &Path,
-    format: Option<Format>,
-) -> Result<(), Failure> {
-    let plan = with_format(planned(sweep, nominal, out)?, format)?;
+pub(super) fn run(plan: &Plan) -> Result<(), Failure> {
     let estimate = plan.estimate();
     println!("{}: {estimate}\n{}", plan.name, plan.census());
     warn(&plan.census().warnings());
@@ -41,7 +34,7 @@ pub(super) fn run(
 }
 
 /// The plan as far as it is known without calibrating anything.
-fn planned(sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
+pub(super) fn planned(sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
     if sweep.calibrate().is_none() {
         return Ok(nominal);
     }

@@ -6,7 +6,7 @@ mod dry_run;
 pub(crate) use bar::Bar;
 
 use crate::choice::one_of;
-use crate::output::hint;
+use crate::output::{hint, warn};
 use crate::{Failure, calibrate, console, interrupt, try_case};
 use clap::Args;
 use recordings::Manifest;
@@ -70,7 +70,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| default_folder(&nominal.name));
     if arguments.dry_run {
-        return dry_run::run(&sweep, nominal, &out, arguments.format);
+        let plan = dry_run::planned(&sweep, nominal, &out)?;
+        return dry_run::run(&with_format(plan, arguments.format)?);
     }
     let cancel = interrupt::flag()?;
     let existing = match (arguments.resume, arguments.overwrite) {
@@ -144,13 +145,6 @@ pub(crate) fn with_format(plan: Plan, format: Option<Format>) -> Result<Plan, Fa
     match format {
         None => Ok(plan),
         Some(format) => Ok(plan.with_format(format)?),
-    }
-}
-
-/// Says what is wrong.
-pub(crate) fn warn(warnings: &[String]) {
-    for warning in warnings {
-        eprintln!("warning: {warning}");
     }
 }
 

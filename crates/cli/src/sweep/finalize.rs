@@ -1,8 +1,8 @@
 //! `sweep finalize`: the dataset is completed.
 
 use crate::Failure;
-use crate::gen_dataset::{summarise, warn};
-use crate::output::hint;
+use crate::gen_dataset::summarise;
+use crate::output::{hint, warn};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;

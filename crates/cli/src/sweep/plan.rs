@@ -2,7 +2,7 @@
 
 use crate::choice::one_of;
 use crate::gen_dataset::{self, FORMATS};
-use crate::output::hint;
+use crate::output::{hint, warn};
 use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
@@ -45,9 +45,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(shards) = arguments.shards {
         plan = plan.with_shards(shards)?;
     }
-    gen_dataset::warn(&plan.census().mistakes());
+    warn(&plan.census().mistakes());
     let output = claim.open(&plan)?;
-    gen_dataset::warn(&output.take_warnings());
+    warn(&output.take_warnings());
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",
         out.display(),

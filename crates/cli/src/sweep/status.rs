@@ -1,8 +1,7 @@
 //! `sweep status`: how far a dataset has got.
 
 use crate::Failure;
-use crate::gen_dataset::warn;
-use crate::output::hint;
+use crate::output::{hint, warn};
 use crate::result_format::ResultFormat;
 use clap::Args;
 use std::path::PathBuf;
