@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Cases that are named.
-const NAMED: usize = 5;
+const FIRST_FEW: usize = 5;
 
 /// What the dataset in the folder `out`, made in so many seconds, has.
 pub fn finished(plan: &Plan, manifest: &Manifest, out: &Path, seconds: f64) -> String {
@@ -61,11 +61,11 @@ fn first_few<T>(
     line: impl Fn(&T) -> String,
     others: &str,
 ) -> Option<String> {
-    let few = all.iter().take(NAMED);
+    let few = all.iter().take(FIRST_FEW);
     let mut text = few.fold(head, |text, one| text + "\n  " + &line(one));
-    if all.len() > NAMED {
+    if all.len() > FIRST_FEW {
         // A string takes all that is written to it.
-        let _ = write!(text, "\n  and {} more, in {others}", all.len() - NAMED);
+        let _ = write!(text, "\n  and {} more, in {others}", all.len() - FIRST_FEW);
     }
     (!all.is_empty()).then_some(text)
 }
