@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::machine::Machine;
-use crate::outcome::{CASES, Explained, Hidden, Outcome};
+use crate::matrix::Matrix;
+use crate::outcome::{CASES, Explained, Hidden, Ledger, Outcome};
 use crate::outside::Outside;
 use crate::plan::Case;
 use crate::recordings::{Clean, Recorder};
@@ -88,6 +89,40 @@ impl Bench<'_> {
             }
         }
         Ok(open)
+    }
+
+    /// Makes those of `cases` that are not in the ledger of the folder yet, adds them to it, and writes the counts over all
+    /// that are there, which it gives back. `explain` explains a bundle into a folder; it says why where it cannot. `done` is
+    /// told which case of how many came to what.
+    ///
+    /// # Errors
+    /// A ledger with the cases of others; files that cannot be written; [`Error::Stopped`] once `is_stopped`.
+    pub fn run(
+        &self,
+        cases: &[Case],
+        explain: impl Fn(&Asked, &Path) -> Result<Results, String>,
+        is_stopped: impl Fn() -> bool,
+        done: impl Fn([usize; 2], &Case, &Outcome),
+    ) -> Result<Vec<Outcome>, Error> {
+        let ledger = Ledger::in_folder(self.out);
+        let open = self.open(cases, &ledger.read()?)?;
+        std::fs::create_dir_all(self.out).map_err(|error| Error::file(self.out, error))?;
+        let count = open.len();
+        let counted = || {
+            let outcomes = ledger.read()?;
+            Matrix::new(&outcomes).write(self.out)?;
+            Ok(outcomes)
+        };
+        for (i, case) in open.into_iter().enumerate() {
+            let outcome = self.outcome(case, &explain);
+            if is_stopped() {
+                return counted().and(Err(Error::Stopped { done: i, count }));
+            }
+            let outcome = outcome?;
+            ledger.add(&outcome)?;
+            done([i + 1, count], case, &outcome);
+        }
+        counted()
     }
 
     /// Makes the recordings of a case and has `explain` explain them into a folder; it says why where it

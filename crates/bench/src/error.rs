@@ -18,6 +18,14 @@ pub enum Error {
     /// A machine to which a true value cannot be given.
     #[error(transparent)]
     Truth(#[from] calibrate::Error),
+    /// The user has stopped it.
+    #[error("stopped: {done} of {count} cases are done; --resume continues from there")]
+    Stopped {
+        /// Cases that were made before.
+        done: usize,
+        /// Cases that were to be made.
+        count: usize,
+    },
     /// A file of recordings or results that cannot be written.
     #[error(transparent)]
     Write(#[from] recordings::Error),
@@ -44,7 +52,7 @@ impl Error {
     }
 
     /// Whether the input is wrong, and not the work.
-    pub fn is_of_input(&self) -> bool {
+    pub fn is_input(&self) -> bool {
         matches!(self, Self::Input(_) | Self::Contact(_) | Self::Cases(_))
     }
 }

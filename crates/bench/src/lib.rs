@@ -20,6 +20,6 @@ pub use machine::Machine;
 pub use matrix::Matrix;
 pub use outcome::{Ledger, Outcome};
 pub use outside::Outside;
-pub use plan::{Case, NOTHING, cases};
+pub use plan::{Case, NOTHING, cases, chosen, listed};
 pub use recordings::Recorder;
 pub use settings::HiddenEffects;

@@ -1,9 +1,10 @@
 //! A machine of a test bench, and the conditions of its runs.
 
-use crate::settings::BenchMachine;
+use crate::settings::{BenchMachine, HiddenEffects};
 use calibrate::ClearJoint;
 use input::bundle::Bundle;
 use input::paths;
+use input::yaml::Document;
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -34,6 +35,24 @@ pub struct RunConditions {
 }
 
 impl Machine {
+    /// The machines of the settings in the file with the content `document`; paths start from the folder `base`.
+    ///
+    /// # Errors
+    /// As [`Machine::open`], with the lines of mistakes.
+    pub fn all(
+        settings: &HiddenEffects,
+        document: &Document,
+        base: &Path,
+    ) -> Result<Vec<Self>, input::Error> {
+        let open = |(i, entry): (usize, &BenchMachine)| {
+            Self::open(entry, base).map_err(|error| match error.place() {
+                Some(_) => error,
+                None => document.locate(error.under(format!("machines.{i}"))),
+            })
+        };
+        settings.machines.iter().enumerate().map(open).collect()
+    }
+
     /// The machine of an entry of the file; paths start from the folder `base`.
     ///
     /// # Errors

@@ -1,10 +1,13 @@
 //! The cases of a test bench, in rounds.
 
+use crate::error::Error;
+use crate::machine::Machine;
 use crate::outside::Outside;
 use crate::settings::HiddenEffects;
-use input::effects::Entry;
+use input::effects::{CATALOGUE, Entry};
 use rand::seq::IndexedRandom;
 use scalar::random::{Purpose, stream};
+use std::ops::RangeInclusive;
 
 /// What a case without a hidden effect is called.
 pub const NOTHING: &str = "nothing";
@@ -50,6 +53,56 @@ impl Case {
             (None, false) => self.hidden.iter().any(|entry| entry.name == name),
         }
     }
+}
+
+/// The cases that hide one of the effects `only`, or any where there are none, and whose number is one of `numbers`.
+///
+/// # Errors
+/// A name that no effect has, or no case that is left.
+pub fn chosen(
+    cases: Vec<Case>,
+    only: &[String],
+    numbers: Option<&RangeInclusive<u64>>,
+) -> Result<Vec<Case>, Error> {
+    let others = Outside::ALL.map(Outside::name).into_iter().chain([NOTHING]);
+    let names: Vec<&str> = CATALOGUE.iter().map(|e| e.name).chain(others).collect();
+    if let Some(unknown) = only.iter().find(|name| !names.contains(&name.as_str())) {
+        let nearest = input::nearest(unknown, names.iter().copied());
+        let hint = nearest.map_or(".".into(), |near| format!("; did you mean {near}?"));
+        return Err(Error::Cases(format!(
+            "--only {unknown}: there is no such effect{hint} They are {}.",
+            names.join(", ")
+        )));
+    }
+    let count = cases.len();
+    let is_chosen = |case: &Case| {
+        numbers.is_none_or(|numbers| numbers.contains(&case.number))
+            && (only.is_empty() || only.iter().any(|name| case.hides(name)))
+    };
+    let chosen: Vec<Case> = cases.into_iter().filter(is_chosen).collect();
+    match chosen.is_empty() {
+        true => Err(Error::Cases(format!(
+            "none of the {count} cases is asked for by --cases and --only"
+        ))),
+        false => Ok(chosen),
+    }
+}
+
+/// A line for each case, with its machine.
+pub fn listed(cases: &[Case], machines: &[Machine]) -> String {
+    let line = |case: &Case| {
+        let machine = &machines[case.machine];
+        format!(
+            "{:4}  {} ({} runs), noise {:.1} %, size {}: {}\n",
+            case.number,
+            machine.name,
+            machine.runs.len(),
+            100.0 * case.noise,
+            case.size,
+            case.label()
+        )
+    };
+    cases.iter().map(line).collect()
 }
 
 /// All cases. In each round every effect is hidden once, then nothing, then pairs, then what is in

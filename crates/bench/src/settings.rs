@@ -15,12 +15,24 @@
 use input::Error;
 use input::choice::Count;
 use input::effects::{CATALOGUE, Entry, entry};
+use input::file_kind::FileKind;
 use input::quantity::{AboveZero, Frequency, FromZero, Number, Positive, Quantity, Ratio};
 use input::yaml::Document;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
+
+/// hidden-effects.yaml.
+pub const HIDDEN_EFFECTS: FileKind = FileKind {
+    name: "hidden-effects",
+    file: "hidden-effects.yaml",
+    content: "a test bench of effects hidden in recordings",
+    words: "a test bench of hidden effects",
+    schema,
+    check: |_, document| HiddenEffects::of(&document).map(drop),
+    recordings: |_| Vec::new(),
+};
 
 /// A test bench: effects, hidden in recordings of machines.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]

@@ -26,6 +26,7 @@ pub mod bundle;
 pub mod bundle_replay;
 pub mod calibration;
 mod chamber;
+pub mod check;
 pub mod checkpoint;
 pub mod comparison;
 mod contradiction;

@@ -1,20 +1,14 @@
 //! `crosshead compare`: two recordings, or two datasets, side by side.
 
-use crate::output::{hint, refuse_existing, write_file};
 use crate::progress::Progress;
 use crate::reading::Reading;
-use crate::result_format::ResultFormat;
+use crate::result_format::{ResultFiles, ResultFormat};
 use crate::{Failure, console};
-use ::features::recorded::counted;
-use ::report::{comparison_page, text, write_page};
+use ::report::{comparison_page, summary};
 use clap::Args;
 use std::path::PathBuf;
-use sweep::comparison::{ComparedFeature, Comparison, compare};
+use sweep::comparison::compare;
 
-/// Features that are printed.
-const PRINTED: usize = 10;
-
-/// Arguments of `crosshead compare`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 A and B are recordings as crosshead features reads them: files, bundles, datasets or folders of
@@ -45,54 +39,13 @@ pub struct Arguments {
     format: ResultFormat,
 }
 
-/// Compares the two and writes what differs.
-///
-/// # Errors
-/// Wrong arguments, recordings that cannot be read, or files that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    let [json, page] = ["comparison.json", "comparison.html"].map(|name| out.join(name));
-    refuse_existing([&json], arguments.overwrite)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let files = ResultFiles::new(&arguments.out, "comparison", arguments.overwrite)?;
     let (said, length) = (arguments.reading.said()?, arguments.reading.window()?);
     let pool = console::pool()?;
-    let progress = Progress::of_time("features of both");
     let paths = [arguments.a.as_path(), arguments.b.as_path()];
-    let comparison = compare(paths, &said, length, &pool).map_err(Failure::input)?;
-    drop(progress);
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
-    let text = serde_json::to_string_pretty(&comparison).map_err(Failure::work)?;
-    write_file(&json, text.as_bytes())?;
-    let rendered = comparison_page::render(&comparison).map_err(Failure::work)?;
-    write_page(&page, &rendered.html).map_err(Failure::work)?;
-    arguments.format.print(&comparison, |comparison| {
-        summary(comparison);
-        println!("{}", json.display());
-        println!("{}", page.display());
-    })?;
-    hint(format_args!("open {} in a browser", page.display()));
-    Ok(())
-}
-
-fn summary(comparison: &Comparison) {
-    for (name, side) in ["A", "B"].iter().zip(&comparison.sides) {
-        println!("{name}: {}, {}", side.name, counted(side.windows, "window"));
-    }
-    for feature in comparison.most_different().into_iter().take(PRINTED) {
-        println!("  {}", line(feature));
-    }
-}
-
-fn line(feature: &ComparedFeature) -> String {
-    let number = |value: Option<f64>| value.map_or("none".to_owned(), |v| text::number(v, 3));
-    let unit = match feature.unit.as_str() {
-        "1" => String::new(),
-        unit => format!(" {}", text::unit(unit)),
-    };
-    format!(
-        "{}: {} and {}{unit}, ratio {}",
-        feature.name,
-        number(feature.a),
-        number(feature.b),
-        number(feature.ratio)
-    )
+    let comparison = Progress::during("features of both", || compare(paths, &said, length, &pool))?;
+    let page = comparison_page::render(&comparison)?;
+    let lines = summary::comparison(&comparison);
+    files.write(&comparison, &page, arguments.format, &lines)
 }

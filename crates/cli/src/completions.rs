@@ -5,7 +5,6 @@ use crate::output::bytes;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-/// Arguments of `crosshead completions`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -22,11 +21,7 @@ pub struct Arguments {
     program: String,
 }
 
-/// Prints the script for one of the `commands`.
-///
-/// # Errors
-/// None in practice: a program that is asked for is one of them.
-pub fn run(
+pub(crate) fn run(
     arguments: &Arguments,
     commands: impl IntoIterator<Item = Command>,
 ) -> Result<(), Failure> {

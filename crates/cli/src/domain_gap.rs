@@ -1,24 +1,19 @@
 //! `crosshead domain-gap`: the simulated windows of a dataset beside measured ones.
 
-use crate::output::{hint, refuse_existing, write_file};
+use crate::output::warn;
 use crate::progress::Progress;
 use crate::reading::Reading;
-use crate::result_format::ResultFormat;
+use crate::result_format::{ResultFiles, ResultFormat};
 use crate::{Failure, console, interrupt};
 use ::features::recorded::{WindowLength, inputs};
-use ::report::{domain_gap_page, write_page};
+use ::report::{domain_gap_page, summary};
 use clap::Args;
-use classify::DomainGap;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use sweep::domain_gap::domain_gap;
 use sweep::reader::Dataset;
-use sweep::recorded_table::{self, recorded_table};
+use sweep::recorded_table::recorded_table;
 
-/// Features that are printed.
-const PRINTED: usize = 10;
-
-/// Arguments of `crosshead domain-gap`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 DATASET is one of gen-dataset, RECORDING what crosshead features reads: files, bundles, datasets. A
@@ -56,15 +51,8 @@ pub struct Arguments {
     format: ResultFormat,
 }
 
-/// Compares the two and writes what tells them apart.
-///
-/// # Errors
-/// Wrong arguments, recordings that cannot be read or do not go with the dataset, too few of them, or files that cannot be
-/// written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let out = &arguments.out;
-    let [json, page] = ["domain-gap.json", "domain-gap.html"].map(|name| out.join(name));
-    refuse_existing([&json], arguments.overwrite)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let files = ResultFiles::new(&arguments.out, "domain-gap", arguments.overwrite)?;
     if arguments.reading.window()? != WindowLength::Default {
         return Err(Failure::input(
             "--window: found one beside a dataset, which says how long windows are",
@@ -74,64 +62,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let like = dataset.like().map_err(Failure::input)?;
     let mut said = arguments.reading.said()?;
     like.say(&mut said);
-    let inputs = inputs(&arguments.recordings, &said).map_err(Failure::input)?;
-    let pool = console::pool()?;
-    let cancel = interrupt::flag()?;
-    let progress = Progress::new(
-        "windows",
-        None,
-        "{spinner} {pos} windows  {per_sec}  {elapsed}",
-    );
+    let inputs = inputs(&arguments.recordings, &said)?;
+    let (pool, cancel) = (console::pool()?, interrupt::flag()?);
+    let progress = Progress::of_windows();
     let go_on = || {
-        progress.add(1);
+        progress.bar.inc(1);
         !cancel.load(Ordering::Relaxed)
     };
-    let table = recorded_table(&inputs, &said, like.length(), Some(&like), &pool, go_on);
-    let table = table.map_err(|error| match error {
-        recorded_table::Error::Stopped => Failure::interrupted("interrupted; nothing was written"),
-        error => Failure::input(error),
-    })?;
+    let table = recorded_table(&inputs, &said, like.length(), Some(&like), &pool, go_on)?;
     drop(progress);
-    table
-        .warnings
-        .iter()
-        .for_each(|line| eprintln!("warning: {line}"));
-
-    let progress = Progress::of_time("classifiers");
-    let compared = pool.install(|| domain_gap(&dataset, &table, arguments.seed));
+    warn(&table.warnings);
+    let compared = Progress::during("classifiers", || {
+        pool.install(|| domain_gap(&dataset, &table, arguments.seed))
+    });
     let compared = compared.map_err(Failure::input)?;
-    drop(progress);
-
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
-    let text = serde_json::to_string_pretty(&compared.gap).map_err(Failure::work)?;
-    write_file(&json, text.as_bytes())?;
-    let rendered = domain_gap_page::render(&dataset.plan.name, &compared).map_err(Failure::work)?;
-    write_page(&page, &rendered.html).map_err(Failure::work)?;
-    arguments.format.print(&compared.gap, |gap| {
-        summary(gap);
-        println!("{}", json.display());
-        println!("{}", page.display());
-    })?;
-    hint(format_args!("open {} in a browser", page.display()));
-    Ok(())
-}
-
-fn summary(gap: &DomainGap) {
-    let (simulated, measured) = (gap.simulated, gap.measured);
-    println!(
-        "area under the curve {:.3}: {simulated} simulated and {measured} measured windows",
-        gap.auc
-    );
-    let number =
-        |value: Option<f64>| value.map_or("none".to_owned(), |v| ::report::text::number(v, 3));
-    for telling in gap.features.iter().take(PRINTED) {
-        println!(
-            "  {}: loss {:.3}, alone {:.3}, simulated {}, measured {}",
-            telling.feature,
-            telling.loss,
-            telling.auc,
-            number(telling.simulated),
-            number(telling.measured)
-        );
-    }
+    let page = domain_gap_page::render(&dataset.plan.name, &compared)?;
+    let lines = summary::domain_gap(&compared.gap);
+    files.write(&compared.gap, &page, arguments.format, &lines)
 }

@@ -1,17 +1,17 @@
 //! `crosshead estimate-wear`: which joints are worn, and how much, from recordings.
 
 use crate::bundle::AllowOutside;
-use crate::calibrate::progress::Bar;
+use crate::calibrate::{Bar, check_complete, existing};
 use crate::result_format::ResultFormat;
-use crate::{Failure, interrupt, report};
+use crate::{Failure, interrupt};
+use ::calibrate::Settings;
+use ::calibrate::run_condition::CRANK_ANGLE_OFFSET;
 use ::calibrate::wear::{Asked, prepare};
-use ::calibrate::{Existing, Settings};
-use ::report::folder_kind::FolderKind;
+use ::report::folder_kind::{FolderKind, REPORT};
 use clap::Args;
 use input::calibration::{Calibration, Parameters};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// Arguments of `crosshead estimate-wear`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 MACHINE.yaml is the healthy machine, as calibrate writes it or from the data sheet. BUNDLE is a
@@ -60,22 +60,17 @@ fn times(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a number above 1 is expected, 1.5 for example".to_owned())
 }
 
-/// Estimates the clearances, writes the page, and prints the verdicts.
-///
-/// # Errors
-/// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    let machine = input::machine_file::read(&arguments.machine).map_err(Failure::input)?;
+    let machine = input::machine_file::read(&arguments.machine)?;
     let mut calibration = Calibration::with_defaults(vec![arguments.bundle.clone()]);
-    let offset = ::calibrate::run_condition::CRANK_ANGLE_OFFSET.to_owned();
-    calibration.parameters = Parameters(vec![(offset, None)]);
+    calibration.parameters = Parameters(vec![(CRANK_ANGLE_OFFSET.to_owned(), None)]);
     calibration.hold_out = Some(Vec::new());
     calibration.leave_out.clone_from(&arguments.leave_out);
     let asked = Asked {
         settings: Settings {
             calibration: &calibration,
-            base: &PathBuf::new(),
+            base: Path::new(""),
             machine: Some(machine.to_tree()),
             allow_outside: arguments.outside.allow_outside,
             clearances_unknown: true,
@@ -84,32 +79,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         worn_from: arguments.worn_from,
     };
     let cancel = interrupt::flag()?;
-    let existing = match (arguments.resume, arguments.overwrite) {
-        (true, _) => Existing::Resume,
-        (_, true) => Existing::Overwrite,
-        _ => Existing::Refuse,
-    };
+    let existing = existing(arguments.resume, arguments.overwrite);
     let prepared = prepare(&asked, out, existing).map_err(Failure::input)?;
-    let done = prepared
-        .finish(&mut Bar::new(&cancel))
-        .map_err(Failure::work)?;
-    let page = out.join(report::PAGE);
+    let done = prepared.finish(&mut Bar::new(&cancel));
+    let done = done.map_err(Failure::work)?;
+    let page = out.join(REPORT);
     if !done.reused {
-        report::write_result(FolderKind::Wear, out, &page)?;
+        FolderKind::Wear.write(out, &page)?;
     }
-    arguments.format.print(&done.results, |results| {
-        if done.reused {
-            println!("nothing has changed since this was found:");
-        }
-        print!("{results}");
-        println!("{}", done.machine.display());
-        println!("{}", page.display());
-    })?;
-    if !done.results.complete {
-        return Err(Failure::interrupted(format!(
-            "stopped before the end: {} has the best so far; --resume continues from there",
-            out.display()
-        )));
-    }
-    Ok(())
+    let files = [done.machine.as_path(), &page];
+    (arguments.format).print_found(&done.results, done.reused, files)?;
+    check_complete(done.results.complete, out)
 }

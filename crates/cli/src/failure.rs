@@ -1,6 +1,7 @@
 //! How a verb fails, and what the shell sees of it.
 
 use std::path::Path;
+use sweep::{engines, recorded_table};
 
 /// Why a verb stopped; the text is the one message that is printed.
 #[derive(Debug)]
@@ -57,33 +58,45 @@ impl Failure {
     }
 }
 
-impl From<input::Error> for Failure {
-    fn from(error: input::Error) -> Self {
-        Self::Input(error.to_string())
-    }
-}
-
-impl From<sweep::Error> for Failure {
-    fn from(error: sweep::Error) -> Self {
-        match error {
-            sweep::Error::Cancelled { .. } | sweep::Error::DiagramsCancelled { .. } => {
-                Self::interrupted(error)
+/// Which failure each error is.
+macro_rules! failures {
+    ($($error:ty { $($which:pat $(if $guard:expr)? => $failure:ident),* })*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                let message = error.to_string();
+                match error {
+                    $($which $(if $guard)? => Self::$failure(message)),*
+                }
             }
-            sweep::Error::Input(error) => error.into(),
-            error if error.is_input() => Self::input(error),
-            error => Self::work(error),
         }
-    }
+    )*};
 }
 
-impl From<sweep::engines::Error> for Failure {
-    fn from(error: sweep::engines::Error) -> Self {
-        match error {
-            sweep::engines::Error::Missing(_) => Self::Incomplete(error.to_string()),
-            error if error.is_input() => Self::input(error),
-            error => Self::work(error),
-        }
+failures! {
+    input::Error { _ => Input }
+    features::recorded::Error { _ => Input }
+    recordings::Error { _ => Work }
+    serde_json::Error { _ => Work }
+    rayon::ThreadPoolBuildError { _ => Work }
+    report::Error { e if e.is_input() => Input, _ => Work }
+    gap::Error { gap::Error::Stopped => Interrupted, gap::Error::Input(_) => Input, _ => Work }
+    bench::Error { bench::Error::Stopped { .. } => Interrupted, e if e.is_input() => Input, _ => Work }
+    recorded_table::Error {
+        recorded_table::Error::Stopped => Interrupted,
+        e if e.is_input() => Input,
+        _ => Work
     }
+    sweep::Error {
+        sweep::Error::Cancelled { .. } | sweep::Error::DiagramsCancelled { .. } => Interrupted,
+        e if e.is_input() => Input,
+        _ => Work
+    }
+    engines::Error { engines::Error::Missing(_) => Incomplete, e if e.is_input() => Input, _ => Work }
+}
+
+#[cfg(feature = "serve")]
+failures! {
+    serve::Error { e if e.is_input() => Input, _ => Work }
 }
 
 /// Prints the message of a failure and returns the exit status.

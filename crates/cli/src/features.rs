@@ -1,22 +1,18 @@
 //! `crosshead features`: measured recordings become a table of features.
 
-use crate::output::{hint, make_folder_of};
+use crate::output::hint;
 use crate::progress::Progress;
 use crate::reading::Reading;
 use crate::result_format::ResultFormat;
 use crate::{Failure, console, interrupt};
-use ::features::recorded::{Input, Summary, Table, counted, inputs, row};
+use ::features::recorded::{Input, inputs};
 use clap::Args;
-use recordings::WholeFile;
-use recordings::formats::table_file::{TableFile, TableFormat};
-use recordings::measured::LONGEST_BRIDGED;
-use serde::Serialize;
+use recordings::formats::table_file::TableFormat;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-use sweep::in_order::in_order;
+use sweep::feature_file::write;
 use sweep::reader::Like;
 
-/// Arguments of `crosshead features`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 FILE is CSV, WAV, MAT (version 5 to 7), Parquet or MCAP, a bundle (a folder with recordings.yaml),
@@ -63,55 +59,7 @@ pub struct Arguments {
     format: ResultFormat,
 }
 
-/// What was written.
-#[derive(Serialize)]
-struct Written<'a> {
-    /// The table.
-    table: &'a Path,
-    windows: u64,
-    columns: usize,
-    files: usize,
-    /// Why columns are empty, a line per reason.
-    empty: Vec<String>,
-    warnings: Vec<String>,
-    bridged_samples: usize,
-    /// Time that was too short for a window, s.
-    left_out_s: f64,
-}
-
-impl Written<'_> {
-    fn print(&self) {
-        println!(
-            "{}: {}, {}, {}",
-            self.table.display(),
-            counted(self.windows, "window"),
-            counted(self.columns as u64, "column"),
-            counted(self.files as u64, "file"),
-        );
-        for line in &self.empty {
-            println!("{line}");
-        }
-        if self.bridged_samples > 0 {
-            println!(
-                "  {} bridged by lines (gaps of up to {LONGEST_BRIDGED})",
-                counted(self.bridged_samples as u64, "missing sample")
-            );
-        }
-        if self.left_out_s > 0.0 {
-            println!(
-                "  {:.3} s were too short for a window and are left out",
-                self.left_out_s
-            );
-        }
-    }
-}
-
-/// Computes the features and writes them.
-///
-/// # Errors
-/// Wrong arguments, a file that cannot be read (nothing is then written), or a table that cannot
-/// be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     let format = format(out)?;
     let (mut said, mut length) = (arguments.reading.said()?, arguments.reading.window()?);
@@ -121,70 +69,19 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         length = like.length();
         like.say(&mut said);
     }
-    let inputs = inputs(&arguments.files, &said).map_err(Failure::input)?;
+    let inputs = inputs(&arguments.files, &said)?;
     refuse_input_as_output(&inputs, out)?;
-    let table = Table::new(&inputs, &said).map_err(Failure::input)?;
-    let note = table.without_unit().map(|(file, channels)| {
-        let channels = channels.join(", ");
-        format!(
-            "note: {file}: no unit of {channels}: statistics alone; --unit 'm/s^2' gives the rest"
-        )
-    });
-    let kept = like.as_ref().map(|like| like.columns(table.schema()));
-    let kept = kept.transpose().map_err(Failure::input)?;
-    let schema = match &kept {
-        Some(kept) => table.schema().select(kept),
-        None => table.schema().clone(),
+    let (pool, cancel) = (console::pool()?, interrupt::flag()?);
+    let progress = Progress::of_windows();
+    let go_on = || {
+        progress.bar.inc(1);
+        !cancel.load(Ordering::Relaxed)
     };
-    let columns = schema.columns().len();
-
-    make_folder_of(out)?;
-    let file = WholeFile::create(&out.with_extension("part"), out).map_err(Failure::input)?;
-    let mut output = TableFile::new(file, format, &schema).map_err(Failure::work)?;
-    let mut summary = Summary::new(columns);
-    let cancel = interrupt::flag()?;
-    let pool = console::pool()?;
-    let mut windows = table.windows(length);
-    let progress = Progress::new(
-        "windows",
-        None,
-        "{spinner} {pos} windows  {per_sec}  {elapsed}",
-    );
-    in_order(
-        &pool,
-        2 * console::threads(),
-        &mut windows,
-        |window| window.as_ref().ok().map(row),
-        |window, row| {
-            window.map_err(Failure::input)?;
-            if cancel.load(Ordering::Relaxed) {
-                return Err(Failure::interrupted("interrupted; nothing was written"));
-            }
-            progress.add(1);
-            let Some(mut row) = row else { return Ok(()) };
-            if let (Some(like), Some(kept)) = (&like, &kept) {
-                like.check(&row).map_err(Failure::input)?;
-                row.keep(kept);
-            }
-            summary.add(&mut row);
-            output.write(row.values).map_err(Failure::work)
-        },
-    )?;
+    let table = (out.as_path(), format);
+    let written = write(&inputs, &said, length, like.as_ref(), table, &pool, go_on)?;
     drop(progress);
-    output.commit().map_err(Failure::work)?;
-    let warnings: Vec<String> = note.into_iter().chain(summary.warnings()).collect();
-    warnings.iter().for_each(|line| eprintln!("{line}"));
-    let written = Written {
-        table: out,
-        windows: summary.rows(),
-        columns,
-        files: inputs.len(),
-        empty: summary.empty(&schema),
-        warnings,
-        bridged_samples: summary.bridged(),
-        left_out_s: windows.left_out_s(),
-    };
-    arguments.format.print(&written, Written::print)?;
+    written.warnings.iter().for_each(|line| eprintln!("{line}"));
+    arguments.format.print(&written, &written)?;
     if format == TableFormat::Parquet {
         hint(format_args!(
             "python3 -c 'import pandas; print(pandas.read_parquet(\"{}\").T)'",

@@ -3,19 +3,17 @@
 //! Each case goes through the disk: a bundle is made, the workflow is given its folder and nothing
 //! else, and what it writes is held against what was hidden.
 
+use crate::explain_gap::shown;
 use crate::output::hint;
-use crate::{Failure, console, explain_gap, interrupt};
+use crate::{Failure, console, interrupt};
 use bench::matrix::MATRIX;
 use bench::outcome::CASES;
-use bench::{Bench, Case, HiddenEffects, Ledger, Machine, Matrix, NOTHING, Outside};
-use bench::{Recorder, cases};
+use bench::{Bench, HiddenEffects, Ledger, Machine, Matrix, Recorder, cases, chosen, listed};
 use clap::Args;
-use input::effects::CATALOGUE;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
-/// Arguments of `crosshead hidden-effects`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Each case makes a bundle of recordings of a machine. The contacts of that machine differ from the
@@ -62,32 +60,17 @@ fn numbers(text: &str) -> Result<RangeInclusive<u64>, String> {
     }
 }
 
-/// Makes the cases, explains them, and counts what was found.
-///
-/// # Errors
-/// Invalid settings or machines, a folder with the cases of others, or files that cannot be
-/// written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (settings, document) = HiddenEffects::read(&arguments.settings)?;
     let base = arguments.settings.parent().unwrap_or(Path::new(""));
-    let machines = settings.machines.iter().enumerate();
-    let machines: Vec<Machine> = machines
-        .map(|(i, entry)| {
-            let own = |error: input::Error| document.locate(error.under(format!("machines.{i}")));
-            Machine::open(entry, base).map_err(|error| match error.place() {
-                Some(_) => error,
-                None => own(error),
-            })
-        })
-        .collect::<Result<_, _>>()?;
-    let cases = chosen(arguments, cases(&settings))?;
+    let machines = Machine::all(&settings, &document, base)?;
+    let cases = chosen(cases(&settings), &arguments.only, arguments.cases.as_ref())?;
     if arguments.dry_run {
-        list(&cases, &machines);
+        print!("{}", listed(&cases, &machines));
         return Ok(());
     }
     let out = &arguments.out;
-    let ledger = Ledger::in_folder(out);
-    if ledger.exists() && !arguments.resume {
+    if Ledger::in_folder(out).exists() && !arguments.resume {
         return Err(Failure::input(format!(
             "{} is already there; --resume continues it, --out DIR writes elsewhere",
             out.join(CASES).display()
@@ -100,92 +83,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         out,
         keep: arguments.keep,
     };
-    let done = ledger.read().map_err(failure)?;
-    let open = bench.open(&cases, &done).map_err(failure)?;
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
     let cancel = interrupt::flag()?;
-    let count = open.len();
-    for (i, case) in open.into_iter().enumerate() {
-        let outcome = bench.outcome(case, |asked, folder| {
-            let results = explain_gap::into_folder(asked, folder, &cancel);
+    let outcomes = bench.run(
+        &cases,
+        |asked, folder| {
+            let results = shown(asked, folder, &cancel);
             results.map_err(|failure| failure.message().to_owned())
-        });
-        if cancel.load(Ordering::Relaxed) {
-            let done = ledger.read().map_err(failure)?;
-            Matrix::new(&done).write(out).map_err(failure)?;
-            return Err(Failure::interrupted(format!(
-                "stopped: {i} of {count} cases are done; --resume continues from there"
-            )));
-        }
-        let outcome = outcome.map_err(failure)?;
-        ledger.add(&outcome).map_err(failure)?;
-        if !console::is_quiet() {
-            let (number, label) = (case.number, case.label());
-            eprintln!("{} of {count}: case {number}, {label}: {outcome}", i + 1);
-        }
-    }
-    let done = ledger.read().map_err(failure)?;
-    let matrix = Matrix::new(&done);
-    matrix.write(out).map_err(failure)?;
-    print!("{}", matrix.summary());
+        },
+        || cancel.load(Ordering::Relaxed),
+        |[done, count], case, outcome| {
+            if !console::is_quiet() {
+                let (number, label) = (case.number, case.label());
+                eprintln!("{done} of {count}: case {number}, {label}: {outcome}");
+            }
+        },
+    )?;
+    print!("{}", Matrix::new(&outcomes).summary());
     println!("{}", out.join(MATRIX[1]).display());
     hint(format_args!(
         "the page of each case is {}/cases/*/report.html",
         out.display()
     ));
     Ok(())
-}
-
-/// The failure of a bench.
-fn failure(error: bench::Error) -> Failure {
-    match error.is_of_input() {
-        true => Failure::input(error),
-        false => Failure::work(error),
-    }
-}
-
-/// The cases that are asked for.
-fn chosen(arguments: &Arguments, mut cases: Vec<Case>) -> Result<Vec<Case>, Failure> {
-    let others = || Outside::ALL.map(Outside::name).into_iter().chain([NOTHING]);
-    let names = || CATALOGUE.iter().map(|e| e.name).chain(others());
-    if let Some(unknown) = arguments
-        .only
-        .iter()
-        .find(|only| names().all(|n| n != *only))
-    {
-        let nearest = input::nearest(unknown, names());
-        let hint = nearest.map_or(".".into(), |near| format!("; did you mean {near}?"));
-        return Err(Failure::input(format!(
-            "--only {unknown}: there is no such effect{hint} They are {}.",
-            names().collect::<Vec<_>>().join(", ")
-        )));
-    }
-    let count = cases.len();
-    cases.retain(|case| {
-        let range = arguments.cases.as_ref();
-        let only = &arguments.only;
-        range.is_none_or(|range| range.contains(&case.number))
-            && (only.is_empty() || only.iter().any(|name| case.hides(name)))
-    });
-    match cases.is_empty() {
-        true => Err(Failure::input(format!(
-            "none of the {count} cases is asked for by --cases and --only"
-        ))),
-        false => Ok(cases),
-    }
-}
-
-fn list(cases: &[Case], machines: &[Machine]) {
-    for case in cases {
-        let machine = &machines[case.machine];
-        println!(
-            "{:4}  {} ({} runs), noise {:.1} %, size {}: {}",
-            case.number,
-            machine.name,
-            machine.runs.len(),
-            100.0 * case.noise,
-            case.size,
-            case.label()
-        );
-    }
 }

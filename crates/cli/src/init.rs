@@ -1,16 +1,32 @@
 //! `crosshead init`: a file to fill in.
 
 use crate::Failure;
-use clap::{Args, ValueEnum};
+use crate::choice::kind_of;
+use crate::output::refuse_existing;
+use ::calibrate::check::{BUNDLE, CALIBRATION};
+use ::sweep::calibration::{SWEEP_FILE, machine_of};
+use ::sweep::sweep_file;
+use clap::Args;
 use input::bundle::Bundle;
+use input::file_kind::{FileKind, MACHINE_FILE};
 use input::template::{self, Asked};
 use input::{MachineFile, machine_file};
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use sweep::calibration::machine_of;
 
-/// Arguments of `crosshead init`.
+/// What the file in this folder begins with.
+type Template = fn(&Arguments, &Path) -> Result<String, Failure>;
+
+const TEMPLATES: [(FileKind, Template); 4] = [
+    (MACHINE_FILE, machine),
+    (SWEEP_FILE, sweep),
+    (BUNDLE, |_, folder| {
+        Ok(template::bundle(&template::recordings_in(folder))?)
+    }),
+    (CALIBRATION, |arguments, _| {
+        Ok(template::calibration(&arguments.bundle)?)
+    }),
+];
+
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -27,7 +43,8 @@ mistakes in it.
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong.")]
 pub struct Arguments {
     /// Which file
-    file: File,
+    #[arg(value_parser = kind_of(TEMPLATES))]
+    file: (FileKind, Template),
     /// The file to write [default: machine.yaml, sweep.yaml, recordings.yaml or calibration.yaml]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -54,53 +71,18 @@ pub struct Arguments {
     overwrite: bool,
 }
 
-/// A file that people write.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum File {
-    /// machine.yaml: a compressor
-    Machine,
-    /// sweep.yaml: the cases of a dataset
-    Sweep,
-    /// recordings.yaml: a bundle of measured runs
-    Bundle,
-    /// calibration.yaml: what is fitted to a bundle
-    Calibration,
-}
-
-impl File {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Machine => "machine.yaml",
-            Self::Sweep => "sweep.yaml",
-            Self::Bundle => input::bundle::FILE,
-            Self::Calibration => "calibration.yaml",
-        }
-    }
-}
-
-/// Writes the file.
-///
-/// # Errors
-/// A file that is there already, or that cannot be read or written; an option of another file.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     refuse_others(arguments)?;
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| arguments.file.name().into());
-    let folder = out.parent().unwrap_or(Path::new(""));
-    let text = match arguments.file {
-        File::Machine => machine(arguments)?,
-        File::Sweep => sweep(arguments, folder)?,
-        File::Bundle => template::bundle(&recordings(folder))?,
-        File::Calibration => template::calibration(&arguments.bundle)?,
-    };
-    write(&out, &text, arguments.overwrite)?;
+    let (kind, template) = arguments.file;
+    let out = arguments.out.clone().unwrap_or_else(|| kind.file.into());
+    let text = template(arguments, out.parent().unwrap_or(Path::new("")))?;
+    refuse_existing([&out], arguments.overwrite, "--out FILE")?;
+    std::fs::write(&out, text).map_err(|error| Failure::unwritten(&out, error))?;
     println!("{}", out.display());
     Ok(())
 }
 
-fn machine(arguments: &Arguments) -> Result<String, Failure> {
+fn machine(arguments: &Arguments, _: &Path) -> Result<String, Failure> {
     let like = match (&arguments.from_bundle, &arguments.like) {
         (Some(folder), _) => {
             let tree = machine_of(&Bundle::read(folder)?)?;
@@ -117,87 +99,30 @@ fn machine(arguments: &Arguments) -> Result<String, Failure> {
 
 fn sweep(arguments: &Arguments, folder: &Path) -> Result<String, Failure> {
     let named = arguments.machine.clone();
-    let path = named.unwrap_or_else(|| folder.join(File::Machine.name()));
-    if !path.exists() {
-        return Err(Failure::input(format!(
+    let path = named.unwrap_or_else(|| folder.join(MACHINE_FILE.file));
+    match path.exists() {
+        true => Ok(sweep_file::template(folder, &path)?),
+        false => Err(Failure::input(format!(
             "{}: there is no such file: `crosshead init machine` writes one, --machine names another",
             path.display()
-        )));
+        ))),
     }
-    let machine = machine_file::read(&path)?;
-    let resolved = machine.resolve()?;
-    Ok(sweep::sweep_file::template(
-        &from(folder, &path),
-        &resolved,
-        machine.to_tree(),
-    )?)
-}
-
-/// `path` as a file in `folder` has it.
-fn from(folder: &Path, path: &Path) -> String {
-    let inside = path.strip_prefix(folder).map(Path::to_owned);
-    let absolute = || path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    inside.unwrap_or_else(|_| absolute()).display().to_string()
-}
-
-/// The recordings in `folder`, in the order of their names.
-fn recordings(folder: &Path) -> Vec<String> {
-    let folder = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
-    let is_recording = |name: &String| {
-        let ending = Path::new(name)
-            .extension()
-            .and_then(|ending| ending.to_str());
-        ending.is_some_and(|ending| ["csv", "parquet"].contains(&ending))
-    };
-    let mut names: Vec<String> = names.filter(is_recording).collect();
-    names.sort();
-    names
 }
 
 /// Options that the file does not have.
 fn refuse_others(arguments: &Arguments) -> Result<(), Failure> {
+    let is = |kind: FileKind| arguments.file.0.name == kind.name;
     let of_machine = arguments.throws.is_some()
         || arguments.double_acting
         || arguments.like.is_some()
         || arguments.from_bundle.is_some();
-    let wrong = match arguments.file {
-        File::Machine => arguments
-            .machine
-            .as_ref()
-            .map(|_| "--machine is an option of init sweep"),
-        _ if of_machine => {
-            Some("--throws, --double-acting, --like and --from-bundle are options of init machine")
-        }
-        File::Sweep => None,
-        File::Bundle | File::Calibration => arguments
-            .machine
-            .as_ref()
-            .map(|_| "--machine is an option of init sweep"),
-    };
-    wrong.map_or(Ok(()), |words| Err(Failure::input(words)))
-}
-
-fn write(path: &Path, text: &str, overwrite: bool) -> Result<(), Failure> {
-    let mut options = OpenOptions::new();
-    options.write(true);
-    match overwrite {
-        true => options.create(true).truncate(true),
-        false => options.create_new(true),
-    };
-    let written = options
-        .open(path)
-        .and_then(|mut file| file.write_all(text.as_bytes()));
-    written.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out FILE writes elsewhere",
-            path.display()
-        )),
-        _ => Failure::unwritten(path, error),
-    })
+    if of_machine && !is(MACHINE_FILE) {
+        return Err(Failure::input(
+            "--throws, --double-acting, --like and --from-bundle are options of init machine",
+        ));
+    }
+    match arguments.machine.is_some() && !is(SWEEP_FILE) {
+        true => Err(Failure::input("--machine is an option of init sweep")),
+        false => Ok(()),
+    }
 }

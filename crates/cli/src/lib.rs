@@ -8,35 +8,38 @@
 
 #[macro_use]
 mod output;
+#[macro_use]
+mod verbs;
 
-pub mod bundle;
+mod bundle;
 pub mod calibrate;
-pub mod check;
-pub mod compare;
-pub mod completions;
-pub mod console;
-pub mod domain_gap;
-pub mod estimate_wear;
+mod check;
+mod choice;
+mod compare;
+mod completions;
+mod console;
+mod domain_gap;
+mod estimate_wear;
 pub mod explain_gap;
-pub mod failure;
-pub mod features;
-pub mod gen_dataset;
-pub mod hidden_effects;
-pub mod init;
+mod failure;
+mod features;
+mod gen_dataset;
+mod hidden_effects;
+mod init;
 mod interrupt;
-pub mod man;
+mod man;
 pub mod program;
 mod progress;
 mod reading;
-pub mod replay;
+mod replay;
 pub mod report;
 mod result_format;
-pub mod schema;
+mod schema;
 #[cfg(feature = "serve")]
-pub mod serve;
-pub mod simulate;
-pub mod sweep;
+mod serve;
+mod simulate;
+mod sweep;
 pub mod try_case;
-pub mod verify;
+mod verify;
 
 pub use failure::{Failure, finish};

@@ -1,12 +1,12 @@
 //! `crosshead man`: the manual pages.
 
 use crate::Failure;
-use crate::output::{hint, write_file};
+use crate::output::{hint, make_folder};
 use clap::{Args, Command};
 use clap_mangen::Man;
+use recordings::WholeFile;
 use std::path::{Path, PathBuf};
 
-/// Arguments of `crosshead man`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -18,16 +18,12 @@ pub struct Arguments {
     out: PathBuf,
 }
 
-/// Writes the pages of the `commands`.
-///
-/// # Errors
-/// Files that cannot be written.
-pub fn run(
+pub(crate) fn run(
     arguments: &Arguments,
     commands: impl IntoIterator<Item = Command>,
 ) -> Result<(), Failure> {
     let out = &arguments.out;
-    std::fs::create_dir_all(out).map_err(|error| Failure::unwritten(out, error))?;
+    make_folder(out)?;
     let mut written = 0;
     for mut command in commands {
         command.build();
@@ -46,7 +42,7 @@ fn write(command: &Command, out: &Path) -> Result<usize, Failure> {
     let mut text = Vec::new();
     let rendered = page.title(name.to_uppercase()).render(&mut text);
     rendered.map_err(|error| Failure::unwritten(&path, error))?;
-    write_file(&path, &text)?;
+    WholeFile::write(&path, &text)?;
     let verbs = command.get_subcommands().filter(|verb| {
         // The verb `help` says what the pages say.
         !verb.is_hide_set() && verb.get_name() != "help"

@@ -9,6 +9,7 @@
 
 use crate::{Failure, console};
 use recordings::WholeFile;
+use serde::Serialize;
 use std::fmt::{Arguments, Write as _};
 use std::io::{self, Write};
 use std::path::Path;
@@ -24,39 +25,39 @@ const LABELS: [(&str, &str); 4] = [
     ("next:", "32"),
 ];
 
-/// Writes a file that appears whole or not at all.
+/// Writes results as JSON into a file that appears whole or not at all.
 ///
 /// # Errors
 /// Where it cannot be written.
-pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), Failure> {
-    let written = WholeFile::write(path, content);
-    written.map(drop).map_err(Failure::work)
+pub(crate) fn write_json(path: &Path, results: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(results)?;
+    Ok(WholeFile::write(path, text.as_bytes()).map(drop)?)
 }
 
-/// Refuses to write where a file of `paths` is already there.
+/// Refuses to write where a file of `paths` is already there, and says which `option` writes elsewhere.
 ///
 /// # Errors
 /// The first that is, unless it may be replaced.
 pub(crate) fn refuse_existing<P: AsRef<Path>>(
     paths: impl IntoIterator<Item = P>,
     overwrite: bool,
+    option: &str,
 ) -> Result<(), Failure> {
     let mut paths = paths.into_iter();
     match paths.find(|path| path.as_ref().exists() && !overwrite) {
         None => Ok(()),
         Some(path) => Err(Failure::input(format!(
-            "{} is already there; --overwrite replaces it, --out DIR writes elsewhere",
+            "{} is already there; --overwrite replaces it, {option} writes elsewhere",
             path.as_ref().display()
         ))),
     }
 }
 
-/// Makes the folder in which the file at `path` is to be, if it is not there.
+/// Makes a folder, if it is not there.
 ///
 /// # Errors
 /// Where it cannot be made.
-pub(crate) fn make_folder_of(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().unwrap_or(Path::new(""));
+pub(crate) fn make_folder(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::unwritten(folder, error))
 }
 
@@ -105,6 +106,13 @@ pub(crate) fn message(text: Arguments) {
             .and_then(|()| write(&mut err, format_args!("{}", &text[label.len()..]))),
         None => write(&mut err, format_args!("{text}")),
     };
+}
+
+/// Says what is wrong, a line each.
+pub(crate) fn warn(warnings: &[String]) {
+    for warning in warnings {
+        message(format_args!("warning: {warning}\n"));
+    }
 }
 
 /// Says what its user may do next, in a line that can be copied; nothing with `--quiet`.

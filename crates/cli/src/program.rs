@@ -8,7 +8,7 @@ use crate::{
     features, gen_dataset, hidden_effects, init,
 };
 use crate::{finish, man, replay, report, schema, simulate, sweep, try_case, verify};
-use clap::{Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Command, CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 
 /// Help is no wider than this, so that a line is read at once.
@@ -29,47 +29,47 @@ pub struct Crosshead {
     console: Console,
 }
 
-#[derive(Subcommand)]
-enum Verb {
+verbs! {
+    Verb:
     /// Write a commented file to fill in: a machine, a sweep, a bundle, a calibration
-    Init(init::Arguments),
+    Init(init),
     /// Find all mistakes in files that you have written
-    Check(check::Arguments),
+    Check(check),
     /// Simulate a sweep of cases and write a labelled dataset (as the program gen-dataset)
-    GenDataset(gen_dataset::Arguments),
+    GenDataset(gen_dataset),
     /// Make a dataset in steps, on many machines at once
-    Sweep(sweep::Arguments),
+    Sweep(sweep),
     /// Simulate one run of a machine: signals, p-V cards, rod loads, pictures
-    Simulate(simulate::Arguments),
+    Simulate(simulate),
     /// Compute the features of recordings, measured or simulated
-    Features(features::Arguments),
+    Features(features),
     /// Compare two recordings, or two datasets: features, waveforms, spectra
-    Compare(compare::Arguments),
+    Compare(compare),
     /// Find out whether a classifier can tell simulated windows from measured ones, and by which features
-    DomainGap(domain_gap::Arguments),
+    DomainGap(domain_gap),
     /// Check that the files of a finished dataset are those that were written
-    Verify(verify::Arguments),
+    Verify(verify),
     /// Make the HTML page of a dataset: what is in it, examples, spectra, comparisons
-    Report(report::Arguments),
+    Report(report),
     /// Show the pages of a folder in a browser, live while the folder grows
     #[cfg(feature = "serve")]
-    Serve(serve::Arguments),
+    Serve(serve),
     /// Fit a machine's parameters to recordings of it
-    Calibrate(calibrate::Arguments),
+    Calibrate(calibrate),
     /// Estimate which joints are worn, and how much, from recordings
-    EstimateWear(estimate_wear::Arguments),
+    EstimateWear(estimate_wear),
     /// Find which effect a model lacks that recordings show, and add it
-    ExplainGap(explain_gap::Arguments),
+    ExplainGap(explain_gap),
     /// Hide effects in recordings made here, and count which of them explain-gap finds
-    HiddenEffects(hidden_effects::Arguments),
+    HiddenEffects(hidden_effects),
     /// Simulate the runs of a bundle and report how far they differ from the recordings
-    Replay(replay::Arguments),
+    Replay(replay),
     /// Print the JSON Schema of a file, for editors and checks
-    Schema(schema::Arguments),
+    Schema(schema),
     /// Print a script that completes verbs and options in a shell
-    Completions(completions::Arguments),
+    Completions(completions, commands()),
     /// Write the manual pages
-    Man(man::Arguments),
+    Man(man, commands()),
 }
 
 /// Simulate a sweep of cases and write a labelled dataset
@@ -99,28 +99,7 @@ pub trait Program: CommandFactory + FromArgMatches {
 impl Program for Crosshead {
     fn run(&self) -> Result<(), Failure> {
         self.console.set()?;
-        match &self.verb {
-            Verb::Init(arguments) => init::run(arguments),
-            Verb::Check(arguments) => check::run(arguments),
-            Verb::GenDataset(arguments) => gen_dataset::run(arguments),
-            Verb::Sweep(arguments) => sweep::run(arguments),
-            Verb::Simulate(arguments) => simulate::run(arguments),
-            Verb::Features(arguments) => features::run(arguments),
-            Verb::Compare(arguments) => compare::run(arguments),
-            Verb::DomainGap(arguments) => domain_gap::run(arguments),
-            Verb::Verify(arguments) => verify::run(arguments),
-            Verb::Report(arguments) => report::run(arguments),
-            #[cfg(feature = "serve")]
-            Verb::Serve(arguments) => serve::run(arguments),
-            Verb::Calibrate(arguments) => calibrate::run(arguments),
-            Verb::EstimateWear(arguments) => estimate_wear::run(arguments),
-            Verb::ExplainGap(arguments) => explain_gap::run(arguments),
-            Verb::HiddenEffects(arguments) => hidden_effects::run(arguments),
-            Verb::Replay(arguments) => replay::run(arguments),
-            Verb::Schema(arguments) => schema::run(arguments),
-            Verb::Completions(arguments) => completions::run(arguments, commands()),
-            Verb::Man(arguments) => man::run(arguments, commands()),
-        }
+        self.verb.run()
     }
 }
 

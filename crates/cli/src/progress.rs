@@ -16,7 +16,8 @@ const PAUSE: Duration = Duration::from_secs(10);
 
 /// Progress of one piece of work. It ends where it is dropped.
 pub(crate) struct Progress {
-    bar: ProgressBar,
+    /// How far it has come.
+    pub(crate) bar: ProgressBar,
     lines: Option<Lines>,
 }
 
@@ -43,9 +44,16 @@ impl Progress {
         Self { bar, lines }
     }
 
-    /// Of work whose end is not known: the time alone.
-    pub(crate) fn of_time(what: &str) -> Self {
-        Self::new(what, None, &format!("{{spinner}} {what}  {{elapsed}}"))
+    /// Of windows, whose number is not known.
+    pub(crate) fn of_windows() -> Self {
+        let template = "{spinner} {pos} windows  {per_sec}  {elapsed}";
+        Self::new("windows", None, template)
+    }
+
+    /// Shows the time alone while the `work` called `what` is done.
+    pub(crate) fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
+        let _shown = Self::new(what, None, &format!("{{spinner}} {what}  {{elapsed}}"));
+        work()
     }
 
     /// Nothing.
@@ -54,27 +62,6 @@ impl Progress {
             bar: ProgressBar::hidden(),
             lines: None,
         }
-    }
-
-    /// So many of the things are done.
-    pub(crate) fn set(&self, done: u64) {
-        self.bar.set_position(done);
-    }
-
-    /// So many of the things are done before the work begins.
-    pub(crate) fn begin_at(&self, done: u64) {
-        self.bar.set_position(done);
-        self.bar.reset_eta();
-    }
-
-    /// So many more of the things are done.
-    pub(crate) fn add(&self, done: u64) {
-        self.bar.inc(done);
-    }
-
-    /// There are so many of the things.
-    pub(crate) fn set_total(&self, total: u64) {
-        self.bar.set_length(total);
     }
 
     /// What is to be said beside the count.
@@ -106,10 +93,7 @@ fn line(bar: &ProgressBar, what: &str) -> String {
 }
 
 /// Lines that are written now and then until this is dropped.
-struct Lines {
-    end: Option<Sender<()>>,
-    thread: Option<JoinHandle<()>>,
-}
+struct Lines(Option<(Sender<()>, JoinHandle<()>)>);
 
 impl Lines {
     fn start(pause: Duration, write: impl Fn() + Send + 'static) -> Self {
@@ -119,17 +103,14 @@ impl Lines {
                 write();
             }
         });
-        Self {
-            end: Some(end),
-            thread: Some(thread),
-        }
+        Self(Some((end, thread)))
     }
 }
 
 impl Drop for Lines {
     fn drop(&mut self) {
-        self.end = None;
-        if let Some(thread) = self.thread.take() {
+        if let Some((end, thread)) = self.0.take() {
+            drop(end);
             // A thread that could not write has said all that it will.
             let _ = thread.join();
         }

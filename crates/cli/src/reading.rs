@@ -63,20 +63,23 @@ impl Reading {
     /// # Errors
     /// An argument that is wrong, or a machine file that is.
     pub(crate) fn said(&self) -> Result<Said, Failure> {
-        let unit = parsed(&self.unit, unit)?;
-        let options = Options {
-            columns: self.column.clone(),
-            sample_rate_hz: parsed(&self.sample_rate, sample_rate)?,
-            skipped_lines: self.skip,
+        let speed = |text: &str| {
+            let speed = Quantity::<Speed, AboveZero>::named("--speed", text);
+            speed.map(|speed| speed * 30.0 / std::f64::consts::PI)
         };
+        let angle = |text: &str| Quantity::<Angle>::named("--top-dead-centre", text);
         Ok(Said {
-            options,
-            speed_rpm: parsed(&self.speed, speed_rpm)?,
-            unit,
+            unit: parsed(&self.unit, unit)?,
+            options: Options {
+                columns: self.column.clone(),
+                sample_rate_hz: parsed(&self.sample_rate, sample_rate)?,
+                skipped_lines: self.skip,
+            },
+            speed_rpm: parsed(&self.speed, speed)?,
             crank: CrankReference {
                 crank_angle: self.crank_angle.clone(),
                 tacho: self.tacho.clone(),
-                top_dead_centre: parsed(&self.top_dead_centre, top_dead_centre)?,
+                top_dead_centre: parsed(&self.top_dead_centre, angle)?,
             },
             machine: (self.machine.as_deref().map(KnownMachine::read)).transpose()?,
             allow_outside: self.outside.allow_outside,
@@ -96,56 +99,39 @@ impl Reading {
 /// An argument that may be left out.
 fn parsed<T>(
     text: &Option<String>,
-    parse: impl FnOnce(&str) -> Result<T, Failure>,
+    parse: impl FnOnce(&str) -> Result<T, String>,
 ) -> Result<Option<T>, Failure> {
-    text.as_deref().map(parse).transpose()
+    let value = text.as_deref().map(parse).transpose();
+    value.map_err(Failure::input)
 }
 
-fn window(text: &str) -> Result<WindowLength, Failure> {
+fn window(text: &str) -> Result<WindowLength, String> {
     WindowLength::parse(text).map_err(|found| {
-        Failure::input(format!(
-            "--window: found {found}, expected a duration, e.g. '2 s', or '10 revolutions'"
-        ))
+        format!("--window: found {found}, expected a duration, e.g. '2 s', or '10 revolutions'")
     })
 }
 
-fn unit(text: &str) -> Result<Unit, Failure> {
+fn unit(text: &str) -> Result<Unit, String> {
     Unit::parse(text).ok_or_else(|| {
         let text = text.trim();
-        Failure::input(format!(
+        format!(
             "--unit: found '{text}', expected a unit, e.g. 'm/s^2', or what 1 in the file is, e.g. \
              '100 m/s^2'"
-        ))
+        )
     })
 }
 
-/// `--top-dead-centre`, rad.
-fn top_dead_centre(text: &str) -> Result<f64, Failure> {
-    let angle = Quantity::<Angle>::parse(text).map_err(|found| {
-        let expected = Quantity::<Angle>::expected();
-        Failure::input(format!(
-            "--top-dead-centre: found {found}, expected {expected}"
-        ))
-    })?;
-    Ok(angle.si())
-}
-
-fn sample_rate(text: &str) -> Result<f64, Failure> {
-    let plain = text.trim().parse().ok();
-    let rate = match plain {
-        Some(rate) => Quantity::<Frequency, AboveZero>::new(rate).ok_or(format!("'{text}'")),
-        None => Quantity::parse(text),
+/// A plain number is in Hz.
+fn sample_rate(text: &str) -> Result<f64, String> {
+    type Rate = Quantity<Frequency, AboveZero>;
+    let refused = || {
+        format!(
+            "--sample-rate: found '{text}', expected {}",
+            Rate::expected()
+        )
     };
-    rate.map(|rate| rate.si()).map_err(|found| {
-        let expected = Quantity::<Frequency, AboveZero>::expected();
-        Failure::input(format!("--sample-rate: found {found}, expected {expected}"))
-    })
-}
-
-fn speed_rpm(text: &str) -> Result<f64, Failure> {
-    let speed = Quantity::<Speed, AboveZero>::parse(text).map_err(|found| {
-        let expected = Quantity::<Speed, AboveZero>::expected();
-        Failure::input(format!("--speed: found {found}, expected {expected}"))
-    })?;
-    Ok(speed.si() * 30.0 / std::f64::consts::PI)
+    match text.trim().parse() {
+        Ok(rate) => Rate::new(rate).map(|rate| rate.si()).ok_or_else(refused),
+        Err(_) => Rate::named("--sample-rate", text),
+    }
 }

@@ -2,14 +2,14 @@
 
 use crate::Failure;
 use crate::bundle::AllowOutside;
-use crate::output::{hint, refuse_existing, write_file};
+use crate::output::{hint, refuse_existing, write_json};
 use crate::progress::Progress;
 use ::calibrate::bundle_replay::{BundleReplay, Possible};
 use ::calibrate::{Error, bundle};
 use clap::Args;
+use input::bundle::Bundle;
 use std::path::PathBuf;
 
-/// Arguments of `crosshead replay`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 BUNDLE is a folder with recordings.yaml. Each run is simulated at the speed, load and clearances
@@ -39,27 +39,30 @@ pub struct Arguments {
     overwrite: bool,
 }
 
-/// Simulates the runs, writes them, and prints how far they are from the recordings.
-///
-/// # Errors
-/// An invalid bundle or machine, runs that cannot be used or simulated, or files that cannot be
-/// written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let bundle = arguments.outside.read(&arguments.bundle)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut bundle = Bundle::read(&arguments.bundle)?;
+    bundle.allow_outside = arguments.outside.allow_outside;
     let machine = arguments.machine.as_deref();
     let tree = bundle::machine(&bundle, machine).map_err(Failure::input)?;
     let (left_out, out) = (&arguments.leave_out, &arguments.out);
     let replay = BundleReplay::prepare(&bundle, tree, |_| Vec::new(), left_out, out);
-    let replay = replay.map_err(refused)?;
+    let replay = replay.map_err(|error| match error {
+        Error::Simulation { .. } => Failure::work(error),
+        error => Failure::input(error),
+    })?;
     let path = out.join("replay.json");
-    refuse_existing(replay.files().iter().chain([&path]), arguments.overwrite)?;
+    let files = replay.files();
+    refuse_existing(
+        files.iter().chain([&path]),
+        arguments.overwrite,
+        "--out DIR",
+    )?;
     let possible = Possible::read(machine).map_err(Failure::input)?;
-    let progress = Progress::of_time("simulating the runs");
-    let replays = replay.write().map_err(Failure::work)?;
-    let results = replay.results(&replays, &possible).map_err(Failure::work)?;
-    drop(progress);
-    let text = serde_json::to_string_pretty(&results).map_err(Failure::work)?;
-    write_file(&path, text.as_bytes())?;
+    let results = Progress::during("simulating the runs", || {
+        replay.results(&replay.write()?, &possible)
+    });
+    let results = results.map_err(Failure::work)?;
+    write_json(&path, &results)?;
     print!("{results}");
     println!("{}", path.display());
     let of_machine = machine.map_or(String::new(), |m| format!(" --machine {}", m.display()));
@@ -68,12 +71,4 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         arguments.bundle.display()
     ));
     Ok(())
-}
-
-/// Why a replay cannot begin: its input is wrong, unless the simulation fails.
-fn refused(error: Error) -> Failure {
-    match error {
-        Error::Simulation { .. } => Failure::work(error),
-        error => Failure::input(error),
-    }
 }

@@ -2,13 +2,12 @@
 
 use crate::output::hint;
 use crate::{Failure, interrupt};
-use ::serve::{Error, Server};
+use ::serve::Server;
 use clap::Args;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Arguments of `crosshead serve`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -31,28 +30,17 @@ pub struct Arguments {
     port: u16,
 }
 
-/// Prints the address, and answers there until a signal ends it.
-///
-/// # Errors
-/// No folder, a port in use, and the signal that ends it.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let stop = interrupt::flag()?;
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, arguments.port));
-    let server = Server::bind(&arguments.dir, address).map_err(failed)?;
+    let server = Server::bind(&arguments.dir, address)?;
     println!("http://{}/", server.address());
     hint(format_args!(
         "open the address in a browser; Ctrl-C ends the server"
     ));
-    server.run(Arc::clone(&stop)).map_err(failed)?;
+    server.run(Arc::clone(&stop))?;
     let dir = arguments.dir.display();
     Err(Failure::interrupted(format!(
         "interrupted: {dir} is no longer served"
     )))
-}
-
-fn failed(error: Error) -> Failure {
-    match error.is_input() {
-        true => Failure::input(error),
-        false => Failure::work(error),
-    }
 }

@@ -8,7 +8,6 @@ use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::verify;
 
-/// Arguments of `verify`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -30,37 +29,29 @@ pub struct Arguments {
     format: ResultFormat,
 }
 
-/// Compares every file.
-///
-/// # Errors
-/// Files that are damaged, missing or too many, or no dataset.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let dataset = arguments.dataset.display();
     let template = "{bar:40} {bytes}/{total_bytes}  {eta} left";
     let progress = Progress::new("bytes", None, template);
     let found = verify(&arguments.dataset, &mut |all, done| {
-        progress.set_total(all);
-        progress.set(done);
+        progress.bar.set_length(all);
+        progress.bar.set_position(done);
     });
     drop(progress);
     let found = found?;
     if !found.has_sums {
         eprintln!("warning: {dataset} has no SHA256SUMS: nothing vouches for manifest.json itself");
     }
-    let megabytes = found.bytes as f64 / 1e6;
-    arguments
-        .format
-        .print(&found, |found| match found.faults[..] {
-            [] => println!(
-                "{dataset}: {} files, {megabytes:.1} MB, all as they were written",
-                found.files
-            ),
-            ref faults => faults.iter().for_each(|fault| println!("{fault}")),
-        })?;
-    if !found.faults.is_empty() {
-        let faults = found.faults.len();
-        return Err(Failure::work(format!("{dataset}: {faults} faults")));
+    let (files, megabytes) = (found.files, found.bytes as f64 / 1e6);
+    let faults = found.faults.iter().map(|fault| format!("{fault}\n"));
+    let summary = match found.faults.len() {
+        0 => format!("{dataset}: {files} files, {megabytes:.1} MB, all as they were written\n"),
+        _ => faults.collect(),
+    };
+    arguments.format.print(&found, summary)?;
+    match found.faults.len() {
+        0 => hint(format_args!("crosshead report {dataset}")),
+        faults => return Err(Failure::work(format!("{dataset}: {faults} faults"))),
     }
-    hint(format_args!("crosshead report {dataset}"));
     Ok(())
 }

@@ -30,7 +30,7 @@
 //! };
 //! let record = simulate::simulate(&machine.machine, &machine.sensors, &settings, false)?;
 //! let mut noise = stream(1, 0, Purpose::Noise);
-//! let throws: Vec<&str> = machine.machine.throws.iter().map(|t| t.name.as_str()).collect();
+//! let throws = machine.machine.throw_names();
 //! let channels = simulate::measure(&record, &machine.sensors, &throws, &mut noise);
 //! assert_eq!(channels.len(), machine.sensors.len());
 //!

@@ -12,6 +12,7 @@
 //! The same keys stand in a sweep's section `calibrate`.
 
 use crate::amount::Amount;
+use crate::bundle::Bundle;
 use crate::choice::{Count, Or};
 use crate::error::Error;
 use crate::quantity::{AboveZero, FromZero, Number};
@@ -133,6 +134,49 @@ pub enum Relation {
 fn name_alone(schema: &mut Schema) {
     let section = schema.clone();
     *schema = json_schema!({"anyOf": [{"const": "genetic"}, section]});
+}
+
+/// Settings, and where they are from.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// The settings.
+    pub calibration: Calibration,
+    /// The folder from which their paths start.
+    pub base: PathBuf,
+    document: Option<Document>,
+}
+
+impl Given {
+    /// Those of one settings file, or the default ones of bundles.
+    ///
+    /// # Errors
+    /// An invalid settings file, or a settings file beside other inputs.
+    pub fn read(inputs: &[PathBuf]) -> Result<Self, Error> {
+        let is_bundle = |path: &PathBuf| path.is_dir() || Bundle::is_at(path);
+        Ok(match inputs {
+            [file] if !is_bundle(file) => {
+                let (calibration, document) = Calibration::read(file)?;
+                Self {
+                    calibration,
+                    base: file.parent().unwrap_or(Path::new("")).to_owned(),
+                    document: Some(document),
+                }
+            }
+            bundles => Self {
+                calibration: Calibration::with_defaults(bundles.to_vec()),
+                base: PathBuf::new(),
+                document: None,
+            },
+        })
+    }
+
+    /// `error` with its line in the settings file.
+    pub fn locate(&self, error: Error) -> Error {
+        match &self.document {
+            Some(document) => document.locate(error),
+            None => error,
+        }
+    }
 }
 
 impl Calibration {

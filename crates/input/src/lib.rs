@@ -19,6 +19,7 @@ pub mod calibration;
 pub mod choice;
 mod dimension;
 pub mod error;
+pub mod file_kind;
 mod form;
 mod kind;
 pub mod machine_file;

@@ -92,6 +92,18 @@ impl<K: Kind, B: Bound> Quantity<K, B> {
         })
     }
 
+    /// The value, SI, of `text`, which something called `name` says.
+    ///
+    /// # Errors
+    /// The name, what was found and what was expected.
+    pub fn named(name: &str, text: &str) -> Result<f64, String> {
+        let quantity = Self::parse(text).map_err(|found| {
+            let expected = Self::expected();
+            format!("{name}: found {found}, expected {expected}")
+        })?;
+        Ok(quantity.si())
+    }
+
     /// The value in SI units.
     pub fn si(&self) -> f64 {
         self.si

@@ -112,6 +112,12 @@ parameters! {
 }
 
 impl<S> Machine<S> {
+    /// The names of the throws; one empty name in a machine of one.
+    pub fn throw_names(&self) -> Vec<&str> {
+        let throws = self.throws.iter();
+        throws.map(|throw| throw.name.as_str()).collect()
+    }
+
     /// Whether this is the model of MODEL.md without any addition that costs time where it is not there:
     /// no effects, ideal guides, compliant contact in every joint with clearance. Most machines are.
     pub(crate) fn is_plain(&self) -> bool {

@@ -2,11 +2,9 @@
 
 use crate::interruptible::interruptible;
 use crate::settings::settings;
-use cli::Failure;
-use cli::report::{self, PAGE};
-use gap::{Asked, Error, Stage};
+use cli::explain_gap::into_folder;
+use gap::Asked;
 use pyo3::prelude::*;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Explains the gap into the folder `out`: `calibration` has the keys of a calibration file, as JSON, and names the machine
@@ -32,22 +30,7 @@ pub fn explain_gap(
             locate: &|error| error,
         };
         shared.begin("explaining the gap", None, 0);
-        let report = |stage: &Stage| {
-            let misfit = match stage.misfit.is_finite() {
-                true => format!(", misfit {:.2}", stage.misfit),
-                false => String::new(),
-            };
-            shared.say(format!("{}{misfit}", stage.words));
-        };
-        let watch = || match shared.is_stopped() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
-        gap::into_folder(&asked, &out, &report, &watch).map_err(|error| match error {
-            Error::Input(error) => Failure::input(error),
-            Error::Stopped => Failure::interrupted(Error::Stopped),
-            error => Failure::work(error),
-        })?;
-        report::write(&out, &out.join(PAGE)).map(drop)
+        let say = |text: &str| shared.say(text.to_owned());
+        into_folder(&asked, &out, &say, &|| shared.is_stopped()).map(drop)
     })
 }

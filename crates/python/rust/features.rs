@@ -42,35 +42,28 @@ pub struct Asked {
 
 impl Asked {
     fn said(&self) -> Result<Said, Failure> {
-        let rate = |text: &str| Quantity::<Frequency, AboveZero>::parse(text).map(|q| q.si());
-        let rate_like = Quantity::<Frequency, AboveZero>::expected;
+        let rate = |text: &str| Quantity::<Frequency, AboveZero>::named("sample_rate", text);
         let speed = |text: &str| {
-            let speed = Quantity::<Speed, AboveZero>::parse(text);
-            speed.map(|speed| speed.si().to_degrees() / 6.0)
+            let speed = Quantity::<Speed, AboveZero>::named("speed", text);
+            speed.map(|speed| speed.to_degrees() / 6.0)
         };
-        let angle = |text: &str| Quantity::<Angle>::parse(text).map(|angle| angle.si());
-        let unit = |text: &str| Unit::parse(text).ok_or_else(|| format!("'{text}'"));
-        let unit_like = || "a unit, e.g. 'm/s^2'".to_owned();
-        let options = Options {
-            columns: self.columns.clone(),
-            sample_rate_hz: parsed("sample_rate", &self.sample_rate, rate, rate_like)?,
-            skipped_lines: 0,
+        let angle = |text: &str| Quantity::<Angle>::named("top_dead_centre", text);
+        let unit = |text: &str| {
+            let found = || format!("unit: found '{text}', expected a unit, e.g. 'm/s^2'");
+            Unit::parse(text).ok_or_else(found)
         };
-        let speed_like = Quantity::<Speed, AboveZero>::expected;
-        let angle_like = Quantity::<Angle>::expected;
         Ok(Said {
-            options,
-            speed_rpm: parsed("speed", &self.speed, speed, speed_like)?,
-            unit: parsed("unit", &self.unit, unit, unit_like)?,
+            options: Options {
+                columns: self.columns.clone(),
+                sample_rate_hz: parsed(&self.sample_rate, rate)?,
+                skipped_lines: 0,
+            },
+            speed_rpm: parsed(&self.speed, speed)?,
+            unit: parsed(&self.unit, unit)?,
             crank: CrankReference {
                 crank_angle: self.crank_angle.clone(),
                 tacho: self.tacho.clone(),
-                top_dead_centre: parsed(
-                    "top_dead_centre",
-                    &self.top_dead_centre,
-                    angle,
-                    angle_like,
-                )?,
+                top_dead_centre: parsed(&self.top_dead_centre, angle)?,
             },
             machine: (self.machine.as_deref().map(KnownMachine::read)).transpose()?,
             allow_outside: self.allow_outside,
@@ -79,24 +72,21 @@ impl Asked {
     }
 
     fn length(&self) -> Result<WindowLength, Failure> {
-        let like = || "a duration, e.g. '2 s', or '10 revolutions'".to_owned();
-        let length = parsed("window", &self.window, WindowLength::parse, like)?;
-        Ok(length.unwrap_or(WindowLength::Default))
+        let length = |text: &str| {
+            let like = "expected a duration, e.g. '2 s', or '10 revolutions'";
+            WindowLength::parse(text).map_err(|found| format!("window: found {found}, {like}"))
+        };
+        Ok(parsed(&self.window, length)?.unwrap_or(WindowLength::Default))
     }
 }
 
 /// An argument that may be left out.
 fn parsed<T>(
-    key: &str,
     text: &Option<String>,
     parse: impl Fn(&str) -> Result<T, String>,
-    expected: impl Fn() -> String,
 ) -> Result<Option<T>, Failure> {
     let value = text.as_deref().map(parse).transpose();
-    value.map_err(|found| {
-        let expected = expected();
-        Failure::input(format!("{key}: found {found}, expected {expected}"))
-    })
+    value.map_err(Failure::input)
 }
 
 /// The features of the recordings at `paths`, a row for each window, the recording that each row is of, and what looks

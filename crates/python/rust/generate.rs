@@ -52,7 +52,16 @@ pub fn generate(
                 check_calibration(&nominal)?;
                 (Claim::new(&out, existing)?, nominal)
             }
-            true => calibrated(&sweep, &out, existing, shared)?,
+            true => sweep.claim(nominal, &out, existing, |prepared, folder| {
+                let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
+                if !done.reused {
+                    report::write(folder, &folder.join(PAGE))?;
+                }
+                match done.results.complete {
+                    true => Ok(()),
+                    false => Err(Failure::interrupted("stopped during the calibration")),
+                }
+            })?,
         };
         let plan = asked.with_channels(plan)?;
         let mut shown = Shown {
@@ -150,26 +159,6 @@ fn named<T: DeserializeOwned>(key: &str, name: &str) -> PyResult<T> {
 /// Threads that the processor has.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, Into::into)
-}
-
-/// Calibrates the machine into the dataset's folder, as the sweep asks.
-fn calibrated(
-    sweep: &Sweep,
-    out: &Path,
-    existing: Existing,
-    shared: &Shared,
-) -> Result<(Claim, Plan), Failure> {
-    let prepared = sweep.prepared(out).map_err(Failure::input)?;
-    let mut claim = Claim::new(out, existing)?;
-    let folder = claim.calibration(prepared.is_done())?;
-    let done = prepared.finish(&mut Watch(shared)).map_err(Failure::work)?;
-    if !done.reused {
-        report::write(&folder, &folder.join(PAGE))?;
-    }
-    if !done.results.complete {
-        return Err(Failure::interrupted("stopped during the calibration"));
-    }
-    Ok((claim, sweep.kept(&folder)?))
 }
 
 /// Cases that are done, and what is wrong.

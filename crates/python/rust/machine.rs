@@ -88,7 +88,7 @@ impl Machine {
     /// Names of the recorded channels.
     #[getter]
     fn channels(&self) -> Vec<String> {
-        let throws = throws(&self.resolved);
+        let throws = self.resolved.machine.throw_names();
         let sensors = self.resolved.sensors.iter();
         sensors
             .map(|sensor| sensor.measured.column(&throws))
@@ -116,10 +116,4 @@ impl Machine {
             .map(drop)
             .map_err(|error| raised(Failure::work(error)))
     }
-}
-
-/// Names of the throws; empty in a machine of one.
-pub fn throws(machine: &Resolved) -> Vec<&str> {
-    let throws = machine.machine.throws.iter();
-    throws.map(|throw| throw.name.as_str()).collect()
 }

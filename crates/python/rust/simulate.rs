@@ -3,7 +3,7 @@
 use crate::column::Column;
 use crate::failure::{failed, raised, wrong};
 use crate::interruptible::{Shared, interruptible};
-use crate::machine::{Machine, throws};
+use crate::machine::Machine;
 use crate::table::Table;
 use ::simulate::{Record, Settings, Transient};
 use arrow_array::cast::AsArray;
@@ -96,11 +96,7 @@ impl Run {
 
 /// A sample rate with its unit, Hz.
 fn rate(text: &str) -> PyResult<f64> {
-    let rate = Quantity::<Frequency, AboveZero>::parse(text).map_err(|found| {
-        let expected = Quantity::<Frequency, AboveZero>::expected();
-        wrong(format!("sample_rate: found {found}, expected {expected}"))
-    })?;
-    Ok(rate.si())
+    Quantity::<Frequency, AboveZero>::named("sample_rate", text).map_err(wrong)
 }
 
 fn run(
@@ -125,7 +121,12 @@ fn run(
                 false => Failure::work(format!("{}: {error}", machine.name)),
             })?;
     let mut noise = stream(seed, 0, Purpose::Noise);
-    let channels = ::simulate::measure(&record, &machine.sensors, &throws(&machine), &mut noise);
+    let channels = ::simulate::measure(
+        &record,
+        &machine.sensors,
+        &machine.machine.throw_names(),
+        &mut noise,
+    );
     let seconds = started.elapsed().as_secs_f64();
     Ok(Run {
         seconds,
@@ -170,7 +171,7 @@ impl Run {
     /// The motion itself, as no sensor sees it: pin motion, pressures, journal offsets, contact forces.
     #[getter]
     fn motion(&self) -> PyResult<Table> {
-        let throws = throws(&self.machine);
+        let throws = self.machine.machine.throw_names();
         let table = run_table(&self.record, &[], self.record.trace.as_ref(), &throws);
         let batch = table.and_then(|table| record_batch(&table));
         batch.map(Table::of_batch).map_err(failed)
@@ -216,10 +217,8 @@ impl Run {
     /// Names of the throws; one empty name in a machine of one.
     #[getter]
     fn throws(&self) -> Vec<String> {
-        throws(&self.machine)
-            .into_iter()
-            .map(str::to_owned)
-            .collect()
+        let throws = self.machine.machine.throw_names();
+        throws.into_iter().map(str::to_owned).collect()
     }
 
     /// Radial clearance of each joint that has one, by its name and throw, m.
@@ -232,7 +231,7 @@ impl Run {
                 .iter()
                 .map(|joint| ("main".to_owned(), joint.clearance));
             clearances.extend(main);
-            for (throw, name) in trace.throws.iter().zip(throws(&self.machine)) {
+            for (throw, name) in trace.throws.iter().zip(self.machine.machine.throw_names()) {
                 for (joint, of) in [("big_end", &throw.big_end), ("small_end", &throw.small_end)] {
                     let place = match name {
                         "" => joint.to_owned(),

@@ -76,9 +76,8 @@ impl CaseView {
         }
         let record = simulate::simulate_watched(machine, sensors, &case.settings, watch);
         let record = record.map_err(|error| failed(error.to_string()))?;
-        let throws: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
         Ok(Self {
-            channels: measure(&record, sensors, &throws, &mut case.noise()),
+            channels: measure(&record, sensors, &machine.throw_names(), &mut case.noise()),
             throws: plan.throws().to_vec(),
             labels: labels(plan, &case),
             case,

@@ -6,13 +6,13 @@ use crate::dataset_page::DatasetPage;
 use crate::features_page::FeaturesPage;
 use crate::gap_page::GapPage;
 use crate::wear_page::WearPage;
-use crate::{Error, Rendered};
+use crate::{Error, Rendered, write_page, write_pages};
 use serde::Serialize;
 use std::path::Path;
 use sweep::reader::Dataset;
 
 /// The page of every folder that has one.
-const REPORT: &str = "report.html";
+pub const REPORT: &str = "report.html";
 /// The further pages of a dataset.
 const CHAOS: &str = "chaos.html";
 const FEATURES: &str = "features.html";
@@ -108,4 +108,41 @@ impl FolderKind {
         };
         Ok(Some(rendered))
     }
+
+    /// Writes the page of a result of this kind in `folder` to the file `out`.
+    ///
+    /// # Errors
+    /// A folder that holds no such result, or a page that cannot be made or written.
+    pub fn write(self, folder: &Path, out: &Path) -> Result<(), Error> {
+        let rendered = self.render(folder, REPORT)?;
+        rendered.map_or(Ok(()), |page| write_page(out, &page.html))
+    }
+}
+
+/// Writes the page of whatever `folder` holds to the file `out`; gives that of a dataset back, beside which its further
+/// pages stand.
+///
+/// # Errors
+/// A folder that holds nothing with a page, or a page that cannot be made or written.
+pub fn write(folder: &Path, out: &Path) -> Result<Option<DatasetPage>, Error> {
+    match FolderKind::of(folder) {
+        Some(kind) if !matches!(kind, FolderKind::Dataset | FolderKind::UnderWay) => {
+            kind.write(folder, out).map(|()| None)
+        }
+        _ => write_dataset(folder, out).map(Some),
+    }
+}
+
+/// Writes the pages of the dataset in `folder`, its own to the file `out` and last: where it is, the others are.
+fn write_dataset(folder: &Path, out: &Path) -> Result<DatasetPage, Error> {
+    let dataset = Dataset::read(folder)?;
+    let page = DatasetPage::from_dataset(&dataset)?;
+    let chaos = ChaosPage::from_dataset(&dataset)?.render()?;
+    let features = FeaturesPage::from_dataset(&dataset)?.render()?;
+    write_pages(&[
+        (out.with_file_name(CHAOS), chaos),
+        (out.with_file_name(FEATURES), features),
+        (out.to_owned(), page.render()?),
+    ])?;
+    Ok(page)
 }

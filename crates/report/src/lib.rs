@@ -4,7 +4,8 @@
 //! - [`case_picture`]: the picture of one simulated case;
 //! - [`case_table`]: the cases of a dataset, for the script of its page;
 //! - [`case_view`]: one case simulated again, for a page;
-//! - [`run_figures`]: p-V cards, rod loads and waveforms of one run;
+//! - [`run_figures`], [`run_folder`]: p-V cards, rod loads and waveforms of one run, and all its files;
+//! - [`summary`]: results in a few lines of plain text;
 //! - [`dataset_page`]: the HTML page of a dataset;
 //! - [`chaos_page`]: the HTML page of what a sweep says about chaos;
 //! - [`comparison_page`]: the HTML page of two recordings or datasets side by side;
@@ -49,7 +50,9 @@ pub mod progress_page;
 mod refreshed;
 mod revolutions;
 pub mod run_figures;
+pub mod run_folder;
 mod statistics;
+pub mod summary;
 pub mod text;
 pub mod wear_page;
 

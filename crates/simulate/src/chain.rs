@@ -156,7 +156,7 @@ impl Sampling {
         let filters = filters(sensor, self.inner_rate);
         let both = filters.and_then(|filters| Ok((filters, high_pass?)));
         let (filters, high_pass) = both.map_err(|source| {
-            let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
+            let names = machine.throw_names();
             Error::Sensor {
                 column: sensor.measured.column(&names),
                 source,

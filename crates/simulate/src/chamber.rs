@@ -31,7 +31,7 @@ pub struct Chamber {
 impl Chamber {
     /// All chambers of a machine: throw by throw, the head end first.
     pub fn of_machine(machine: &Machine) -> Vec<Self> {
-        let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
+        let names = machine.throw_names();
         let throws = machine.throws.iter().enumerate();
         let ends = throws.flat_map(|(i, throw)| {
             let crank = throw.cylinder.crank_end.as_ref().map(|_| ChamberEnd::Crank);

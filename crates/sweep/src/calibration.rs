@@ -11,14 +11,26 @@ use std::path::{Path, PathBuf};
 use calibrate::{Existing, Prepared, Settings};
 use input::bundle::Bundle;
 use input::choice::Or;
+use input::file_kind::FileKind;
 use input::yaml::Document;
 use input::{Error, paths};
 use scalar::elementary::exp;
 use serde_json::{Map, Value, json};
 
 use crate::Plan;
-use crate::dataset::CALIBRATION;
+use crate::dataset::{self, CALIBRATION, Claim, check_calibration};
 use crate::sweep_file::{self, Amount, Calibrate, SweepFile, Uncertainty, Undetermined};
+
+/// sweep.yaml.
+pub const SWEEP_FILE: FileKind = FileKind {
+    name: "sweep",
+    file: "sweep.yaml",
+    content: "the cases of a dataset",
+    words: "a sweep",
+    schema: sweep_file::schema,
+    check: |folder, document| Sweep::new(document, folder)?.nominal().map(drop),
+    recordings: |_| Vec::new(),
+};
 
 /// A sweep file that has been read, but not planned yet.
 #[derive(Clone, Debug)]
@@ -227,6 +239,41 @@ impl Sweep {
             locate: &|error: Error| self.locate(error),
         };
         calibrate::prepare(&settings, &root.join(CALIBRATION), Existing::Renew)
+    }
+
+    /// The plan with the calibration that the dataset's folder `root` holds; none where it holds none or one of something
+    /// else.
+    ///
+    /// # Errors
+    /// Settings or recordings that cannot be used, or a calibration that is damaged.
+    pub fn plan_if_kept(&self, root: &Path) -> Result<Option<Plan>, crate::Error> {
+        let is_done = self.prepared(root)?.is_done();
+        let plan = is_done.then(|| self.kept(&root.join(CALIBRATION)));
+        plan.transpose()
+    }
+
+    /// Locks the place `root` of the dataset. Where the sweep asks for a calibration, `finish` makes it in the folder that
+    /// it is given, and the plan has what was found; else the plan is `nominal`.
+    ///
+    /// # Errors
+    /// Settings or recordings that cannot be used (nothing was written then), a place that cannot be used, or those of
+    /// `finish`.
+    pub fn claim<E: From<crate::Error>>(
+        &self,
+        nominal: Plan,
+        root: &Path,
+        existing: dataset::Existing,
+        finish: impl FnOnce(Prepared, &Path) -> Result<(), E>,
+    ) -> Result<(Claim, Plan), E> {
+        if self.calibrate().is_none() {
+            check_calibration(&nominal)?;
+            return Ok((Claim::new(root, existing)?, nominal));
+        }
+        let prepared = self.prepared(root).map_err(crate::Error::from)?;
+        let mut claim = Claim::new(root, existing)?;
+        let folder = claim.calibration(prepared.is_done())?;
+        finish(prepared, &folder)?;
+        Ok((claim, self.kept(&folder)?))
     }
 
     /// The same sweep of the machine with this content.

@@ -13,6 +13,9 @@ pub enum Error {
     /// A mistake in a sweep or machine file.
     #[error(transparent)]
     Input(#[from] input::Error),
+    /// Settings, recordings or a machine with which a sweep cannot calibrate.
+    #[error(transparent)]
+    Calibrate(#[from] calibrate::Error),
     /// A sweep that is too large to be run.
     #[error(
         "the sweep has {cases} cases, and one dataset can have at most {most}: give fewer values \
@@ -254,6 +257,7 @@ impl Error {
         matches!(
             self,
             Error::Input(_)
+                | Error::Calibrate(_)
                 | Error::TooManyCases { .. }
                 | Error::Exists(_)
                 | Error::NotOurs(_)

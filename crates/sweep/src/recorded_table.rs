@@ -2,8 +2,9 @@
 
 use crate::in_order::in_order;
 use crate::reader::{Like, Unlike};
-use features::recorded::{Input, Said, Table as Columns, WindowLength, row};
-use recordings::{Kind, Table};
+use features::recorded::{Input, Row, Said, Table as Columns, WindowLength, row};
+use recordings::{Kind, Schema, Table};
+use std::path::PathBuf;
 
 /// What ends the reading of recordings.
 #[derive(Debug, thiserror::Error)]
@@ -17,9 +18,27 @@ pub enum Error {
     /// A row that is not one of the table.
     #[error(transparent)]
     Row(#[from] recordings::Error),
+    /// The folder of a table that cannot be made.
+    #[error("{}: {error}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        error: std::io::Error,
+    },
+    /// A file that cannot be written.
+    #[error(transparent)]
+    Write(recordings::Error),
     /// The caller asked for it.
-    #[error("interrupted")]
+    #[error("interrupted; nothing was written")]
     Stopped,
+}
+
+impl Error {
+    /// Whether the recordings or the arguments are wrong, or the table has no place; else the work failed.
+    pub fn is_input(&self) -> bool {
+        !matches!(self, Self::Folder { .. } | Self::Write(_) | Self::Stopped)
+    }
 }
 
 /// A row for each window of some recordings.
@@ -42,20 +61,42 @@ pub fn recorded_table(
     length: WindowLength,
     like: Option<&Like>,
     pool: &rayon::ThreadPool,
-    mut go_on: impl FnMut() -> bool,
+    go_on: impl FnMut() -> bool,
 ) -> Result<RecordedTable, Error> {
     let columns = Columns::new(inputs, said)?;
-    let schema = columns.schema().clone();
-    let kept = match like {
-        Some(like) => like.columns(&schema)?,
-        None => (0..schema.columns().len()).collect(),
-    };
-    let mut rows = Table::new(schema.select(&kept));
+    let kept = kept(columns.schema(), like)?;
+    let mut rows = Table::new(columns.schema().select(&kept));
     let mut warnings = Vec::new();
+    each_row(columns, length, like, &kept, pool, go_on, |row| {
+        warnings.extend(row.warning());
+        rows.push(row.values).map_err(Error::Row)
+    })?;
+    Ok(RecordedTable { rows, warnings })
+}
+
+/// The columns that stay: all of them, or those of the dataset.
+pub(crate) fn kept(schema: &Schema, like: Option<&Like>) -> Result<Vec<usize>, Unlike> {
+    match like {
+        Some(like) => like.columns(schema),
+        None => Ok((0..schema.columns().len()).collect()),
+    }
+}
+
+/// Hands the columns `kept` of the row of each window on, in order; gives the time that was too short for a window, s.
+pub(crate) fn each_row(
+    columns: Columns,
+    length: WindowLength,
+    like: Option<&Like>,
+    kept: &[usize],
+    pool: &rayon::ThreadPool,
+    mut go_on: impl FnMut() -> bool,
+    mut take: impl FnMut(Row) -> Result<(), Error>,
+) -> Result<f64, Error> {
+    let mut windows = columns.windows(length);
     in_order(
         pool,
         2 * pool.current_num_threads(),
-        columns.windows(length),
+        &mut windows,
         |window| window.as_ref().ok().map(row),
         |window, made| {
             window?;
@@ -65,13 +106,12 @@ pub fn recorded_table(
             let Some(mut made) = made else { return Ok(()) };
             if let Some(like) = like {
                 like.check(&made)?;
+                made.keep(kept);
             }
-            warnings.extend(made.warning());
-            made.keep(&kept);
-            rows.push(made.values).map_err(Error::Row)
+            take(made)
         },
     )?;
-    Ok(RecordedTable { rows, warnings })
+    Ok(windows.left_out_s())
 }
 
 impl RecordedTable {

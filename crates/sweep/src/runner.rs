@@ -21,8 +21,6 @@ pub fn simulate_cases(cases: &[Case]) -> Vec<Result<Recording, Failure>> {
 
 fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
     let resolved = &case.resolved;
-    let throws = resolved.machine.throws.iter();
-    let names: Vec<&str> = throws.map(|throw| throw.name.as_str()).collect();
     let motion = match &case.judgement {
         Some(asked) => machine_motion(&resolved.machine, &asked.settings, asked.extent)?,
         None => None,
@@ -34,6 +32,11 @@ fn recording(case: &Case, record: &Record) -> Result<Recording, Failure> {
             .map(ToString::to_string)
             .collect(),
         sample_rate_hz: record.sample_rate,
-        channels: measure(record, &resolved.sensors, &names, &mut case.noise()),
+        channels: measure(
+            record,
+            &resolved.sensors,
+            &resolved.machine.throw_names(),
+            &mut case.noise(),
+        ),
     })
 }

@@ -49,7 +49,7 @@ impl Watcher for Bar<'_> {
     }
 
     fn progress(&mut self, progress: &Progress) -> ControlFlow<()> {
-        self.shown.set(progress.evaluations);
+        self.shown.bar.set_position(progress.evaluations);
         self.shown.say(&format!("misfit {:.3}", progress.misfit()));
         match self.cancel.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),

@@ -1,6 +1,6 @@
 //! The progress of a sweep.
 
-use super::summary::warn;
+use crate::output::warn;
 use crate::progress::Progress;
 
 /// Cases done: rate and time left.
@@ -23,7 +23,7 @@ impl sweep::dataset::Progress for Bar {
         let Some(progress) = &self.progress else {
             return;
         };
-        progress.add(1);
+        progress.bar.inc(1);
         if failed {
             self.failed += 1;
             progress.say(&format!("{} failed", self.failed));
@@ -36,7 +36,7 @@ impl sweep::dataset::Progress for Bar {
 
     fn values_done(&mut self, values: u64) {
         if let Some(progress) = &self.progress {
-            progress.add(values);
+            progress.bar.inc(values);
         }
     }
 }
@@ -48,7 +48,8 @@ impl Bar {
         let template =
             format!("{{bar:40}} {{pos}}/{{len}} {what}  {{per_sec}}  {{eta}} left  {{msg}}");
         let progress = Progress::new(what, Some(total), &template);
-        progress.begin_at(finished);
+        progress.bar.set_position(finished);
+        progress.bar.reset_eta();
         self.progress = Some(progress);
     }
 }

@@ -1,21 +1,15 @@
 //! `gen-dataset --dry-run`.
 
-use super::summary::warn;
 use crate::Failure;
-use sweep::Plan;
+use crate::output::warn;
+use std::path::Path;
+use sweep::plan::MOST_CASES;
+use sweep::{Plan, Sweep};
 
 /// Says how large the dataset will be and how long it will take, from a few simulated cases.
-pub(super) fn dry_run(plan: &Plan) -> Result<(), Failure> {
+pub(super) fn run(plan: &Plan) -> Result<(), Failure> {
     let estimate = plan.estimate();
-    println!(
-        "{}: {} cases, {} rows, {} shards, {:.0} revolutions to simulate",
-        plan.name, estimate.cases, estimate.rows, estimate.shards, estimate.revolutions
-    );
-    println!(
-        "recordings before compression: {:.1} MB",
-        estimate.bytes / 1e6
-    );
-    println!("{}", plan.census());
+    println!("{}: {estimate}\n{}", plan.name, plan.census());
     warn(&plan.census().warnings());
     let timing = plan.time_cases()?;
     println!(
@@ -24,33 +18,35 @@ pub(super) fn dry_run(plan: &Plan) -> Result<(), Failure> {
         timing.sampled,
         timing.sample_s / timing.sampled
     );
-    dry_run_diagrams(plan)?;
-    if estimate.cases > sweep::plan::MOST_CASES {
+    let diagrams = plan.estimate_diagrams();
+    if diagrams.diagrams > 0 {
+        println!("{diagrams}");
+        let timing = plan.time_diagrams()?;
         println!(
-            "a dataset can have at most {} cases: this sweep will be refused",
-            sweep::plan::MOST_CASES
+            "time: {:.0} s more on one core, measured on {} revolutions",
+            timing.all_s, timing.sampled
         );
+    }
+    if estimate.cases > MOST_CASES {
+        println!("a dataset can have at most {MOST_CASES} cases: this sweep will be refused");
     }
     Ok(())
 }
 
-/// The same for the bifurcation diagrams, from a few revolutions of each.
-fn dry_run_diagrams(plan: &Plan) -> Result<(), Failure> {
-    let estimate = plan.estimate_diagrams();
-    if estimate.diagrams == 0 {
-        return Ok(());
+/// The plan as far as it is known without calibrating anything.
+pub(super) fn planned(sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
+    if sweep.calibrate().is_none() {
+        return Ok(nominal);
     }
+    let kept = sweep.plan_if_kept(out)?;
     println!(
-        "bifurcation diagrams: {}, {} values, {} revolutions to simulate, {:.1} MB before compression",
-        estimate.diagrams,
-        estimate.values,
-        estimate.revolutions,
-        estimate.bytes / 1e6
+        "{}",
+        match kept {
+            Some(_) => "calibrated before, and nothing has changed since",
+            None =>
+                "the machine would be calibrated first; what follows is for the nominal one, without its \
+                 uncertainty",
+        }
     );
-    let timing = plan.time_diagrams()?;
-    println!(
-        "time: {:.0} s more on one core, measured on {} revolutions",
-        timing.all_s, timing.sampled
-    );
-    Ok(())
+    Ok(kept.unwrap_or(nominal))
 }

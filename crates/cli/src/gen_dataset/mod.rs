@@ -1,24 +1,33 @@
 //! `gen-dataset`: a sweep becomes a labelled dataset.
 
 mod bar;
-mod calibrated;
 mod dry_run;
-mod summary;
 
 pub(crate) use bar::Bar;
-pub(crate) use summary::{failures, summarise, warn};
 
-use crate::output::hint;
-use crate::{Failure, console, interrupt, try_case};
-use clap::{Args, ValueEnum};
+use crate::choice::one_of;
+use crate::output::{hint, warn};
+use crate::{Failure, calibrate, console, interrupt, try_case};
+use clap::Args;
+use recordings::Manifest;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
-use sweep::dataset::{Claim, Existing, Options, check_calibration, generate_in};
+use sweep::dataset::{Claim, Existing, Options, doubtful, failures, finished};
+use sweep::dataset::{generate_in, late_warnings};
 use sweep::sweep_file::Format;
 use sweep::{Plan, Sweep, simulate_cases};
 
-/// Arguments of `gen-dataset`.
+/// Formats of the recordings.
+pub(crate) const FORMATS: [(&str, &str, Format); 2] = [
+    (
+        "parquet",
+        "Parquet tables, one row per window",
+        Format::Parquet,
+    ),
+    ("mcap", "One MCAP file per case", Format::Mcap),
+];
+
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -37,8 +46,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Format of the recordings, instead of the sweep's own
-    #[arg(long, value_enum)]
-    format: Option<FormatArgument>,
+    #[arg(long, value_parser = one_of(FORMATS))]
+    format: Option<Format>,
     /// Continue a dataset that was interrupted
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
@@ -53,20 +62,7 @@ pub struct Arguments {
     dry_run: bool,
 }
 
-/// Format of the recordings.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum FormatArgument {
-    /// Parquet tables, one row per window
-    Parquet,
-    /// One MCAP file per case
-    Mcap,
-}
-
-/// Writes the dataset.
-///
-/// # Errors
-/// Wrong input, an output that cannot be written, or cases that failed (the others are there).
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::read(&arguments.sweep)?;
     // Mistakes in the sweep are found before anything is calibrated.
     let nominal = sweep.nominal()?;
@@ -74,7 +70,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.clone();
     let out = out.unwrap_or_else(|| default_folder(&nominal.name));
     if arguments.dry_run {
-        return dry_run::dry_run(&arguments.planned(&sweep, nominal, &out)?);
+        let plan = dry_run::planned(&sweep, nominal, &out)?;
+        return dry_run::run(&with_format(plan, arguments.format)?);
     }
     let cancel = interrupt::flag()?;
     let existing = match (arguments.resume, arguments.overwrite) {
@@ -82,13 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (_, true) => Existing::Overwrite,
         _ => Existing::Refuse,
     };
-    let options = Options {
-        existing,
-        threads: console::threads(),
-        cancel: &cancel,
-        retry_failed: arguments.retry_failed,
-        trial: Some(&try_case::command),
-    };
+    let options = options(existing, arguments.retry_failed, &cancel);
     let started = Instant::now();
     let claim = || claim(&sweep, nominal, &out, existing, &cancel);
     let (claim, plan) = console::pool()?.install(claim)?;
@@ -99,13 +90,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let manifest = generate_in(claim, &plan, &options, &simulate_cases, &mut bar)
         .map_err(|error| failure(arguments, error))?;
     drop(bar);
-    summarise(&plan, &manifest, &out, started.elapsed().as_secs_f64());
-    let failed = failures(&manifest.failed, manifest.counts.cases, &out);
-    if let Some(text) = failed {
-        return Err(Failure::work(text));
+    match summarise(&plan, &manifest, &out, started) {
+        Some(failed) => Err(Failure::work(failed)),
+        None => {
+            hint(format_args!("crosshead report {}", out.display()));
+            Ok(())
+        }
     }
-    hint(format_args!("crosshead report {}", out.display()));
-    Ok(())
+}
+
+/// How shards are made.
+pub(crate) fn options(existing: Existing, retry_failed: bool, cancel: &AtomicBool) -> Options<'_> {
+    Options {
+        existing,
+        threads: console::threads(),
+        cancel,
+        retry_failed,
+        trial: Some(&try_case::command),
+    }
 }
 
 /// Locks the place of the dataset, and calibrates the machine where the sweep asks for it; else its
@@ -117,25 +119,49 @@ pub(crate) fn claim(
     existing: Existing,
     cancel: &AtomicBool,
 ) -> Result<(Claim, Plan), Failure> {
-    match sweep.calibrate() {
-        None => {
-            check_calibration(&nominal)?;
-            Ok((Claim::new(out, existing)?, nominal))
+    sweep.claim(nominal, out, existing, |prepared, folder| {
+        let done = calibrate::finish(prepared, cancel)?;
+        match done.reused {
+            true => println!("calibrated before, and nothing has changed since:"),
+            false => println!("calibrated into {}:", folder.display()),
         }
-        Some(_) => calibrated::plan(sweep, out, existing, cancel),
-    }
+        print!("{}", done.results);
+        match done.results.complete {
+            true => Ok(()),
+            false => Err(Failure::interrupted(format!(
+                "stopped during the calibration, before the first case; {} has the best so far, and \
+                 --resume continues from there",
+                folder.display()
+            ))),
+        }
+    })
 }
 
 /// `plan` with the recordings in another format, where one is asked for.
 ///
 /// # Errors
 /// A format that the plan cannot have.
-pub(crate) fn with_format(plan: Plan, format: Option<FormatArgument>) -> Result<Plan, Failure> {
-    Ok(match format {
-        None => plan,
-        Some(FormatArgument::Parquet) => plan.with_format(Format::Parquet)?,
-        Some(FormatArgument::Mcap) => plan.with_format(Format::Mcap)?,
-    })
+pub(crate) fn with_format(plan: Plan, format: Option<Format>) -> Result<Plan, Failure> {
+    match format {
+        None => Ok(plan),
+        Some(format) => Ok(plan.with_format(format)?),
+    }
+}
+
+/// Prints what a finished dataset has, and gives what is to be said of cases that failed.
+pub(crate) fn summarise(
+    plan: &Plan,
+    manifest: &Manifest,
+    out: &Path,
+    started: Instant,
+) -> Option<String> {
+    let seconds = started.elapsed().as_secs_f64();
+    print!("{}", finished(plan, manifest, out, seconds));
+    warn(&late_warnings(plan, manifest));
+    if let Some(text) = doubtful(&manifest.warnings) {
+        println!("{text}");
+    }
+    failures(&manifest.failed, manifest.counts.cases, out)
 }
 
 /// The folder of the dataset of a sweep with this name, where the user names none.
@@ -148,14 +174,14 @@ fn default_folder(name: &str) -> PathBuf {
 ///
 /// # Errors
 /// A mistake in the file, or a calibration that is not there.
-pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
+pub(crate) fn read_plan(path: &Path) -> Result<Plan, Failure> {
     let sweep = Sweep::read(path)?;
     let nominal = sweep.nominal()?;
     if sweep.calibrate().is_none() {
         return Ok(nominal);
     }
     let root = default_folder(&nominal.name);
-    calibrated::plan_if_kept(&sweep, &root)?.ok_or_else(|| {
+    sweep.plan_if_kept(&root)?.ok_or_else(|| {
         Failure::input(format!(
             "{}: this sweep calibrates its machine first, and {} does not hold that calibration: \
              make the dataset, or name its own sweep.yaml, which has the calibrated machine",
@@ -163,29 +189,6 @@ pub fn read_plan(path: &Path) -> Result<Plan, Failure> {
             root.display()
         ))
     })
-}
-
-impl Arguments {
-    /// The plan as far as it is known without calibrating anything.
-    fn planned(&self, sweep: &Sweep, nominal: Plan, out: &Path) -> Result<Plan, Failure> {
-        let plan = match sweep.calibrate() {
-            None => nominal,
-            Some(_) => match calibrated::plan_if_kept(sweep, out)? {
-                Some(plan) => {
-                    println!("calibrated before, and nothing has changed since");
-                    plan
-                }
-                None => {
-                    println!(
-                        "the machine would be calibrated first; what follows is for the nominal \
-                         one, without its uncertainty"
-                    );
-                    nominal
-                }
-            },
-        };
-        with_format(plan, self.format)
-    }
 }
 
 fn failure(arguments: &Arguments, error: sweep::Error) -> Failure {

@@ -6,7 +6,6 @@ use clap::Args;
 use std::path::PathBuf;
 use sweep::engines::slurm::Jobs;
 
-/// Arguments of `sweep cancel`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -21,11 +20,7 @@ pub struct Arguments {
     scripts: Option<PathBuf>,
 }
 
-/// Cancels the jobs.
-///
-/// # Errors
-/// Nothing submitted, or an engine that refuses.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cancelled = Jobs::new(&arguments.url, arguments.scripts.as_deref())?.cancel()?;
     println!("cancelled: {cancelled}");
     hint(format_args!(

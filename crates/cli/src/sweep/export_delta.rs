@@ -6,7 +6,6 @@ use clap::Args;
 use std::path::PathBuf;
 use sweep::dataset::{Output, export_delta};
 
-/// Arguments of `sweep export-delta`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -23,11 +22,7 @@ pub struct Arguments {
     url: PathBuf,
 }
 
-/// Writes the logs.
-///
-/// # Errors
-/// A dataset that is not complete, or an output that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (output, plan) = Output::join(&arguments.url)?;
     for table in export_delta(&output, &plan)? {
         println!(

@@ -1,8 +1,8 @@
 //! `sweep finalize`: the dataset is completed.
 
 use crate::Failure;
-use crate::gen_dataset;
-use crate::output::hint;
+use crate::gen_dataset::summarise;
+use crate::output::{hint, warn};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -11,7 +11,6 @@ use sweep::dataset::{Output, finalize, finalize_verified};
 use sweep::engines::slurm::Jobs;
 use sweep::ranges::ranges;
 
-/// Arguments of `sweep finalize`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -37,18 +36,14 @@ pub struct Arguments {
     scripts: Option<PathBuf>,
 }
 
-/// Completes the dataset.
-///
-/// # Errors
-/// Shards that are missing, or an output that cannot be read or written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let started = Instant::now();
     let (output, plan) = Output::join(&arguments.url)?;
     let completed = match arguments.verify {
         true => finalize_verified(&output, &plan),
         false => finalize(&output, &plan),
     };
-    gen_dataset::warn(&output.take_warnings());
+    warn(&output.take_warnings());
     let manifest = match completed {
         Ok(manifest) => manifest,
         Err(Error::Incomplete { shards, missing }) => {
@@ -62,11 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Err(error) => return Err(error.into()),
     };
-    let seconds = started.elapsed().as_secs_f64();
-    gen_dataset::summarise(&plan, &manifest, &arguments.url, seconds);
-    if let Some(text) =
-        gen_dataset::failures(&manifest.failed, manifest.counts.cases, &arguments.url)
-    {
+    if let Some(text) = summarise(&plan, &manifest, &arguments.url, started) {
         println!("{text}");
     }
     hint(format_args!("crosshead report {}", arguments.url.display()));

@@ -10,9 +10,8 @@ mod status;
 mod submit;
 
 use crate::Failure;
-use clap::{Args, Subcommand};
+use clap::Args;
 
-/// Arguments of `sweep`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example, with four processes in the place of four machines:
@@ -26,36 +25,24 @@ pub struct Arguments {
     step: Step,
 }
 
-#[derive(Subcommand, Debug)]
-enum Step {
+verbs! {
+    Step:
     /// Begin a dataset: write what its shards need to know
-    Plan(plan::Arguments),
+    Plan(plan),
     /// Make one shard; safe to repeat
-    Shard(shard::Arguments),
+    Shard(shard),
     /// Complete the dataset when all its shards are made
-    Finalize(finalize::Arguments),
+    Finalize(finalize),
     /// Show the progress of the dataset
-    Status(status::Arguments),
+    Status(status),
     /// Submit the shards to an engine that runs them on its machines
-    Submit(submit::Arguments),
+    Submit(submit),
     /// Cancel the submitted jobs
-    Cancel(cancel::Arguments),
+    Cancel(cancel),
     /// Add Delta tables to a finished dataset
-    ExportDelta(export_delta::Arguments),
+    ExportDelta(export_delta),
 }
 
-/// Takes a step.
-///
-/// # Errors
-/// Wrong input, an output that cannot be written, or a dataset that is not complete yet.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.step {
-        Step::Plan(arguments) => plan::run(arguments),
-        Step::Shard(arguments) => shard::run(arguments),
-        Step::Finalize(arguments) => finalize::run(arguments),
-        Step::Status(arguments) => status::run(arguments),
-        Step::Submit(arguments) => submit::run(arguments),
-        Step::Cancel(arguments) => cancel::run(arguments),
-        Step::ExportDelta(arguments) => export_delta::run(arguments),
-    }
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    arguments.step.run()
 }

@@ -1,13 +1,14 @@
 //! `sweep plan`: a dataset is begun.
 
-use crate::gen_dataset::{self, FormatArgument};
-use crate::output::hint;
+use crate::choice::one_of;
+use crate::gen_dataset::{self, FORMATS};
+use crate::output::{hint, warn};
 use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
 use sweep::Sweep;
+use sweep::sweep_file::Format;
 
-/// Arguments of `sweep plan`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Example:
@@ -29,15 +30,11 @@ pub struct Arguments {
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     shards: Option<u64>,
     /// Format of the recordings, instead of the sweep's own
-    #[arg(long, value_enum)]
-    format: Option<FormatArgument>,
+    #[arg(long, value_parser = one_of(FORMATS))]
+    format: Option<Format>,
 }
 
-/// Plans the sweep.
-///
-/// # Errors
-/// Wrong input, or a place that holds another dataset or cannot be written to.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let sweep = Sweep::read(&arguments.sweep)?;
     let nominal = sweep.nominal()?;
     nominal.check_size()?;
@@ -48,9 +45,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(shards) = arguments.shards {
         plan = plan.with_shards(shards)?;
     }
-    gen_dataset::warn(&plan.census().mistakes());
+    warn(&plan.census().mistakes());
     let output = claim.open(&plan)?;
-    gen_dataset::warn(&output.take_warnings());
+    warn(&output.take_warnings());
     println!(
         "{}: {} cases, shards 0 to {} ({} of cases, {} bifurcation diagrams)",
         out.display(),

@@ -1,16 +1,15 @@
 //! `sweep shard`: one shard is made.
 
-use crate::gen_dataset::Bar;
+use crate::gen_dataset::{Bar, options};
 use crate::output::hint;
-use crate::{Failure, console, interrupt, try_case};
+use crate::{Failure, interrupt};
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Instant;
-use sweep::dataset::{Existing, Options, Output, run_part};
+use sweep::dataset::{Existing, Output, run_part};
 use sweep::engines::task;
 use sweep::{Error, simulate_cases};
 
-/// Arguments of `sweep shard`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -39,11 +38,7 @@ pub struct Arguments {
     retry_failed: bool,
 }
 
-/// Makes the shard.
-///
-/// # Errors
-/// Nothing planned, no such shard, or an output that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let index = match arguments.index {
         Some(index) => index,
         None => task::index(|name| std::env::var(name).ok())?,
@@ -51,36 +46,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let index = index.saturating_add(arguments.offset);
     let (output, plan) = Output::join(&arguments.url)?;
     let cancel = interrupt::flag()?;
-    let options = Options {
-        existing: Existing::Resume,
-        threads: console::threads(),
-        cancel: &cancel,
-        retry_failed: arguments.retry_failed,
-        trial: Some(&try_case::command),
-    };
+    let options = options(Existing::Resume, arguments.retry_failed, &cancel);
     let started = Instant::now();
     let mut bar = Bar::default();
     let made = run_part(&plan, &output, index, &options, &simulate_cases, &mut bar);
     drop(bar);
-    match made {
-        Ok(true) => {
-            let seconds = started.elapsed().as_secs_f64();
-            println!("shard {index}: made in {seconds:.1} s");
-            hint(format_args!(
-                "crosshead sweep finalize {}, once all shards are made",
-                arguments.url.display()
-            ));
-            Ok(())
-        }
-        Ok(false) => {
-            println!("shard {index}: was made before");
-            Ok(())
-        }
-        Err(Error::Cancelled { .. } | Error::DiagramsCancelled { .. }) => {
-            Err(Failure::interrupted(format!(
-                "stopped; shard {index} is not made, and the same command begins it again"
-            )))
-        }
-        Err(error) => Err(error.into()),
+    let made = made.map_err(|error| match error {
+        Error::Cancelled { .. } | Error::DiagramsCancelled { .. } => Failure::interrupted(format!(
+            "stopped; shard {index} is not made, and the same command begins it again"
+        )),
+        error => error.into(),
+    })?;
+    if !made {
+        println!("shard {index}: was made before");
+        return Ok(());
     }
+    let seconds = started.elapsed().as_secs_f64();
+    println!("shard {index}: made in {seconds:.1} s");
+    hint(format_args!(
+        "crosshead sweep finalize {}, once all shards are made",
+        arguments.url.display()
+    ));
+    Ok(())
 }

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 use sweep::dataset::{Output, status};
 use sweep::engines::slurm::Jobs;
 
-/// Arguments of `sweep submit`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -44,11 +43,7 @@ enum Engine {
     Slurm,
 }
 
-/// Submits what is missing.
-///
-/// # Errors
-/// Nothing planned, jobs that are under way already, or an engine that refuses.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let jobs = Jobs::new(&arguments.url, arguments.scripts.as_deref())?;
     let (output, plan) = Output::open_read_only(&arguments.url)?;
     let missing = status(&output, &plan, false)?.missing;

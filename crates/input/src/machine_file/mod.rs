@@ -130,8 +130,7 @@ impl MachineFile {
         for sensor in listed {
             tree["sensors"] = Value::Array(vec![sensor.clone()]);
             let alone = Self::from_tree(&tree)?.resolve()?;
-            let throws = alone.machine.throws.iter().map(|t| t.name.as_str());
-            let throws: Vec<&str> = throws.collect();
+            let throws = alone.machine.throw_names();
             let columns = alone.sensors.iter().map(|s| s.measured.column(&throws));
             let columns: Vec<String> = columns.collect();
             if columns.iter().any(|column| channels.contains(column)) {

@@ -31,6 +31,23 @@ pub fn bundle(files: &[String]) -> Result<String, Error> {
     })
 }
 
+/// The recordings in `folder`, in the order of their names.
+pub fn recordings_in(folder: &Path) -> Vec<String> {
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let is_recording = |name: &String| {
+        let ending = Path::new(name).extension();
+        ending.is_some_and(|ending| ending == "csv" || ending == "parquet")
+    };
+    let mut names: Vec<String> = names.filter(is_recording).collect();
+    names.sort();
+    names
+}
+
 fn run(file: &str) -> Value {
     let id = Path::new(file)
         .file_stem()

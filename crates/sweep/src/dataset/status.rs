@@ -1,6 +1,10 @@
 //! Progress of a sweep.
 
+use std::fmt::Write;
+use std::path::Path;
+
 use recordings::FailedCase;
+use serde::Serialize;
 
 use super::attempts::{self, Attended};
 use super::check::Check;
@@ -9,6 +13,8 @@ use super::finalize::Parts;
 use super::layout::strays;
 use super::output::Output;
 use super::parts::scan;
+use super::summary::failures;
+use crate::ranges::ranges;
 use crate::{Error, Plan};
 
 /// The progress of a sweep.
@@ -59,4 +65,102 @@ pub fn status(output: &Output, plan: &Plan, verify: bool) -> Result<Status, Erro
         complete: missing.is_empty() && parts.complete(output, plan)?.is_written(output)?,
         missing,
     })
+}
+
+/// The progress of a sweep with the numbers of its plan, for people and programs.
+#[derive(Clone, Debug, Serialize)]
+pub struct StatusReport {
+    /// Identifier of the plan.
+    pub plan_id: String,
+    /// Name of the dataset.
+    pub name: String,
+    /// Whether the dataset has its manifest.
+    pub complete: bool,
+    /// Shards of the plan, bifurcation diagrams included.
+    pub shards: u64,
+    /// Those that are finished.
+    pub made: u64,
+    /// Numbers of the others, as ranges.
+    pub missing: String,
+    /// Cases of the plan.
+    pub cases: u64,
+    /// Cases in finished shards.
+    pub cases_made: u64,
+    /// How many of them failed.
+    pub cases_failed: usize,
+    /// Which of them failed.
+    pub failed: Vec<FailedCase>,
+    attempts: Vec<Attempts>,
+    /// The jobs that are under way.
+    pub jobs: Vec<String>,
+}
+
+/// The processes at a shard.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Attempts {
+    shard: u64,
+    attempts: u64,
+    at_work: u64,
+    ended: u64,
+}
+
+impl Status {
+    /// With the numbers of the plan, and the jobs that are under way.
+    pub fn report(&self, plan: &Plan, jobs: Vec<String>) -> StatusReport {
+        let attempts = self.attempts.iter().map(|(shard, at)| Attempts {
+            shard: *shard,
+            attempts: at.at_work + at.ended,
+            at_work: at.at_work,
+            ended: at.ended,
+        });
+        StatusReport {
+            plan_id: plan.id.clone(),
+            name: plan.name.clone(),
+            complete: self.complete,
+            shards: plan.parts(),
+            made: plan.parts() - self.missing.len() as u64,
+            missing: ranges(&self.missing),
+            cases: plan.cases(),
+            cases_made: self.cases,
+            cases_failed: self.failed.len(),
+            failed: self.failed.clone(),
+            attempts: attempts.collect(),
+            jobs,
+        }
+    }
+}
+
+impl StatusReport {
+    /// A few lines on the dataset at `url`.
+    pub fn text(&self, url: &Path) -> String {
+        let complete = match self.complete {
+            true => "complete",
+            false => "not finalized",
+        };
+        let mut text = format!(
+            "{}: {complete}\nshards: {} of {} are made\ncases: {} of {}, {} failed\n",
+            url.display(),
+            self.made,
+            self.shards,
+            self.cases_made,
+            self.cases,
+            self.cases_failed
+        );
+        let mut line = |words: String| writeln!(text, "{words}");
+        // A string takes all that is written to it.
+        let _ = failures(&self.failed, self.cases, url).map(&mut line);
+        if !self.missing.is_empty() {
+            let _ = line(format!("missing: {}", self.missing));
+        }
+        for at in &self.attempts {
+            let (shard, at_work, ended) = (at.shard, at.at_work, at.ended);
+            let _ = line(format!(
+                "shard {shard}: {at_work} processes at work, {ended} ended without a result"
+            ));
+        }
+        for job in &self.jobs {
+            let _ = line(format!("Slurm job {job}"));
+        }
+        text
+    }
 }

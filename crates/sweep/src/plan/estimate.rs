@@ -1,6 +1,7 @@
 //! How large a dataset will be.
 
 use super::Plan;
+use std::fmt::{self, Display, Formatter};
 
 /// What a sweep amounts to, judged from a few of its cases.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +29,30 @@ pub struct DiagramEstimate {
     pub revolutions: u64,
     /// Bytes of all points before compression.
     pub bytes: f64,
+}
+
+impl Display for Estimate {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let (cases, rows, shards) = (self.cases, self.rows, self.shards);
+        let (revolutions, megabytes) = (self.revolutions, self.bytes / 1e6);
+        write!(
+            f,
+            "{cases} cases, {rows} rows, {shards} shards, {revolutions:.0} revolutions to simulate\n\
+             recordings before compression: {megabytes:.1} MB"
+        )
+    }
+}
+
+impl Display for DiagramEstimate {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let (diagrams, values, revolutions) = (self.diagrams, self.values, self.revolutions);
+        let megabytes = self.bytes / 1e6;
+        write!(
+            f,
+            "bifurcation diagrams: {diagrams}, {values} values, {revolutions} revolutions to simulate, \
+             {megabytes:.1} MB before compression"
+        )
+    }
 }
 
 impl Plan {

@@ -3,21 +3,30 @@
 use super::schema;
 use crate::labels::joints;
 use input::template::{Commented, commented};
-use input::{Error, Resolved};
+use input::{Error, Resolved, machine_file};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
+use std::path::Path;
 
 const HEAD: &str = "\
 Which cases to simulate. `gen-dataset FILE` makes the dataset, `gen-dataset FILE --dry-run` says how large it becomes.
 `crosshead check FILE` finds all mistakes at once, in the machine file, too.
 Clearances are radial unless they say diametral: 0.1 mm diametral is 0.05 mm.";
 
-/// A sweep of the machine in the file `path`, which is `machine`, to fill in; it is right as it stands. Its faults are
-/// in the joints that have a section in the machine file.
+/// A sweep file in `folder` for the machine in the file `path`, to fill in; it is right as it stands. Its faults are in the
+/// joints that have a section in the machine file.
 ///
 /// # Errors
-/// None in practice: the content can be written as YAML.
-pub fn template(path: &str, machine: &Resolved, tree: &Value) -> Result<String, Error> {
+/// A machine file that cannot be read, or has a mistake.
+pub fn template(folder: &Path, path: &Path) -> Result<String, Error> {
+    let machine = machine_file::read(path)?;
+    let inside = path.strip_prefix(folder).map(Path::to_owned);
+    let absolute = |_| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let named = inside.unwrap_or_else(absolute).display().to_string();
+    of_machine(&named, &machine.resolve()?, machine.to_tree())
+}
+
+fn of_machine(path: &str, machine: &Resolved, tree: &Value) -> Result<String, Error> {
     let joints = joints(&machine.machine);
     let has_section = |path: &str| {
         let section = path.strip_suffix(".clearance").unwrap_or(path);

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// # Errors
 /// The first sensor that does not go together with the machine, or that measures what another does.
 pub(crate) fn resolve(sections: &[SensorSection], machine: &Machine) -> Result<Vec<Sensor>, Error> {
-    let names: Vec<&str> = machine.throws.iter().map(|t| t.name.as_str()).collect();
+    let names = machine.throw_names();
     let mut sensors: Vec<Sensor> = Vec::new();
     for (i, section) in sections.iter().enumerate() {
         let sensor = section.resolve(machine, &names).map_err(|e| e.under(i))?;

@@ -1,23 +1,21 @@
 //! `crosshead explain-gap`: which effect a model lacks that recordings show.
 
-mod progress;
-
 use crate::bundle::AllowOutside;
-use crate::calibrate::arguments::read;
+use crate::calibrate::given;
 use crate::output::{hint, refuse_existing};
+use crate::progress::Progress;
 use crate::result_format::ResultFormat;
-use crate::{Failure, interrupt, report};
-use ::report::folder_kind::FolderKind;
+use crate::{Failure, interrupt};
+use ::report::folder_kind::{FolderKind, REPORT};
 use clap::Args;
 use gap::folder::MACHINE;
 use gap::results::RESULTS;
-use gap::{Asked, Results};
-use progress::Bar;
+use gap::{Asked, Results, Stage};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Arguments of `crosshead explain-gap`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 The machine is calibrated to the recordings first. Where that leaves more than noise, the effects of
@@ -34,7 +32,7 @@ Examples:
   crosshead explain-gap my-bundle --machine machine.yaml --out explained
 
 Exit status: 0 done; 1 the work failed; 2 the input or the arguments are wrong; 130 stopped.")]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder of recordings; or a settings file with one (crosshead schema calibration)
     #[arg(value_name = "BUNDLE|SETTINGS.yaml")]
     input: PathBuf,
@@ -59,65 +57,57 @@ pub struct Arguments {
     format: ResultFormat,
 }
 
-/// Explains the gap and prints the results.
-///
-/// # Errors
-/// An invalid bundle or machine, runs that cannot be used, or files that cannot be written.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
-    refuse_existing([out.join(RESULTS)], arguments.overwrite)?;
-    let input = std::slice::from_ref(&arguments.input);
-    let (mut calibration, base, document) = read(input, arguments.machine.as_deref())?;
-    if !arguments.hold_out.is_empty() {
-        calibration.hold_out = Some(arguments.hold_out.clone());
-    }
-    if !arguments.leave_out.is_empty() {
-        calibration.leave_out = arguments.leave_out.clone();
-    }
+    refuse_existing([out.join(RESULTS)], arguments.overwrite, "--out DIR")?;
+    let (input, machine) = (from_ref(&arguments.input), arguments.machine.as_deref());
+    let given = given(input, machine, &arguments.hold_out, &arguments.leave_out)?;
     let cancel = interrupt::flag()?;
     let asked = Asked {
-        calibration: &calibration,
-        base: &base,
+        calibration: &given.calibration,
+        base: &given.base,
         allow_outside: arguments.outside.allow_outside,
-        locate: &|error| match &document {
-            Some(document) => document.locate(error),
-            None => error,
-        },
+        locate: &|error| given.locate(error),
     };
-    let results = into_folder(&asked, out, &cancel)?;
-    arguments.format.print(&results, |results| {
-        print!("{results}");
-        println!("{}", out.join(MACHINE).display());
-        println!("{}", out.join(report::PAGE).display());
-    })?;
-    hint(format_args!(
-        "crosshead simulate {}",
-        out.join(MACHINE).display()
-    ));
+    let results = shown(&asked, out, &cancel)?;
+    let [machine, page] = [MACHINE, REPORT].map(|file| out.join(file));
+    (arguments.format).print_found(&results, false, [&machine, &page])?;
+    hint(format_args!("crosshead simulate {}", machine.display()));
     Ok(())
 }
 
-/// Explains the gap into the folder `out`, with its page; `cancel` stops it.
+/// Explains the gap into the folder `out`, with its page, and shows what is being tried; `cancel` stops it.
 ///
 /// # Errors
-/// As [`run`]; [`Failure::Work`] where it was stopped.
-pub(crate) fn into_folder(
+/// As [`into_folder`].
+pub(crate) fn shown(asked: &Asked, out: &Path, cancel: &AtomicBool) -> Result<Results, Failure> {
+    let progress = Progress::new("explaining the gap", None, "{spinner} {elapsed} {msg}");
+    let is_stopped = || cancel.load(Ordering::Relaxed);
+    into_folder(asked, out, &|text| progress.say(text), &is_stopped)
+}
+
+/// Explains the gap into the folder `out`, with its page. `say` is told what is being tried.
+///
+/// # Errors
+/// An invalid bundle or machine, runs that cannot be used, files that cannot be written, or work that `is_stopped`.
+pub fn into_folder(
     asked: &Asked,
     out: &Path,
-    cancel: &AtomicBool,
+    say: &(dyn Fn(&str) + Sync),
+    is_stopped: &(dyn Fn() -> bool + Sync),
 ) -> Result<Results, Failure> {
-    let bar = Bar::new();
-    let watch = || match cancel.load(Ordering::Relaxed) {
+    let report = |stage: &Stage| {
+        let misfit = match stage.misfit.is_finite() {
+            true => format!(", misfit {:.2}", stage.misfit),
+            false => String::new(),
+        };
+        say(&format!("{}{misfit}", stage.words));
+    };
+    let watch = || match is_stopped() {
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     };
-    let results = gap::into_folder(asked, out, &|stage| bar.show(stage), &watch);
-    drop(bar);
-    let results = results.map_err(|error| match error {
-        gap::Error::Input(error) => Failure::input(error),
-        gap::Error::Stopped => Failure::interrupted(gap::Error::Stopped),
-        error => Failure::work(error),
-    })?;
-    report::write_result(FolderKind::Explanation, out, &out.join(report::PAGE))?;
+    let results = gap::into_folder(asked, out, &report, &watch)?;
+    FolderKind::Explanation.write(out, &out.join(REPORT))?;
     Ok(results)
 }
