@@ -43,6 +43,8 @@ pub fn python() -> PathBuf {
         "install",
         "--quiet",
         "--disable-pip-version-check",
+        // Few of the modules are used, and those are compiled where they are.
+        "--no-compile",
         "--requirement",
     ];
     run(Command::new(&python).args(pip).arg(&requirements));

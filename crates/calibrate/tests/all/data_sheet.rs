@@ -200,6 +200,7 @@ fn descents_that_leave_more_than_noise_correct_nothing() {
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run calibrations"]
 fn a_late_channel_is_found() {
     let late = json!([{"measure": "crosshead_acceleration", "delay": "0.2 ms"}]);
     let runs = recorded(&truth(&[("sensors", late)]));

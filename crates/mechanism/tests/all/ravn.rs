@@ -312,6 +312,7 @@ fn statistics_of_lankarani_and_nikravesh_at_half_a_millimetre() {
 }
 
 #[test]
+#[ignore = "minutes: tests/nightly/run references"]
 fn statistics_of_lankarani_and_nikravesh_at_a_fifth_of_a_millimetre() {
     compare(
         "LN, c = 0.2 mm",
