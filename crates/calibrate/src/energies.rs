@@ -25,7 +25,7 @@ const QUIET: f64 = 0.03;
 /// Standard deviation of the logarithm of an energy that a law somewhat off predicts: 16 % of the amplitude.
 const SPREAD: f64 = 0.3;
 /// By how much a slow feature may stand elsewhere, rad.
-const TIMING: f64 = 0.03;
+pub const TIMING: f64 = 0.03;
 
 /// The residuals of a problem's energies: differences of logarithms over [`SPREAD`].
 pub struct Energies<'a> {

@@ -1,7 +1,7 @@
 //! The workflow: pressures first, which hardly depend on the joints, then everything.
 
 use crate::amendment::Amendment;
-use crate::criteria::{EXPLAINED, Verdict, verdict};
+use crate::criteria::{EXPLAINED, Verdict, explains, verdict};
 use crate::effort::Effort;
 use crate::error::Error;
 use crate::finding::{Correction, Found, Tried};
@@ -9,7 +9,7 @@ use crate::fitter::{Fitter, Watch};
 use crate::force::empirical_force;
 use crate::gas::{has_joints, pressures};
 use crate::hypothesis::{Amended, Hypothesis, added};
-use crate::judgement::{Judgement, judged};
+use crate::judgement::{Forms, Judgement, judged};
 use crate::mains_hum::Hum;
 use crate::measuring_chain::{crank_angle_offset, mains_hum};
 use crate::missing_force::MissingForce;
@@ -188,12 +188,15 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     let mut others = all.clone();
     if let Some(pressures) = pressures(problem)? {
         (fitter.say)("looking at the pressures", f64::NAN);
-        let gas: Vec<Amendment> = match has_joints(problem) {
-            true => all.iter().filter(|one| of_gas(one)).cloned().collect(),
-            false => all.clone(),
+        let (gas, forms): (Vec<Amendment>, _) = match has_joints(problem) {
+            true => {
+                let of_gas = all.iter().filter(|one| of_gas(one));
+                (of_gas.cloned().collect(), Forms::Free)
+            }
+            false => (all.clone(), Forms::UsualWhereTheySuffice),
         };
         let own: Vec<f64> = own_start(problem, start, &pressures);
-        let judged = judged(fitter, &pressures, &own, &gas)?;
+        let judged = judged(fitter, &pressures, &own, &gas, forms)?;
         if !has_joints(problem) {
             return with_joints(fitter, problem, judged, &pressures);
         }
@@ -210,13 +213,21 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
             one.effect()
                 .is_some_and(|effect| effect.is_shown_by_pressures(problem))
         };
-        others.retain(|one| !shown(one));
+        // What pressures leave may come from the joints, and hide what is their own.
+        let explained = explains(&judged.believed.model);
+        others.retain(|one| !judged.believed.has(one) && !(explained && shown(one)));
     }
     known = at_their_ends(fitter, problem, known)?;
     let with_gas = added(problem, &known)?;
     let mut start = start.to_vec();
     start.resize(with_gas.parameters.len(), 0.0);
-    let judged = judged(fitter, &with_gas, &start, &others)?;
+    let judged = judged(
+        fitter,
+        &with_gas,
+        &start,
+        &others,
+        Forms::UsualWhereTheySuffice,
+    )?;
     let baseline = match known.is_empty() {
         true => judged.nothing.model.clone(),
         false => {

@@ -48,8 +48,10 @@ pub(crate) fn form(
 
 /// What a parameter means, in short: its words up to what is said of a file.
 fn meaning(parameter: &Parameter) -> String {
-    let first = parameter.words.split([';', ':', '.']).next();
-    let mut letters = first.unwrap_or_default().trim().chars();
+    let ends = ["; ", ": ", ". "].map(|end| parameter.words.find(end));
+    let end = ends.into_iter().flatten().min();
+    let first = &parameter.words[..end.unwrap_or(parameter.words.len())];
+    let mut letters = first.trim_end_matches('.').chars();
     let head = letters
         .next()
         .map(|letter| letter.to_lowercase().to_string());
@@ -81,6 +83,18 @@ mod tests {
                 .filter(|_| key == "viscous")
                 .map(|interval| (24.681, interval))
         }
+    }
+
+    #[test]
+    fn a_meaning_is_the_first_clause_of_the_words_with_its_numbers() {
+        let mut catalogue = input::effects::CATALOGUE.iter();
+        let frame = catalogue
+            .find(|entry| entry.name == "frame_compliance")
+            .unwrap();
+        let mut parameters = frame.parameters.iter();
+        let hardening = parameters.find(|p| p.key == "hardening").unwrap();
+        let words = "by what share its springs are stiffer where it has moved by 0.1 mm";
+        assert_eq!(meaning(hardening), words);
     }
 
     #[test]

@@ -33,6 +33,15 @@ pub(crate) struct Judgement {
     pub others: Vec<Hypothesis>,
 }
 
+/// What comes of the forms of the laws that are believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Forms {
+    /// They stay free: something in the machine was left out, and what that does may look like another form.
+    Free,
+    /// They are the usual ones where the recordings do not need others.
+    UsualWhereTheySuffice,
+}
+
 /// What is missing in the machine of `problem` of these amendments.
 ///
 /// # Errors
@@ -42,6 +51,7 @@ pub(crate) fn judged(
     problem: &Problem,
     start: &[f64],
     amendments: &[Amendment],
+    forms: Forms,
 ) -> Result<Judgement, Error> {
     let nothing = calibrated(fitter, problem, start)?;
     if Fitter::is_at_noise(&nothing.model) {
@@ -89,7 +99,10 @@ pub(crate) fn judged(
             (believed, without) = (best, believed);
         }
     }
-    let believed = believed.clone().of_usual_form(fitter, problem)?;
+    let believed = match forms {
+        Forms::UsualWhereTheySuffice => believed.clone().of_usual_form(fitter, problem)?,
+        Forms::Free => believed.clone(),
+    };
     let believed = believed.finished(fitter, problem)?;
     let (before, added) = (without.set.len(), believed.set.len() - without.set.len());
     let sure = probability(left(&without.model, &believed.model), before, added);
@@ -262,7 +275,14 @@ mod tests {
         let effort = effort();
         let fitter = fitter(&effort);
         let amendments = of_kinds_named(&problem, &["ring_friction", "misalignment"]);
-        let judged = judged(&fitter, &problem, &[0.0], &amendments).unwrap();
+        let judged = judged(
+            &fitter,
+            &problem,
+            &[0.0],
+            &amendments,
+            Forms::UsualWhereTheySuffice,
+        )
+        .unwrap();
         let labels = judged.believed.labels();
         assert_eq!(labels, ["ring_friction"]);
         assert!(judged.probabilities[0] > 0.9, "{:?}", judged.probabilities);
@@ -280,7 +300,14 @@ mod tests {
         let effort = effort();
         let fitter = fitter(&effort);
         let amendments = of_kinds_named(&problem, &["sensor_gain"]);
-        let judged = judged(&fitter, &problem, &[0.0], &amendments).unwrap();
+        let judged = judged(
+            &fitter,
+            &problem,
+            &[0.0],
+            &amendments,
+            Forms::UsualWhereTheySuffice,
+        )
+        .unwrap();
         assert!(
             judged.believed.set.is_empty(),
             "{:?}",

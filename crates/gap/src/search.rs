@@ -14,6 +14,7 @@ use crate::hypothesis::{Amended, Hypothesis, added, of_kinds, start};
 use crate::model::Model;
 use crate::recorded::is_of_pressures;
 use crate::screen::{Screened, screen};
+use calibrate::energies::TIMING;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -54,20 +55,26 @@ impl Search<'_> {
     /// [`Error::Stopped`].
     pub fn sets(&self, nothing: Hypothesis) -> Result<Vec<Hypothesis>, Error> {
         let mut nodes = vec![nothing.clone()];
+        let mut lowest: Vec<Hypothesis> = Vec::new();
         let mut expanded: Vec<Vec<String>> = Vec::new();
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             if explains(&nodes[0].model) || !self.fitter.effort.goes_on() {
                 break;
             }
-            let open =
-                |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
-            let beam = of_kinds(nodes.iter().filter(open));
-            let beam: Vec<Hypothesis> = beam.into_iter().take(WIDTH).cloned().collect();
+            let beam = beam(&nothing.model, &nodes, &lowest, &expanded);
             expanded.extend(beam.iter().map(Hypothesis::labels));
-            for set in self.beside(&beam, &nothing.model)? {
+            let beside = self.beside(&beam, &nothing.model)?;
+            for set in beside.fitted {
                 add(&mut nodes, set);
             }
+            lowest = beside.lowest;
             nodes.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            let is_last = round + 1 == ROUNDS || !self.fitter.effort.goes_on();
+            let has_lower = !lowest.is_empty() && !leaves_little(&nothing.model, &nodes[0]);
+            // What is looked at further is none of the nodes then.
+            if has_lower && !is_last {
+                continue;
+            }
             for moved in [Self::varied, Self::exchanged] {
                 let sets = moved(self, &nodes[0])?;
                 for set in sets {
@@ -132,7 +139,7 @@ impl Search<'_> {
 
     /// The sets of these nodes with each of the most promising other amendments; `nothing` is the machine without any. Where none
     /// of them leaves little, they are fitted from far away, too.
-    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Vec<Hypothesis>, Error> {
+    fn beside(&self, beam: &[Hypothesis], nothing: &Model) -> Result<Beside, Error> {
         let alone = beam.iter().all(|node| node.set.is_empty());
         let so_far = beam.first().map_or(f64::NAN, |best| best.model.fitted);
         let mut of_each = Vec::new();
@@ -152,9 +159,24 @@ impl Search<'_> {
         let mut rough: Vec<Trial> = rough.into_iter().flatten().collect();
         // What a freer law costs counts once it has been fitted.
         rough.sort_by(|a, b| a.deviance.total_cmp(&b.deviance));
-        let refined = if alone { REFINED } else { REFINED_BESIDE };
+        let count = if alone { REFINED } else { REFINED_BESIDE };
+        let mut fitted = self.refined(&rough[..count.min(rough.len())], so_far)?;
+        let mut lowest = Vec::new();
+        let of_pressures = is_of_pressures(&self.few.different);
+        let goes_on = self.fitter.effort.goes_on() && !of_pressures;
+        if goes_on && !fitted.iter().any(|set| leaves_little(nothing, set)) {
+            (self.fitter.say)("searching far away", so_far);
+            rough.truncate(TRIED);
+            lowest = self.far_away(&rough)?;
+            fitted.extend(self.descended(&lowest)?);
+        }
+        Ok(Beside { fitted, lowest })
+    }
+
+    /// These trials fitted from where rough descents have led, and where that leaves more than noise in the machine as it was given.
+    fn refined(&self, trials: &[Trial], so_far: f64) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
-        let fitted = rough.par_iter().take(refined).map(|trial| {
+        let fitted = trials.par_iter().map(|trial| {
             (self.fitter.say)(&trial.words(), so_far);
             let mut model = self.fitter.settled(&trial.start)?;
             if !model.as_ref().is_some_and(Fitter::is_at_noise) {
@@ -165,30 +187,33 @@ impl Search<'_> {
             Ok(model.map(|model| Hypothesis::new(trial.set.clone(), model, own)))
         });
         let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
-        let mut fitted: Vec<Hypothesis> = fitted.into_iter().flatten().collect();
-        let of_pressures = is_of_pressures(&self.few.different);
-        let goes_on = self.fitter.effort.goes_on() && !of_pressures;
-        if goes_on && !fitted.iter().any(|set| left(nothing, &set.model) < LITTLE) {
-            (self.fitter.say)("searching far away", so_far);
-            rough.truncate(TRIED);
-            fitted.extend(self.far_away(&rough)?);
-        }
-        Ok(fitted)
+        Ok(fitted.into_iter().flatten().collect())
     }
 
-    /// The most promising of these trials, fitted from where their energies are low, however far away that is. What rough descents
+    /// These sets where descents lead from the machines as they are.
+    fn descended(&self, sets: &[Hypothesis]) -> Result<Vec<Hypothesis>, Error> {
+        let own = self.few.different.parameters.len();
+        let fitted = sets.par_iter().map(|Hypothesis { set, model, .. }| {
+            let led = (self.fitter).settled(&(model.problem.clone(), model.x.clone()))?;
+            Ok(led.map(|model| Hypothesis::new(set.clone(), model, own)))
+        });
+        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
+        Ok(fitted.into_iter().flatten().collect())
+    }
+
+    /// The machines of those of these trials whose energies are the lowest, however far away that is. What rough descents
     /// left of them does not count: it is the ringing in which they ended.
     fn far_away(&self, trials: &[Trial]) -> Result<Vec<Hypothesis>, Error> {
         let own = self.few.different.parameters.len();
         let starts: Vec<&Start> = trials.iter().map(|trial| &trial.start).collect();
-        let far = far_starts(self.fitter, &starts, own)?.into_par_iter();
-        let fitted = far.map(|(index, x)| {
+        let far = far_starts(self.fitter, &starts, own)?.into_iter();
+        let machines = far.map(|(index, x)| {
             let Trial { set, start, .. } = &trials[index];
-            let model = self.fitter.settled(&(start.0.clone(), x))?;
-            Ok(model.map(|model| Hypothesis::new(set.clone(), model, own)))
+            let at = Model::at(start.0.clone(), &x, TIMING, self.fitter.effort);
+            Ok(possible(at)?.map(|model| Hypothesis::new(set.clone(), model, own)))
         });
-        let fitted = fitted.collect::<Result<Vec<_>, Error>>()?;
-        Ok(fitted.into_iter().flatten().collect())
+        let machines = machines.collect::<Result<Vec<_>, Error>>()?;
+        Ok(machines.into_iter().flatten().collect())
     }
 
     /// The amendments that a node may get, the most promising first.
@@ -251,6 +276,28 @@ impl Search<'_> {
     }
 }
 
+/// Whether a set leaves no more than what the law of the right effect may be off by.
+fn leaves_little(nothing: &Model, set: &Hypothesis) -> bool {
+    left(nothing, &set.model) < LITTLE
+}
+
+/// The nodes to look at further: the first of different kinds that were not. Where none that was fitted leaves little, what is
+/// left of them is the ringing in which each fit ended, and those whose energies are the lowest come first.
+fn beam(
+    nothing: &Model,
+    fitted: &[Hypothesis],
+    lowest: &[Hypothesis],
+    expanded: &[Vec<String>],
+) -> Vec<Hypothesis> {
+    let lowest = match fitted.first() {
+        Some(best) if leaves_little(nothing, best) => &[],
+        _ => lowest,
+    };
+    let open = |node: &&Hypothesis| node.set.len() < MOST && !expanded.contains(&node.labels());
+    let beam = of_kinds(lowest.iter().chain(fitted).filter(open)).into_iter();
+    beam.take(WIDTH).cloned().collect()
+}
+
 /// The first of each node, then the second of each, and so on; no set twice.
 fn in_turn(
     beam: &[Hypothesis],
@@ -307,6 +354,14 @@ fn as_given((problem, x): &Start, own: usize) -> Start {
     (problem.clone(), x)
 }
 
+/// What was found beside nodes.
+struct Beside {
+    /// Sets that were fitted.
+    fitted: Vec<Hypothesis>,
+    /// Where sets were searched far away, the machines in which their energies are the lowest, the lowest first.
+    lowest: Vec<Hypothesis>,
+}
+
 /// A set that was fitted roughly.
 struct Trial {
     set: Vec<Amended>,
@@ -337,25 +392,50 @@ fn words(node: &Hypothesis, what: &str) -> String {
 mod tests {
     use super::*;
     use crate::fixture::{effort, problem};
+    use calibrate::Problem;
+
+    fn amendments(problem: &Problem) -> [Amendment; 3] {
+        let all = Amendment::all(problem).unwrap();
+        ["ring_friction", "misalignment", "sensor_gain"].map(|kind| {
+            let found = all.iter().find(|one| one.kind() == kind);
+            found.unwrap().clone()
+        })
+    }
+
+    fn node(problem: &Problem, amendment: &Amendment) -> Hypothesis {
+        let values = amendment.effect().unwrap().usual();
+        let set = vec![Amended {
+            amendment: amendment.clone(),
+            values,
+        }];
+        let model = Model::at(added(problem, &set).unwrap(), &[], 0.0, &effort()).unwrap();
+        Hypothesis::new(set, model, problem.parameters.len())
+    }
+
+    #[test]
+    fn where_no_fit_leaves_little_those_of_low_energies_are_looked_at_further() {
+        let problem = problem();
+        let [mut a, b, c] = amendments(&problem).map(|one| node(&problem, &one));
+        let nothing = Model::at(problem, &[], 0.0, &effort()).unwrap();
+        let fitted = |a: &Hypothesis| [a.clone(), b.clone()];
+        let labels = |fitted: &[Hypothesis], expanded: &[Vec<String>]| -> Vec<Vec<String>> {
+            let beam = beam(&nothing, fitted, std::slice::from_ref(&c), expanded);
+            beam.iter().map(Hypothesis::labels).collect()
+        };
+        let [of_a, of_b, of_c] = [&a, &b, &c].map(|one| one.labels());
+        a.model.fitted = nothing.fitted;
+        assert_eq!(labels(&fitted(&a), &[]), [of_c.clone(), of_a.clone()]);
+        let once = [of_c];
+        assert_eq!(labels(&fitted(&a), &once), [of_a.clone(), of_b.clone()]);
+        a.model.fitted = 1.0;
+        assert_eq!(labels(&fitted(&a), &[]), [of_a, of_b]);
+    }
 
     #[test]
     fn nodes_are_served_in_turn_and_no_set_is_fitted_twice() {
-        let (problem, effort) = (problem(), effort());
-        let all = Amendment::all(&problem).unwrap();
-        let [a, b, c] = ["ring_friction", "misalignment", "sensor_gain"].map(|kind| {
-            let found = all.iter().find(|one| one.kind() == kind);
-            found.unwrap().clone()
-        });
-        let node = |amendment: &Amendment| {
-            let values = amendment.effect().unwrap().usual();
-            let set = vec![Amended {
-                amendment: amendment.clone(),
-                values,
-            }];
-            let model = Model::at(added(&problem, &set).unwrap(), &[], 0.0, &effort).unwrap();
-            Hypothesis::new(set, model, problem.parameters.len())
-        };
-        let beam = [node(&a), node(&b)];
+        let problem = problem();
+        let [a, b, c] = amendments(&problem);
+        let beam = [node(&problem, &a), node(&problem, &b)];
         let screened = |all: [&Amendment; 2]| {
             let of = |amendment: &Amendment| Screened {
                 amendment: amendment.clone(),
