@@ -215,7 +215,8 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         };
         // What pressures leave may come from the joints, and hide what is their own.
         let explained = explains(&judged.believed.model);
-        others.retain(|one| !judged.believed.has(one) && !(explained && shown(one)));
+        let closed = |one: &Amendment| judged.believed.has(one) || explained && shown(one);
+        others.retain(|one| !closed(one));
     }
     known = at_their_ends(fitter, problem, known)?;
     let with_gas = added(problem, &known)?;
