@@ -1,6 +1,6 @@
 //! `crosshead explain-gap`: which effect a model lacks that recordings show.
 
-use crate::bundle::AllowOutside;
+use crate::bundle::Runs;
 use crate::calibrate::given;
 use crate::output::{hint, refuse_existing};
 use crate::progress::Progress;
@@ -42,14 +42,8 @@ pub(crate) struct Arguments {
     /// Folder to write into: gap.json, machine.yaml, simulated/, baseline/, report.html
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Predict this run and do not fit to it; may be repeated
-    #[arg(long, value_name = "RUN")]
-    hold_out: Vec<String>,
-    /// Do not use this run at all; may be repeated
-    #[arg(long, value_name = "RUN")]
-    leave_out: Vec<String>,
     #[command(flatten)]
-    outside: AllowOutside,
+    runs: Runs,
     /// Replace an explanation that is there
     #[arg(long)]
     overwrite: bool,
@@ -61,12 +55,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = &arguments.out;
     refuse_existing([out.join(RESULTS)], arguments.overwrite, "--out DIR")?;
     let (input, machine) = (from_ref(&arguments.input), arguments.machine.as_deref());
-    let given = given(input, machine, &arguments.hold_out, &arguments.leave_out)?;
+    let given = given(input, machine, &arguments.runs)?;
     let cancel = interrupt::flag()?;
     let asked = Asked {
         calibration: &given.calibration,
         base: &given.base,
-        allow_outside: arguments.outside.allow_outside,
+        allow_outside: arguments.runs.outside.allow_outside,
         locate: &|error| given.locate(error),
     };
     let results = shown(&asked, out, &cancel)?;

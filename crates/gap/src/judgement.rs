@@ -269,20 +269,18 @@ mod tests {
         named.map(Amendment::Effect).collect()
     }
 
+    /// What is believed of the effects of these names.
+    fn judged_of(problem: &Problem, names: &[&str]) -> Judgement {
+        let effort = effort();
+        let amendments = of_kinds_named(problem, names);
+        let forms = Forms::UsualWhereTheySuffice;
+        judged(&fitter(&effort), problem, &[0.0], &amendments, forms).unwrap()
+    }
+
     #[test]
     fn the_right_kind_is_believed_among_others() {
         let problem = problem();
-        let effort = effort();
-        let fitter = fitter(&effort);
-        let amendments = of_kinds_named(&problem, &["ring_friction", "misalignment"]);
-        let judged = judged(
-            &fitter,
-            &problem,
-            &[0.0],
-            &amendments,
-            Forms::UsualWhereTheySuffice,
-        )
-        .unwrap();
+        let judged = judged_of(&problem, &["ring_friction", "misalignment"]);
         let labels = judged.believed.labels();
         assert_eq!(labels, ["ring_friction"]);
         assert!(judged.probabilities[0] > 0.9, "{:?}", judged.probabilities);
@@ -297,17 +295,7 @@ mod tests {
     fn what_is_in_none_of_the_candidates_is_not_named() {
         let effect = json!([{"squeeze_film": {"joint": "small_end", "viscosity": "0.05 Pa s"}}]);
         let problem = problem_of(effect);
-        let effort = effort();
-        let fitter = fitter(&effort);
-        let amendments = of_kinds_named(&problem, &["sensor_gain"]);
-        let judged = judged(
-            &fitter,
-            &problem,
-            &[0.0],
-            &amendments,
-            Forms::UsualWhereTheySuffice,
-        )
-        .unwrap();
+        let judged = judged_of(&problem, &["sensor_gain"]);
         assert!(
             judged.believed.set.is_empty(),
             "{:?}",

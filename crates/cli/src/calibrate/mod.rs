@@ -4,7 +4,7 @@ mod progress;
 
 pub(crate) use progress::Bar;
 
-use crate::bundle::AllowOutside;
+use crate::bundle::Runs;
 use crate::choice::one_of;
 use crate::output::hint;
 use crate::result_format::ResultFormat;
@@ -87,14 +87,8 @@ pub(crate) struct Arguments {
     /// eq5]
     #[arg(long, value_name = "RELATION", value_parser = one_of(RELATIONS))]
     relation: Option<Relation>,
-    /// Predict this run and do not fit to it; may be repeated
-    #[arg(long, value_name = "RUN")]
-    hold_out: Vec<String>,
-    /// Do not use this run at all; may be repeated
-    #[arg(long, value_name = "RUN")]
-    leave_out: Vec<String>,
     #[command(flatten)]
-    outside: AllowOutside,
+    runs: Runs,
     /// How the best fit is searched [default: default]
     #[arg(long, value_parser = one_of(OPTIMISERS))]
     optimiser: Option<Optimiser>,
@@ -122,8 +116,7 @@ pub(crate) struct Arguments {
 pub(crate) fn given(
     inputs: &[PathBuf],
     machine: Option<&Path>,
-    hold_out: &[String],
-    leave_out: &[String],
+    runs: &Runs,
 ) -> Result<Given, Failure> {
     let mut given = Given::read(inputs)?;
     let settings = &mut given.calibration;
@@ -131,11 +124,11 @@ pub(crate) fn given(
         // From here on, and not from the folder of the file.
         settings.machine = Some(std::path::absolute(machine).map_err(Failure::input)?);
     }
-    if !hold_out.is_empty() {
-        settings.hold_out = Some(hold_out.to_vec());
+    if !runs.hold_out.is_empty() {
+        settings.hold_out = Some(runs.hold_out.clone());
     }
-    if !leave_out.is_empty() {
-        settings.leave_out = leave_out.to_vec();
+    if !runs.leave_out.is_empty() {
+        settings.leave_out.clone_from(&runs.leave_out);
     }
     Ok(given)
 }
@@ -144,7 +137,7 @@ impl Arguments {
     /// The settings, which the options override.
     fn given(&self) -> Result<Given, Failure> {
         let machine = self.machine.as_deref();
-        let mut given = given(&self.input, machine, &self.hold_out, &self.leave_out)?;
+        let mut given = given(&self.input, machine, &self.runs)?;
         let settings = &mut given.calibration;
         if !self.parameter.is_empty() {
             let paths = self.parameter.iter().cloned();
@@ -165,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         calibration: &given.calibration,
         base: &given.base,
         machine: None,
-        allow_outside: arguments.outside.allow_outside,
+        allow_outside: arguments.runs.outside.allow_outside,
         clearances_unknown: false,
         locate: &|error| given.locate(error),
     };
