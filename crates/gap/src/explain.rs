@@ -191,7 +191,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         let (gas, forms): (Vec<Amendment>, _) = match has_joints(problem) {
             true => {
                 let of_gas = all.iter().filter(|one| of_gas(one));
-                (of_gas.cloned().collect(), Forms::Free)
+                (of_gas.cloned().collect(), Forms::FreeUntilExplained)
             }
             false => (all.clone(), Forms::UsualWhereTheySuffice),
         };
