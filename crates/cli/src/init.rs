@@ -11,6 +11,8 @@ use input::bundle::Bundle;
 use input::file_kind::{FileKind, MACHINE_FILE};
 use input::template::{self, Asked};
 use input::{MachineFile, machine_file};
+use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// What the file in this folder begins with.
@@ -77,7 +79,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let out = arguments.out.clone().unwrap_or_else(|| kind.file.into());
     let text = template(arguments, out.parent().unwrap_or(Path::new("")))?;
     refuse_existing([&out], arguments.overwrite, "--out FILE")?;
-    std::fs::write(&out, text).map_err(|error| Failure::unwritten(&out, error))?;
+    let file = match arguments.overwrite {
+        true => File::create(&out),
+        false => File::create_new(&out),
+    };
+    let written = file.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|error| Failure::unwritten(&out, error))?;
     println!("{}", out.display());
     Ok(())
 }
