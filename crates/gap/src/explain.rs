@@ -191,7 +191,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         let (gas, forms): (Vec<Amendment>, _) = match has_joints(problem) {
             true => {
                 let of_gas = all.iter().filter(|one| of_gas(one));
-                (of_gas.cloned().collect(), Forms::FreeUntilExplained)
+                (of_gas.cloned().collect(), Forms::Free)
             }
             false => (all.clone(), Forms::UsualWhereTheySuffice),
         };
@@ -241,6 +241,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     if let Some(last) = found.last_mut() {
         last.after = Some(judged.nothing.model.clone());
     }
+    let (known, model) = in_usual_forms(fitter, problem, known, &judged.believed)?;
     for (found, known) in found
         .iter_mut()
         .zip(known.iter().filter_map(|one| one.amendment.effect()))
@@ -248,13 +249,32 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         found.effect.candidate = known.clone();
     }
     found.extend(judged.found(&with_gas));
+    if let Some(last) = found.last_mut() {
+        last.after = Some(model.clone());
+    }
     Ok(Whole {
         baseline,
         refused: judged.refused(&with_gas),
         probabilities: corrected(&judged),
-        model: judged.believed.model,
+        model,
         found,
     })
+}
+
+/// What is known of the gas, in the usual forms of its laws where all recordings together do not need others, and the model
+/// with that and what is believed beside it.
+fn in_usual_forms(
+    fitter: &Fitter,
+    problem: &Problem,
+    known: Vec<Amended>,
+    believed: &Hypothesis,
+) -> Result<(Vec<Amended>, Model), Error> {
+    let count = known.len();
+    let set = [known, believed.set.clone()].concat();
+    let all = Hypothesis::new(set, believed.model.clone(), problem.parameters.len());
+    let mut all = all.of_usual_form(count, fitter, problem)?;
+    all.set.truncate(count);
+    Ok((all.set, all.model))
 }
 
 /// The effects of the gas. Each acts at the one end of its cylinder whose pressure was recorded, where everything that

@@ -85,17 +85,23 @@ impl Hypothesis {
         Ok(model.map(|model| Self::new(self.set.clone(), model, problem.parameters.len())))
     }
 
-    /// The same with the usual forms of its laws, where the recordings are less likely so by no more than what the
-    /// freedom of another form costs.
+    /// The same with the usual forms of the laws of its first `count` amendments, where the recordings are less likely so by no
+    /// more than what the freedom of another form costs.
     ///
     /// # Errors
     /// [`Error::Stopped`].
-    pub fn of_usual_form(self, fitter: &Fitter, problem: &Problem) -> Result<Self, Error> {
+    pub fn of_usual_form(
+        self,
+        count: usize,
+        fitter: &Fitter,
+        problem: &Problem,
+    ) -> Result<Self, Error> {
         let values = self.values(problem);
         let all = self.set.iter().zip(&values);
-        let usual: Vec<_> = all
+        let mut usual: Vec<_> = all
             .map(|(one, values)| one.amendment.of_usual_form(values))
             .collect();
+        usual[count..].fill(None);
         if usual.iter().all(Option::is_none) {
             return Ok(self);
         }

@@ -2,7 +2,7 @@
 //! might have been.
 
 use crate::amendment::Amendment;
-use crate::criteria::{NAMED, evidence, explains, left, probability};
+use crate::criteria::{NAMED, evidence, left, probability};
 use crate::error::Error;
 use crate::finding::{Found, Tried};
 use crate::fitter::Fitter;
@@ -36,9 +36,8 @@ pub(crate) struct Judgement {
 /// What comes of the forms of the laws that are believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Forms {
-    /// They stay free where more than noise is left: something in the machine was left out, and what that does may look like
-    /// another form.
-    FreeUntilExplained,
+    /// They stay free: something in the machine was left out, and what that does may look like another form.
+    Free,
     /// They are the usual ones where the recordings do not need others.
     UsualWhereTheySuffice,
 }
@@ -101,8 +100,11 @@ pub(crate) fn judged(
         }
     }
     let believed = match forms {
-        Forms::FreeUntilExplained if !explains(&believed.model) => believed.clone(),
-        _ => believed.clone().of_usual_form(fitter, problem)?,
+        Forms::Free => believed.clone(),
+        Forms::UsualWhereTheySuffice => {
+            let count = believed.set.len();
+            believed.clone().of_usual_form(count, fitter, problem)?
+        }
     };
     let believed = believed.finished(fitter, problem)?;
     let (before, added) = (without.set.len(), believed.set.len() - without.set.len());
