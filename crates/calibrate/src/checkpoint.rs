@@ -7,6 +7,7 @@
 //! evaluations there, until the first that is missing. Its results are bit-identical to those of an uninterrupted
 //! calibration. Only the evaluation under way is lost. The file is locked as long as it is open.
 
+use files::Locked;
 use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::fmt::{self, Debug, Write as _};
@@ -31,7 +32,7 @@ pub struct Checkpoint {
 
 #[derive(Debug)]
 struct Kept {
-    file: File,
+    file: Locked,
     /// Where the values of each evaluation begin, and how many they are.
     known: HashMap<Key, (u64, usize)>,
     end: u64,

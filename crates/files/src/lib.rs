@@ -8,6 +8,7 @@
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Error, ErrorKind, Read};
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
 
 /// Longest text of a person or of one result, in bytes: 64 MiB. The YAML reader takes no more text than that either.
@@ -83,12 +84,44 @@ pub fn content(file: File, most: u64) -> io::Result<Vec<u8>> {
     Ok(content)
 }
 
-/// Opens or makes a file that is read and written during long work, and locks it as long as it stays open.
+/// A locked file. The lock is released when this is dropped, also where a process that another thread
+/// has just started still has the file open.
+#[derive(Debug)]
+pub struct Locked(File);
+
+impl Locked {
+    /// A file on which this process has taken a lock.
+    pub fn new(file: File) -> Self {
+        Self(file)
+    }
+}
+
+impl Deref for Locked {
+    type Target = File;
+
+    fn deref(&self) -> &File {
+        &self.0
+    }
+}
+
+impl DerefMut for Locked {
+    fn deref_mut(&mut self) -> &mut File {
+        &mut self.0
+    }
+}
+
+impl Drop for Locked {
+    fn drop(&mut self) {
+        let _without_locks = self.0.unlock();
+    }
+}
+
+/// Opens or makes a file that is read and written during long work, and locks it.
 /// It is not locked if the file system has no locks.
 ///
 /// # Errors
 /// [`ErrorKind::ResourceBusy`] where another process holds it, or has just removed it; a file that cannot be opened.
-pub fn lock(path: &Path) -> io::Result<File> {
+pub fn lock(path: &Path) -> io::Result<Locked> {
     let busy = || {
         let reason = "another process is at work in this folder";
         Error::new(ErrorKind::ResourceBusy, reason)
@@ -103,6 +136,7 @@ pub fn lock(path: &Path) -> io::Result<File> {
         }
         _ => {}
     }
+    let file = Locked::new(file);
     match is_at(&file, path)? {
         true => Ok(file),
         false => Err(busy()),
@@ -182,12 +216,14 @@ mod tests {
         let first = lock(&path).unwrap();
         let refused = lock(&path).unwrap_err();
         assert_eq!(refused.kind(), ErrorKind::ResourceBusy);
+        // A process started meanwhile has the same open file, as this one does.
+        let inherited = first.try_clone().unwrap();
         drop(first);
         let second = lock(&path).unwrap();
         fs::remove_file(&path).unwrap();
         // What the second holds is no longer there, so that it is in nobody's way.
         lock(&path).unwrap();
-        drop(second);
+        drop((second, inherited));
     }
 
     /// A pipe without a writer is opened at once, and refused.

@@ -7,11 +7,11 @@
 //! depend on whether the work was interrupted.
 
 use crate::error::Error;
+use files::Locked;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::{Debug, Write as _};
-use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -36,7 +36,7 @@ pub(crate) struct Finished {
 #[derive(Debug)]
 struct Kept {
     known: BTreeMap<String, Finished>,
-    file: File,
+    file: Locked,
 }
 
 #[derive(Serialize, Deserialize)]

@@ -10,13 +10,13 @@
 //! 4. The markers of a shard are removed with its commit, and all of them when the dataset is complete.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
+use files::Locked;
 use serde::Serialize;
 
 use super::layout::ATTEMPTS;
@@ -69,7 +69,7 @@ struct Marker {
     path: String,
     record: String,
     /// Held for the time of the attempt; none where the storage knows no locks.
-    lock: Option<File>,
+    lock: Option<Locked>,
 }
 
 impl<'a> Attempts<'a> {

@@ -10,6 +10,8 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use files::Locked;
+
 use crate::Error;
 
 /// So long is waited for a process that tidies up.
@@ -18,7 +20,7 @@ const MOMENT: Duration = Duration::from_secs(2);
 /// A locked file.
 #[derive(Debug)]
 pub(super) struct Lock {
-    file: File,
+    file: Locked,
     /// Whether no other process holds it.
     pub(super) alone: bool,
 }
@@ -34,12 +36,13 @@ impl Drop for Lock {
 
 /// Locks `_sweep/lock`, and writes this process's number into it for whoever comes second.
 pub(super) fn lock(root: &Path) -> Result<Lock, Error> {
-    let (mut file, unwritable) = open(root, "_sweep/lock")?;
+    let (file, unwritable) = open(root, "_sweep/lock")?;
     match file.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock) => return Err(in_use(root, file)),
         Err(TryLockError::Error(source)) => return Err(unwritable(source)),
     }
+    let mut file = Locked::new(file);
     let mut sign = || {
         file.set_len(0)?;
         file.seek(SeekFrom::Start(0))?;
@@ -62,7 +65,10 @@ pub(super) fn lock_shared(root: &Path) -> Result<Option<Lock>, Error> {
         }
     };
     match locked {
-        Ok(()) => Ok(Some(Lock { file, alone: false })),
+        Ok(()) => Ok(Some(Lock {
+            file: Locked::new(file),
+            alone: false,
+        })),
         Err(TryLockError::WouldBlock) => Err(in_use(root, file)),
         Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(None),
         Err(TryLockError::Error(source)) => Err(unwritable(source)),
@@ -109,20 +115,22 @@ pub(super) fn alone(
     *own = None;
     let (file, _) = open(root, "_sweep/lock")?;
     let done = match file.try_lock() {
-        Ok(()) => work(),
+        Ok(()) => {
+            let _alone = Locked::new(file);
+            work()
+        }
         Err(_) => Ok(()),
     };
-    drop(file);
     *own = lock_shared(root)?;
     done
 }
 
 /// Locks `_sweep/commit.lock`: together with others, or `alone`; nothing where there are no locks.
-pub(super) fn lock_commits(root: &Path, alone: bool) -> Result<Option<File>, Error> {
+pub(super) fn lock_commits(root: &Path, alone: bool) -> Result<Option<Locked>, Error> {
     let (file, _) = open(root, "_sweep/commit.lock")?;
     let locked = match alone {
         true => file.lock(),
         false => file.lock_shared(),
     };
-    Ok(locked.is_ok().then_some(file))
+    Ok(locked.is_ok().then(|| Locked::new(file)))
 }

@@ -1,10 +1,10 @@
 //! The place of a dataset that has been begun.
 
 use std::fmt::Display;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use files::Locked;
 use input::yaml::Document;
 use serde::{Deserialize, Serialize};
 
@@ -117,7 +117,7 @@ impl Output {
 
     /// Waits until no other process commits a shard, or until none does so `alone`. No lock is needed
     /// if one process makes the whole dataset, or if there are no locks.
-    pub(super) fn committing(&self, alone: bool) -> Result<Option<File>, Error> {
+    pub(super) fn committing(&self, alone: bool) -> Result<Option<Locked>, Error> {
         match self.store.folder().filter(|_| !self.is_alone()) {
             Some(root) => lock_commits(root, alone),
             None => Ok(None),

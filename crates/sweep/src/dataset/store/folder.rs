@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use files::Locked;
 use recordings::{FileRecord, WholeFile, sync_folder};
 use sha2::{Digest, Sha256};
 
@@ -68,22 +69,26 @@ impl Folder {
 
     /// The lock is taken before the file has its name, so it is never visible without one. There
     /// is no lock if the file system has none.
-    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
+    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<Locked>, Error> {
         let (temporary, path) = (self.path(&temporary(path)), self.path(path));
         let mut file =
             File::create(&temporary).map_err(|error| failed("create", &temporary, error))?;
         let locked = file.try_lock().is_ok();
         let written = file.write_all(content.as_bytes());
+        let lock = locked.then(|| Locked::new(file));
         let placed = written.and_then(|()| fs::rename(&temporary, &path));
         placed.map_err(|error| failed("write", &path, error))?;
-        Ok(locked.then_some(file))
+        Ok(lock)
     }
 
     pub(super) fn holder(&self, path: &str) -> Result<Option<Holder>, Error> {
         let path = self.path(path);
         let file = if_exists("read", &path, File::open(&path))?;
         Ok(file.map(|file| match file.try_lock_shared() {
-            Ok(()) => Holder::Ended,
+            Ok(()) => {
+                drop(Locked::new(file));
+                Holder::Ended
+            }
             Err(TryLockError::WouldBlock) => Holder::AtWork,
             Err(TryLockError::Error(_)) => Holder::Unknown,
         }))

@@ -8,12 +8,12 @@ mod holder;
 mod new_file;
 mod temporary;
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use files::Locked;
 use recordings::FileRecord;
 
 use crate::Error;
@@ -104,7 +104,7 @@ impl Store {
     }
 
     /// Puts a file of this process, locked until it ends where the place knows locks.
-    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<File>, Error> {
+    pub(super) fn hold(&self, path: &str, content: &str) -> Result<Option<Locked>, Error> {
         match self {
             Self::Folder(store) => store.hold(path, content),
             #[cfg(feature = "s3")]
