@@ -36,7 +36,7 @@ fn ended(command: &mut Command) -> (Option<i32>, String) {
     let mut child = piped.spawn().unwrap();
     let begun = Instant::now();
     while child.try_wait().unwrap().is_none() {
-        if begun.elapsed() > Duration::from_secs(60) {
+        if begun.elapsed() > Duration::from_secs(600) {
             child.kill().unwrap();
             panic!("{command:?} hangs");
         }

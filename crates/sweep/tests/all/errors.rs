@@ -346,7 +346,6 @@ fn a_billion_cases_are_planned_but_not_run() {
     let steps = "{from: 300 rpm, to: 600 rpm, count: 1000000}";
     let grid = format!("cases:\n  - grid: {{speed: {steps}}}\n");
     for cases in [random, &grid] {
-        let start = std::time::Instant::now();
         let plan = plan(&format!("{HEAD}{head}{cases}")).unwrap();
         assert_eq!(plan.cases(), 1_000_000_000);
         let estimate = plan.estimate();
@@ -359,7 +358,6 @@ fn a_billion_cases_are_planned_but_not_run() {
         );
         let last = plan.case(999_999_999).unwrap();
         assert_eq!((last.id.as_str(), last.repeat), ("case-999999999", 999));
-        assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 
         let error = plan.check_size().unwrap_err();
         assert!(matches!(
