@@ -86,17 +86,25 @@ impl Checkpoint {
         files::open(path).is_ok_and(|file| begins_with(&file, title))
     }
 
-    /// The numbers that `work` gives for this input, or gave before. Numbers that cannot be written are lost, and
-    /// no more than that.
-    pub(crate) fn once(&self, input: &dyn Debug, work: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
-        let key = key(input);
+    /// The numbers for each of these inputs, which `work` gives for the indices of those that it did not give before. Numbers
+    /// that cannot be written are lost, and no more than that.
+    pub(crate) fn once_each(
+        &self,
+        inputs: &[impl Debug],
+        work: impl FnOnce(&[usize]) -> Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
         let open = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(values) = open().read(&key) {
-            return values;
+        let keys: Vec<Key> = inputs.iter().map(|input| key(input)).collect();
+        let mut known: Vec<_> = keys.iter().map(|key| open().read(key)).collect();
+        let missing = (0..keys.len()).filter(|i| known[*i].is_none());
+        let missing: Vec<usize> = missing.collect();
+        if !missing.is_empty() {
+            for (i, values) in missing.iter().zip(work(&missing)) {
+                let _lost = open().write(keys[*i], &values);
+                known[*i] = Some(values);
+            }
         }
-        let values = work();
-        let _lost = open().write(key, &values);
-        values
+        known.into_iter().flatten().collect()
     }
 }
 
@@ -166,6 +174,14 @@ fn key(input: &dyn Debug) -> Key {
 mod tests {
     use super::*;
 
+    fn once(
+        checkpoint: &Checkpoint,
+        input: (&str, f64),
+        work: impl FnOnce() -> Vec<f64>,
+    ) -> Vec<f64> {
+        checkpoint.once_each(&[input], |_| vec![work()]).concat()
+    }
+
     #[test]
     fn what_was_evaluated_is_found_again_after_any_end() {
         let path = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
@@ -173,8 +189,8 @@ mod tests {
         let first = Checkpoint::open(&path, "of this", false).unwrap();
         let busy = Checkpoint::open(&path, "of this", true).unwrap_err();
         assert_eq!(busy.kind(), io::ErrorKind::ResourceBusy);
-        assert_eq!(first.once(&("a", 0.1), || third.to_vec()), third);
-        assert_eq!(first.once(&("b", 0.1), || vec![2.0]), [2.0]);
+        assert_eq!(once(&first, ("a", 0.1), || third.to_vec()), third);
+        assert_eq!(once(&first, ("b", 0.1), || vec![2.0]), [2.0]);
         drop(first);
         // Killed in the middle of the second.
         let length = std::fs::metadata(&path).unwrap().len();
@@ -183,18 +199,18 @@ mod tests {
         file.set_len(length - 3).unwrap();
         assert!(Checkpoint::is_of(&path, "of this") && !Checkpoint::is_of(&path, "of that"));
         let again = Checkpoint::open(&path, "of this", false).unwrap();
-        assert_eq!(again.once(&("a", 0.1), Vec::new), third);
-        assert_eq!(again.once(&("b", 0.1), || vec![3.0]), [3.0]);
-        assert_eq!(again.once(&("b", 0.1), Vec::new), [3.0]);
+        assert_eq!(once(&again, ("a", 0.1), Vec::new), third);
+        assert_eq!(once(&again, ("b", 0.1), || vec![3.0]), [3.0]);
+        assert_eq!(once(&again, ("b", 0.1), Vec::new), [3.0]);
         // A bit of the first evaluation altered: it is made again.
         let first_value = "of this\n".len() + size_of::<Key>() + NUMBER;
         file.seek(SeekFrom::Start(first_value as u64)).unwrap();
         file.write_all(&[0x54]).unwrap();
-        assert_eq!(again.once(&("a", 0.1), || vec![5.0]), [5.0]);
-        assert_eq!(again.once(&("a", 0.1), Vec::new), [5.0]);
+        assert_eq!(once(&again, ("a", 0.1), || vec![5.0]), [5.0]);
+        assert_eq!(once(&again, ("a", 0.1), Vec::new), [5.0]);
         drop(again);
         let other = Checkpoint::open(&path, "of that", false).unwrap();
-        assert_eq!(other.once(&("a", 0.1), || vec![4.0]), [4.0]);
+        assert_eq!(once(&other, ("a", 0.1), || vec![4.0]), [4.0]);
         std::fs::remove_file(path).unwrap();
     }
 }

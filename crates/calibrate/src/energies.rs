@@ -24,6 +24,9 @@ const ORDERS: usize = 2;
 const QUIET: f64 = 0.03;
 /// Standard deviation of the logarithm of an energy that a law somewhat off predicts: 16 % of the amplitude.
 const SPREAD: f64 = 0.3;
+/// Runs that a thread simulates side by side: two fillings of the widest registers, so that a lane that is done early has
+/// something to go on with.
+const TOGETHER: usize = 16;
 /// By how much a slow feature may stand elsewhere, rad.
 pub const TIMING: f64 = 0.03;
 
@@ -230,21 +233,24 @@ impl<'a> Energies<'a> {
         }
     }
 
-    fn of_run(
-        &self,
-        run: &Run,
-        x: &[f64],
-        derivatives: bool,
-    ) -> Result<(Vec<f64>, DMatrix<f64>), Error> {
-        // Derivatives are those of a motion that has settled.
-        let accuracy = match derivatives {
-            true => Accuracy::Coarse,
-            false => Accuracy::Rough,
-        };
+    /// The residuals of each of these runs at these coordinates.
+    fn of_runs(&self, runs: &[(&Run, &[f64])]) -> Vec<Vec<f64>> {
+        let wanted: Vec<_> = runs.iter().map(|(run, x)| (run.observed, *x)).collect();
+        let predictions = self.machine.rough_predictions(&wanted).into_iter();
+        let residuals = predictions.zip(runs).map(|(prediction, (run, _))| {
+            prediction.map_or_else(
+                || vec![FAILED; residual_count(run.observed)],
+                |prediction| run.compared(&prediction, 0).0,
+            )
+        });
+        residuals.collect()
+    }
+
+    /// The derivatives of a run's residuals: those of a motion that has settled.
+    fn derivatives(&self, run: &Run, x: &[f64]) -> Result<DMatrix<f64>, Error> {
         let machine = &self.machine;
-        let prediction = machine.prediction(run.observed, x, derivatives, accuracy)?;
-        let count = if derivatives { x.len() } else { 0 };
-        Ok(run.compared(&prediction, count))
+        let prediction = machine.prediction(run.observed, x, true, Accuracy::Coarse)?;
+        Ok(run.compared(&prediction, x.len()).1)
     }
 }
 
@@ -262,23 +268,29 @@ impl LeastSquares for Energies<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        self.problem.once(&"energies", x, || {
-            let runs = self.runs.par_iter();
+        self.residuals_of_all(&[x.to_vec()]).concat()
+    }
+
+    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        self.problem.once_each(&"energies", all, |unknown| {
+            let runs = unknown
+                .iter()
+                .flat_map(|x| self.runs.iter().map(move |run| (run, &x[..])));
+            let runs: Vec<_> = runs.collect();
             let parts: Vec<Vec<f64>> = runs
-                .map(|run| match self.of_run(run, x, false) {
-                    Ok((residuals, _)) => residuals,
-                    Err(_) => vec![FAILED; residual_count(run.observed)],
-                })
+                .par_chunks(TOGETHER)
+                .flat_map_iter(|runs| self.of_runs(runs))
                 .collect();
-            parts.concat()
+            let of_each = parts.chunks(self.runs.len().max(1));
+            of_each.map(<[Vec<f64>]>::concat).collect()
         })
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let columns = || {
-            let whole = stacked(&self.runs, |run| match self.of_run(run, x, true) {
-                Ok((_, derivatives)) => derivatives,
-                Err(_) => DMatrix::zeros(residual_count(run.observed), x.len()),
+            let whole = stacked(&self.runs, |run| {
+                let none = |_| DMatrix::zeros(residual_count(run.observed), x.len());
+                self.derivatives(run, x).unwrap_or_else(none)
             });
             whole.as_slice().to_vec()
         };

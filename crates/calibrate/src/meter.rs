@@ -33,9 +33,18 @@ impl Meter {
 
     /// The numbers that `work` gives for this input, or gave before.
     pub(crate) fn once(&self, input: &dyn fmt::Debug, work: impl FnOnce() -> Vec<f64>) -> Vec<f64> {
+        self.once_each(&[input], |_| vec![work()]).concat()
+    }
+
+    /// The same for each of several inputs: `work` gives those of the indices that are not known from before.
+    pub(crate) fn once_each(
+        &self,
+        inputs: &[impl fmt::Debug],
+        work: impl FnOnce(&[usize]) -> Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
         match &self.checkpoint {
-            Some(checkpoint) => checkpoint.once(input, work),
-            None => work(),
+            Some(checkpoint) => checkpoint.once_each(inputs, work),
+            None => work(&(0..inputs.len()).collect::<Vec<_>>()),
         }
     }
 }

@@ -18,6 +18,10 @@ pub trait LeastSquares {
     fn count(&self) -> usize;
     /// The residuals at `x`.
     fn residuals(&self, x: &[f64]) -> Vec<f64>;
+    /// The residuals at each of these points.
+    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        all.iter().map(|x| self.residuals(x)).collect()
+    }
     /// Their derivatives: a row per residual, a column per coordinate.
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64>;
 }

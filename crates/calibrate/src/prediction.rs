@@ -9,7 +9,9 @@ use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::high_pass::HighPass;
 use signal::order_lines::OrderLines;
-use simulate::{Sensor, Settings, Structure, Transient, sensitivities};
+use simulate::{
+    Asked, Sensitivities, Sensor, Settings, Structure, Transient, sensitivities, settled_together,
+};
 use std::f64::consts::TAU;
 
 /// Relative local error of the integration; far below the noise of any sensor.
@@ -104,24 +106,7 @@ pub(crate) fn prediction(
     wanted: bool,
     accuracy: Accuracy,
 ) -> Result<Prediction, Error> {
-    let mut machine = problem.machine(run, x)?;
-    let slow = Slow::taken_from(&mut machine.sensors);
-    let turning = machine.speed;
-    let speed = turning.abs();
-    // With the speed given, samples then stand at the grid's angles themselves.
-    let sample_rate = POINTS as f64 * speed / TAU;
-    let failed = |source| Error::Simulation {
-        run: run.id.clone(),
-        source,
-    };
-    let (transient, revolutions) = accuracy.lasting(run.repeats());
-    let settings = Settings {
-        transient,
-        revolutions,
-        sample_rate,
-        inner_rate: inner_rate(&machine),
-        tolerance: accuracy.tolerance(),
-    };
+    let at = At::new(problem, run, x, accuracy)?;
     // The frame feels all throws.
     let is_of_throw = run.channels.iter().all(|c| c.column.contains('.'));
     let mut groups = match wanted {
@@ -137,30 +122,27 @@ pub(crate) fn prediction(
         .iter_mut()
         .map(|moved| Slow::taken_from(&mut moved.sensors))
         .collect();
-    let record = sensitivities(&machine.machine, &machine.sensors, &moved, &settings);
-    let record = record.map_err(failed)?;
+    let At {
+        slow,
+        turning,
+        offset_slopes,
+        ..
+    } = &at;
+    let turning = *turning;
+    let Asked {
+        machine,
+        sensors,
+        settings,
+    } = at.asked();
+    let record = at.recorded(sensitivities(machine, sensors, &moved, settings))?;
     problem.meter.add(record.steps);
     let periodic = record.settled;
-    let analysis = |source| Error::Signal {
-        run: run.id.clone(),
-        channel: "simulated".into(),
-        source,
-    };
-    let (angle, series) = record
-        .series
-        .split_last()
-        .ok_or(Error::Nothing("a run without channels cannot be predicted"))?;
-    let angle = CrankAngle::from_encoder(angle).map_err(analysis)?;
-    let grid = AngleGrid::new(&angle, POINTS).map_err(analysis)?;
-    let lines_of = |samples: &[f64]| observation::lines(&grid, samples).map_err(analysis);
-    let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
-    let shown =
-        |channel: usize, lines: OrderLines| slow[channel].shown(later(lines, offset), turning);
-    let lines = series
-        .iter()
-        .enumerate()
-        .map(|(channel, s)| Ok(shown(channel, lines_of(s)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
+    let Shown {
+        angle,
+        grid,
+        series,
+    } = at.shown(&record)?;
+    let lines = at.lines_of_all(&grid, series)?;
     let mut derivatives = record
         .derivatives
         .iter()
@@ -172,7 +154,7 @@ pub(crate) fn prediction(
             channels
                 .map(|(channel, (derivative, x))| {
                     let at_angle = at_equal_angle(derivative, x, of_angle, angle.angles());
-                    let lines = shown(channel, lines_of(&at_angle)?);
+                    let lines = at.lines(&grid, channel, &at_angle)?;
                     let per_coordinate = |c: &Complex64| c / problem.step();
                     Ok(lines.amplitude.iter().map(per_coordinate).collect())
                 })
@@ -206,6 +188,145 @@ pub(crate) fn prediction(
         derivatives,
         periodic,
     })
+}
+
+/// What a machine shows in these runs at these coordinates, to a few hundredths and without derivatives; none where it cannot be
+/// simulated. All are simulated side by side, and do not depend on each other.
+pub(crate) fn rough_predictions(
+    problem: &Problem,
+    wanted: &[(&Observation, &[f64])],
+) -> Vec<Option<Prediction>> {
+    let all = wanted.iter();
+    let all = all.map(|(run, x)| At::new(problem, run, x, Accuracy::Rough).ok());
+    let all: Vec<Option<At>> = all.collect();
+    let asked: Vec<Asked> = all.iter().flatten().map(At::asked).collect();
+    let mut records = settled_together(&asked).into_iter();
+    let of = |at: Option<At>| {
+        let at = at?;
+        let record = records.next()?.ok()?;
+        problem.meter.add(record.steps);
+        let shown = at.shown(&record).ok()?;
+        Some(Prediction {
+            lines: at.lines_of_all(&shown.grid, shown.series).ok()?,
+            derivatives: Vec::new(),
+            periodic: record.settled,
+        })
+    };
+    all.into_iter().map(of).collect()
+}
+
+/// A machine in one run.
+struct At<'a> {
+    run: &'a Observation,
+    machine: Resolved,
+    /// What of the measuring chains the machine does not have.
+    slow: Vec<Slow>,
+    settings: Settings,
+    /// Speed of the crank, rad/s; negative clockwise.
+    turning: f64,
+    /// By how much the recorded crank angle is ahead, rad, and its derivatives.
+    offset: f64,
+    offset_slopes: Vec<f64>,
+}
+
+/// A record of a machine over the grid of crank angles.
+struct Shown<'a> {
+    angle: CrankAngle,
+    grid: AngleGrid,
+    /// What the channels show.
+    series: &'a [Vec<f64>],
+}
+
+impl<'a> At<'a> {
+    fn new(
+        problem: &Problem,
+        run: &'a Observation,
+        x: &[f64],
+        accuracy: Accuracy,
+    ) -> Result<Self, Error> {
+        let mut machine = problem.machine(run, x)?;
+        let slow = Slow::taken_from(&mut machine.sensors);
+        let turning = machine.speed;
+        let (transient, revolutions) = accuracy.lasting(run.repeats());
+        let (offset, offset_slopes) = problem.crank_angle_offset(run, x);
+        Ok(Self {
+            run,
+            settings: Settings {
+                transient,
+                revolutions,
+                // With the speed given, samples then stand at the grid's angles themselves.
+                sample_rate: POINTS as f64 * turning.abs() / TAU,
+                inner_rate: inner_rate(&machine),
+                tolerance: accuracy.tolerance(),
+            },
+            machine,
+            slow,
+            turning,
+            offset,
+            offset_slopes,
+        })
+    }
+
+    fn asked(&self) -> Asked<'_> {
+        Asked {
+            machine: &self.machine.machine,
+            sensors: &self.machine.sensors,
+            settings: &self.settings,
+        }
+    }
+
+    fn recorded(
+        &self,
+        record: Result<Sensitivities, simulate::Error>,
+    ) -> Result<Sensitivities, Error> {
+        record.map_err(|source| Error::Simulation {
+            run: self.run.id.clone(),
+            source,
+        })
+    }
+
+    fn analysed<T>(&self, result: Result<T, signal::Error>) -> Result<T, Error> {
+        result.map_err(|source| Error::Signal {
+            run: self.run.id.clone(),
+            channel: "simulated".into(),
+            source,
+        })
+    }
+
+    fn shown<'r>(&self, record: &'r Sensitivities) -> Result<Shown<'r>, Error> {
+        let (angle, series) = record
+            .series
+            .split_last()
+            .ok_or(Error::Nothing("a run without channels cannot be predicted"))?;
+        let angle = self.analysed(CrankAngle::from_encoder(angle))?;
+        Ok(Shown {
+            grid: self.analysed(AngleGrid::new(&angle, POINTS))?,
+            angle,
+            series,
+        })
+    }
+
+    /// The lines of what a channel shows.
+    fn lines(
+        &self,
+        grid: &AngleGrid,
+        channel: usize,
+        samples: &[f64],
+    ) -> Result<OrderLines, Error> {
+        let lines = self.analysed(observation::lines(grid, samples))?;
+        Ok(self.slow[channel].shown(later(lines, self.offset), self.turning))
+    }
+
+    fn lines_of_all(
+        &self,
+        grid: &AngleGrid,
+        series: &[Vec<f64>],
+    ) -> Result<Vec<OrderLines>, Error> {
+        let channels = series.iter().enumerate();
+        channels
+            .map(|(channel, samples)| self.lines(grid, channel, samples))
+            .collect()
+    }
 }
 
 /// What of a measuring chain takes longer than a period to settle, or to pass: the lines are multiplied by its response.

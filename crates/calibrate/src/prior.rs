@@ -48,9 +48,15 @@ impl<T: LeastSquares> LeastSquares for WithPriors<'_, T> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let mut all = self.inner.residuals(x);
-        all.extend(self.priors.iter().map(|prior| prior.residual(x)));
-        all
+        self.residuals_of_all(&[x.to_vec()]).concat()
+    }
+
+    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let mut residuals = self.inner.residuals_of_all(all);
+        for (residuals, x) in residuals.iter_mut().zip(all) {
+            residuals.extend(self.priors.iter().map(|prior| prior.residual(x)));
+        }
+        residuals
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {

@@ -155,6 +155,20 @@ impl Problem {
         self.meter.once(&(what, x, self), work)
     }
 
+    /// The same at each of several points: `work` gets those that are not known from before.
+    pub(crate) fn once_each(
+        &self,
+        what: &dyn fmt::Debug,
+        all: &[Vec<f64>],
+        work: impl FnOnce(&[Vec<f64>]) -> Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
+        let inputs: Vec<_> = all.iter().map(|x| (what, &x[..], self)).collect();
+        self.meter.once_each(&inputs, |missing| {
+            let unknown: Vec<Vec<f64>> = missing.iter().map(|i| all[*i].clone()).collect();
+            work(&unknown)
+        })
+    }
+
     /// The same problem with a meter of its own.
     #[must_use]
     pub fn metered(&self) -> Self {

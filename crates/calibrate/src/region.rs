@@ -1,10 +1,13 @@
 //! A region of the coordinates that is searched without derivatives.
 
 use crate::error::Error;
+use crate::likelihood::FAILED;
 use crate::optimiser::{LeastSquares, Progress, Watch, cma_es};
 use nalgebra::DMatrix;
+use std::cell::RefCell;
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::ops::ControlFlow;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Of searches that are held against each other one of so many goes on (successive halving, Jamieson and Talwalkar 2016).
 pub const KEPT: usize = 3;
@@ -39,20 +42,46 @@ impl<'a, T: LeastSquares> Region<'a, T> {
         }
     }
 
+    fn all_known(&self) -> MutexGuard<'_, HashMap<Vec<u64>, Vec<f64>>> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn known(&self, moved: &[f64]) -> Option<Vec<f64>> {
+        self.all_known().get(&bits(moved)).cloned()
+    }
+
     /// How many coordinates move.
     pub fn dimensions(&self) -> usize {
         self.ranges.len()
     }
 
     /// The best of so many evaluations (CMA-ES, Hansen 2016), from where the region is around: the coordinates that move. More
-    /// evaluations continue a search of fewer.
+    /// evaluations continue a search of fewer. `watch` is told after each generation.
+    ///
+    /// The points of a generation are evaluated together, though a search asks for one after another: it is begun again for
+    /// each generation, finds all before that known, and notes the points that it asks for then.
     ///
     /// # Errors
     /// As [`cma_es`].
     pub fn searched(&self, most: u64, watch: Watch) -> Result<Progress, Error> {
         let start = |(place, [low, high]): &(usize, [f64; 2])| self.x[*place].clamp(*low, *high);
         let start: Vec<f64> = self.ranges.iter().map(start).collect();
-        cma_es(self, &start, 0, most, watch)
+        loop {
+            let ahead = Ahead {
+                region: self,
+                asked: RefCell::default(),
+            };
+            let mut until_drawn = |_: &Progress| match ahead.is_drawn() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            let progress = cma_es(&ahead, &start, 0, most, &mut until_drawn)?;
+            let asked = ahead.asked.into_inner();
+            if asked.is_empty() || watch(&progress).is_break() {
+                return Ok(progress);
+            }
+            self.residuals_of_all(&asked);
+        }
     }
 
     /// All coordinates, with these in the places that move.
@@ -75,20 +104,66 @@ impl<T: LeastSquares> LeastSquares for Region<'_, T> {
     }
 
     fn residuals(&self, moved: &[f64]) -> Vec<f64> {
-        let bits: Vec<u64> = moved.iter().map(|x| x.to_bits()).collect();
-        let known = || self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(residuals) = known().get(&bits) {
-            return residuals.clone();
-        }
-        let residuals = self.inner.residuals(&self.whole(moved));
-        known().insert(bits, residuals.clone());
-        residuals
+        self.residuals_of_all(&[moved.to_vec()]).concat()
+    }
+
+    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let unknown = all.iter().filter(|moved| self.known(moved).is_none());
+        let unknown: Vec<&Vec<f64>> = unknown.collect();
+        let whole: Vec<Vec<f64>> = unknown.iter().map(|moved| self.whole(moved)).collect();
+        let found = self.inner.residuals_of_all(&whole);
+        let found = unknown.iter().map(|moved| bits(moved)).zip(found);
+        self.all_known().extend(found);
+        all.iter().filter_map(|moved| self.known(moved)).collect()
     }
 
     fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
         let all = self.inner.jacobian(&self.whole(moved));
         all.select_columns(self.ranges.iter().map(|(place, _)| place))
     }
+}
+
+/// A region of which only what is known is evaluated.
+struct Ahead<'a, T> {
+    region: &'a Region<'a, T>,
+    /// The other points that were asked for.
+    asked: RefCell<Vec<Vec<f64>>>,
+}
+
+impl<T: LeastSquares> Ahead<'_, T> {
+    /// Whether a generation of the usual size was asked for (Hansen 2016, eq. 48), and its mean.
+    fn is_drawn(&self) -> bool {
+        let dimensions = self.region.dimensions() as f64;
+        let generation = 4.0 + (3.0 * dimensions.ln()).floor();
+        self.asked.borrow().len() > generation as usize
+    }
+}
+
+impl<T: LeastSquares> LeastSquares for Ahead<'_, T> {
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.region.bounds()
+    }
+
+    fn count(&self) -> usize {
+        self.region.count()
+    }
+
+    /// What is not known is not the best.
+    fn residuals(&self, moved: &[f64]) -> Vec<f64> {
+        self.region.known(moved).unwrap_or_else(|| {
+            self.asked.borrow_mut().push(moved.to_vec());
+            vec![FAILED; self.count()]
+        })
+    }
+
+    fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
+        self.region.jacobian(moved)
+    }
+}
+
+/// The bits of coordinates, which are equal where these are the same.
+fn bits(x: &[f64]) -> Vec<u64> {
+    x.iter().map(|x| x.to_bits()).collect()
 }
 
 #[cfg(test)]

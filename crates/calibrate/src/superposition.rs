@@ -6,7 +6,7 @@
 
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::prediction::{Accuracy, Prediction, prediction};
+use crate::prediction::{Accuracy, Prediction, prediction, rough_predictions};
 use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_in_parts};
 use signal::order_lines::OrderLines;
@@ -14,6 +14,8 @@ use std::collections::HashMap;
 use std::ops::AddAssign;
 use std::sync::{Arc, Mutex};
 
+/// A prediction without derivatives.
+const ROUGHLY: (bool, Accuracy) = (false, Accuracy::Rough);
 /// Predictions of throws that are kept.
 const KEPT: usize = 2048;
 
@@ -56,14 +58,79 @@ impl<'a> Superposition<'a> {
         }
         let mut sum = nothing(run, if wanted { x.len() } else { 0 });
         for (i, throw) in self.throws.iter().enumerate() {
-            let mut runs = throw.problem.runs.iter();
-            let Some(own) = runs.find(|own| own.id == run.id) else {
+            let Some(own) = throw.run(run) else {
                 continue;
             };
             let share = self.share((i, throw), own, x, (wanted, accuracy))?;
             add(&mut sum, run, (throw, own, &share));
         }
         Ok(sum)
+    }
+
+    /// Rough predictions without derivatives, of these runs at these coordinates, simulated side by side; none where one cannot
+    /// be simulated.
+    pub fn rough_predictions(&self, wanted: &[(&Observation, &[f64])]) -> Vec<Option<Prediction>> {
+        if self.throws.is_empty() {
+            return rough_predictions(self.problem, wanted);
+        }
+        let sums = wanted.iter().map(|(run, _)| Some(nothing(run, 0)));
+        let mut sums: Vec<Option<Prediction>> = sums.collect();
+        for (index, throw) in self.throws.iter().enumerate() {
+            let of_run = |(run, x): &(&Observation, &[f64])| {
+                let own = throw.run(run)?;
+                Some((own, throw.parameters.iter().map(|i| x[*i]).collect()))
+            };
+            let owns: Vec<Option<(&Observation, Vec<f64>)>> = wanted.iter().map(of_run).collect();
+            let shares = self.rough_shares((index, throw), owns.iter().flatten());
+            for ((sum, (run, _)), own) in sums.iter_mut().zip(wanted).zip(&owns) {
+                let Some((own, x)) = own else { continue };
+                let share = shares.get(&asked(index, own, ROUGHLY, x));
+                *sum = sum.take().zip(share).map(|(mut sum, share)| {
+                    add(&mut sum, run, (throw, own, share));
+                    sum
+                });
+            }
+        }
+        sums
+    }
+
+    /// What a throw shows in these runs at these coordinates of its own, but for what cannot be simulated.
+    fn rough_shares<'w>(
+        &self,
+        (index, throw): (usize, &ThrowAlone),
+        wanted: impl Iterator<Item = &'w (&'w Observation, Vec<f64>)>,
+    ) -> HashMap<Asked, Arc<Prediction>> {
+        let mut shares = HashMap::new();
+        let mut missing = Vec::new();
+        for (run, x) in wanted {
+            let asked = asked(index, run, ROUGHLY, x);
+            match self.known(&asked) {
+                Some(share) => drop(shares.insert(asked, share)),
+                None => missing.push((asked, (*run, &x[..]))),
+            }
+        }
+        let (asked, runs): (Vec<Asked>, Vec<_>) = missing.into_iter().unzip();
+        let made = rough_predictions(&throw.problem, &runs);
+        for (asked, share) in asked.into_iter().zip(made) {
+            if let Some(share) = share.map(Arc::new) {
+                self.keep(asked.clone(), &share);
+                shares.insert(asked, share);
+            }
+        }
+        shares
+    }
+
+    fn known(&self, asked: &Asked) -> Option<Arc<Prediction>> {
+        self.known.lock().ok()?.get(asked).cloned()
+    }
+
+    fn keep(&self, asked: Asked, share: &Arc<Prediction>) {
+        if let Ok(mut of) = self.known.lock() {
+            if of.len() >= KEPT {
+                of.clear();
+            }
+            of.insert(asked, share.clone());
+        }
     }
 
     /// What a throw shows.
@@ -75,21 +142,19 @@ impl<'a> Superposition<'a> {
         (wanted, accuracy): (bool, Accuracy),
     ) -> Result<Arc<Prediction>, Error> {
         let x: Vec<f64> = throw.parameters.iter().map(|place| x[*place]).collect();
-        let bits = x.iter().map(|x| x.to_bits()).collect();
-        let asked = (index, run.id.clone(), (wanted, accuracy), bits);
-        let known = |of: &HashMap<Asked, Arc<Prediction>>| of.get(&asked).cloned();
-        if let Some(share) = self.known.lock().ok().and_then(|of| known(&of)) {
+        let asked = asked(index, run, (wanted, accuracy), &x);
+        if let Some(share) = self.known(&asked) {
             return Ok(share);
         }
         let share = Arc::new(prediction(&throw.problem, run, &x, wanted, accuracy)?);
-        if let Ok(mut of) = self.known.lock() {
-            if of.len() >= KEPT {
-                of.clear();
-            }
-            of.insert(asked, share.clone());
-        }
+        self.keep(asked, &share);
         Ok(share)
     }
+}
+
+fn asked(throw: usize, run: &Observation, how: (bool, Accuracy), x: &[f64]) -> Asked {
+    let bits = x.iter().map(|x| x.to_bits()).collect();
+    (throw, run.id.clone(), how, bits)
 }
 
 /// What is there of a run before the share of any throw.

@@ -20,6 +20,13 @@ pub struct ThrowAlone {
     pub parameters: Vec<usize>,
 }
 
+impl ThrowAlone {
+    /// A run of the whole machine as this throw has it.
+    pub fn run(&self, run: &Observation) -> Option<&Observation> {
+        self.problem.runs.iter().find(|own| own.id == run.id)
+    }
+}
+
 /// Each throw of a problem by itself. None where there is only one, or where they cannot be taken
 /// apart.
 ///

@@ -57,7 +57,8 @@ pub struct Work {
 }
 
 impl Work {
-    fn tried(&self) -> u64 {
+    /// Steps tried, whether they were taken or not.
+    pub fn tried(&self) -> u64 {
         self.accepted + self.rejected
     }
 }

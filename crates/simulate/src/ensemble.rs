@@ -3,6 +3,7 @@
 
 use crate::error::Error;
 use crate::record::Record;
+use crate::recorder::Sensitivities;
 use crate::sampler::observe_lanes;
 use crate::task::{Asked, Kept, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
@@ -18,25 +19,42 @@ pub fn simulate_together<T>(
     mut keep: impl FnMut(usize, Result<Record, Error>) -> T,
 ) -> Vec<T> {
     let mut kept: Vec<_> = asked.iter().map(|_| None).collect();
-    run_groups(asked, &mut |index, record| {
+    run_groups(asked, Kept::CheckedSeries, &mut |index, record| {
         kept[index] = Some(keep(index, record));
     });
     kept.into_iter().flatten().collect()
 }
 
+/// What the sensors see of each machine once it has settled, for a fit that tries many: of a motion that repeats itself one
+/// period is integrated, and a machine is given up as [`sensitivities`](crate::sensitivities) does. There are no
+/// derivatives. What is found of a machine does not depend on the others.
+///
+/// # Errors
+/// As [`sensitivities`](crate::sensitivities).
+pub fn settled_together(asked: &[Asked]) -> Vec<Result<Sensitivities, Error>> {
+    let mut all: Vec<_> = asked.iter().map(|_| None).collect();
+    run_groups(asked, Kept::Period, &mut |index, record| {
+        let throws = asked[index].machine.throws.len() as u64;
+        all[index] = Some(record.map(|record| Sensitivities {
+            series: record.series,
+            derivatives: Vec::new(),
+            settled: record.settled,
+            steps: throws * record.work.tried(),
+        }));
+    });
+    all.into_iter().flatten().collect()
+}
+
 /// Independent of what is kept, so that the equations are compiled once, in this crate, by its profile.
-fn run_groups(asked: &[Asked], file: &mut File) {
+fn run_groups(asked: &[Asked], kept: Kept, file: &mut File) {
     for alike in of_one_build(asked) {
         in_lanes(Group {
             asked,
+            kept,
             alike: &alike,
             file,
         });
     }
-}
-
-fn start(asked: Asked) -> Result<Task, Error> {
-    Task::start(asked, 0.0, Kept::CheckedSeries)
 }
 
 /// Which machines can share lanes: those that differ in numbers alone, and of which the same is recorded.
@@ -93,6 +111,7 @@ impl<'a> Passenger<'a> {
 /// Cases that can share a coach.
 struct Group<'a, 'b, 'f> {
     asked: &'b [Asked<'a>],
+    kept: Kept,
     alike: &'b [usize],
     file: &'b mut File<'f>,
 }
@@ -100,7 +119,7 @@ struct Group<'a, 'b, 'f> {
 impl InLanes for Group<'_, '_, '_> {
     type Output = ();
     fn run<L: Lanes<W>, const W: usize>(self) {
-        travel::<L, W>(self.asked, self.alike, self.file);
+        travel::<L, W>(self);
     }
 }
 
@@ -111,12 +130,19 @@ struct Coach<'a, L: Scalar, const W: usize> {
     wide: SideBySide<L>,
 }
 
-fn travel<L: Lanes<W>, const W: usize>(asked: &[Asked], alike: &[usize], file: &mut File) {
+fn travel<L: Lanes<W>, const W: usize>(group: Group) {
+    let Group {
+        asked,
+        kept,
+        alike,
+        file,
+    } = group;
     let mut queue = alike.iter().copied();
     let mut passengers = [const { None }; W];
     let mut next = |file: &mut File| {
         queue.find_map(|index| {
-            let boarded = start(asked[index]).and_then(|task| Passenger::board(index, task));
+            let task = Task::start(asked[index], 0.0, kept);
+            let boarded = task.and_then(|task| Passenger::board(index, task));
             settle(index, boarded, file)
         })
     };

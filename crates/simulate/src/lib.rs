@@ -41,6 +41,7 @@ pub mod sensors;
 pub mod settings;
 mod simulate;
 mod slider_crank;
+mod span;
 mod strobes;
 pub mod structure;
 mod tangents;
@@ -48,7 +49,7 @@ mod task;
 pub mod trace;
 
 pub use chamber::Chamber;
-pub use ensemble::simulate_together;
+pub use ensemble::{settled_together, simulate_together};
 pub use error::Error;
 pub use flow::{Cycle, Flow};
 pub use indicator_card::IndicatorCard;

@@ -8,7 +8,6 @@
 //! With a free crank the period moves, too. The crank angle at the start is held in its place, and
 //! tangents at the end are taken at the same angle a whole number of turns later.
 
-use crate::chain::Sampling;
 use crate::error::Error;
 use crate::instants::Instants;
 use crate::moved::Moved;
@@ -17,6 +16,7 @@ use crate::recorder::{Recorder, apart};
 use crate::run::{Run, Standing};
 use crate::sensor::Sensor;
 use crate::settings::Settings;
+use crate::span::Span;
 use integrate::Real;
 use mechanism::{Evaluation, Machine, lift};
 use nalgebra::DMatrix;
@@ -24,8 +24,6 @@ use rayon::prelude::*;
 use scalar::{Dual, Scalar};
 use std::f64::consts::TAU;
 
-/// Where tangents start, as a share of a revolution: not at a dead centre, where gas switches.
-const START: f64 = 0.02;
 /// Tangents that are carried together.
 const TOGETHER: usize = 8;
 
@@ -82,45 +80,19 @@ struct Part {
 impl Orbit<'_> {
     /// Follows the orbit on which `run` stands at a whole revolution for one period.
     pub fn carried(&self, mut run: Run<f64>) -> Result<Carried, Error> {
-        let revolution = run.revolution();
-        let settings = self.settings;
-        let spare = u32::from(run.is_free());
-        let revolutions = settings.revolutions.min(self.period + spare);
-        let length = f64::from(revolutions) * revolution;
-        let sampling = Sampling::for_sensors(self.sensors, settings, length)?;
-        let begin = run.standing().time;
-        let first = (START * revolution * sampling.inner_rate).ceil();
-        let from = begin + first / sampling.inner_rate;
-        run.advance(from)?;
-        let cycle = sampling
-            .cycle(length)
-            .filter(|_| revolutions == self.period);
-        // A cycle is recorded from the whole revolution on, anything else as soon as there is enough
-        // before its first sample.
-        let (start, count) = match cycle {
-            Some(count) => (begin, count),
-            None => {
-                let start = from + sampling.lead() as f64 / sampling.inner_rate;
-                (start, sampling.instants(start).count)
-            }
-        };
-        let instants = Instants {
-            first: from,
-            rate: sampling.inner_rate,
-            count,
-        };
-        let stretch = self.stretch(&mut run, instants)?;
+        let span = Span::of_period(&run, self.period, self.sensors, self.settings)?;
+        run.advance(span.instants.first)?;
+        let stretch = self.stretch(&mut run, span.instants)?;
         let (values, tangents, steps) = self.along(&stretch)?;
-        let recorder = Recorder { sampling, start };
-        let whole = |inner: Vec<f64>| match cycle {
-            Some(_) => recorder.sampling.repeated(&inner, first as usize),
-            None => inner,
-        };
+        let whole = |inner: Vec<f64>| span.whole(inner);
         let all = |of: Vec<Vec<f64>>| of.into_iter().map(whole).collect::<Vec<_>>();
         Ok(Carried {
             values: all(values),
             tangents: tangents.into_iter().map(all).collect(),
-            recorder,
+            recorder: Recorder {
+                sampling: span.sampling,
+                start: span.start,
+            },
             steps: run.steps() + steps,
         })
     }

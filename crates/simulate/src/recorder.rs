@@ -30,7 +30,8 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    fn record(
+    /// What the sensors make of these inner samples.
+    pub(crate) fn record(
         &self,
         machine: &Machine,
         sensors: &[Sensor],

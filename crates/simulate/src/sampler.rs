@@ -35,10 +35,34 @@ pub(crate) struct Sampler<'a> {
     state: Vec<f64>,
 }
 
+/// What is kept of what a sensor sees.
+pub(crate) enum Taken {
+    /// Its record.
+    Recorded(UnderWay),
+    /// The inner samples themselves.
+    Inner(Vec<f64>),
+}
+
+impl Taken {
+    fn extend(&mut self, inner: impl IntoIterator<Item = f64>) {
+        match self {
+            Self::Recorded(under_way) => under_way.extend(inner),
+            Self::Inner(all) => all.extend(inner),
+        }
+    }
+
+    fn end(self, start: f64) -> Vec<f64> {
+        match self {
+            Self::Recorded(under_way) => under_way.end(start),
+            Self::Inner(all) => all,
+        }
+    }
+}
+
 /// What the sensors have seen.
 struct Series {
-    /// What each sensor makes of it.
-    under_way: Vec<UnderWay>,
+    /// What is kept of each sensor.
+    taken: Vec<Taken>,
     /// Largest magnitude that each has seen.
     largest: Vec<f64>,
     /// Of the integration.
@@ -52,7 +76,7 @@ struct Series {
 
 /// What was seen of a run.
 pub(crate) struct Seen {
-    /// What each sensor has recorded.
+    /// What was kept of each sensor.
     pub series: Vec<Vec<f64>>,
     /// The motion itself, where it was asked for.
     pub trace: Option<Trace>,
@@ -61,22 +85,22 @@ pub(crate) struct Seen {
 }
 
 impl Series {
-    fn new(under_way: Vec<UnderWay>, tolerance: f64) -> Self {
+    fn new(taken: Vec<Taken>, tolerance: f64) -> Self {
         Self {
-            largest: vec![0.0; under_way.len()],
-            polynomials: Vec::with_capacity(under_way.len()),
+            largest: vec![0.0; taken.len()],
+            polynomials: Vec::with_capacity(taken.len()),
             tolerance,
             nodes: Nodes::new(),
             shares: Vec::new(),
             values: Vec::new(),
-            under_way,
+            taken,
         }
     }
 
     /// Takes in what sensor number `i` sees at the next instants.
     fn extend(&mut self, i: usize, sensor: &Sensor, seen: impl Iterator<Item = f64>) {
         let largest = &mut self.largest[i];
-        self.under_way[i].extend(seen.map(|x| {
+        self.taken[i].extend(seen.map(|x| {
             *largest = largest.max(x.abs());
             sensor.measured.wrapped(x)
         }));
@@ -116,7 +140,7 @@ impl<'a> Sampler<'a> {
     pub fn begin(
         run: &mut Run<f64>,
         sensors: &'a [Sensor],
-        series: Vec<UnderWay>,
+        taken: Vec<Taken>,
         instants: Instants,
         trace: Option<(Trace, Range<usize>)>,
     ) -> Self {
@@ -126,7 +150,7 @@ impl<'a> Sampler<'a> {
             lookout: None,
             times: Vec::new(),
             state: vec![0.0; dimension],
-            series: Series::new(series, run.tolerance()),
+            series: Series::new(taken, run.tolerance()),
             sensors,
             instants,
             seen: 0,
@@ -262,9 +286,9 @@ impl<'a> Sampler<'a> {
             self.trace(last, self.seen);
             self.sample(last);
         }
-        let series = self.series.under_way.into_iter();
+        let taken = self.series.taken.into_iter();
         Seen {
-            series: series.map(|series| series.end(start)).collect(),
+            series: taken.map(|taken| taken.end(start)).collect(),
             trace: self.trace.map(|(trace, _)| trace),
             penetrations: self.joints.end(),
         }

@@ -9,13 +9,13 @@
 pub use crate::moved::Moved;
 pub use crate::recorder::Sensitivities;
 
-use crate::chain::Sampling;
 use crate::error::Error;
 use crate::orbit::Orbit;
 use crate::recorder::{Recorder, apart};
 use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::settings::{Settings, Transient};
+use crate::span::Span;
 use integrate::Real;
 use mechanism::{Machine, lift};
 use scalar::Dual;
@@ -130,11 +130,14 @@ fn recorded<S: Real>(
     sensors: &[Sensor],
     settings: &Settings,
 ) -> Result<(Recorder, Vec<Vec<S>>), Error> {
-    let start = f64::from(transient) * run.revolution();
-    let length = f64::from(settings.revolutions) * run.revolution();
-    let sampling = Sampling::for_sensors(sensors, settings, length)?;
+    let Span {
+        sampling,
+        start,
+        instants,
+        ..
+    } = Span::after(run, transient, sensors, settings)?;
     let mut inner = vec![Vec::new(); sensors.len()];
-    run.show(sampling.instants(start), |at| {
+    run.show(instants, |at| {
         for (sensor, inner) in sensors.iter().zip(&mut inner) {
             inner.push(sensor.measured.value(at));
         }

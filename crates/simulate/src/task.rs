@@ -4,13 +4,16 @@ use crate::chain::{Sampling, check_settling};
 use crate::error::Error;
 use crate::leaving::{Leaving, Left};
 use crate::record::Record;
+use crate::recorder::Recorder;
 use crate::run::{Ledger, Run};
-use crate::sampler::{Sampler, Seen};
+use crate::sampler::{Sampler, Seen, Taken};
 use crate::sensor::Sensor;
 use crate::settings::{Settings, Transient};
+use crate::span::Span;
 use crate::trace::Trace;
 use integrate::{Course, Trial};
 use mechanism::Machine;
+use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 /// What is to be recorded.
@@ -34,6 +37,9 @@ pub(crate) enum Kept {
     CheckedSeries,
     /// The motion as well. The energy is checked over the record.
     Trace,
+    /// The series alone, unchecked, of which a settled motion is integrated over one period. What takes too long is given
+    /// up.
+    Period,
 }
 
 /// A record under way.
@@ -57,6 +63,8 @@ struct Recording<'a> {
     /// When it begins, s.
     start: f64,
     sampler: Sampler<'a>,
+    /// Where the sampler keeps inner samples: what they are of the record.
+    span: Option<Span>,
     before: Option<Ledger>,
     /// Angle of the crank, rad, and time, s, where it set out.
     from: [f64; 2],
@@ -72,6 +80,9 @@ impl<'a> Task<'a> {
         } = *asked.settings;
         (asked.settings).check(asked.machine.drive.reference_speed())?;
         let mut run = Run::start(asked.machine.clone(), tolerance, kept == Kept::Trace);
+        if kept == Kept::Period {
+            run.hurry();
+        }
         check_settling(asked.sensors, run.revolution())?;
         let leaving = Leaving::new(&mut run, transient);
         let next = leaving.next(&run);
@@ -123,6 +134,9 @@ impl<'a> Task<'a> {
             sensors,
             settings,
         } = self.asked;
+        if self.kept == Kept::Period {
+            return self.period(left);
+        }
         let length = f64::from(settings.revolutions) * self.run.revolution();
         let sampling = Sampling::new(sensors, settings, length)?;
         let lead = sampling.lead();
@@ -148,10 +162,33 @@ impl<'a> Task<'a> {
             sampler: Sampler::begin(
                 &mut self.run,
                 sensors,
-                series.collect::<Result<_, _>>()?,
+                series
+                    .map(|series| series.map(Taken::Recorded))
+                    .collect::<Result<_, _>>()?,
                 sampling.instants(start),
                 trace,
             ),
+            span: None,
+        })
+    }
+
+    /// The recording of a period, or of the revolutions after a transient without one.
+    fn period(&mut self, left: Left) -> Result<Recording<'a>, Error> {
+        let Asked {
+            sensors, settings, ..
+        } = self.asked;
+        let span = match left.period {
+            Some(period) => Span::of_period(&self.run, period, sensors, settings)?,
+            None => Span::after(&self.run, left.transient, sensors, settings)?,
+        };
+        let inner = sensors.iter().map(|_| Taken::Inner(Vec::new())).collect();
+        Ok(Recording {
+            left,
+            start: span.start,
+            before: None,
+            from: self.run.crank_and_time(),
+            sampler: Sampler::begin(&mut self.run, sensors, inner, span.instants, None),
+            span: Some(span),
         })
     }
 
@@ -185,11 +222,16 @@ impl<'a> Task<'a> {
                     left,
                     start,
                     sampler,
+                    span,
                     before,
                     from,
                 } = *recording;
                 let run = &mut self.run;
-                let mean_speed = run.mean_speed(from)?;
+                // A fit may try a machine whose crank does not keep its speed.
+                let mean_speed = match self.kept {
+                    Kept::Period => TAU / run.revolution(),
+                    _ => run.mean_speed(from)?,
+                };
                 let residual = match before {
                     Some(before) => Some(run.balance(&before)?),
                     None if self.kept == Kept::CheckedSeries => {
@@ -202,6 +244,19 @@ impl<'a> Task<'a> {
                     trace,
                     penetrations,
                 } = sampler.end_with(run, start);
+                let series = match span {
+                    None => series,
+                    Some(span) => {
+                        let whole: Vec<_> = series.into_iter().map(|x| span.whole(x)).collect();
+                        let Span {
+                            sampling, start, ..
+                        } = span;
+                        let Asked {
+                            machine, sensors, ..
+                        } = self.asked;
+                        Recorder { sampling, start }.record(machine, sensors, &whole)?
+                    }
+                };
                 Ok(Ok(Record {
                     sample_rate: self.asked.settings.sample_rate,
                     start,

@@ -86,7 +86,7 @@ impl<S: Real> Run<S> {
         let throws = self.dynamics.machine().throws.len() as u64;
         // A value, and for each tangent about seven tenths of what it takes.
         let tangents = (size_of::<S>() / size_of::<f64>() - 1) as u64;
-        throws * (work.accepted + work.rejected) * (10 + 7 * tangents) / 10
+        throws * work.tried() * (10 + 7 * tangents) / 10
     }
 
     /// What the integration took so far.

@@ -2,7 +2,9 @@
 
 use input::{MachineFile, Resolved};
 use serde_json::Value;
-use simulate::{Asked, Settings, Transient, simulate, simulate_together};
+use simulate::{
+    Asked, Settings, Transient, sensitivities, settled_together, simulate, simulate_together,
+};
 use std::path::Path;
 
 fn machine(file: &str, changes: &[(&str, &str)]) -> Resolved {
@@ -123,4 +125,54 @@ fn a_record_that_fails_does_not_touch_the_others() {
     for i in [0, 2] {
         assert_eq!(records[i].as_ref().unwrap().series, alone.series);
     }
+}
+
+/// Settings of a fit: of a motion that repeats itself one period is looked at.
+fn of_a_fit(index: usize) -> Settings {
+    Settings {
+        transient: Transient::Settled {
+            change: 1e-2,
+            // The second is not given enough to settle.
+            at_most: if index == 1 { 2 } else { 12 },
+        },
+        inner_rate: 0.0,
+        ..settings(index)
+    }
+}
+
+#[test]
+fn a_settled_motion_has_the_same_bits_alone_and_in_any_lane_and_is_what_derivatives_are_of() {
+    let machines = machines();
+    let settings: Vec<Settings> = (0..machines.len()).map(of_a_fit).collect();
+    let asked: Vec<Asked> = machines
+        .iter()
+        .zip(&settings)
+        .map(|(resolved, settings)| Asked {
+            machine: &resolved.machine,
+            sensors: &resolved.sensors,
+            settings,
+        })
+        .collect();
+    let together = settled_together(&asked);
+    assert_eq!(together.len(), asked.len());
+    let mut settled = 0;
+    for (i, (found, asked)) in together.into_iter().zip(&asked).enumerate() {
+        let found = found.unwrap();
+        let alone = settled_together(std::slice::from_ref(asked)).remove(0);
+        assert_eq!(found, alone.unwrap(), "record {i}");
+        let with_derivatives =
+            sensitivities(asked.machine, asked.sensors, &[], asked.settings).unwrap();
+        assert_eq!(found.settled, with_derivatives.settled, "record {i}");
+        settled += usize::from(found.settled);
+        for (found, expected) in found.series.iter().zip(&with_derivatives.series) {
+            let largest = expected.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
+            let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+            let most = apart.fold(0.0, f64::max);
+            assert_eq!(found.len(), expected.len());
+            // Of one that has not settled they part, as from any other start.
+            let within = if with_derivatives.settled { 1e-2 } else { 2.0 };
+            assert!(most <= within * largest, "record {i}: {most} of {largest}");
+        }
+    }
+    assert!((10..asked.len()).contains(&settled), "{settled}");
 }
