@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
 use crate::observation::{Observation, Observed, POINTS};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction};
+use crate::prediction::{Accuracy, Prediction, TOGETHER};
 use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
@@ -24,9 +24,6 @@ const ORDERS: usize = 2;
 const QUIET: f64 = 0.03;
 /// Standard deviation of the logarithm of an energy that a law somewhat off predicts: 16 % of the amplitude.
 const SPREAD: f64 = 0.3;
-/// Runs that a thread simulates side by side: two fillings of the widest registers, so that a lane that is done early has
-/// something to go on with.
-const TOGETHER: usize = 16;
 /// By how much a slow feature may stand elsewhere, rad.
 pub const TIMING: f64 = 0.03;
 
@@ -236,10 +233,13 @@ impl<'a> Energies<'a> {
     /// The residuals of each of these runs at these coordinates.
     fn of_runs(&self, runs: &[(&Run, &[f64])]) -> Vec<Vec<f64>> {
         let wanted: Vec<_> = runs.iter().map(|(run, x)| (run.observed, *x)).collect();
-        let predictions = self.machine.rough_predictions(&wanted).into_iter();
+        let predictions = self
+            .machine
+            .predictions(&wanted, Accuracy::Rough)
+            .into_iter();
         let residuals = predictions.zip(runs).map(|(prediction, (run, _))| {
             prediction.map_or_else(
-                || vec![FAILED; residual_count(run.observed)],
+                |_| vec![FAILED; residual_count(run.observed)],
                 |prediction| run.compared(&prediction, 0).0,
             )
         });
@@ -249,7 +249,7 @@ impl<'a> Energies<'a> {
     /// The derivatives of a run's residuals: those of a motion that has settled.
     fn derivatives(&self, run: &Run, x: &[f64]) -> Result<DMatrix<f64>, Error> {
         let machine = &self.machine;
-        let prediction = machine.prediction(run.observed, x, true, Accuracy::Coarse)?;
+        let prediction = machine.with_derivatives(run.observed, x, Accuracy::Coarse)?;
         Ok(run.compared(&prediction, x.len()).1)
     }
 }

@@ -5,10 +5,11 @@
 //! in which octave and how long. It does not turn with the phase of the ringing: where lines have
 //! many local minima, envelopes have few. Their logarithms are compared.
 
+use crate::error::Error;
 use crate::likelihood::FAILED;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, prediction};
+use crate::prediction::{Accuracy, Prediction, TOGETHER, predictions, with_derivatives};
 use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -30,14 +31,17 @@ impl<'a> Envelopes<'a> {
         Self { problem }
     }
 
-    /// Residuals and derivatives of a run: rows of `1 + count` values.
-    fn of_run(&self, run: &Observation, x: &[f64], slopes: bool) -> Vec<Vec<f64>> {
-        let predicted = prediction(self.problem, run, x, slopes, Accuracy::Coarse);
+    /// Residuals of a run of `count` coordinates and what derivatives its prediction has: rows of at most `1 + count` values.
+    fn of_run(
+        run: &Observation,
+        predicted: &Result<Prediction, Error>,
+        count: usize,
+    ) -> Vec<Vec<f64>> {
         let mut rows = Vec::with_capacity(residual_count(run));
         for (i, observed) in run.channels.iter().enumerate() {
             for octave in octaves(observed) {
-                let Ok(predicted) = &predicted else {
-                    rows.extend(octave.angles().map(|_| vec![FAILED; 1 + x.len()]));
+                let Ok(predicted) = predicted else {
+                    rows.extend(octave.angles().map(|_| vec![FAILED; 1 + count]));
                     continue;
                 };
                 let seen = &observed.lines.amplitude;
@@ -71,8 +75,14 @@ impl LeastSquares for Envelopes<'_> {
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         self.problem.once(&"envelopes", x, || {
-            let runs = self.problem.runs.par_iter();
-            let parts: Vec<Vec<Vec<f64>>> = runs.map(|run| self.of_run(run, x, false)).collect();
+            let runs = self.problem.runs.par_chunks(TOGETHER);
+            let parts = runs.flat_map_iter(|runs| {
+                let wanted: Vec<_> = runs.iter().map(|run| (run, x)).collect();
+                let predicted = predictions(self.problem, &wanted, Accuracy::Coarse);
+                let runs = runs.iter().zip(predicted);
+                runs.map(|(run, predicted)| Self::of_run(run, &predicted, x.len()))
+            });
+            let parts: Vec<Vec<Vec<f64>>> = parts.collect();
             parts.concat().iter().map(|row| row[0]).collect()
         })
     }
@@ -87,7 +97,11 @@ impl LeastSquares for Envelopes<'_> {
 impl Envelopes<'_> {
     fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let runs = self.problem.runs.par_iter();
-        let parts: Vec<Vec<Vec<f64>>> = runs.map(|run| self.of_run(run, x, true)).collect();
+        let parts = runs.map(|run| {
+            let predicted = with_derivatives(self.problem, run, x, Accuracy::Coarse);
+            Self::of_run(run, &predicted, x.len())
+        });
+        let parts: Vec<Vec<Vec<f64>>> = parts.collect();
         let rows = parts.concat();
         // A run that fails, or does not repeat itself, has no derivatives.
         let slope = |i: usize, j: usize| match rows[i].get(1 + j) {

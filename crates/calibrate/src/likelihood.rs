@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction, prediction};
+use crate::prediction::{Accuracy, Prediction, TOGETHER, Wanted, predictions, with_derivatives};
 use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
@@ -114,20 +114,31 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    fn prediction(
-        &self,
-        run: &Observation,
-        x: &[f64],
-        derivatives: bool,
-    ) -> Result<Prediction, Error> {
-        let accuracy = match self.timing > 0.0 {
+    fn accuracy(&self) -> Accuracy {
+        match self.timing > 0.0 {
             true => Accuracy::Coarse,
             false => Accuracy::Fine,
-        };
-        match &self.parts {
-            Some(parts) => parts.prediction(run, x, derivatives, accuracy),
-            None => prediction(self.problem, run, x, derivatives, accuracy),
         }
+    }
+
+    fn with_derivatives(&self, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
+        match &self.parts {
+            Some(parts) => parts.with_derivatives(run, x, self.accuracy()),
+            None => with_derivatives(self.problem, run, x, self.accuracy()),
+        }
+    }
+
+    /// The prediction of each run, or why there is none.
+    fn of_each(&self, x: &[f64]) -> Vec<Result<Prediction, Error>> {
+        let runs = self.problem.runs.par_chunks(TOGETHER);
+        let of = |runs: &[Observation]| {
+            let wanted: Vec<Wanted> = runs.iter().map(|run| (run, x)).collect();
+            match &self.parts {
+                Some(parts) => parts.predictions(&wanted, self.accuracy()),
+                None => predictions(self.problem, &wanted, self.accuracy()),
+            }
+        };
+        runs.flat_map_iter(of).collect()
     }
 
     /// The predictions of all runs.
@@ -135,8 +146,7 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn predictions(&self, x: &[f64]) -> Result<Vec<Prediction>, Error> {
-        let runs = self.problem.runs.par_iter();
-        runs.map(|run| self.prediction(run, x, false)).collect()
+        self.of_each(x).into_iter().collect()
     }
 
     /// The residuals of each run.
@@ -168,14 +178,12 @@ impl LeastSquares for Likelihood<'_> {
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         let what = ("residuals", self.timing, self.parts.is_some());
         self.problem.once(&what, x, || {
-            let runs = self.problem.runs.par_iter();
-            let parts: Vec<Vec<f64>> = runs
-                .map(|run| match self.prediction(run, x, false) {
-                    Ok(prediction) => residuals(run, &prediction, self.timing),
-                    Err(_) => vec![FAILED; residual_count(run)],
-                })
-                .collect();
-            parts.concat()
+            let runs = self.problem.runs.iter().zip(self.of_each(x));
+            let parts = runs.map(|(run, prediction)| match prediction {
+                Ok(prediction) => residuals(run, &prediction, self.timing),
+                Err(_) => vec![FAILED; residual_count(run)],
+            });
+            parts.collect::<Vec<_>>().concat()
         })
     }
 
@@ -190,7 +198,7 @@ impl LeastSquares for Likelihood<'_> {
 impl Likelihood<'_> {
     fn evaluated_jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         stacked(&self.problem.runs, |run| {
-            match self.prediction(run, x, true) {
+            match self.with_derivatives(run, x) {
                 Ok(prediction) => derivatives(run, &prediction, x.len(), self.timing),
                 Err(_) => DMatrix::zeros(residual_count(run), x.len()),
             }

@@ -27,6 +27,10 @@ const CHAOTIC: u32 = 24;
 /// The same where the recorded motion repeats itself: their scatter is not compared then.
 const WRONG: u32 = 4;
 
+/// Runs that a thread simulates side by side: two fillings of the widest registers, so that a lane that is done early has
+/// something to go on with.
+pub(crate) const TOGETHER: usize = 16;
+
 /// How accurate a prediction is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Accuracy {
@@ -82,7 +86,8 @@ pub struct Prediction {
 /// # Errors
 /// An invalid machine, or one that cannot be integrated.
 pub fn predict(problem: &Problem, run: &Observation, x: &[f64]) -> Result<Prediction, Error> {
-    prediction(problem, run, x, false, Accuracy::Fine)
+    let mut all = predictions(problem, &[(run, x)], Accuracy::Fine);
+    all.swap_remove(0)
 }
 
 /// The same with the derivatives by the coordinates. On a motion that does not repeat itself they
@@ -95,24 +100,57 @@ pub fn predict_with_derivatives(
     run: &Observation,
     x: &[f64],
 ) -> Result<Prediction, Error> {
-    prediction(problem, run, x, true, Accuracy::Fine)
+    with_derivatives(problem, run, x, Accuracy::Fine)
 }
 
-/// The prediction of this accuracy, with derivatives where they are `wanted`.
-pub(crate) fn prediction(
+/// A run, and the coordinates at which it is predicted.
+pub(crate) type Wanted<'a> = (&'a Observation, &'a [f64]);
+
+/// The predictions of this accuracy, without derivatives. All are simulated side by side, and do not depend on each other.
+///
+/// # Errors
+/// As [`predict`], each its own.
+pub(crate) fn predictions(
+    problem: &Problem,
+    wanted: &[Wanted],
+    accuracy: Accuracy,
+) -> Vec<Result<Prediction, Error>> {
+    let all = wanted.iter();
+    let all = all.map(|(run, x)| At::new(problem, run, x, accuracy));
+    let all: Vec<Result<At, Error>> = all.collect();
+    let asked: Vec<Asked> = all.iter().flatten().map(At::asked).collect();
+    let mut records = settled_together(&asked).into_iter();
+    let of = |at: Result<At, Error>| {
+        let at = at?;
+        let record = records.next();
+        let record = at.recorded(record.ok_or(Error::Nothing("nothing was simulated"))?)?;
+        problem.meter.add(record.steps);
+        let shown = at.shown(&record)?;
+        Ok(Prediction {
+            lines: at.lines_of_all(&shown.grid, shown.series)?,
+            derivatives: Vec::new(),
+            periodic: record.settled,
+        })
+    };
+    all.into_iter().map(of).collect()
+}
+
+/// The prediction of this accuracy, with derivatives.
+///
+/// # Errors
+/// As [`predict`].
+pub(crate) fn with_derivatives(
     problem: &Problem,
     run: &Observation,
     x: &[f64],
-    wanted: bool,
     accuracy: Accuracy,
 ) -> Result<Prediction, Error> {
     let at = At::new(problem, run, x, accuracy)?;
     // The frame feels all throws.
     let is_of_throw = run.channels.iter().all(|c| c.column.contains('.'));
-    let mut groups = match wanted {
-        false => Vec::new(),
-        true if accuracy != Accuracy::Fine && is_of_throw => problem.independent(),
-        true => (0..x.len()).map(|i| vec![i]).collect(),
+    let mut groups = match accuracy != Accuracy::Fine && is_of_throw {
+        true => problem.independent(),
+        false => (0..x.len()).map(|i| vec![i]).collect(),
     };
     let moving = |i: &usize| problem.parameters[*i].moves(&run.id);
     groups.iter_mut().for_each(|group| group.retain(moving));
@@ -161,7 +199,7 @@ pub(crate) fn prediction(
                 .collect()
         })
         .collect::<Result<Vec<Vec<Vec<Complex64>>>, Error>>()?;
-    if wanted && periodic {
+    if periodic {
         derivatives = apart(problem, run, &groups, derivatives, &lines);
     }
     for (parameter, of_parameter) in derivatives.iter_mut().enumerate() {
@@ -188,31 +226,6 @@ pub(crate) fn prediction(
         derivatives,
         periodic,
     })
-}
-
-/// What a machine shows in these runs at these coordinates, to a few hundredths and without derivatives; none where it cannot be
-/// simulated. All are simulated side by side, and do not depend on each other.
-pub(crate) fn rough_predictions(
-    problem: &Problem,
-    wanted: &[(&Observation, &[f64])],
-) -> Vec<Option<Prediction>> {
-    let all = wanted.iter();
-    let all = all.map(|(run, x)| At::new(problem, run, x, Accuracy::Rough).ok());
-    let all: Vec<Option<At>> = all.collect();
-    let asked: Vec<Asked> = all.iter().flatten().map(At::asked).collect();
-    let mut records = settled_together(&asked).into_iter();
-    let of = |at: Option<At>| {
-        let at = at?;
-        let record = records.next()?.ok()?;
-        problem.meter.add(record.steps);
-        let shown = at.shown(&record).ok()?;
-        Some(Prediction {
-            lines: at.lines_of_all(&shown.grid, shown.series).ok()?,
-            derivatives: Vec::new(),
-            periodic: record.settled,
-        })
-    };
-    all.into_iter().map(of).collect()
 }
 
 /// A machine in one run.

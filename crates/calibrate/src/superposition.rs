@@ -6,7 +6,7 @@
 
 use crate::error::Error;
 use crate::observation::Observation;
-use crate::prediction::{Accuracy, Prediction, prediction, rough_predictions};
+use crate::prediction::{Accuracy, Prediction, Wanted, predictions, with_derivatives};
 use crate::problem::Problem;
 use crate::throw_alone::{ThrowAlone, throws_in_parts};
 use signal::order_lines::OrderLines;
@@ -14,8 +14,6 @@ use std::collections::HashMap;
 use std::ops::AddAssign;
 use std::sync::{Arc, Mutex};
 
-/// A prediction without derivatives.
-const ROUGHLY: (bool, Accuracy) = (false, Accuracy::Rough);
 /// Predictions of throws that are kept.
 const KEPT: usize = 2048;
 
@@ -42,80 +40,98 @@ impl<'a> Superposition<'a> {
         }
     }
 
-    /// The prediction of a run with derivatives where they are `wanted`.
+    /// The prediction of a run with derivatives.
     ///
     /// # Errors
-    /// As [`prediction`].
-    pub fn prediction(
+    /// As [`with_derivatives`].
+    pub fn with_derivatives(
         &self,
         run: &Observation,
         x: &[f64],
-        wanted: bool,
         accuracy: Accuracy,
     ) -> Result<Prediction, Error> {
         if self.throws.is_empty() {
-            return prediction(self.problem, run, x, wanted, accuracy);
+            return with_derivatives(self.problem, run, x, accuracy);
         }
-        let mut sum = nothing(run, if wanted { x.len() } else { 0 });
+        let mut sum = nothing(run, x.len());
         for (i, throw) in self.throws.iter().enumerate() {
-            let Some(own) = throw.run(run) else {
+            let Some((own, x)) = throw.part(run, x) else {
                 continue;
             };
-            let share = self.share((i, throw), own, x, (wanted, accuracy))?;
+            let asked = asked(i, own, (true, accuracy), &x);
+            let share = match self.known(&asked) {
+                Some(share) => share,
+                None => {
+                    let share = Arc::new(with_derivatives(&throw.problem, own, &x, accuracy)?);
+                    self.keep(asked, &share);
+                    share
+                }
+            };
             add(&mut sum, run, (throw, own, &share));
         }
         Ok(sum)
     }
 
-    /// Rough predictions without derivatives, of these runs at these coordinates, simulated side by side; none where one cannot
-    /// be simulated.
-    pub fn rough_predictions(&self, wanted: &[(&Observation, &[f64])]) -> Vec<Option<Prediction>> {
+    /// The predictions of these runs at these coordinates without derivatives, simulated side by side.
+    ///
+    /// # Errors
+    /// As [`predictions`].
+    pub fn predictions(
+        &self,
+        wanted: &[Wanted],
+        accuracy: Accuracy,
+    ) -> Vec<Result<Prediction, Error>> {
         if self.throws.is_empty() {
-            return rough_predictions(self.problem, wanted);
+            return predictions(self.problem, wanted, accuracy);
         }
-        let sums = wanted.iter().map(|(run, _)| Some(nothing(run, 0)));
-        let mut sums: Vec<Option<Prediction>> = sums.collect();
-        for (index, throw) in self.throws.iter().enumerate() {
-            let of_run = |(run, x): &(&Observation, &[f64])| {
-                let own = throw.run(run)?;
-                Some((own, throw.parameters.iter().map(|i| x[*i]).collect()))
-            };
-            let owns: Vec<Option<(&Observation, Vec<f64>)>> = wanted.iter().map(of_run).collect();
-            let shares = self.rough_shares((index, throw), owns.iter().flatten());
-            for ((sum, (run, _)), own) in sums.iter_mut().zip(wanted).zip(&owns) {
-                let Some((own, x)) = own else { continue };
-                let share = shares.get(&asked(index, own, ROUGHLY, x));
-                *sum = sum.take().zip(share).map(|(mut sum, share)| {
-                    add(&mut sum, run, (throw, own, share));
-                    sum
-                });
+        let sums = wanted.iter().map(|(run, _)| Ok(nothing(run, 0)));
+        let mut sums: Vec<Result<Prediction, Error>> = sums.collect();
+        for (i, throw) in self.throws.iter().enumerate() {
+            let parts = wanted.iter().map(|(run, x)| throw.part(run, x));
+            let parts: Vec<Option<(&Observation, Vec<f64>)>> = parts.collect();
+            let mut shares = self.shares((i, throw), parts.iter().flatten(), accuracy);
+            for ((sum, (run, _)), part) in sums.iter_mut().zip(wanted).zip(&parts) {
+                let (Ok(whole), Some((own, x))) = (&mut *sum, part) else {
+                    continue;
+                };
+                let asked = asked(i, own, (false, accuracy), x);
+                match shares.remove(&asked) {
+                    Some(Ok(share)) => {
+                        add(whole, run, (throw, own, &share));
+                        shares.insert(asked, Ok(share));
+                    }
+                    Some(Err(error)) => *sum = Err(error),
+                    None => *sum = Err(Error::Nothing("a run cannot be simulated")),
+                }
             }
         }
         sums
     }
 
-    /// What a throw shows in these runs at these coordinates of its own, but for what cannot be simulated.
-    fn rough_shares<'w>(
+    /// What a throw shows in these runs at these coordinates of its own.
+    fn shares<'w>(
         &self,
         (index, throw): (usize, &ThrowAlone),
-        wanted: impl Iterator<Item = &'w (&'w Observation, Vec<f64>)>,
-    ) -> HashMap<Asked, Arc<Prediction>> {
+        parts: impl Iterator<Item = &'w (&'w Observation, Vec<f64>)>,
+        accuracy: Accuracy,
+    ) -> HashMap<Asked, Result<Arc<Prediction>, Error>> {
         let mut shares = HashMap::new();
         let mut missing = Vec::new();
-        for (run, x) in wanted {
-            let asked = asked(index, run, ROUGHLY, x);
+        for (run, x) in parts {
+            let asked = asked(index, run, (false, accuracy), x);
             match self.known(&asked) {
-                Some(share) => drop(shares.insert(asked, share)),
+                Some(share) => drop(shares.insert(asked, Ok(share))),
                 None => missing.push((asked, (*run, &x[..]))),
             }
         }
-        let (asked, runs): (Vec<Asked>, Vec<_>) = missing.into_iter().unzip();
-        let made = rough_predictions(&throw.problem, &runs);
+        let (asked, runs): (Vec<Asked>, Vec<Wanted>) = missing.into_iter().unzip();
+        let made = predictions(&throw.problem, &runs, accuracy).into_iter();
         for (asked, share) in asked.into_iter().zip(made) {
-            if let Some(share) = share.map(Arc::new) {
-                self.keep(asked.clone(), &share);
-                shares.insert(asked, share);
+            let share = share.map(Arc::new);
+            if let Ok(share) = &share {
+                self.keep(asked.clone(), share);
             }
+            shares.insert(asked, share);
         }
         shares
     }
@@ -131,24 +147,6 @@ impl<'a> Superposition<'a> {
             }
             of.insert(asked, share.clone());
         }
-    }
-
-    /// What a throw shows.
-    fn share(
-        &self,
-        (index, throw): (usize, &ThrowAlone),
-        run: &Observation,
-        x: &[f64],
-        (wanted, accuracy): (bool, Accuracy),
-    ) -> Result<Arc<Prediction>, Error> {
-        let x: Vec<f64> = throw.parameters.iter().map(|place| x[*place]).collect();
-        let asked = asked(index, run, (wanted, accuracy), &x);
-        if let Some(share) = self.known(&asked) {
-            return Ok(share);
-        }
-        let share = Arc::new(prediction(&throw.problem, run, &x, wanted, accuracy)?);
-        self.keep(asked, &share);
-        Ok(share)
     }
 }
 
@@ -271,8 +269,8 @@ mod tests {
         let parts = Superposition::new(&problem);
         assert_eq!(parts.throws.len(), 2);
         let (run, x) = (&problem.runs[0], [0.3, -0.2]);
-        let sum = parts.prediction(run, &x, true, Accuracy::Coarse).unwrap();
-        let whole = prediction(&problem, run, &x, true, Accuracy::Coarse).unwrap();
+        let sum = parts.with_derivatives(run, &x, Accuracy::Coarse).unwrap();
+        let whole = with_derivatives(&problem, run, &x, Accuracy::Coarse).unwrap();
         assert!(sum.periodic && whole.periodic);
         for channel in 0..2 {
             let [a, b] = [&sum, &whole].map(|of| &of.lines[channel].amplitude);
@@ -284,7 +282,10 @@ mod tests {
         }
         // Only the second throw is simulated again.
         let before = problem.meter.steps();
-        let roughly = |x: [f64; 2]| parts.prediction(run, &x, false, Accuracy::Rough).unwrap();
+        let roughly = |x: [f64; 2]| {
+            let mut all = parts.predictions(&[(run, &x)], Accuracy::Rough);
+            all.remove(0).unwrap()
+        };
         let rough = roughly(x);
         let both = problem.meter.steps() - before;
         roughly([0.3, -0.1]);

@@ -21,9 +21,10 @@ pub struct ThrowAlone {
 }
 
 impl ThrowAlone {
-    /// A run of the whole machine as this throw has it.
-    pub fn run(&self, run: &Observation) -> Option<&Observation> {
-        self.problem.runs.iter().find(|own| own.id == run.id)
+    /// A run of the whole machine at these coordinates as this throw has it.
+    pub(crate) fn part(&self, run: &Observation, x: &[f64]) -> Option<(&Observation, Vec<f64>)> {
+        let own = self.problem.runs.iter().find(|own| own.id == run.id)?;
+        Some((own, self.parameters.iter().map(|i| x[*i]).collect()))
     }
 }
 

@@ -38,7 +38,7 @@ pub(crate) struct Sampler<'a> {
 /// What is kept of what a sensor sees.
 pub(crate) enum Taken {
     /// Its record.
-    Recorded(UnderWay),
+    Recorded(Box<UnderWay>),
     /// The inner samples themselves.
     Inner(Vec<f64>),
 }

@@ -150,10 +150,13 @@ impl<'a> Task<'a> {
             true => planned.max(self.run.time() + lead as f64 / sampling.inner_rate),
             false => planned,
         };
-        let recorded = lead..lead + sampling.samples * sampling.factor;
+        let within = lead..lead + sampling.samples * sampling.factor;
         let traced = self.kept == Kept::Trace;
-        let trace = traced.then(|| (Trace::new(machine, sampling.factor), recorded));
-        let series = sensors.iter().map(|sensor| sampling.begin(sensor, machine));
+        let trace = traced.then(|| (Trace::new(machine, sampling.factor), within));
+        let recorded = sensors.iter().map(|sensor| {
+            let under_way = sampling.begin(sensor, machine)?;
+            Ok(Taken::Recorded(Box::new(under_way)))
+        });
         Ok(Recording {
             left,
             start,
@@ -162,9 +165,7 @@ impl<'a> Task<'a> {
             sampler: Sampler::begin(
                 &mut self.run,
                 sensors,
-                series
-                    .map(|series| series.map(Taken::Recorded))
-                    .collect::<Result<_, _>>()?,
+                recorded.collect::<Result<_, Error>>()?,
                 sampling.instants(start),
                 trace,
             ),
