@@ -42,6 +42,10 @@ impl<'a, T: LeastSquares> Region<'a, T> {
         }
     }
 
+    fn bounds(&self) -> Vec<[f64; 2]> {
+        self.ranges.iter().map(|(_, range)| *range).collect()
+    }
+
     fn all_known(&self) -> MutexGuard<'_, HashMap<Vec<u64>, Vec<f64>>> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -80,8 +84,16 @@ impl<'a, T: LeastSquares> Region<'a, T> {
             if asked.is_empty() || watch(&progress).is_break() {
                 return Ok(progress);
             }
-            self.residuals_of_all(&asked);
+            self.evaluate(asked);
         }
+    }
+
+    /// Finds the residuals at these points, which are not known.
+    fn evaluate(&self, points: Vec<Vec<f64>>) {
+        let whole: Vec<Vec<f64>> = points.iter().map(|moved| self.whole(moved)).collect();
+        let found = self.inner.residuals_of_all(&whole);
+        let points = points.iter().map(|moved| bits(moved));
+        self.all_known().extend(points.zip(found));
     }
 
     /// All coordinates, with these in the places that move.
@@ -91,35 +103,6 @@ impl<'a, T: LeastSquares> Region<'a, T> {
             x[*place] = *moved;
         }
         x
-    }
-}
-
-impl<T: LeastSquares> LeastSquares for Region<'_, T> {
-    fn bounds(&self) -> Vec<[f64; 2]> {
-        self.ranges.iter().map(|(_, range)| *range).collect()
-    }
-
-    fn count(&self) -> usize {
-        self.inner.count()
-    }
-
-    fn residuals(&self, moved: &[f64]) -> Vec<f64> {
-        self.residuals_of_all(&[moved.to_vec()]).concat()
-    }
-
-    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let unknown = all.iter().filter(|moved| self.known(moved).is_none());
-        let unknown: Vec<&Vec<f64>> = unknown.collect();
-        let whole: Vec<Vec<f64>> = unknown.iter().map(|moved| self.whole(moved)).collect();
-        let found = self.inner.residuals_of_all(&whole);
-        let found = unknown.iter().map(|moved| bits(moved)).zip(found);
-        self.all_known().extend(found);
-        all.iter().filter_map(|moved| self.known(moved)).collect()
-    }
-
-    fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
-        let all = self.inner.jacobian(&self.whole(moved));
-        all.select_columns(self.ranges.iter().map(|(place, _)| place))
     }
 }
 
@@ -145,7 +128,7 @@ impl<T: LeastSquares> LeastSquares for Ahead<'_, T> {
     }
 
     fn count(&self) -> usize {
-        self.region.count()
+        self.region.inner.count()
     }
 
     /// What is not known is not the best.
@@ -157,7 +140,8 @@ impl<T: LeastSquares> LeastSquares for Ahead<'_, T> {
     }
 
     fn jacobian(&self, moved: &[f64]) -> DMatrix<f64> {
-        self.region.jacobian(moved)
+        let all = self.region.inner.jacobian(&self.region.whole(moved));
+        all.select_columns(self.region.ranges.iter().map(|(place, _)| place))
     }
 }
 
@@ -171,8 +155,9 @@ mod tests {
     use super::*;
     use std::ops::ControlFlow;
 
-    /// A valley of many ripples, whose bottom is at (0.1, 2, 0.05).
-    struct Ripples;
+    /// A valley of many ripples, whose bottom is at (0.1, 2, 0.05); and how many points were asked for at a time.
+    #[derive(Default)]
+    struct Ripples(RefCell<Vec<usize>>);
 
     impl LeastSquares for Ripples {
         fn bounds(&self) -> Vec<[f64; 2]> {
@@ -191,18 +176,39 @@ mod tests {
                 ripple(apart[1]),
             ]
         }
+        fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
+            self.0.borrow_mut().push(all.len());
+            all.iter().map(|x| self.residuals(x)).collect()
+        }
         fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
             DMatrix::zeros(4, 3)
         }
     }
 
+    fn go(_: &Progress) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    #[test]
+    fn the_points_of_a_generation_are_evaluated_together_and_the_search_is_the_same() {
+        let ripples = Ripples::default();
+        let all = ripples.bounds();
+        let start = [0.0, 2.5, 0.0];
+        let region = Region::new(&ripples, &start, &[(0, all[0]), (1, all[1]), (2, all[2])]);
+        let together = region.searched(100, &mut go).unwrap();
+        assert_eq!(together, cma_es(&ripples, &start, 0, 100, &mut go).unwrap());
+        // Seven points and their mean; what is left at the end.
+        let calls = ripples.0.borrow();
+        assert_eq!(calls[..], [[8; 12].as_slice(), &[4]].concat());
+    }
+
     #[test]
     fn the_bottom_of_a_region_is_found_without_derivatives_and_what_is_held_stays() {
         let ranges = [(0, [-0.2, 0.2]), (1, [3.5, 4.0]), (2, [-5.0, 0.2])];
-        let region = Region::new(&Ripples, &[0.0, 2.5, 0.0], &ranges);
+        let ripples = Ripples::default();
+        let region = Region::new(&ripples, &[0.0, 2.5, 0.0], &ranges);
         assert_eq!(region.bounds(), [[-0.2, 0.2], [-1.0, 0.2]]);
-        let go = &mut |_: &Progress| ControlFlow::Continue(());
-        let x = region.whole(&region.searched(300, go).unwrap().x);
+        let x = region.whole(&region.searched(300, &mut go).unwrap().x);
         assert!((x[0] - 0.1).abs() < 0.01, "{x:?}");
         assert_eq!(x[1], 2.5);
         assert!((x[2] - 0.05).abs() < 0.01, "{x:?}");
