@@ -63,19 +63,20 @@ fn settings(index: usize) -> Settings {
     }
 }
 
+fn asked<'a>(machines: &'a [Resolved], settings: &'a [Settings]) -> Vec<Asked<'a>> {
+    let of = |(resolved, settings): (&'a Resolved, &'a Settings)| Asked {
+        machine: &resolved.machine,
+        sensors: &resolved.sensors,
+        settings,
+    };
+    machines.iter().zip(settings).map(of).collect()
+}
+
 #[test]
 fn a_record_has_the_same_bits_alone_and_in_any_lane() {
     let machines = machines();
     let settings: Vec<Settings> = (0..machines.len()).map(settings).collect();
-    let asked: Vec<Asked> = machines
-        .iter()
-        .zip(&settings)
-        .map(|(resolved, settings)| Asked {
-            machine: &resolved.machine,
-            sensors: &resolved.sensors,
-            settings,
-        })
-        .collect();
+    let asked = asked(&machines, &settings);
     let alone: Vec<_> = asked
         .iter()
         .map(|asked| simulate(asked.machine, asked.sensors, asked.settings, false).unwrap())
@@ -144,15 +145,7 @@ fn of_a_fit(index: usize) -> Settings {
 fn a_settled_motion_has_the_same_bits_alone_and_in_any_lane_and_is_what_derivatives_are_of() {
     let machines = machines();
     let settings: Vec<Settings> = (0..machines.len()).map(of_a_fit).collect();
-    let asked: Vec<Asked> = machines
-        .iter()
-        .zip(&settings)
-        .map(|(resolved, settings)| Asked {
-            machine: &resolved.machine,
-            sensors: &resolved.sensors,
-            settings,
-        })
-        .collect();
+    let asked = asked(&machines, &settings);
     let together = settled_together(&asked);
     assert_eq!(together.len(), asked.len());
     let mut settled = 0;
