@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
 use crate::observation::{Observation, Observed, POINTS};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction, TOGETHER};
+use crate::prediction::{Accuracy, Prediction, to_a_thread};
 use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
@@ -278,7 +278,7 @@ impl LeastSquares for Energies<'_> {
                 .flat_map(|x| self.runs.iter().map(move |run| (run, &x[..])));
             let runs: Vec<_> = runs.collect();
             let parts: Vec<Vec<f64>> = runs
-                .par_chunks(TOGETHER)
+                .par_chunks(to_a_thread(runs.len()))
                 .flat_map_iter(|runs| self.of_runs(runs))
                 .collect();
             let of_each = parts.chunks(self.runs.len().max(1));

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::likelihood::FAILED;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction, TOGETHER, predictions, with_derivatives};
+use crate::prediction::{Accuracy, Prediction, predictions, to_a_thread, with_derivatives};
 use crate::problem::Problem;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -75,7 +75,8 @@ impl LeastSquares for Envelopes<'_> {
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
         self.problem.once(&"envelopes", x, || {
-            let runs = self.problem.runs.par_chunks(TOGETHER);
+            let runs = &self.problem.runs;
+            let runs = runs.par_chunks(to_a_thread(runs.len()));
             let parts = runs.flat_map_iter(|runs| {
                 let wanted: Vec<_> = runs.iter().map(|run| (run, x)).collect();
                 let predicted = predictions(self.problem, &wanted, Accuracy::Coarse);

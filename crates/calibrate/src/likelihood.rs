@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
-use crate::prediction::{Accuracy, Prediction, TOGETHER, Wanted, predictions, with_derivatives};
+use crate::prediction::{Accuracy, Prediction, Wanted, predictions, to_a_thread, with_derivatives};
 use crate::problem::Problem;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
@@ -130,7 +130,8 @@ impl<'a> Likelihood<'a> {
 
     /// The prediction of each run, or why there is none.
     fn of_each(&self, x: &[f64]) -> Vec<Result<Prediction, Error>> {
-        let runs = self.problem.runs.par_chunks(TOGETHER);
+        let runs = &self.problem.runs;
+        let runs = runs.par_chunks(to_a_thread(runs.len()));
         let of = |runs: &[Observation]| {
             let wanted: Vec<Wanted> = runs.iter().map(|run| (run, x)).collect();
             match &self.parts {

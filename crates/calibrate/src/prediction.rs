@@ -27,9 +27,17 @@ const CHAOTIC: u32 = 24;
 /// The same where the recorded motion repeats itself: their scatter is not compared then.
 const WRONG: u32 = 4;
 
-/// Runs that a thread simulates side by side: two fillings of the widest registers, so that a lane that is done early has
-/// something to go on with.
-pub(crate) const TOGETHER: usize = 16;
+/// Machines that fill the widest registers.
+const REGISTER: usize = 8;
+
+/// How many of `count` runs a thread simulates side by side. Up to two fillings, so that a lane that is done early has
+/// something to go on with; but one, where there is a thread for each.
+pub(crate) fn to_a_thread(count: usize) -> usize {
+    match count.div_ceil(rayon::current_num_threads()) {
+        0 | 1 => 1,
+        share => share.clamp(REGISTER, 2 * REGISTER),
+    }
+}
 
 /// How accurate a prediction is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -70,6 +70,8 @@ impl Scalar for f64 {
 
 /// One lane, for processors that have no instructions for more.
 impl Lanes<1> for f64 {
+    const FEW: usize = 1;
+
     #[inline(always)]
     fn to_array(self) -> [f64; 1] {
         [self]

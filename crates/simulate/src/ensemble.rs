@@ -152,7 +152,7 @@ fn travel<L: Lanes<W>, const W: usize>(group: Group) {
     let Some(mut coach) = Coach::<L, W>::new(passengers) else {
         return;
     };
-    while coach.count() > 1 {
+    while coach.count() > L::FEW {
         coach.step(file);
         let mut boarded = false;
         for lane in 0..W {
@@ -168,7 +168,7 @@ fn travel<L: Lanes<W>, const W: usize>(group: Group) {
             coach.widen();
         }
     }
-    // A machine that is left alone is faster by itself.
+    // The few that are left are faster one by one.
     let last = coach.passengers.iter_mut().enumerate();
     for (lane, passenger) in last {
         if let Some(Passenger {

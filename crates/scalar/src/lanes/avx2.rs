@@ -23,7 +23,7 @@ pub(super) struct F64x8([__m256d; 2]);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truths([__m256d; 2]);
 
-lanes!(F64x8, 8);
+lanes!(F64x8, 8, few: 4);
 
 /// What a function of one register makes of both.
 macro_rules! both {

@@ -22,7 +22,7 @@ pub(super) struct F64x8(__m512d);
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Truths(__mmask8);
 
-lanes!(F64x8, 8);
+lanes!(F64x8, 8, few: 2);
 
 /// Whether this processor has the instructions.
 pub(super) fn is_present() -> bool {

@@ -4,6 +4,10 @@ use crate::Scalar;
 
 /// `W` independent numbers.
 pub trait Lanes<const W: usize>: Scalar<Plain = Self> {
+    /// So many machines, or fewer, take less time one by one than side by side. By the times of a revolution in the table
+    /// of tests/peers/README.md: a step in lanes takes that of 2.8 plain ones with AVX-512, and of 4.0 with AVX2.
+    const FEW: usize;
+
     /// The number in each lane.
     fn to_array(self) -> [f64; W];
     /// These numbers.
@@ -48,7 +52,7 @@ macro_rules! operators {
 /// `subtract`, `multiply`, `divide`, `multiply_add`, `negate`, `square_root`, `less`, `choose`, `bit`, `two_to_the`,
 /// `split`, `equal` and `vectorised`, on values of the type; `Truths` is its mask.
 macro_rules! lanes {
-    ($name:ident, $width:literal) => {
+    ($name:ident, $width:literal, few: $few:literal) => {
         $crate::lanes::operations::operators! { $name:
             Add add AddAssign add_assign add;
             Sub sub SubAssign sub_assign subtract;
@@ -157,6 +161,8 @@ macro_rules! lanes {
         }
 
         impl $crate::Lanes<$width> for $name {
+            const FEW: usize = $few;
+
             fn to_array(self) -> [f64; $width] {
                 std::array::from_fn(|lane| self.get(lane))
             }
