@@ -3,6 +3,7 @@
 //! ```text
 //! wear own SEED FIRST LAST OUT.csv            machines of one throw and two that are drawn here, and their recordings. None to
 //!                                             four joints are worn
+//! wear drawn SEED FIRST LAST                  what these machines are, a line each; nothing is estimated
 //! wear bundle BUNDLE MACHINE RUN OUT.csv      a run of a bundle that states the true clearances
 //! wear labelled FOLDER MACHINE FIRST LAST OUT.csv
 //!                                             a set of labelled recordings of another program: FOLDER has labels.csv and
@@ -23,7 +24,7 @@ use std::error::Error;
 use std::path::Path;
 use wear_bench::{Table, other, own};
 
-const USAGE: &str = "usage: wear own SEED FIRST LAST OUT.csv | wear bundle BUNDLE MACHINE RUN OUT.csv | \
+const USAGE: &str = "usage: wear own SEED FIRST LAST OUT.csv | wear drawn SEED FIRST LAST | wear bundle BUNDLE MACHINE RUN OUT.csv | \
                      wear labelled FOLDER MACHINE FIRST LAST OUT.csv | wear summary OUT.csv";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -40,6 +41,11 @@ fn main() -> Result<(), Box<dyn Error>> {
                 }
             }
             table.summary();
+        }
+        ["drawn", seed, first, last] => {
+            for number in first.parse()?..=last.parse()? {
+                println!("{}", own::described(seed.parse()?, number)?);
+            }
         }
         ["bundle", folder, machine, run, out] => {
             let mut table = Table::open(Path::new(out), command)?;

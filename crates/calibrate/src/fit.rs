@@ -1,7 +1,7 @@
 //! From a problem to a calibrated machine.
 
 use crate::error::Error;
-use crate::identifiability::{Information, information, widening};
+use crate::identifiability::{Information, information, is_identifiable, widening};
 use crate::likelihood::NOISE;
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
@@ -10,6 +10,7 @@ use crate::parameter::Parameter;
 use crate::problem::Problem;
 use crate::relation::{ClearJoint, clearances};
 use crate::search;
+use crate::statistical_linearization::statistical_linearization;
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 
@@ -63,6 +64,9 @@ impl Optimiser {
 /// were all that is left. At 1.5 more than half of the mean square is something else, and its effect on the
 /// parameters is unknown.
 pub const ADEQUATE: f64 = 1.5;
+/// Simulations of a motion that scatters over which its misfit is a mean, and by how much their coordinates differ.
+const NEIGHBOURS: u32 = 8;
+const BESIDE: f64 = 1e-6;
 /// A value this near to a bound, as a share of the range, is at it.
 const AT_BOUND: f64 = 1e-3;
 
@@ -236,36 +240,117 @@ pub fn calibrate(
         all[*i] = *value;
     }
     let after = Likelihood::new(problem).by_run(&all)?;
-    let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
-    let joints = ClearJoint::in_runs(&problem.tree, of_runs)?;
-    let state = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
-    let states = fitted
-        .runs
-        .iter()
-        .map(state)
-        .collect::<Result<Vec<_>, _>>()?;
-    let alike = problem
-        .runs
-        .iter()
-        .map(|run| Ok(states.contains(&state(run)?)));
-    let alike = alike.collect::<Result<Vec<bool>, Error>>()?;
-    let misfits = before.iter().zip(&after).zip(alike);
-    let runs = problem.runs.iter().zip(misfits);
-    Ok(Fit {
-        runs: runs
-            .map(|(run, ((before, after), alike))| RunFit {
-                id: run.id.clone(),
-                held_out: held_out(&run.id),
-                alike,
-                nominal: misfit(before),
-                calibrated: misfit(after),
-            })
-            .collect(),
-        estimates: estimates(problem, &free, &all, information.as_ref()),
-        correlations: correlations(nominal.len(), &free, information.as_ref()),
+    let found = Found {
+        misfits: after.iter().map(|residuals| misfit(residuals)).collect(),
+        x: all,
+        free,
+        information,
         evaluations,
         complete,
-    })
+    };
+    found.fit(problem, &before, held_out)
+}
+
+/// The fit of a problem some of whose recorded motions do not repeat themselves, by a statistical linearisation from `start` on.
+/// All parameters stay where it leads them, whether they are identifiable or not.
+///
+/// # Errors
+/// As [`statistical_linearization`].
+pub(crate) fn linearized(
+    problem: &Problem,
+    start: &[f64],
+    far: f64,
+    watch: optimiser::Watch,
+) -> Result<Fit, Error> {
+    let mut complete = true;
+    let mut watch = |progress: &Progress| {
+        let answer = watch(progress);
+        complete &= answer.is_continue();
+        answer
+    };
+    let likelihood = Likelihood::new(problem);
+    let (found, information) = statistical_linearization(&likelihood, start, far, &mut watch)?;
+    let bounds = problem.parameters.iter().map(|p| p.box_bounds());
+    let both = information.intervals.iter().zip(bounds).enumerate();
+    let free = both.filter(|(_, (interval, bounds))| is_identifiable(interval, bounds));
+    let free: Vec<usize> = free.map(|(i, _)| i).collect();
+    let nominal = vec![0.0; problem.parameters.len()];
+    let before = likelihood.by_run(&nominal)?;
+    let found = Found {
+        misfits: mean_misfits(&likelihood, &found.x)?,
+        x: found.x,
+        information: Some(information.of(&free)),
+        free,
+        evaluations: found.evaluations,
+        complete,
+    };
+    found.fit(problem, &before, |_| false)
+}
+
+/// The misfit of each run at `x`, whose motion scatters: that of one simulation is a matter of chance. Beside it motions are others,
+/// and their means are the same.
+fn mean_misfits(likelihood: &Likelihood, x: &[f64]) -> Result<Vec<f64>, Error> {
+    let mut squares: Vec<f64> = Vec::new();
+    for neighbour in 0..NEIGHBOURS {
+        let beside = f64::from(neighbour) * BESIDE;
+        let x: Vec<f64> = x.iter().map(|x| x + beside).collect();
+        let misfits = likelihood.by_run(&x)?;
+        squares.resize(misfits.len(), 0.0);
+        for (sum, residuals) in squares.iter_mut().zip(&misfits) {
+            *sum += misfit(residuals).powi(2);
+        }
+    }
+    let mean = |sum: &f64| (sum / f64::from(NEIGHBOURS)).sqrt();
+    Ok(squares.iter().map(mean).collect())
+}
+
+/// What a search has led to.
+struct Found {
+    /// Coordinates of all parameters, and the misfit of each run there.
+    x: Vec<f64>,
+    misfits: Vec<f64>,
+    /// Those that are identifiable, and the information of these.
+    free: Vec<usize>,
+    information: Option<Information>,
+    evaluations: u64,
+    complete: bool,
+}
+
+impl Found {
+    /// The fit; `before` are the residuals of each run with the nominal parameters.
+    fn fit(
+        self,
+        problem: &Problem,
+        before: &[Vec<f64>],
+        held_out: impl Fn(&str) -> bool,
+    ) -> Result<Fit, Error> {
+        let of_runs = problem.runs.iter().map(|run| &run.settings[..]);
+        let joints = ClearJoint::in_runs(&problem.tree, of_runs)?;
+        let state = |run: &Observation| clearances(&problem.tree, &joints, &run.settings);
+        let fitted = problem.runs.iter().filter(|run| !held_out(&run.id));
+        let states = fitted.map(state).collect::<Result<Vec<_>, _>>()?;
+        let runs = problem.runs.iter();
+        let alike = runs.map(|run| Ok(states.contains(&state(run)?)));
+        let alike = alike.collect::<Result<Vec<bool>, Error>>()?;
+        let misfits = before.iter().zip(&self.misfits).zip(alike);
+        let runs = problem.runs.iter().zip(misfits);
+        let information = self.information.as_ref();
+        Ok(Fit {
+            runs: runs
+                .map(|(run, ((before, after), alike))| RunFit {
+                    id: run.id.clone(),
+                    held_out: held_out(&run.id),
+                    alike,
+                    nominal: misfit(before),
+                    calibrated: *after,
+                })
+                .collect(),
+            estimates: estimates(problem, &self.free, &self.x, information),
+            correlations: correlations(self.x.len(), &self.free, information),
+            evaluations: self.evaluations,
+            complete: self.complete,
+        })
+    }
 }
 
 /// Where the search starts, within the bounds.

@@ -70,23 +70,58 @@ pub fn information(problem: &impl LeastSquares, x: &[f64]) -> Information {
     }
 }
 
+/// The information of a covariance at the best fit `x`.
+pub(crate) fn intervals_of(
+    x: &[f64],
+    bounds: &[[f64; 2]],
+    covariance: &DMatrix<f64>,
+) -> Information {
+    let deviation = |i: usize| covariance[(i, i)].sqrt();
+    let around = |(i, x): (usize, &f64)| [-1.0, 1.0].map(|sign| x + sign * QUANTILE * deviation(i));
+    let intervals: Vec<[f64; 2]> = x.iter().enumerate().map(around).collect();
+    Information {
+        unidentifiable: unidentifiable(&intervals, bounds),
+        correlations: DMatrix::from_fn(x.len(), x.len(), |i, j| match i == j {
+            true => 1.0,
+            false => covariance[(i, j)] / (deviation(i) * deviation(j)),
+        }),
+        intervals,
+    }
+}
+
 /// The parameter whose interval is the greatest share of its range, where that is half or more.
 fn unidentifiable(intervals: &[[f64; 2]], bounds: &[[f64; 2]]) -> Option<usize> {
-    let share = |i: usize| {
-        let [low, high] = intervals[i];
-        let share = (high - low) / (bounds[i][1] - bounds[i][0]);
-        if share.is_finite() {
-            share
-        } else {
-            f64::INFINITY
-        }
-    };
+    let share = |i: usize| share(&intervals[i], &bounds[i]);
     (0..intervals.len())
         .max_by(|a, b| share(*a).total_cmp(&share(*b)))
-        .filter(|i| share(*i) >= IDENTIFIABLE)
+        .filter(|i| !is_identifiable(&intervals[*i], &bounds[*i]))
+}
+
+/// Whether an interval is short enough beside its range.
+pub(crate) fn is_identifiable(interval: &[f64; 2], bounds: &[f64; 2]) -> bool {
+    share(interval, bounds) < IDENTIFIABLE
+}
+
+/// An interval as a share of its range.
+fn share([low, high]: &[f64; 2], bounds: &[f64; 2]) -> f64 {
+    let share = (high - low) / (bounds[1] - bounds[0]);
+    if share.is_finite() {
+        share
+    } else {
+        f64::INFINITY
+    }
 }
 
 impl Information {
+    /// That of the parameters of these indices alone.
+    pub(crate) fn of(&self, keep: &[usize]) -> Self {
+        Self {
+            intervals: keep.iter().map(|i| self.intervals[*i]).collect(),
+            correlations: self.correlations.select_rows(keep).select_columns(keep),
+            unidentifiable: None,
+        }
+    }
+
     /// The same with intervals about `x` that are wider by these factors, one per parameter.
     pub fn widened(mut self, factors: &[f64], x: &[f64]) -> Self {
         for ((interval, factor), x) in self.intervals.iter_mut().zip(factors).zip(x) {

@@ -72,6 +72,7 @@ mod settings_check;
 pub mod shut_valve;
 pub mod sizes;
 pub mod stages;
+mod statistical_linearization;
 mod superposition;
 pub mod task;
 pub mod throw_alone;

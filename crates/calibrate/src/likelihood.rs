@@ -128,18 +128,14 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    /// The prediction of each run, or why there is none.
-    fn of_each(&self, x: &[f64]) -> Vec<Result<Prediction, Error>> {
-        let runs = &self.problem.runs;
-        let runs = runs.par_chunks(to_a_thread(runs.len()));
-        let of = |runs: &[Observation]| {
-            let wanted: Vec<Wanted> = runs.iter().map(|run| (run, x)).collect();
-            match &self.parts {
-                Some(parts) => parts.predictions(&wanted, self.accuracy()),
-                None => predictions(self.problem, &wanted, self.accuracy()),
-            }
+    /// The predictions of these runs, or why there are none.
+    fn predicted(&self, wanted: &[Wanted]) -> Vec<Result<Prediction, Error>> {
+        let together = wanted.par_chunks(to_a_thread(wanted.len()));
+        let of = |wanted: &[Wanted]| match &self.parts {
+            Some(parts) => parts.predictions(wanted, self.accuracy()),
+            None => predictions(self.problem, wanted, self.accuracy()),
         };
-        runs.flat_map_iter(of).collect()
+        together.flat_map_iter(of).collect()
     }
 
     /// The predictions of all runs.
@@ -147,7 +143,8 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn predictions(&self, x: &[f64]) -> Result<Vec<Prediction>, Error> {
-        self.of_each(x).into_iter().collect()
+        let wanted: Vec<Wanted> = self.problem.runs.iter().map(|run| (run, x)).collect();
+        self.predicted(&wanted).into_iter().collect()
     }
 
     /// The residuals of each run.
@@ -177,14 +174,27 @@ impl LeastSquares for Likelihood<'_> {
     }
 
     fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        self.residuals_of_all(&[x.to_vec()]).concat()
+    }
+
+    fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let what = ("residuals", self.timing, self.parts.is_some());
-        self.problem.once(&what, x, || {
-            let runs = self.problem.runs.iter().zip(self.of_each(x));
-            let parts = runs.map(|(run, prediction)| match prediction {
+        self.problem.once_each(&what, all, |unknown| {
+            let runs = &self.problem.runs;
+            let wanted = unknown
+                .iter()
+                .flat_map(|x| runs.iter().map(move |run| (run, &x[..])));
+            let wanted: Vec<Wanted> = wanted.collect();
+            let of_run = |((run, _), prediction): (&Wanted, _)| match prediction {
                 Ok(prediction) => residuals(run, &prediction, self.timing),
                 Err(_) => vec![FAILED; residual_count(run)],
-            });
-            parts.collect::<Vec<_>>().concat()
+            };
+            let found = self.predicted(&wanted);
+            let parts: Vec<Vec<f64>> = wanted.iter().zip(found).map(of_run).collect();
+            parts
+                .chunks(runs.len().max(1))
+                .map(<[Vec<f64>]>::concat)
+                .collect()
         })
     }
 

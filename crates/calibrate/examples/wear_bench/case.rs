@@ -59,10 +59,12 @@ pub fn case(
     })
 }
 
-/// The misfit of the machine file `tree` itself, over the noise.
-pub fn misfit_of(tree: &Value, runs: &[Run]) -> Result<f64, Box<dyn Error>> {
+/// The misfit of the machine file `tree` itself, over the noise, and whether the motion of each run repeats itself.
+pub fn seen(tree: &Value, runs: &[Run]) -> Result<(f64, Vec<bool>), Box<dyn Error>> {
     let problem = problem(&mut tree.clone(), &mut runs.to_vec())?;
-    Ok(misfit(&Likelihood::new(&problem).residuals(&[0.0])))
+    let repeats = problem.runs.iter().map(|run| run.repeats_like(&[]));
+    let misfit = misfit(&Likelihood::new(&problem).residuals(&[0.0]));
+    Ok((misfit, repeats.collect()))
 }
 
 fn problem(tree: &mut Value, runs: &mut [Run]) -> Result<Problem, Box<dyn Error>> {

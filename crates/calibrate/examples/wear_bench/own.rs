@@ -10,7 +10,7 @@
 //! clearance by other exponents. The recordings are the accelerations of the crossheads or of the frame, with or without the
 //! pressures of the cylinders, in one or two runs of different speed.
 
-use super::case::{Case, WORN_FROM, case, misfit_of};
+use super::case::{Case, WORN_FROM, case, seen};
 use crate::recording::{clean, noisy};
 use calibrate::{Parameter, Relation};
 use input::unit::{Dimension, Measure};
@@ -67,17 +67,50 @@ pub fn name(seed: u64, number: u64) -> String {
 /// # Errors
 /// A machine that cannot be recorded in any of several draws, or an estimation that fails.
 pub fn case_of(seed: u64, number: u64) -> Result<Case, Box<dyn Error>> {
+    let Drawn {
+        file, runs, truth, ..
+    } = drawn(seed, number)?;
+    case(name(seed, number), file, runs, truth)
+}
+
+/// One line on the case of this number: its worn joints, its runs, whether their motion repeats itself, and the misfit that
+/// the true machine leaves.
+///
+/// # Errors
+/// A machine that cannot be recorded in any of several draws.
+pub fn described(seed: u64, number: u64) -> Result<String, Box<dyn Error>> {
+    let drawn = drawn(seed, number)?;
+    let name = name(seed, number);
+    let worn = drawn
+        .truth
+        .iter()
+        .map(|(joint, c)| format!("{joint} {:.3} mm", c * 1e3));
+    let worn: Vec<String> = worn.collect();
+    let channels: Vec<&str> = drawn.runs[0]
+        .channels
+        .iter()
+        .map(|c| c.column.as_str())
+        .collect();
+    let (misfit, repeat) = seen(&drawn.machine, &drawn.runs)?;
+    let of_runs: Vec<&str> = repeat
+        .iter()
+        .map(|r| if *r { "repeats" } else { "scatters" })
+        .collect();
+    Ok(format!(
+        "{name}: {}; {}; {}; true machine {misfit:.2}",
+        worn.join(", "),
+        channels.join(", "),
+        of_runs.join(", ")
+    ))
+}
+
+/// The machine of this number and its recordings, from the first draw that can be recorded.
+fn drawn(seed: u64, number: u64) -> Result<Drawn, Box<dyn Error>> {
     let mut random = stream(seed, number, Purpose::Variation);
     let mut last = None;
     for _ in 0..DRAWS {
-        match drawn(&mut random, seed, number) {
-            Ok(drawn) => {
-                eprintln!(
-                    "misfit of the true machine {:.3}",
-                    misfit_of(&drawn.machine, &drawn.runs)?
-                );
-                return case(name(seed, number), drawn.file, drawn.runs, drawn.truth);
-            }
+        match draw(&mut random, seed, number) {
+            Ok(drawn) => return Ok(drawn),
             Err(error) => last = Some(error),
         }
     }
@@ -92,7 +125,7 @@ struct Drawn {
     truth: BTreeMap<String, f64>,
 }
 
-fn drawn(random: &mut Stream, seed: u64, number: u64) -> Result<Drawn, Box<dyn Error>> {
+fn draw(random: &mut Stream, seed: u64, number: u64) -> Result<Drawn, Box<dyn Error>> {
     // Numbers of worn joints and places of the sensor take turns.
     let worn = number as usize % (MOST_WORN + 1);
     let on_crosshead = number.is_multiple_of(2);

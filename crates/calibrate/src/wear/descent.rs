@@ -9,7 +9,7 @@ use super::model::Model;
 use super::screen::{AT_ONCE, few};
 use crate::energies::Energies;
 use crate::error::Error;
-use crate::fit::{Fit, FitSettings, Optimiser, calibrate};
+use crate::fit::{Fit, FitSettings, Optimiser, calibrate, linearized};
 use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
@@ -153,6 +153,15 @@ fn secants(
 /// # Errors
 /// As [`calibrate`].
 pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
+    if !model.problem.runs.iter().all(Observation::repeats) {
+        let mut watch = |progress: &Progress| {
+            effort.fitted(progress.misfit());
+            effort.shown(progress.evaluations)
+        };
+        let fit = linearized(&model.problem, &x, FAR, &mut watch)?;
+        effort.spent += fit.evaluations;
+        return Ok(fit);
+    }
     let x = repeating(&model.problem, x, effort);
     let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
     let likelihood = Likelihood::new(&model.problem);
@@ -181,7 +190,7 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
     Ok(fit)
 }
 
-/// The coordinates `x`, where the motion repeats itself there or the recorded one does not. Elsewhere those beside them whose
+/// The coordinates `x`, where the motion repeats itself there. Elsewhere those beside them whose
 /// motion repeats itself and explains the recordings best: a motion that is about to double its period settles slowly, and has no
 /// derivatives.
 fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
@@ -190,7 +199,7 @@ fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
         let all = likelihood.predictions(x);
         all.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic))
     };
-    if !problem.runs.iter().all(Observation::repeats) || repeats(&x) {
+    if repeats(&x) {
         return x;
     }
     let clearances = problem.parameters.iter().enumerate();

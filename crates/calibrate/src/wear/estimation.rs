@@ -15,6 +15,7 @@ use crate::error::Error;
 use crate::fit::RunFit;
 use crate::likelihood::{Likelihood, misfit};
 use crate::meter::Meter;
+use crate::observation::Observation;
 use crate::pictures;
 use crate::problem::Problem;
 use crate::results::{ByName, Estimate, MACHINE};
@@ -213,9 +214,10 @@ fn conclude(
     let whole = fit.complete && !effort.stopped;
     let adequate = fit.model_is_adequate();
     // An adequate model may leave more than noise, and then the noise alone is no measure of what is known.
+    let scatters = !problem.runs.iter().all(Observation::repeats);
     let predictions = Likelihood::new(problem).predictions(&fit.coordinates());
     let repeats = predictions.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic));
-    let wrong = match whole && repeats && !fit.is_at_noise() {
+    let wrong = match whole && repeats && !scatters && !fit.is_at_noise() {
         true => discrepancy(problem, fit, effort)?,
         false => None,
     };
@@ -227,7 +229,7 @@ fn conclude(
         found,
         discrepancy,
         worn_from,
-        repeats,
+        is_known: repeats || scatters,
     };
     let verdicts = (0..joints.len())
         .map(|i| Ok((joints[i].path.clone(), grounds.verdict(i, &pairs)?)))
@@ -252,7 +254,7 @@ fn conclude(
         model_is_adequate: adequate,
         interval: match discrepancy {
             Some(_) => Interval::Discrepancy,
-            None if adequate && whole && repeats => Interval::Noise,
+            None if adequate && whole && grounds.is_known => Interval::Noise,
             None => Interval::None,
         },
         timing_rad: discrepancy.map(|d| d.timing),

@@ -165,7 +165,8 @@ impl Search<'_> {
     /// are fitted too, and the evidence decides.
     fn settled(&self, model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Found, Error> {
         let found = judged(model.clone(), fit(model, x, effort)?)?;
-        if found.misfit() > FAR {
+        // Of motions that scatter, sums of squares differ by chance by more than with such models.
+        if found.misfit() > FAR || !model.problem.runs.iter().all(Observation::repeats) {
             return Ok(found);
         }
         let from = found.fit.coordinates();

@@ -8,6 +8,7 @@ use super::selection::Found;
 use crate::error::Error;
 use crate::identifiability::information;
 use crate::likelihood::Likelihood;
+use crate::observation::Observation;
 use crate::problem::Problem;
 
 /// Correlation from which two clearances are hardly told apart.
@@ -27,8 +28,9 @@ pub(super) struct Grounds<'a> {
     pub discrepancy: Option<&'a Discrepancy>,
     /// A joint counts as worn from this many times its normal clearance.
     pub worn_from: f64,
-    /// Whether the motion of the best fit repeats itself in every run; elsewhere it has no derivatives.
-    pub repeats: bool,
+    /// Whether the motion of the best fit repeats itself in every run, or a recorded one does not either: elsewhere there are
+    /// neither derivatives nor the slopes of what scatters.
+    pub is_known: bool,
 }
 
 impl Grounds<'_> {
@@ -46,7 +48,7 @@ impl Grounds<'_> {
     fn of_clear(&self, index: usize, place: usize, together: &[Together]) -> JointWear {
         let estimate = &self.found.fit.estimates[place];
         let limit = self.limit(index);
-        if !self.repeats && self.found.fit.complete {
+        if !self.is_known && self.found.fit.complete {
             let reason = "the motion of the best fit does not repeat itself, so that it is not known how well the recordings \
                           determine the clearance";
             let value = Some(estimate.value);
@@ -175,7 +177,10 @@ impl Grounds<'_> {
 pub(super) fn together(joints: &[Joint], found: &Found) -> Vec<Together> {
     let model = &found.model;
     let likelihood = Likelihood::new(&model.problem);
-    let correlations = information(&likelihood, &found.fit.coordinates()).correlations;
+    let correlations = match model.problem.runs.iter().all(Observation::repeats) {
+        true => information(&likelihood, &found.fit.coordinates()).correlations,
+        false => found.fit.correlations.clone(),
+    };
     let mut pairs = Vec::new();
     for a in 0..model.clear.len() {
         for b in a + 1..model.clear.len() {

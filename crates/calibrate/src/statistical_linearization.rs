@@ -1,0 +1,389 @@
+//! The best fit of residuals that scatter, and how well they determine it.
+//!
+//! Neighbours of a motion that does not repeat itself part, so that it has no derivatives. Its means over many revolutions have
+//! slopes, but are known up to their scatter alone. So a cloud of points is simulated, and a linear model of each residual is
+//! fitted to it: its slopes are those of a statistical linearisation (Gelb 1974, section 6.2; Lefebvre, Bruyninckx and De
+//! Schutter 2002), and a step of Gauss and Newton's method with them leads to the next cloud (as in iterative ensemble
+//! smoothers, Chen and Oliver 2013). What the linear model does not explain is scatter and curvature; what these add to the
+//! squares of the slopes is taken off, so that a coordinate that nothing shows is not taken for a known one.
+
+use crate::error::Error;
+use crate::identifiability::{Information, intervals_of};
+use crate::likelihood::FAILED;
+use crate::optimiser::{LeastSquares, Progress, Watch};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rand::RngExt;
+use scalar::random::{Purpose, stream};
+
+/// Pairs of points of a cloud, for each unknown of the linear model.
+const PAIRS: usize = 4;
+/// Standard deviation of the coordinates in the first cloud: a few hundredths of a clearance, as wide as its valleys are.
+const FIRST: f64 = 0.03;
+/// The widest cloud, as a share of a coordinate's range.
+const WIDEST: f64 = 0.25;
+/// A cloud is so wide that slopes add this many times as much to the squares of the residuals as scatter does to the squares
+/// of the slopes, but not less than this many standard deviations of what is known.
+const OVER_SCATTER: f64 = 4.0;
+const OVER_KNOWN: f64 = 2.0;
+/// A cloud becomes narrower and wider along a direction by these factors at most.
+const NARROWER: f64 = 3.0;
+const WIDER: f64 = 2.0;
+/// A step leads this many standard deviations of the cloud far at most, and one of less than that ends the search.
+const STEP: f64 = 2.0;
+const ENDED: f64 = 0.5;
+/// Clouds at most, and after how many a fit that is still `far` ends.
+const CLOUDS: u64 = 6;
+const BEGINNING: u64 = 2;
+/// Standard deviations by which the sum of squares in the middle of a cloud may grow by chance.
+const CHANCE: f64 = 2.0;
+/// A direction is known where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
+/// that adds.
+const SHOWN: f64 = 1.0;
+/// The damping of a step to begin with.
+const DAMPING: f64 = 1e-6;
+
+/// The best fit within bounds that clouds from `start` on lead to, and the information there. Ends early where more than the
+/// misfit `far` is left after two clouds.
+///
+/// # Errors
+/// A start that cannot be simulated.
+pub(crate) fn statistical_linearization(
+    problem: &impl LeastSquares,
+    start: &[f64],
+    far: f64,
+    watch: Watch,
+) -> Result<(Progress, Information), Error> {
+    let bounds = problem.bounds();
+    let count = problem.count();
+    let mut at = Progress {
+        x: start.to_vec(),
+        cost: half_squares(&problem.residuals(start)),
+        count,
+        evaluations: 1,
+    };
+    if at.cost >= half_squares(&[FAILED]) {
+        return Err(Error::Nothing("the start of a fit cannot be simulated"));
+    }
+    let mut cloud = Cloud::first(&bounds);
+    let mut best: Option<Best> = None;
+    for number in 0..CLOUDS {
+        let stopped = watch(&at).is_break();
+        if stopped || (number >= BEGINNING && at.misfit() > far) {
+            break;
+        }
+        let points = cloud.points(number, &at.x, &bounds);
+        let residuals = problem.residuals_of_all(&points);
+        at.evaluations += points.len() as u64;
+        let Some(linear) = Linear::fitted(&cloud, &at.x, &points, &residuals, &bounds) else {
+            // Too many of them cannot be simulated.
+            cloud.shape *= 1.0 / NARROWER;
+            continue;
+        };
+        if let Some(best) = best.as_ref().filter(|best| linear.is_worse(&best.linear)) {
+            at.x.clone_from(&best.next);
+            cloud.shape = &best.shape / NARROWER;
+            continue;
+        }
+        let step = linear.step();
+        let shape = cloud.shape.clone();
+        at.x = moved(&at.x, &(&shape * &step), &bounds);
+        at.cost = linear.cost;
+        let narrowest = cloud.reshape(&linear, &bounds);
+        best = Some(Best {
+            next: at.x.clone(),
+            linear,
+            shape,
+        });
+        let is_known = best
+            .as_ref()
+            .is_some_and(|best| best.linear.known.min() > 0.0);
+        if is_known && narrowest > 1.0 / NARROWER && step.amax() < ENDED {
+            break;
+        }
+    }
+    let covariance = match best {
+        Some(Best {
+            next,
+            linear,
+            shape,
+        }) => {
+            at.x = next;
+            &shape * linear.covariance() * shape.transpose()
+        }
+        None => DMatrix::from_diagonal(&range_variances(&bounds)),
+    };
+    let known = intervals_of(&at.x, &bounds, &covariance);
+    Ok((at, known))
+}
+
+/// The last cloud that was no worse than the one before.
+struct Best {
+    /// Where its step has led.
+    next: Vec<f64>,
+    linear: Linear,
+    shape: DMatrix<f64>,
+}
+
+/// The variance of each coordinate that may lie anywhere within its bounds.
+fn range_variances(bounds: &[[f64; 2]]) -> DVector<f64> {
+    DVector::from_iterator(
+        bounds.len(),
+        bounds.iter().map(|[low, high]| (high - low).powi(2) / 12.0),
+    )
+}
+
+fn half_squares(residuals: &[f64]) -> f64 {
+    0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
+}
+
+fn moved(x: &[f64], by: &DVector<f64>, bounds: &[[f64; 2]]) -> Vec<f64> {
+    let each = x.iter().zip(by.iter()).zip(bounds);
+    each.map(|((x, by), [low, high])| (x + by).clamp(*low, *high))
+        .collect()
+}
+
+/// How points lie around the best one: a column for each of as many independent directions.
+struct Cloud {
+    shape: DMatrix<f64>,
+}
+
+impl Cloud {
+    fn first(bounds: &[[f64; 2]]) -> Self {
+        let spread = |[low, high]: &[f64; 2]| FIRST.min(WIDEST * (high - low));
+        let spreads = bounds.iter().map(spread);
+        Self {
+            shape: DMatrix::from_diagonal(&DVector::from_iterator(bounds.len(), spreads)),
+        }
+    }
+
+    /// Pairs of opposite points, within the bounds.
+    fn points(&self, number: u64, x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
+        let mut random = stream(0, number, Purpose::Variation);
+        // A uniform number within ±√3 has the variance 1.
+        let width = 3.0_f64.sqrt();
+        let pairs = (0..PAIRS * (x.len() + 1)).map(|_| {
+            let of = DVector::from_fn(x.len(), |_, _| random.random_range(-width..width));
+            let by = &self.shape * of;
+            [moved(x, &by, bounds), moved(x, &-by, bounds)]
+        });
+        pairs.flatten().collect()
+    }
+
+    /// The next shape, and by how much it is wider than this one where that is least.
+    fn reshape(&mut self, linear: &Linear, bounds: &[[f64; 2]]) -> f64 {
+        let wide = OVER_KNOWN.max((OVER_SCATTER * linear.scatter).sqrt());
+        let factor = |known: f64| (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER);
+        let factors = linear.known.map(factor);
+        let mut shape = &self.shape * &linear.directions * DMatrix::from_diagonal(&factors);
+        for (mut row, [low, high]) in shape.row_iter_mut().zip(bounds) {
+            let spread = row.norm();
+            let widest = WIDEST * (high - low);
+            if spread > widest {
+                row *= widest / spread;
+            }
+        }
+        self.shape = shape;
+        factors.min()
+    }
+}
+
+/// A linear model of the residuals over a cloud, whose directions are its coordinates.
+struct Linear {
+    /// Half the derivative of the sum of squares.
+    gradient: DVector<f64>,
+    /// What is known before: a coordinate lies within its bounds.
+    before: DMatrix<f64>,
+    /// Principal directions of the squares of the slopes, and these without what scatter adds; 0 where that is all.
+    directions: DMatrix<f64>,
+    known: DVector<f64>,
+    /// What scatter and curvature add to each of these squares.
+    scatter: f64,
+    /// Covariance of half the derivative of the sum of squares by the scatter of one point: that of orders that scatter
+    /// together is more than the variance of each says.
+    of_gradient: DMatrix<f64>,
+    /// Half the sum of squares in the middle, without scatter; and how far it is off by chance, a standard deviation.
+    cost: f64,
+    chance: f64,
+}
+
+impl Linear {
+    /// That of a cloud around `x`. Points that cannot be simulated are left out; none where too few are left.
+    fn fitted(
+        cloud: &Cloud,
+        x: &[f64],
+        points: &[Vec<f64>],
+        residuals: &[Vec<f64>],
+        bounds: &[[f64; 2]],
+    ) -> Option<Self> {
+        let count = x.len();
+        let inverse = cloud.shape.clone().try_inverse()?;
+        let (mut places, mut rows) = (Vec::new(), Vec::new());
+        for (point, residuals) in points.iter().zip(residuals) {
+            if residuals.iter().any(|r| !(r.abs() < FAILED)) {
+                continue;
+            }
+            let apart = DVector::from_fn(count, |i, _| point[i] - x[i]);
+            let place = &inverse * apart;
+            places.push(place.push(1.0).transpose());
+            rows.push(DVector::from_column_slice(residuals).transpose());
+        }
+        let free = places
+            .len()
+            .checked_sub(count + 1)
+            .filter(|free| *free > 0)?;
+        let places = DMatrix::from_rows(&places);
+        let rows = DMatrix::from_rows(&rows);
+        let normal = (places.transpose() * &places).try_inverse()?;
+        let model = &normal * places.transpose() * &rows;
+        let slopes = model.rows(0, count);
+        let middle = model.row(count);
+        let pulled = (&rows - &places * &model) * slopes.transpose();
+        let left = (&rows - &places * &model).norm_squared() / free as f64;
+        let points = places.nrows() as f64;
+        let squares: Vec<f64> = rows
+            .row_iter()
+            .map(|row| 0.5 * row.norm_squared())
+            .collect();
+        let mean = squares.iter().sum::<f64>() / points;
+        let variance = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / points;
+        let of_scatter = normal.view((0, 0), (count, count)) * left;
+        let scatter = of_scatter.trace() / count as f64;
+        let information = (slopes * slopes.transpose() - &of_scatter).symmetric_eigen();
+        let within =
+            DMatrix::from_diagonal(&range_variances(bounds).map(|variance| 1.0 / variance));
+        Some(Self {
+            gradient: slopes * middle.transpose(),
+            before: cloud.shape.transpose() * within * &cloud.shape,
+            directions: information.eigenvectors,
+            known: information
+                .eigenvalues
+                .map(|known| match known > SHOWN * scatter {
+                    true => known,
+                    false => 0.0,
+                }),
+            of_gradient: pulled.transpose() * &pulled / free as f64,
+            scatter,
+            cost: 0.5 * (middle.norm_squared() - left / points),
+            chance: (variance / points).sqrt(),
+        })
+    }
+
+    /// Whether more is left in the middle of this cloud than of another, and not by chance.
+    fn is_worse(&self, than: &Self) -> bool {
+        self.cost - than.cost > CHANCE * self.chance.hypot(than.chance)
+    }
+
+    /// What is known, over the width of the cloud.
+    fn information(&self) -> DMatrix<f64> {
+        let shown = DMatrix::from_diagonal(&self.known);
+        &self.directions * shown * self.directions.transpose() + &self.before
+    }
+
+    /// The next step, over the width of the cloud: Levenberg and Marquardt's, no further than the cloud bears it.
+    fn step(&self) -> DVector<f64> {
+        let SymmetricEigen {
+            eigenvectors,
+            eigenvalues,
+        } = self.information().symmetric_eigen();
+        // Scatter alone leads nowhere.
+        let shown = self.known.map(|known| if known > 0.0 { 1.0 } else { 0.0 });
+        let gradient = self.directions.transpose() * &self.gradient;
+        let gradient = &self.directions * gradient.component_mul(&shown);
+        let along = eigenvectors.transpose() * gradient;
+        let mut damping = DAMPING * eigenvalues.max();
+        loop {
+            let step = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
+            let step = &eigenvectors * step;
+            if step.norm() <= STEP * (step.len() as f64).sqrt() {
+                return step;
+            }
+            damping *= 2.0;
+        }
+    }
+
+    /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
+    /// that of a simulation (the sandwich of Huber 1967).
+    fn covariance(&self) -> DMatrix<f64> {
+        let information = self.information();
+        let size = information.nrows();
+        let inverse = information.try_inverse();
+        let inverse = inverse.unwrap_or_else(|| DMatrix::identity(size, size));
+        &inverse + &inverse * &self.of_gradient * &inverse
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::ops::ControlFlow;
+
+    const COUNT: usize = 400;
+    const TRUTH: [f64; 3] = [0.21, -0.3, 0.4];
+
+    /// Residuals that feel the first coordinate strongly, the second one less and the third not at all. Half of their variance
+    /// scatters from point to point, the other half is the recording's.
+    struct Scattering(u64);
+
+    impl Scattering {
+        fn noise(seed: u64, index: u64) -> Vec<f64> {
+            let mut random = stream(seed, index, Purpose::Noise);
+            let width = 1.5_f64.sqrt();
+            (0..COUNT)
+                .map(|_| random.random_range(-width..width))
+                .collect()
+        }
+    }
+
+    impl LeastSquares for Scattering {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-1.0, 1.0]; 3]
+        }
+        fn count(&self) -> usize {
+            COUNT
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            let bits = x
+                .iter()
+                .fold(0, |bits: u64, x| bits.rotate_left(21) ^ x.to_bits());
+            let noise = Self::noise(self.0, 0)
+                .into_iter()
+                .zip(Self::noise(self.0, bits));
+            let apart = |i: usize| x[i] - TRUTH[i];
+            let signal = |k: f64| {
+                400.0 * (apart(0) + apart(0).powi(2)) * (0.3 * k).sin()
+                    + 40.0 * apart(1) * (0.7 * k).cos()
+            };
+            noise
+                .enumerate()
+                .map(|(k, (own, other))| signal(k as f64) + own + other)
+                .collect()
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::zeros(COUNT, 3)
+        }
+    }
+
+    #[test]
+    fn intervals_hold_the_truth_and_what_nothing_shows_is_not_known() {
+        let mut held = [0; 2];
+        for seed in 0..40 {
+            let go = &mut |_: &Progress| ControlFlow::Continue(());
+            let problem = Scattering(seed);
+            let (found, known) =
+                statistical_linearization(&problem, &[0.12, -0.25, 0.1], 1e3, go).unwrap();
+            assert!(found.misfit() < 1.2, "{seed}: {}", found.misfit());
+            assert_eq!(known.unidentifiable, Some(2), "{seed}");
+            for (i, held) in held.iter_mut().enumerate() {
+                let [low, high] = known.intervals[i];
+                // Slopes of 400 and 40 times a wave of mean square 1/2, and noise of variance 1.
+                let textbook = 2.0 * 1.96 / ([400.0, 40.0][i] * (0.5 * COUNT as f64).sqrt());
+                let ratio = (high - low) / textbook;
+                assert!((0.9..2.5).contains(&ratio), "{seed}: {ratio}");
+                *held += usize::from(low <= TRUTH[i] && TRUTH[i] <= high);
+            }
+        }
+        for held in held {
+            assert!(held >= 36, "{held} of 40");
+        }
+    }
+}
