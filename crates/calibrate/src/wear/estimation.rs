@@ -254,7 +254,8 @@ fn conclude(
         model_is_adequate: adequate,
         interval: match discrepancy {
             Some(_) => Interval::Discrepancy,
-            None if adequate && whole && grounds.is_known => Interval::Noise,
+            None if adequate && whole && scatters => Interval::Scatter,
+            None if adequate && whole && repeats => Interval::Noise,
             None => Interval::None,
         },
         timing_rad: discrepancy.map(|d| d.timing),

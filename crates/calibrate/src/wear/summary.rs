@@ -45,6 +45,11 @@ impl fmt::Display for Results {
                 "more than noise is left: the intervals include the model's discrepancy, {:.1} mrad of timing",
                 1e3 * timing
             ),
+            (Interval::Scatter, _) => writeln!(
+                f,
+                "the motion does not repeat itself: the intervals include its scatter, but not that contact parameters of the \
+                 machine file may be off"
+            ),
             (Interval::None, _) if self.complete && self.model_is_adequate => {
                 writeln!(
                     f,

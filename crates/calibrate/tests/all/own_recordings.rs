@@ -6,6 +6,7 @@ use calibrate::prediction::predict;
 use calibrate::{CrankMotion, Observation, Parameter, Problem};
 use mechanism::drive::GivenSpeed;
 use serde_json::{Value, json};
+use signal::Complex64;
 use signal::order_lines::OrderLines;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -67,5 +68,36 @@ pub fn problem(
         })];
         problem.runs.push(run);
     }
+    problem
+}
+
+/// The acceleration of the crosshead of a machine at 500 rpm whose motion does not repeat itself: means over 24 revolutions, and
+/// their scatter.
+pub fn scattering(tree: Value) -> Problem {
+    let mut problem = problem(tree, &[], &[], 0, 0.0);
+    let channel = |lines, orders| Observed {
+        column: "crosshead_acceleration_m_s2".into(),
+        lines,
+        orders,
+    };
+    let scattering = OrderLines {
+        amplitude: vec![Complex64::ONE; 2],
+        variance: vec![1.0; 2],
+        revolutions: 24,
+    };
+    let mut run = Observation {
+        id: "500 rpm".into(),
+        settings: vec![("speed".to_owned(), json!("500 rpm"))],
+        crank: GivenSpeed {
+            speed: 500.0 * PI / 30.0,
+            fluctuation: Vec::new(),
+        },
+        channels: vec![channel(scattering, vec![1])],
+    };
+    let shown = predict(&problem, &run, &[]).unwrap();
+    assert!(!shown.periodic);
+    let lines = shown.lines.into_iter().next().unwrap();
+    run.channels = vec![channel(lines, (1..=200).collect())];
+    problem.runs.push(run);
     problem
 }

@@ -82,6 +82,11 @@ fn warnings(results: &Results) -> Vec<String> {
             "The model leaves {misfit} times the noise. The ranges include its discrepancy, an error of timing of {} mrad.",
             text::number(1e3 * timing, 2)
         )),
+        (Interval::Scatter, _) => warnings.push(
+            "The motion does not repeat itself. The ranges include its scatter, but not that contact parameters of the machine \
+             file may be off."
+                .to_owned(),
+        ),
         (Interval::None, _) if results.complete && results.model_is_adequate => warnings.push(
             "The motion of the best fit does not repeat itself, so that no interval can be given."
                 .to_owned(),
