@@ -219,7 +219,7 @@ impl Linear {
         let inverse = cloud.shape.clone().try_inverse()?;
         let (mut places, mut rows) = (Vec::new(), Vec::new());
         for (point, residuals) in points.iter().zip(residuals) {
-            if residuals.iter().any(|r| !(r.abs() < FAILED)) {
+            if !residuals.iter().all(|r| r.abs() < FAILED) {
                 continue;
             }
             let apart = DVector::from_fn(count, |i, _| point[i] - x[i]);
