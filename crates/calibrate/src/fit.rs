@@ -64,9 +64,6 @@ impl Optimiser {
 /// were all that is left. At 1.5 more than half of the mean square is something else, and its effect on the
 /// parameters is unknown.
 pub const ADEQUATE: f64 = 1.5;
-/// Simulations of a motion that scatters over which its misfit is a mean, and by how much their coordinates differ.
-const NEIGHBOURS: u32 = 8;
-const BESIDE: f64 = 1e-6;
 /// A value this near to a bound, as a share of the range, is at it.
 const AT_BOUND: f64 = 1e-3;
 
@@ -287,20 +284,18 @@ pub(crate) fn linearized(
     found.fit(problem, &before, |_| false)
 }
 
-/// The misfit of each run at `x`, whose motion scatters: that of one simulation is a matter of chance. Beside it motions are others,
-/// and their means are the same.
+/// The misfit of each run at `x`: the mean square over samples of a motion that scatters.
 fn mean_misfits(likelihood: &Likelihood, x: &[f64]) -> Result<Vec<f64>, Error> {
+    let samples = likelihood.samples(x);
     let mut squares: Vec<f64> = Vec::new();
-    for neighbour in 0..NEIGHBOURS {
-        let beside = f64::from(neighbour) * BESIDE;
-        let x: Vec<f64> = x.iter().map(|x| x + beside).collect();
-        let misfits = likelihood.by_run(&x)?;
+    for x in &samples {
+        let misfits = likelihood.by_run(x)?;
         squares.resize(misfits.len(), 0.0);
         for (sum, residuals) in squares.iter_mut().zip(&misfits) {
             *sum += misfit(residuals).powi(2);
         }
     }
-    let mean = |sum: &f64| (sum / f64::from(NEIGHBOURS)).sqrt();
+    let mean = |sum: &f64| (sum / samples.len() as f64).sqrt();
     Ok(squares.iter().map(mean).collect())
 }
 

@@ -17,6 +17,9 @@ pub const NOISE: f64 = 1.15;
 /// Accuracy of resampling and of the integration, as a share of a channel's greatest line: lines
 /// are never trusted beyond it.
 const ACCURACY: f64 = 2e-5;
+/// Simulations of a motion that scatters over which something is a mean, and by how much their coordinates differ.
+const SAMPLES: u32 = 8;
+const BESIDE: f64 = 1e-6;
 /// Residual that stands in for every one of a run that cannot be simulated.
 pub(crate) const FAILED: f64 = 1e3;
 
@@ -66,6 +69,30 @@ impl<'a> Likelihood<'a> {
     /// The first run that cannot be simulated.
     pub fn deviance(&self, x: &[f64]) -> Result<f64, Error> {
         Ok(self.deviance_of(&self.predictions(x)?, self.timing))
+    }
+
+    /// The deviance, and the variance that it has by chance: of motions that scatter, that of one simulation is one of many.
+    ///
+    /// # Errors
+    /// The first run that cannot be simulated.
+    pub(crate) fn mean_deviance(&self, x: &[f64]) -> Result<(f64, f64), Error> {
+        let samples = self.samples(x).into_iter().map(|x| self.deviance(&x));
+        let samples = samples.collect::<Result<Vec<f64>, Error>>()?;
+        let count = samples.len() as f64;
+        let mean = samples.iter().sum::<f64>() / count;
+        let squares = samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>();
+        Ok((mean, squares / (count * (count - 1.0).max(1.0))))
+    }
+
+    /// Coordinates whose motions have the same means as those of `x`, and scatter otherwise; `x` alone where the recorded motions
+    /// repeat themselves.
+    pub(crate) fn samples(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let count = match self.problem.runs.iter().all(Observation::repeats) {
+            true => 1,
+            false => SAMPLES,
+        };
+        let beside = |number| x.iter().map(|x| x + f64::from(number) * BESIDE).collect();
+        (0..count).map(beside).collect()
     }
 
     /// The allowance among `timings` with which the recordings are likeliest at `x`, and the deviance there.

@@ -16,8 +16,10 @@
 //!    lowers the criterion is kept, until nothing does. Only then follow cells that are less likely, by all known relations, and free
 //!    contact parameters from all ends.
 //! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
-//!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it. A
-//!    motion that does not repeat itself has no derivatives, and no interval.
+//!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
+//! 7. Recorded motions that do not repeat themselves have no derivatives: the last fit and the intervals come from a statistical
+//!    linearisation (`crate::statistical_linearization`). Where a motion repeats itself and that of the best fit does not, there
+//!    is no interval.
 
 mod cell;
 mod descent;

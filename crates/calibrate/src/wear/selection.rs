@@ -336,7 +336,7 @@ fn judged(model: Model, fit: Fit) -> Result<Found, Error> {
         .iter()
         .filter(|e| e.interval.is_some())
         .count();
-    let deviance = likelihood.deviance(&fit.coordinates())?;
+    let (deviance, _) = likelihood.mean_deviance(&fit.coordinates())?;
     let criterion = deviance + free as f64 * (likelihood.count() as f64).ln();
     Ok(Found {
         model,

@@ -16,6 +16,9 @@ const CORRELATED: f64 = 0.95;
 /// Difference of the deviance from which recordings show a clearance: odds of twenty to one.
 const SHOWN: f64 = 6.0;
 
+/// Standard deviations by which it may differ by chance, of motions that scatter.
+const CHANCE: f64 = 3.0;
+
 /// What the verdicts rest on.
 pub(super) struct Grounds<'a> {
     /// The machine as its file has it.
@@ -54,7 +57,9 @@ impl Grounds<'_> {
             let value = Some(estimate.value);
             return self.wear(index, Verdict::Unclear, reason.to_owned(), value, None);
         }
-        if estimate.interval.is_none() {
+        // What is far from the recordings does not say what they show.
+        let explains = self.found.fit.model_is_adequate() || self.discrepancy.is_some();
+        if estimate.interval.is_none() && explains {
             let reason = self.not_identifiable(index, together);
             return self.wear(index, Verdict::NotIdentifiable, reason, None, None);
         }
@@ -106,7 +111,7 @@ impl Grounds<'_> {
 
     /// A joint that is ideal in the machine file and in the model: healthy if the recordings would show it worn.
     fn of_ideal(&self, index: usize) -> Result<JointWear, Error> {
-        let deviance = |model: &Model, x: &[f64]| Likelihood::new(&model.problem).deviance(x);
+        let deviance = |model: &Model, x: &[f64]| Likelihood::new(&model.problem).mean_deviance(x);
         let best = &self.found.model;
         let x = self.found.fit.coordinates();
         let clear = best.clear.iter().copied().chain([index]).collect();
@@ -115,7 +120,10 @@ impl Grounds<'_> {
         let place = worn.clear.len() - 1;
         at[place] = worn.problem.parameters[place].coordinate(self.limit(index));
         let shown = match deviance(&worn, &at) {
-            Ok(with) => with - deviance(best, &x)? > SHOWN,
+            Ok((with, chance)) => {
+                let (without, other) = deviance(best, &x)?;
+                with - without > SHOWN + CHANCE * (chance + other).sqrt()
+            }
             // Where the worn machine cannot be simulated, nothing is known.
             Err(_) => false,
         };
