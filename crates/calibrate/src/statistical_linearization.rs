@@ -39,8 +39,9 @@ const CHANCE: f64 = 2.0;
 /// A direction is known where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
 /// that adds.
 const SHOWN: f64 = 1.0;
-/// The damping of a step to begin with.
+/// The damping of a step to begin with, over the most that is known of a direction, and how often it is doubled.
 const DAMPING: f64 = 1e-6;
+const DOUBLINGS: i32 = 100;
 
 /// The best fit within bounds that clouds from `start` on lead to, and the information there. Ends early where more than the
 /// misfit `far` is left after two clouds.
@@ -55,15 +56,16 @@ pub(crate) fn statistical_linearization(
 ) -> Result<(Progress, Information), Error> {
     let bounds = problem.bounds();
     let count = problem.count();
+    let residuals = problem.residuals(start);
+    if !is_simulated(&residuals) {
+        return Err(Error::Nothing("the start of a fit cannot be simulated"));
+    }
     let mut at = Progress {
         x: start.to_vec(),
-        cost: half_squares(&problem.residuals(start)),
+        cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
         count,
         evaluations: 1,
     };
-    if at.cost >= half_squares(&[FAILED]) {
-        return Err(Error::Nothing("the start of a fit cannot be simulated"));
-    }
     let mut cloud = Cloud::first(&bounds);
     let mut best: Option<Best> = None;
     for number in 0..CLOUDS {
@@ -89,26 +91,20 @@ pub(crate) fn statistical_linearization(
         at.x = moved(&at.x, &(&shape * &step), &bounds);
         at.cost = linear.cost;
         let narrowest = cloud.reshape(&linear, &bounds);
+        let ends = linear.known.min() > 0.0 && narrowest > 1.0 / NARROWER && step.amax() < ENDED;
         best = Some(Best {
             next: at.x.clone(),
             linear,
             shape,
         });
-        let is_known = best
-            .as_ref()
-            .is_some_and(|best| best.linear.known.min() > 0.0);
-        if is_known && narrowest > 1.0 / NARROWER && step.amax() < ENDED {
+        if ends {
             break;
         }
     }
     let covariance = match best {
-        Some(Best {
-            next,
-            linear,
-            shape,
-        }) => {
-            at.x = next;
-            &shape * linear.covariance() * shape.transpose()
+        Some(best) => {
+            at.x.clone_from(&best.next);
+            best.covariance()
         }
         None => DMatrix::from_diagonal(&range_variances(&bounds)),
     };
@@ -124,6 +120,13 @@ struct Best {
     shape: DMatrix<f64>,
 }
 
+impl Best {
+    /// The covariance of the coordinates.
+    fn covariance(&self) -> DMatrix<f64> {
+        &self.shape * self.linear.covariance() * self.shape.transpose()
+    }
+}
+
 /// The variance of each coordinate that may lie anywhere within its bounds.
 fn range_variances(bounds: &[[f64; 2]]) -> DVector<f64> {
     DVector::from_iterator(
@@ -132,8 +135,9 @@ fn range_variances(bounds: &[[f64; 2]]) -> DVector<f64> {
     )
 }
 
-fn half_squares(residuals: &[f64]) -> f64 {
-    0.5 * residuals.iter().map(|r| r * r).sum::<f64>()
+/// Whether none of these stands in for one of a run that cannot be simulated.
+fn is_simulated(residuals: &[f64]) -> bool {
+    residuals.iter().all(|r| r.is_finite() && *r != FAILED)
 }
 
 fn moved(x: &[f64], by: &DVector<f64>, bounds: &[[f64; 2]]) -> Vec<f64> {
@@ -206,6 +210,27 @@ struct Linear {
     chance: f64,
 }
 
+/// Where the points of a cloud around `x` lie, over its width and with a 1 for the middle, and their residuals: a row for each that
+/// can be simulated. None where there is none.
+fn simulated(
+    cloud: &Cloud,
+    x: &[f64],
+    points: &[Vec<f64>],
+    residuals: &[Vec<f64>],
+) -> Option<[DMatrix<f64>; 2]> {
+    let inverse = cloud.shape.clone().try_inverse()?;
+    let (mut places, mut rows) = (Vec::new(), Vec::new());
+    for (point, residuals) in points.iter().zip(residuals) {
+        if is_simulated(residuals) {
+            let apart = DVector::from_fn(x.len(), |i, _| point[i] - x[i]);
+            places.push((&inverse * apart).push(1.0).transpose());
+            rows.push(DVector::from_column_slice(residuals).transpose());
+        }
+    }
+    let is_some = !rows.is_empty();
+    is_some.then(|| [places, rows].map(|rows| DMatrix::from_rows(&rows)))
+}
+
 impl Linear {
     /// That of a cloud around `x`. Points that cannot be simulated are left out; none where too few are left.
     fn fitted(
@@ -216,29 +241,16 @@ impl Linear {
         bounds: &[[f64; 2]],
     ) -> Option<Self> {
         let count = x.len();
-        let inverse = cloud.shape.clone().try_inverse()?;
-        let (mut places, mut rows) = (Vec::new(), Vec::new());
-        for (point, residuals) in points.iter().zip(residuals) {
-            if !residuals.iter().all(|r| r.abs() < FAILED) {
-                continue;
-            }
-            let apart = DVector::from_fn(count, |i, _| point[i] - x[i]);
-            let place = &inverse * apart;
-            places.push(place.push(1.0).transpose());
-            rows.push(DVector::from_column_slice(residuals).transpose());
-        }
-        let free = places
-            .len()
-            .checked_sub(count + 1)
-            .filter(|free| *free > 0)?;
-        let places = DMatrix::from_rows(&places);
-        let rows = DMatrix::from_rows(&rows);
+        let [places, rows] = simulated(cloud, x, points, residuals)?;
+        let free = places.nrows().checked_sub(count + 1);
+        let free = free.filter(|free| *free > 0)?;
         let normal = (places.transpose() * &places).try_inverse()?;
         let model = &normal * places.transpose() * &rows;
         let slopes = model.rows(0, count);
         let middle = model.row(count);
-        let pulled = (&rows - &places * &model) * slopes.transpose();
-        let left = (&rows - &places * &model).norm_squared() / free as f64;
+        let unexplained = &rows - &places * &model;
+        let pulled = &unexplained * slopes.transpose();
+        let left = unexplained.norm_squared() / free as f64;
         let points = places.nrows() as f64;
         let squares: Vec<f64> = rows
             .row_iter()
@@ -290,15 +302,15 @@ impl Linear {
         let gradient = self.directions.transpose() * &self.gradient;
         let gradient = &self.directions * gradient.component_mul(&shown);
         let along = eigenvectors.transpose() * gradient;
-        let mut damping = DAMPING * eigenvalues.max();
-        loop {
-            let step = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
-            let step = &eigenvectors * step;
-            if step.norm() <= STEP * (step.len() as f64).sqrt() {
-                return step;
-            }
-            damping *= 2.0;
-        }
+        let step = |damping: f64| {
+            let along = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
+            &eigenvectors * along
+        };
+        let longest = STEP * (along.len() as f64).sqrt();
+        let dampings = (0..DOUBLINGS).map(|i| DAMPING * 2.0_f64.powi(i) * eigenvalues.max());
+        let mut steps = dampings.map(step);
+        let within = steps.find(|step| step.norm() <= longest);
+        within.unwrap_or_else(|| DVector::zeros(along.len()))
     }
 
     /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
