@@ -153,16 +153,14 @@ fn secants(
 /// # Errors
 /// As [`calibrate`].
 pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
-    if !model.problem.runs.iter().all(Observation::repeats) {
-        let mut watch = |progress: &Progress| {
-            effort.fitted(progress.misfit());
-            effort.shown(progress.evaluations)
-        };
-        let fit = linearized(&model.problem, &x, FAR, &mut watch)?;
-        effort.spent += fit.evaluations;
-        return Ok(fit);
+    let scatters = !model.problem.runs.iter().all(Observation::repeats);
+    let x = match scatters {
+        true => x,
+        false => repeating(&model.problem, x, effort),
+    };
+    if scatters || !repeats(&model.problem, &x) {
+        return without_derivatives(model, &x, effort);
     }
-    let x = repeating(&model.problem, x, effort);
     let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
     let likelihood = Likelihood::new(&model.problem);
     let begun = levenberg_marquardt(&likelihood, &x, CHANGE, BEGINNING, &mut watch)?;
@@ -187,21 +185,38 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
     for (estimate, parameter) in fit.estimates.iter_mut().zip(&model.problem.parameters) {
         estimate.parameter = parameter.clone();
     }
+    let end = fit.coordinates();
+    match fit.complete && !repeats(&model.problem, &end) {
+        true => without_derivatives(model, &end, effort),
+        false => Ok(fit),
+    }
+}
+
+/// The fit from `x` of a motion that does not repeat itself.
+fn without_derivatives(model: &Model, x: &[f64], effort: &mut Effort) -> Result<Fit, Error> {
+    let mut watch = |progress: &Progress| {
+        effort.fitted(progress.misfit());
+        effort.shown(progress.evaluations)
+    };
+    let fit = linearized(&model.problem, x, FAR, &mut watch)?;
+    effort.spent += fit.evaluations;
     Ok(fit)
+}
+
+/// Whether the motion of every run repeats itself at these coordinates.
+pub(super) fn repeats(problem: &Problem, x: &[f64]) -> bool {
+    let all = Likelihood::new(problem).predictions(x);
+    all.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic))
 }
 
 /// The coordinates `x`, where the motion repeats itself there. Elsewhere those beside them whose
 /// motion repeats itself and explains the recordings best: a motion that is about to double its period settles slowly, and has no
 /// derivatives.
 fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
-    let likelihood = Likelihood::new(problem);
-    let repeats = |x: &[f64]| {
-        let all = likelihood.predictions(x);
-        all.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic))
-    };
-    if repeats(&x) {
+    if repeats(problem, &x) {
         return x;
     }
+    let likelihood = Likelihood::new(problem);
     let clearances = problem.parameters.iter().enumerate();
     let clearances = clearances.filter(|(_, parameter)| parameter.is_clearance());
     let beside = clearances.flat_map(|(place, _)| {
@@ -214,7 +229,7 @@ fn repeating(problem: &Problem, x: Vec<f64>, effort: &mut Effort) -> Vec<f64> {
     });
     let beside: Vec<Vec<f64>> = beside.collect();
     effort.evaluated(2 * beside.len() as u64);
-    let measured = beside.par_iter().filter(|x| repeats(x));
+    let measured = beside.par_iter().filter(|x| repeats(problem, x));
     let measured = measured.map(|x| (misfit(&likelihood.residuals(x)), x.clone()));
     let measured: Vec<(f64, Vec<f64>)> = measured.collect();
     let best = measured.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));

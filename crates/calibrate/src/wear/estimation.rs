@@ -112,7 +112,7 @@ impl Prepared {
         let checkpoint = earlier::checkpoint(&self.out, self.existing, &self.fingerprint)?;
         self.task.problem.meter = Meter::with_checkpoint(checkpoint);
         let mut effort = Effort::new(watcher);
-        let healthy = self.task.problem.clone();
+        let (healthy, scattering) = compared(&self.task.problem);
         let x = start(&self.task);
         let mut found = selected(&healthy, &self.joints, &x, &mut effort)?;
         self.align(&mut found, &mut effort)?;
@@ -130,6 +130,7 @@ impl Prepared {
             &mut effort,
         )?;
         let problem = &found.model.problem;
+        concluded.results.scattering_runs = scattering;
         concluded.results.pulse_angles_rad = self.task.pulses(problem, &concluded.x);
         concluded.results.fingerprint.clone_from(&self.fingerprint);
         let models = [(&healthy, &x[..]), (problem, &concluded.x[..])];
@@ -156,11 +157,14 @@ impl Prepared {
     fn align(&mut self, found: &mut Found, effort: &mut Effort) -> Result<(), Error> {
         for _ in 0..ALIGNMENTS {
             let x = found.fit.coordinates();
-            self.task.problem = found.model.problem.clone();
+            self.task.problem = Problem {
+                runs: std::mem::take(&mut self.task.problem.runs),
+                ..found.model.problem.clone()
+            };
             if effort.stopped || !self.task.zeroed.contains(&false) || !self.task.align(&x)? {
                 break;
             }
-            found.model.problem = self.task.problem.clone();
+            found.model.problem = compared(&self.task.problem).0;
             effort.begins(Stage::Clearances);
             let fit = descent::fit(&found.model, x, effort);
             effort.ends();
@@ -183,9 +187,23 @@ pub fn estimate(
 ) -> Result<Results, Error> {
     let mut effort = Effort::new(watcher);
     let joints = Joint::of_machine(&healthy.tree)?;
-    let mut found = selected(healthy, &joints, x, &mut effort)?;
-    let concluded = conclude(healthy, x, &joints, &mut found, worn_from, &mut effort)?;
+    let (healthy, scattering) = compared(healthy);
+    let mut found = selected(&healthy, &joints, x, &mut effort)?;
+    let mut concluded = conclude(&healthy, x, &joints, &mut found, worn_from, &mut effort)?;
+    concluded.results.scattering_runs = scattering;
     Ok(concluded.results)
+}
+
+/// A problem with the runs that are compared, and the others by name: where the motion of some runs repeats itself, these
+/// determine the clearances much better than the means of those that scatter.
+fn compared(problem: &Problem) -> (Problem, Vec<String>) {
+    let runs = problem.runs.iter();
+    let (repeating, scattering): (Vec<&Observation>, Vec<_>) = runs.partition(|run| run.repeats());
+    if repeating.is_empty() {
+        return (problem.clone(), Vec::new());
+    }
+    let scattering = scattering.iter().map(|run| run.id.clone()).collect();
+    (problem.with_runs(Observation::repeats), scattering)
 }
 
 /// Where the search starts in what else is unknown.
@@ -214,22 +232,20 @@ fn conclude(
     let whole = fit.complete && !effort.stopped;
     let adequate = fit.model_is_adequate();
     // An adequate model may leave more than noise, and then the noise alone is no measure of what is known.
-    let scatters = !problem.runs.iter().all(Observation::repeats);
-    let predictions = Likelihood::new(problem).predictions(&fit.coordinates());
-    let repeats = predictions.is_ok_and(|all| all.iter().all(|prediction| prediction.periodic));
-    let wrong = match whole && repeats && !scatters && !fit.is_at_noise() {
+    let recorded = problem.runs.iter().all(Observation::repeats);
+    let repeats = recorded && descent::repeats(problem, &fit.coordinates());
+    let wrong = match whole && repeats && !fit.is_at_noise() {
         true => discrepancy(problem, fit, effort)?,
         false => None,
     };
     let discrepancy = wrong.as_ref();
-    let pairs = together(joints, found);
+    let pairs = together(joints, found, repeats);
     let grounds = Grounds {
         healthy,
         joints,
         found,
         discrepancy,
         worn_from,
-        is_known: repeats || scatters,
     };
     let verdicts = (0..joints.len())
         .map(|i| Ok((joints[i].path.clone(), grounds.verdict(i, &pairs)?)))
@@ -254,9 +270,9 @@ fn conclude(
         model_is_adequate: adequate,
         interval: match discrepancy {
             Some(_) => Interval::Discrepancy,
-            None if adequate && whole && scatters => Interval::Scatter,
-            None if adequate && whole && repeats => Interval::Noise,
-            None => Interval::None,
+            None if !adequate || !whole => Interval::None,
+            None if repeats => Interval::Noise,
+            None => Interval::Scatter,
         },
         timing_rad: discrepancy.map(|d| d.timing),
         contact: match found.model.contacts {
@@ -270,6 +286,7 @@ fn conclude(
             estimated: found.misfit(),
         },
         runs: runs.collect(),
+        scattering_runs: Vec::new(),
         pulse_angles_rad: ByName::default(),
         channels: channels(problem),
         parameters: others

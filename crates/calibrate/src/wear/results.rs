@@ -43,6 +43,9 @@ pub struct Results {
     pub fit: Misfits,
     /// The runs.
     pub runs: ByName<RunMisfit>,
+    /// Runs that were not compared: their motion does not repeat itself, and that of others does.
+    #[serde(default)]
+    pub scattering_runs: Vec<String>,
     /// The crank angle at which the pulse of a tacho was found to come, by run, where its place was not known, rad.
     #[serde(default)]
     pub pulse_angles_rad: ByName<f64>,

@@ -81,7 +81,7 @@ pub(super) fn selected(
     if effort.stopped || best.fit.is_at_noise() {
         return Ok(best);
     }
-    // A motion that does not repeat itself has no derivatives, and no fit within the noise: the best cells are all that is searched.
+    // Fits of motions that scatter take long: the best cells are all that is searched.
     let repeats = healthy.runs.iter().all(Observation::repeats);
     let rounds = if repeats { FOLLOWED.len() } else { 1 };
     let parts = parts(&model)?;

@@ -23,6 +23,12 @@ impl fmt::Display for Results {
                 pair.correlation
             )?;
         }
+        for run in &self.scattering_runs {
+            writeln!(
+                f,
+                "{run}: its motion does not repeat itself, and it was not compared"
+            )?;
+        }
         for (run, angle) in self.pulse_angles_rad.iter() {
             writeln!(
                 f,
@@ -50,12 +56,6 @@ impl fmt::Display for Results {
                 "the motion does not repeat itself: the intervals include its scatter, but not that contact parameters of the \
                  machine file may be off"
             ),
-            (Interval::None, _) if self.complete && self.model_is_adequate => {
-                writeln!(
-                    f,
-                    "no interval: the motion of the best fit does not repeat itself"
-                )
-            }
             (Interval::None, _) => {
                 writeln!(f, "no interval: the model does not explain the recordings")
             }

@@ -8,7 +8,6 @@ use super::selection::Found;
 use crate::error::Error;
 use crate::identifiability::information;
 use crate::likelihood::Likelihood;
-use crate::observation::Observation;
 use crate::problem::Problem;
 
 /// Correlation from which two clearances are hardly told apart.
@@ -31,9 +30,6 @@ pub(super) struct Grounds<'a> {
     pub discrepancy: Option<&'a Discrepancy>,
     /// A joint counts as worn from this many times its normal clearance.
     pub worn_from: f64,
-    /// Whether the motion of the best fit repeats itself in every run, or a recorded one does not either: elsewhere there are
-    /// neither derivatives nor the slopes of what scatters.
-    pub is_known: bool,
 }
 
 impl Grounds<'_> {
@@ -51,12 +47,6 @@ impl Grounds<'_> {
     fn of_clear(&self, index: usize, place: usize, together: &[Together]) -> JointWear {
         let estimate = &self.found.fit.estimates[place];
         let limit = self.limit(index);
-        if !self.is_known && self.found.fit.complete {
-            let reason = "the motion of the best fit does not repeat itself, so that it is not known how well the recordings \
-                          determine the clearance";
-            let value = Some(estimate.value);
-            return self.wear(index, Verdict::Unclear, reason.to_owned(), value, None);
-        }
         // What is far from the recordings does not say what they show.
         let explains = self.found.fit.model_is_adequate() || self.discrepancy.is_some();
         if estimate.interval.is_none() && explains {
@@ -181,11 +171,12 @@ impl Grounds<'_> {
     }
 }
 
-/// Pairs of joints whose clearances are strongly correlated at the best fit, those that are not identifiable included.
-pub(super) fn together(joints: &[Joint], found: &Found) -> Vec<Together> {
+/// Pairs of joints whose clearances are strongly correlated at the best fit, those that are not identifiable included where its
+/// motion `repeats` itself.
+pub(super) fn together(joints: &[Joint], found: &Found, repeats: bool) -> Vec<Together> {
     let model = &found.model;
     let likelihood = Likelihood::new(&model.problem);
-    let correlations = match model.problem.runs.iter().all(Observation::repeats) {
+    let correlations = match repeats {
         true => information(&likelihood, &found.fit.coordinates()).correlations,
         false => found.fit.correlations.clone(),
     };

@@ -87,15 +87,17 @@ fn warnings(results: &Results) -> Vec<String> {
              file may be off."
                 .to_owned(),
         ),
-        (Interval::None, _) if results.complete && results.model_is_adequate => warnings.push(
-            "The motion of the best fit does not repeat itself, so that no interval can be given."
-                .to_owned(),
-        ),
         (Interval::None, _) if results.complete => warnings.push(format!(
             "The model does not explain the recordings ({misfit} times the noise), and no interval can be given. \
              Calibrate the machine when it is healthy, or look for what is missing with explain-gap."
         )),
         _ => {}
+    }
+    if !results.scattering_runs.is_empty() {
+        warnings.push(format!(
+            "The motion of {} does not repeat itself: these runs were not compared.",
+            results.scattering_runs.join(", ")
+        ));
     }
     let pairs = results.together.iter().map(|Together { joints, correlation }| {
         let [a, b] = [&joints[0], &joints[1]].map(|path| joint_name(path));
