@@ -175,9 +175,18 @@ impl Cloud {
 
     /// The next shape, and by how much it is wider than this one where that is least.
     fn reshape(&mut self, linear: &Linear, bounds: &[[f64; 2]]) -> f64 {
-        let wide = OVER_KNOWN.max((OVER_SCATTER * linear.scatter).sqrt());
-        let factor = |known: f64| (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER);
-        let factors = linear.known.map(factor);
+        // What curvature leaves becomes less in a narrower cloud, what scatter leaves counts less in a wider one.
+        let (wide, unknown) = match linear.is_curved {
+            true => (OVER_KNOWN, 1.0 / NARROWER),
+            false => (
+                OVER_KNOWN.max((OVER_SCATTER * linear.scatter).sqrt()),
+                WIDER,
+            ),
+        };
+        let factors = linear.known.map(|known| match known > 0.0 {
+            true => (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER),
+            false => unknown,
+        });
         let mut shape = &self.shape * &linear.directions * DMatrix::from_diagonal(&factors);
         for (mut row, [low, high]) in shape.row_iter_mut().zip(bounds) {
             let spread = row.norm();
@@ -202,6 +211,8 @@ struct Linear {
     known: DVector<f64>,
     /// What scatter and curvature add to each of these squares.
     scatter: f64,
+    /// Whether the linear model leaves more than the noise of each residual, of which scatter is a part.
+    is_curved: bool,
     /// Covariance of half the derivative of the sum of squares by the scatter of one point: that of orders that scatter
     /// together is more than the variance of each says.
     of_gradient: DMatrix<f64>,
@@ -275,6 +286,7 @@ impl Linear {
                 }),
             of_gradient: pulled.transpose() * &pulled / free as f64,
             scatter,
+            is_curved: left > rows.ncols() as f64,
             cost: 0.5 * (middle.norm_squared() - left / points),
             chance: (variance / points).sqrt(),
         })
