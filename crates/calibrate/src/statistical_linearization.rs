@@ -78,24 +78,26 @@ pub(crate) fn statistical_linearization(
         at.evaluations += points.len() as u64;
         let Some(linear) = Linear::fitted(&cloud, &at.x, &points, &residuals, &bounds) else {
             // Too many of them cannot be simulated.
-            cloud.shape *= 1.0 / NARROWER;
+            cloud.spreads *= 1.0 / NARROWER;
             continue;
         };
         if let Some(best) = best.as_ref().filter(|best| linear.is_worse(&best.linear)) {
             at.x.clone_from(&best.next);
-            cloud.shape = &best.shape / NARROWER;
+            cloud.spreads = &best.spreads / NARROWER;
             continue;
         }
         let step = linear.step();
-        let shape = cloud.shape.clone();
-        at.x = moved(&at.x, &(&shape * &step), &bounds);
+        let spreads = cloud.spreads.clone();
+        at.x = moved(&at.x, &spreads.component_mul(&step), &bounds);
         at.cost = linear.cost;
         let narrowest = cloud.reshape(&linear, &bounds);
-        let ends = linear.known.min() > 0.0 && narrowest > 1.0 / NARROWER && step.amax() < ENDED;
+        let ends = linear.shown.iter().all(|shown| *shown)
+            && narrowest > 1.0 / NARROWER
+            && step.amax() < ENDED;
         best = Some(Best {
             next: at.x.clone(),
             linear,
-            shape,
+            spreads,
         });
         if ends {
             break;
@@ -117,13 +119,16 @@ struct Best {
     /// Where its step has led.
     next: Vec<f64>,
     linear: Linear,
-    shape: DMatrix<f64>,
+    spreads: DVector<f64>,
 }
 
 impl Best {
     /// The covariance of the coordinates.
     fn covariance(&self) -> DMatrix<f64> {
-        &self.shape * self.linear.covariance() * self.shape.transpose()
+        let over = self.linear.covariance();
+        DMatrix::from_fn(over.nrows(), over.ncols(), |i, j| {
+            self.spreads[i] * self.spreads[j] * over[(i, j)]
+        })
     }
 }
 
@@ -146,17 +151,16 @@ fn moved(x: &[f64], by: &DVector<f64>, bounds: &[[f64; 2]]) -> Vec<f64> {
         .collect()
 }
 
-/// How points lie around the best one: a column for each of as many independent directions.
+/// How far points lie from the best one, along each coordinate.
 struct Cloud {
-    shape: DMatrix<f64>,
+    spreads: DVector<f64>,
 }
 
 impl Cloud {
     fn first(bounds: &[[f64; 2]]) -> Self {
         let spread = |[low, high]: &[f64; 2]| FIRST.min(WIDEST * (high - low));
-        let spreads = bounds.iter().map(spread);
         Self {
-            shape: DMatrix::from_diagonal(&DVector::from_iterator(bounds.len(), spreads)),
+            spreads: DVector::from_iterator(bounds.len(), bounds.iter().map(spread)),
         }
     }
 
@@ -166,14 +170,15 @@ impl Cloud {
         // A uniform number within ±√3 has the variance 1.
         let width = 3.0_f64.sqrt();
         let pairs = (0..PAIRS * (x.len() + 1)).map(|_| {
-            let of = DVector::from_fn(x.len(), |_, _| random.random_range(-width..width));
-            let by = &self.shape * of;
+            let by = self
+                .spreads
+                .map(|spread| spread * random.random_range(-width..width));
             [moved(x, &by, bounds), moved(x, &-by, bounds)]
         });
         pairs.flatten().collect()
     }
 
-    /// The next shape, and by how much it is wider than this one where that is least.
+    /// Makes it as wide as a linear model over it says, and returns by what factor it is wider where that is least.
     fn reshape(&mut self, linear: &Linear, bounds: &[[f64; 2]]) -> f64 {
         // What curvature leaves becomes less in a narrower cloud, what scatter leaves counts less in a wider one.
         let (wide, unknown) = match linear.is_curved {
@@ -183,39 +188,34 @@ impl Cloud {
                 WIDER,
             ),
         };
-        let factors = linear.known.map(|known| match known > 0.0 {
-            true => (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER),
+        let factor = |i: usize| match linear.shown[i] {
+            true => (wide / linear.known[(i, i)].sqrt()).clamp(1.0 / NARROWER, WIDER),
             false => unknown,
-        });
-        let mut shape = &self.shape * &linear.directions * DMatrix::from_diagonal(&factors);
-        for (mut row, [low, high]) in shape.row_iter_mut().zip(bounds) {
-            let spread = row.norm();
-            let widest = WIDEST * (high - low);
-            if spread > widest {
-                row *= widest / spread;
-            }
+        };
+        let factors = DVector::from_fn(bounds.len(), |i, _| factor(i));
+        for (i, [low, high]) in bounds.iter().enumerate() {
+            self.spreads[i] = (self.spreads[i] * factors[i]).min(WIDEST * (high - low));
         }
-        self.shape = shape;
         factors.min()
     }
 }
 
-/// A linear model of the residuals over a cloud, whose directions are its coordinates.
+/// A linear model of the residuals over a cloud, whose widths are the units of its coordinates.
 struct Linear {
+    /// Which coordinates the residuals show. All below is 0 for the others.
+    shown: Vec<bool>,
     /// Half the derivative of the sum of squares.
     gradient: DVector<f64>,
-    /// What is known before: a coordinate lies within its bounds.
-    before: DMatrix<f64>,
-    /// Principal directions of the squares of the slopes, and these without what scatter adds; 0 where that is all.
-    directions: DMatrix<f64>,
-    known: DVector<f64>,
-    /// What scatter and curvature add to each of these squares.
+    /// Its covariance by the scatter of one point: that of orders that scatter together is more than the variance of each says.
+    of_gradient: DMatrix<f64>,
+    /// Squares of the slopes, without what scatter and curvature add.
+    known: DMatrix<f64>,
+    /// What these add to each square, the mean over the coordinates.
     scatter: f64,
+    /// What is known before: a coordinate lies within its bounds.
+    before: DVector<f64>,
     /// Whether the linear model leaves more than the noise of each residual, of which scatter is a part.
     is_curved: bool,
-    /// Covariance of half the derivative of the sum of squares by the scatter of one point: that of orders that scatter
-    /// together is more than the variance of each says.
-    of_gradient: DMatrix<f64>,
     /// Half the sum of squares in the middle, without scatter; and how far it is off by chance, a standard deviation.
     cost: f64,
     chance: f64,
@@ -229,12 +229,15 @@ fn simulated(
     points: &[Vec<f64>],
     residuals: &[Vec<f64>],
 ) -> Option<[DMatrix<f64>; 2]> {
-    let inverse = cloud.shape.clone().try_inverse()?;
     let (mut places, mut rows) = (Vec::new(), Vec::new());
     for (point, residuals) in points.iter().zip(residuals) {
         if is_simulated(residuals) {
-            let apart = DVector::from_fn(x.len(), |i, _| point[i] - x[i]);
-            places.push((&inverse * apart).push(1.0).transpose());
+            let place = |i: usize| (point[i] - x[i]) / cloud.spreads[i];
+            places.push(
+                DVector::from_fn(x.len(), |i, _| place(i))
+                    .push(1.0)
+                    .transpose(),
+            );
             rows.push(DVector::from_column_slice(residuals).transpose());
         }
     }
@@ -260,8 +263,19 @@ impl Linear {
         let slopes = model.rows(0, count);
         let middle = model.row(count);
         let unexplained = &rows - &places * &model;
-        let pulled = &unexplained * slopes.transpose();
         let left = unexplained.norm_squared() / free as f64;
+        let of_scatter = normal.view((0, 0), (count, count)) * left;
+        let known = slopes * slopes.transpose() - &of_scatter;
+        let shown = (0..count).map(|i| known[(i, i)] > SHOWN * of_scatter[(i, i)]);
+        let shown: Vec<bool> = shown.collect();
+        // Scatter alone leads nowhere.
+        let mut slopes = slopes.into_owned();
+        for (mut slope, shown) in slopes.row_iter_mut().zip(&shown) {
+            if !shown {
+                slope.fill(0.0);
+            }
+        }
+        let pulled = unexplained * slopes.transpose();
         let points = places.nrows() as f64;
         let squares: Vec<f64> = rows
             .row_iter()
@@ -269,23 +283,17 @@ impl Linear {
             .collect();
         let mean = squares.iter().sum::<f64>() / points;
         let variance = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / points;
-        let of_scatter = normal.view((0, 0), (count, count)) * left;
-        let scatter = of_scatter.trace() / count as f64;
-        let information = (slopes * slopes.transpose() - &of_scatter).symmetric_eigen();
-        let within =
-            DMatrix::from_diagonal(&range_variances(bounds).map(|variance| 1.0 / variance));
+        let widths = cloud.spreads.map(|spread| spread.powi(2));
         Some(Self {
-            gradient: slopes * middle.transpose(),
-            before: cloud.shape.transpose() * within * &cloud.shape,
-            directions: information.eigenvectors,
-            known: information
-                .eigenvalues
-                .map(|known| match known > SHOWN * scatter {
-                    true => known,
-                    false => 0.0,
-                }),
+            gradient: &slopes * middle.transpose(),
             of_gradient: pulled.transpose() * &pulled / free as f64,
-            scatter,
+            known: known.map_with_location(|i, j, known| match shown[i] && shown[j] {
+                true => known,
+                false => 0.0,
+            }),
+            shown,
+            scatter: of_scatter.trace() / count as f64,
+            before: widths.component_div(&range_variances(bounds)),
             is_curved: left > rows.ncols() as f64,
             cost: 0.5 * (middle.norm_squared() - left / points),
             chance: (variance / points).sqrt(),
@@ -297,10 +305,15 @@ impl Linear {
         self.cost - than.cost > CHANCE * self.chance.hypot(than.chance)
     }
 
-    /// What is known, over the width of the cloud.
-    fn information(&self) -> DMatrix<f64> {
-        let shown = DMatrix::from_diagonal(&self.known);
-        &self.directions * shown * self.directions.transpose() + &self.before
+    /// What is known, with its principal directions. What is taken off for scatter may be more than there is.
+    fn information(&self) -> SymmetricEigen<f64, nalgebra::Dyn> {
+        let SymmetricEigen {
+            eigenvectors,
+            eigenvalues,
+        } = self.known.clone().symmetric_eigen();
+        let shown = DMatrix::from_diagonal(&eigenvalues.map(|known| known.max(0.0)));
+        let shown = &eigenvectors * shown * eigenvectors.transpose();
+        (shown + DMatrix::from_diagonal(&self.before)).symmetric_eigen()
     }
 
     /// The next step, over the width of the cloud: Levenberg and Marquardt's, no further than the cloud bears it.
@@ -308,12 +321,8 @@ impl Linear {
         let SymmetricEigen {
             eigenvectors,
             eigenvalues,
-        } = self.information().symmetric_eigen();
-        // Scatter alone leads nowhere.
-        let shown = self.known.map(|known| if known > 0.0 { 1.0 } else { 0.0 });
-        let gradient = self.directions.transpose() * &self.gradient;
-        let gradient = &self.directions * gradient.component_mul(&shown);
-        let along = eigenvectors.transpose() * gradient;
+        } = self.information();
+        let along = eigenvectors.transpose() * &self.gradient;
         let step = |damping: f64| {
             let along = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
             &eigenvectors * along
@@ -328,10 +337,12 @@ impl Linear {
     /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
     /// that of a simulation (the sandwich of Huber 1967).
     fn covariance(&self) -> DMatrix<f64> {
-        let information = self.information();
-        let size = information.nrows();
-        let inverse = information.try_inverse();
-        let inverse = inverse.unwrap_or_else(|| DMatrix::identity(size, size));
+        let SymmetricEigen {
+            eigenvectors,
+            eigenvalues,
+        } = self.information();
+        let inverse = DMatrix::from_diagonal(&eigenvalues.map(|known| 1.0 / known));
+        let inverse = &eigenvectors * inverse * eigenvectors.transpose();
         &inverse + &inverse * &self.of_gradient * &inverse
     }
 }
