@@ -51,11 +51,11 @@ fn record(machine: &Resolved, measured: &[Measured]) -> Record {
         .collect();
     let settings = Settings {
         transient: Transient::Settled {
-            change: 1e-9,
+            change: 1e-7,
             at_most: 200,
         },
         revolutions: 4,
-        tolerance: 1e-10,
+        tolerance: 1e-8,
         ..Settings::default()
     };
     simulate(&machine.machine, &sensors, &settings, false).unwrap()
