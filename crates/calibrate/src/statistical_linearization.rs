@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::identifiability::{Information, intervals_of};
 use crate::likelihood::FAILED;
 use crate::optimiser::{LeastSquares, Progress, Watch};
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
 
@@ -25,7 +25,7 @@ const WIDEST: f64 = 0.25;
 /// of the slopes, but not less than this many standard deviations of what is known.
 const OVER_SCATTER: f64 = 4.0;
 const OVER_KNOWN: f64 = 2.0;
-/// A cloud becomes narrower and wider along a direction by these factors at most.
+/// A cloud becomes narrower and wider along a coordinate by these factors at most.
 const NARROWER: f64 = 3.0;
 const WIDER: f64 = 2.0;
 /// A step leads this many standard deviations of the cloud far at most, and one of less than that ends the search.
@@ -36,7 +36,7 @@ const CLOUDS: u64 = 6;
 const BEGINNING: u64 = 2;
 /// Standard deviations by which the sum of squares in the middle of a cloud may grow by chance.
 const CHANCE: f64 = 2.0;
-/// A direction is known where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
+/// A coordinate is shown where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
 /// that adds.
 const SHOWN: f64 = 1.0;
 /// The damping of a step to begin with, over the most that is known of a direction, and how often it is doubled.
@@ -245,6 +245,53 @@ fn simulated(
     is_some.then(|| [places, rows].map(|rows| DMatrix::from_rows(&rows)))
 }
 
+/// Least squares of each residual over where the points of a cloud lie.
+struct Regression {
+    /// A row for each coordinate, a column for each residual.
+    slopes: DMatrix<f64>,
+    /// The residuals in the middle.
+    middle: RowDVector<f64>,
+    /// What slopes and middle leave, a row for each point.
+    left: DMatrix<f64>,
+    /// Points beyond those that determine them.
+    free: f64,
+    /// The sum of the variances of the residuals that are left.
+    variance: f64,
+    /// What these add to the products of slopes.
+    of_scatter: DMatrix<f64>,
+}
+
+impl Regression {
+    /// `places` has a 1 in its last column. None where the points do not determine a slope.
+    fn of(places: &DMatrix<f64>, rows: &DMatrix<f64>) -> Option<Self> {
+        let count = places.ncols() - 1;
+        let free = places.nrows().checked_sub(count + 1);
+        let free = free.filter(|free| *free > 0)? as f64;
+        let normal = (places.transpose() * places).try_inverse()?;
+        let model = &normal * places.transpose() * rows;
+        let left = rows - places * &model;
+        let variance = left.norm_squared() / free;
+        Some(Self {
+            slopes: model.rows(0, count).into_owned(),
+            middle: model.row(count).into_owned(),
+            left,
+            free,
+            variance,
+            of_scatter: normal.view((0, 0), (count, count)) * variance,
+        })
+    }
+}
+
+/// By how much the mean over points of half the sum of squares is off by chance, a standard deviation.
+fn chance(rows: &DMatrix<f64>) -> f64 {
+    let points = rows.nrows() as f64;
+    let squares = rows.row_iter().map(|row| 0.5 * row.norm_squared());
+    let squares: Vec<f64> = squares.collect();
+    let mean = squares.iter().sum::<f64>() / points;
+    let variance = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / points;
+    (variance / points).sqrt()
+}
+
 impl Linear {
     /// That of a cloud around `x`. Points that cannot be simulated are left out; none where too few are left.
     fn fitted(
@@ -254,49 +301,39 @@ impl Linear {
         residuals: &[Vec<f64>],
         bounds: &[[f64; 2]],
     ) -> Option<Self> {
-        let count = x.len();
         let [places, rows] = simulated(cloud, x, points, residuals)?;
-        let free = places.nrows().checked_sub(count + 1);
-        let free = free.filter(|free| *free > 0)?;
-        let normal = (places.transpose() * &places).try_inverse()?;
-        let model = &normal * places.transpose() * &rows;
-        let slopes = model.rows(0, count);
-        let middle = model.row(count);
-        let unexplained = &rows - &places * &model;
-        let left = unexplained.norm_squared() / free as f64;
-        let of_scatter = normal.view((0, 0), (count, count)) * left;
-        let known = slopes * slopes.transpose() - &of_scatter;
-        let shown = (0..count).map(|i| known[(i, i)] > SHOWN * of_scatter[(i, i)]);
+        let Regression {
+            mut slopes,
+            middle,
+            left,
+            free,
+            variance,
+            of_scatter,
+        } = Regression::of(&places, &rows)?;
+        let known = &slopes * slopes.transpose() - &of_scatter;
+        let shown = (0..x.len()).map(|i| known[(i, i)] > SHOWN * of_scatter[(i, i)]);
         let shown: Vec<bool> = shown.collect();
         // Scatter alone leads nowhere.
-        let mut slopes = slopes.into_owned();
         for (mut slope, shown) in slopes.row_iter_mut().zip(&shown) {
             if !shown {
                 slope.fill(0.0);
             }
         }
-        let pulled = unexplained * slopes.transpose();
-        let points = places.nrows() as f64;
-        let squares: Vec<f64> = rows
-            .row_iter()
-            .map(|row| 0.5 * row.norm_squared())
-            .collect();
-        let mean = squares.iter().sum::<f64>() / points;
-        let variance = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / points;
+        let pulled = left * slopes.transpose();
         let widths = cloud.spreads.map(|spread| spread.powi(2));
         Some(Self {
             gradient: &slopes * middle.transpose(),
-            of_gradient: pulled.transpose() * &pulled / free as f64,
+            of_gradient: pulled.transpose() * &pulled / free,
             known: known.map_with_location(|i, j, known| match shown[i] && shown[j] {
                 true => known,
                 false => 0.0,
             }),
             shown,
-            scatter: of_scatter.trace() / count as f64,
+            scatter: of_scatter.trace() / x.len() as f64,
             before: widths.component_div(&range_variances(bounds)),
-            is_curved: left > rows.ncols() as f64,
-            cost: 0.5 * (middle.norm_squared() - left / points),
-            chance: (variance / points).sqrt(),
+            is_curved: variance > rows.ncols() as f64,
+            cost: 0.5 * (middle.norm_squared() - variance / places.nrows() as f64),
+            chance: chance(&rows),
         })
     }
 

@@ -11,9 +11,10 @@ fn project() -> PathBuf {
 }
 
 /// The pages that continue the README's tour.
-const TOUR: [&str; 4] = [
+const TOUR: [&str; 5] = [
     "pipelines/README.md",
     "crates/calibrate/README.md",
+    "crates/calibrate/WEAR.md",
     "crates/gap/README.md",
     "crates/gap/PROOF.md",
 ];

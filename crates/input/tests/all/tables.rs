@@ -20,7 +20,7 @@ fn the_table_of_effects_is_current() {
     for entry in CATALOGUE.iter() {
         table.push_str(&row(entry));
     }
-    check("crates/mechanism/README.md", "effects", &table);
+    check("crates/mechanism/LAWS.md", "effects", &table);
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn the_table_of_contact_laws_is_current() {
             law.name, declared.about
         ));
     }
-    check("crates/mechanism/README.md", "contact laws", &table);
+    check("crates/mechanism/LAWS.md", "contact laws", &table);
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_table_of_sensors_is_current() {
         let name = sensor.name;
         table.push_str(&format!("| `{name}` | {} | {columns} |\n", declared.about));
     }
-    check("crates/simulate/README.md", "sensors", &table);
+    check("crates/simulate/SENSORS.md", "sensors", &table);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn the_table_of_synonyms_is_current() {
     for ((key, states), names) in rows {
         table.push_str(&format!("| `{key}` | {} | {states} |\n", names.join(", ")));
     }
-    check("crates/input/README.md", "synonyms", &table);
+    check("crates/input/DATA-SHEETS.md", "synonyms", &table);
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn the_table_of_materials_is_current() {
             entry.name, entry.words, of.poisson_ratio
         ));
     }
-    check("crates/input/README.md", "materials", &table);
+    check("crates/input/MATERIALS.md", "materials", &table);
 }
 
 /// Every key at the top of the four files is explained.
@@ -112,7 +112,7 @@ fn the_tables_of_keys_are_current() {
             table.push_str(&format!("| `{key}`{mark} | {words} |\n"));
         }
         check(
-            "crates/input/README.md",
+            "crates/input/KEYS.md",
             &format!("keys of {file}.yaml"),
             &table,
         );
