@@ -304,6 +304,7 @@ impl System<f64> for Watched {
         self.dynamics.dimension()
     }
 
+    #[inline(always)]
     fn derivative(&mut self, t: f64, y: &[f64], dy: &mut [f64]) {
         self.dynamics.derivative(t, y, dy);
     }
