@@ -30,7 +30,7 @@ pub const HIDDEN_EFFECTS: FileKind = FileKind {
     content: "a test bench of effects hidden in recordings",
     words: "a test bench of hidden effects",
     schema,
-    check: |_, document| HiddenEffects::of(&document).map(drop),
+    check: |_, document| HiddenEffects::from_document(&document).map(drop),
     recordings: |_| Vec::new(),
 };
 
@@ -114,14 +114,14 @@ impl HiddenEffects {
     /// All mistakes, with their lines.
     pub fn read(path: &Path) -> Result<(Self, Document), Error> {
         let document = Document::open(path)?;
-        Ok((Self::of(&document)?, document))
+        Ok((Self::from_document(&document)?, document))
     }
 
     /// The settings in the file with the content `document`.
     ///
     /// # Errors
     /// All mistakes, with their lines.
-    pub fn of(document: &Document) -> Result<Self, Error> {
+    pub fn from_document(document: &Document) -> Result<Self, Error> {
         document.collect(schema, |tree| {
             let settings: Self = Document::from_tree(tree.clone()).read()?;
             settings.check().map(|()| settings)
@@ -137,7 +137,7 @@ impl HiddenEffects {
             ("noises", self.noises.is_empty()),
         ] {
             if empty {
-                return Err(Error::found(key, "an empty list", "one entry or more"));
+                return Err(Error::unexpected(key, "an empty list", "one entry or more"));
             }
         }
         for (i, machine) in self.machines.iter().enumerate() {
@@ -187,7 +187,7 @@ mod tests {
     const WHOLE: &str = "machines: [{name: a, bundle: b}]\nsizes: [1]\nnoises: [2 %]\n";
 
     fn read(text: &str) -> Result<HiddenEffects, Error> {
-        HiddenEffects::of(&Document::parse(text, "h.yaml")?)
+        HiddenEffects::from_document(&Document::parse(text, "h.yaml")?)
     }
 
     #[test]

@@ -60,7 +60,7 @@ pub fn contacts(machine: &Machine, other_law: bool, random: &mut Stream) -> Resu
             "friction.coefficient",
         ] {
             let path = format!("{}.{key}", joint.path);
-            let parameter = Parameter::of(&tree, &path).map_err(Error::Contact)?;
+            let parameter = Parameter::at(&tree, &path).map_err(Error::Contact)?;
             let factor = random.random_range(CONTACT[0]..CONTACT[1]);
             let value = parameter.nominal * factor;
             parameter.write(&mut tree, value)?;
@@ -168,7 +168,7 @@ pub fn wrong_data_sheet(tree: &mut Value, random: &mut Stream) -> Result<(), Err
         return Ok(());
     };
     let path = format!("{prefix}{key}");
-    let parameter = Parameter::of(tree, &path).map_err(Error::Contact)?;
+    let parameter = Parameter::at(tree, &path).map_err(Error::Contact)?;
     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
     let factor = 1.0 + sign * width * random.random_range(WRONG[0]..WRONG[1]);
     Ok(parameter.write(tree, parameter.nominal * factor)?)

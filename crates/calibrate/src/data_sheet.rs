@@ -160,7 +160,7 @@ fn of_joints(problem: &Problem) -> Result<Vec<Doubt>, Error> {
 
 /// A positive value with a relative standard deviation.
 fn relative(tree: Value, path: &str, width: f64) -> Option<Doubt> {
-    let nominal = Parameter::of(&tree, path).ok()?.nominal;
+    let nominal = Parameter::at(&tree, path).ok()?.nominal;
     let factor = 1.0 + REACH * width;
     let parameter = Parameter::within(&tree, path, [nominal / factor, nominal * factor]).ok()?;
     Some(Doubt {

@@ -276,7 +276,7 @@ pub(crate) fn linearized(
     let found = Found {
         misfits: mean_misfits(&likelihood, &found.x)?,
         x: found.x,
-        information: Some(information.of(&free)),
+        information: Some(information.subset(&free)),
         free,
         evaluations: found.evaluations,
         complete,

@@ -114,7 +114,7 @@ fn share([low, high]: &[f64; 2], bounds: &[f64; 2]) -> f64 {
 
 impl Information {
     /// That of the parameters of these indices alone.
-    pub(crate) fn of(&self, keep: &[usize]) -> Self {
+    pub(crate) fn subset(&self, keep: &[usize]) -> Self {
         Self {
             intervals: keep.iter().map(|i| self.intervals[*i]).collect(),
             correlations: self.correlations.select_rows(keep).select_columns(keep),

@@ -60,7 +60,7 @@ impl Parameter {
     /// # Errors
     /// A path that is not there, whose value is no quantity, or 0; places that should share a value
     /// and differ.
-    pub fn of(tree: &Value, path: &str) -> Result<Self, Error> {
+    pub fn at(tree: &Value, path: &str) -> Result<Self, Error> {
         let found = Found::at(tree, path)?;
         let last = path.rsplit('.').next().unwrap_or(path);
         let nominal = found.nominal;
@@ -97,7 +97,7 @@ impl Parameter {
     /// above 0.
     ///
     /// # Errors
-    /// As [`Parameter::of`]; bounds that do not enclose the nominal value.
+    /// As [`Parameter::at`]; bounds that do not enclose the nominal value.
     pub fn within(tree: &Value, path: &str, bounds: [f64; 2]) -> Result<Self, Error> {
         let found = Found::at(tree, path)?;
         let [mut low, high] = bounds;
@@ -307,7 +307,7 @@ mod tests {
     #[test]
     fn a_star_is_one_value_at_several_places() {
         let mut tree = machine("single-stage.yaml");
-        let friction = Parameter::of(&tree, "joints.*.friction.coefficient").unwrap();
+        let friction = Parameter::at(&tree, "joints.*.friction.coefficient").unwrap();
         let ends = ["joints.big_end", "joints.small_end"].map(|j| j.to_owned() + ".friction");
         for end in &ends {
             let place = format!("{end}.coefficient");
@@ -317,7 +317,7 @@ mod tests {
         for place in &friction.places {
             assert_eq!(at(&tree, place), json!(0.07));
         }
-        let apart = Parameter::of(&tree, "joints.*.contact.stiffness").unwrap_err();
+        let apart = Parameter::at(&tree, "joints.*.contact.stiffness").unwrap_err();
         assert!(apart.to_string().contains("differ"), "{apart}");
     }
 
@@ -327,23 +327,23 @@ mod tests {
         let section = json!({"discharge": "3 %", "discharge_phase": "0 deg"});
         tree["effects"] = json!([{"gas_pulsation": section}]);
         let path = "effects.gas_pulsation.discharge";
-        let amplitude = Parameter::of(&tree, path).unwrap();
+        let amplitude = Parameter::at(&tree, path).unwrap();
         assert_eq!(amplitude.bounds, [0.001, 0.2]);
-        let phase = Parameter::of(&tree, "effects.0.gas_pulsation.discharge_phase").unwrap();
+        let phase = Parameter::at(&tree, "effects.0.gas_pulsation.discharge_phase").unwrap();
         assert_eq!(phase.bounds, [0.0, std::f64::consts::TAU]);
         // Where nothing is left of it, it has no derivative.
         let within = Parameter::within(&tree, path, [0.0, 0.1]).unwrap();
         assert_eq!(within.bounds, [0.001, 0.1]);
         amplitude.write(&mut tree, 0.0).unwrap();
         assert_eq!(at(&tree, path), json!("0 %"));
-        assert!(Parameter::of(&tree, path).is_err());
+        assert!(Parameter::at(&tree, path).is_err());
         assert!(Parameter::within(&tree, path, [0.0, 0.1]).is_err());
     }
 
     #[test]
     fn throws_that_share_a_section_get_values_of_their_own() {
         let mut tree = machine("two-stage.yaml");
-        let damping = Parameter::of(&tree, "throws.*.joints.small_end.contact.damping").unwrap();
+        let damping = Parameter::at(&tree, "throws.*.joints.small_end.contact.damping").unwrap();
         let places = ["throw1", "throw2"]
             .map(|throw| format!("throws.{throw}.joints.small_end.contact.damping"));
         assert_eq!(damping.places, places);
@@ -359,11 +359,11 @@ mod tests {
         let mut tree = machine("single-stage.yaml");
         let relation = json!({"stiffness": 0, "damping": -0.2});
         paths::set(&mut tree, "joints.big_end.contact.relation", relation).unwrap();
-        let stiffness = Parameter::of(&tree, "joints.big_end.contact.stiffness").unwrap();
+        let stiffness = Parameter::at(&tree, "joints.big_end.contact.stiffness").unwrap();
         assert_eq!(stiffness.scale, Scale::Logarithmic);
         assert_eq!(stiffness.bounds, [2.4e9, 2.4e11]);
         let exponent = "joints.big_end.contact.relation.stiffness";
-        let exponent = Parameter::of(&tree, exponent).unwrap();
+        let exponent = Parameter::at(&tree, exponent).unwrap();
         assert_eq!((exponent.nominal, exponent.bounds), (0.0, [-1.0, 0.5]));
         assert_eq!(exponent.scale, Scale::Linear);
         let mass = Parameter::within(&tree, "rod.mass", [5.0, 20.0]).unwrap();
@@ -380,7 +380,7 @@ mod tests {
     #[test]
     fn what_cannot_be_fitted_says_why() {
         let mut tree = machine("single-stage.yaml");
-        let refused = |tree: &Value, path: &str| Parameter::of(tree, path).unwrap_err().to_string();
+        let refused = |tree: &Value, path: &str| Parameter::at(tree, path).unwrap_err().to_string();
         assert!(refused(&tree, "name").contains("'"));
         assert!(refused(&tree, "joints.*.contact.stifness").contains("stiffness"));
         assert!(refused(&tree, "rod").contains("no quantity"));

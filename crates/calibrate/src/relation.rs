@@ -177,7 +177,7 @@ pub fn several(runs: &[Vec<Option<f64>>]) -> bool {
 /// A machine file without such exponents, or in which they differ.
 pub fn exponents(tree: &Value) -> Result<Vec<Parameter>, Error> {
     ["stiffness", "damping"]
-        .map(|key| Parameter::of(tree, &pattern(tree, &format!("contact.relation.{key}"))))
+        .map(|key| Parameter::at(tree, &pattern(tree, &format!("contact.relation.{key}"))))
         .into_iter()
         .collect()
 }
@@ -239,7 +239,7 @@ pub(crate) fn exponents_of(tree: &Value, joints: &[ClearJoint]) -> Result<Vec<Pa
     let paths = joints.iter().flat_map(|joint| {
         ["stiffness", "damping"].map(|key| format!("{}.contact.relation.{key}", joint.path))
     });
-    paths.map(|path| Parameter::of(tree, &path)).collect()
+    paths.map(|path| Parameter::at(tree, &path)).collect()
 }
 
 /// The paths of every joint's `key`.

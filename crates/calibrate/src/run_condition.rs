@@ -12,7 +12,7 @@ use serde_json::Value;
 pub const CRANK_ANGLE_OFFSET: &str = "crank_angle_offset";
 /// Without bounds of its own it is searched over 5° to either side, of 0 and of where it is seen.
 const OFFSETS: [f64; 2] = [-5.0_f64.to_radians(), 5.0_f64.to_radians()];
-pub(crate) const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
+pub(crate) const ANGLE: Dimension = Dimension::new(0.0, 0.0, 0.0, 1.0);
 
 impl Parameter {
     /// Opens the bounds of an offset of the crank angle that has no bounds of its own, so that they hold `seen`, rad.
@@ -31,7 +31,7 @@ impl Parameter {
     /// pressure, say, which differs from run to run); or [`CRANK_ANGLE_OFFSET`], of all runs or one.
     ///
     /// # Errors
-    /// As [`Parameter::of`] and [`Parameter::within`]; a run that is not there.
+    /// As [`Parameter::at`] and [`Parameter::within`]; a run that is not there.
     pub fn named(
         tree: &Value,
         runs: &[Run],
@@ -78,7 +78,7 @@ fn shared(tree: &Value, path: &str, bounds: Option<[f64; 2]>) -> Result<Paramete
     }
     match bounds {
         Some(bounds) => Parameter::within(tree, path, bounds),
-        None => Parameter::of(tree, path),
+        None => Parameter::at(tree, path),
     }
 }
 

@@ -263,7 +263,7 @@ struct Regression {
 
 impl Regression {
     /// `places` has a 1 in its last column. None where the points do not determine a slope.
-    fn of(places: &DMatrix<f64>, rows: &DMatrix<f64>) -> Option<Self> {
+    fn fit(places: &DMatrix<f64>, rows: &DMatrix<f64>) -> Option<Self> {
         let count = places.ncols() - 1;
         let free = places.nrows().checked_sub(count + 1);
         let free = free.filter(|free| *free > 0)? as f64;
@@ -309,7 +309,7 @@ impl Linear {
             free,
             variance,
             of_scatter,
-        } = Regression::of(&places, &rows)?;
+        } = Regression::fit(&places, &rows)?;
         let known = &slopes * slopes.transpose() - &of_scatter;
         let shown = (0..x.len()).map(|i| known[(i, i)] > SHOWN * of_scatter[(i, i)]);
         let shown: Vec<bool> = shown.collect();

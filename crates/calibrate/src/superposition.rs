@@ -225,7 +225,7 @@ mod tests {
         paths::set(&mut tree, "crank.drive", json!("given")).unwrap();
         paths::set(&mut tree, "speed", json!(format!("{TURNING} rad/s"))).unwrap();
         let clearance = |throw| format!("throws.{throw}.joints.big_end.clearance");
-        let parameter = |throw| Parameter::of(&tree, &clearance(throw)).unwrap();
+        let parameter = |throw| Parameter::at(&tree, &clearance(throw)).unwrap();
         let channel = |column: &str| Observed {
             column: column.into(),
             orders: (1..100).collect(),

@@ -200,7 +200,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
         if !has_joints(problem) {
             return with_joints(fitter, problem, judged, &pressures);
         }
-        found = judged.found(&pressures);
+        found = judged.named_effects(&pressures);
         let values = judged.believed.values(&pressures);
         let set = judged.believed.set.iter().zip(values);
         known = set
@@ -248,7 +248,7 @@ fn whole(fitter: &Fitter, problem: &Problem, start: &[f64]) -> Result<Whole, Err
     {
         found.effect.candidate = known.clone();
     }
-    found.extend(judged.found(&with_gas));
+    found.extend(judged.named_effects(&with_gas));
     if let Some(last) = found.last_mut() {
         last.after = Some(model.clone());
     }
@@ -328,7 +328,7 @@ fn with_joints(
     Ok(Whole {
         baseline: full(&judged.nothing)?,
         model: full(&judged.believed)?,
-        found: judged.found(pressures),
+        found: judged.named_effects(pressures),
         refused: judged.refused(pressures),
         probabilities: corrected(&judged),
     })

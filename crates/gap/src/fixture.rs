@@ -43,7 +43,7 @@ pub(crate) fn problem_of(effects: Value) -> Problem {
     let mut tree = machine.to_tree().clone();
     tree["joints"]["big_end"]["clearance"] = json!("ideal");
     tree["joints"]["small_end"]["clearance"] = json!("0.1 mm");
-    let stiffness = Parameter::of(&tree, "joints.small_end.contact.stiffness").unwrap();
+    let stiffness = Parameter::at(&tree, "joints.small_end.contact.stiffness").unwrap();
     let mut problem = Problem {
         parameters: vec![stiffness],
         tree,

@@ -163,7 +163,7 @@ fn rivals<'a>(
 
 impl Judgement {
     /// The effects that are believed, with their rivals. `problem` is the machine without them.
-    pub fn found(&self, problem: &Problem) -> Vec<Found> {
+    pub fn named_effects(&self, problem: &Problem) -> Vec<Found> {
         let values = self.believed.values(problem);
         let all = self
             .believed
@@ -287,7 +287,7 @@ mod tests {
         let labels = judged.believed.labels();
         assert_eq!(labels, ["ring_friction"]);
         assert!(judged.probabilities[0] > 0.9, "{:?}", judged.probabilities);
-        let found = judged.found(&problem);
+        let found = judged.named_effects(&problem);
         let force = found[0].effect.values[0];
         assert!((force / 150.0 - 1.0).abs() < 0.02, "{force}");
         // It needs no allowance for a law that is off.

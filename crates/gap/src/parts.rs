@@ -106,7 +106,7 @@ impl ByPart {
             let items = candidates.clone().map(|one| one.items().len()).sum();
             let labels = candidates.map(Candidate::label).collect();
             let models = [before, &explanation.explained];
-            let parts = Self::of(models, items, labels, held_out)?;
+            let parts = Self::compare(models, items, labels, held_out)?;
             return Ok(Some(Self { named, ..parts }));
         }
         let refused = explanation.refused.iter();
@@ -118,14 +118,14 @@ impl ByPart {
         };
         let items = nearest.candidate.items().len();
         let labels = vec![nearest.candidate.label()];
-        Self::of([before, model], items, labels, held_out).map(Some)
+        Self::compare([before, model], items, labels, held_out).map(Some)
     }
 
     /// What the parts say of the last `items` effects of the machine of `after`. `before` is without them.
     ///
     /// # Errors
     /// A machine that cannot be simulated.
-    fn of(
+    fn compare(
         [before, after]: [&Model; 2],
         items: usize,
         labels: Vec<String>,

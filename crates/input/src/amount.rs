@@ -28,7 +28,7 @@ impl Amount {
     }
 
     /// The amount that a value of a machine file is; none where it is something else.
-    pub fn of(value: &Value) -> Option<Self> {
+    pub fn from_value(value: &Value) -> Option<Self> {
         if let Some(si) = value.as_f64() {
             let dimension = None;
             return Some(Self { si, dimension });
@@ -43,7 +43,7 @@ impl<'de> Deserialize<'de> for Amount {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         const EXPECTED: &str = "a quantity with its unit, e.g. '0.1 mm', or a plain number";
         let value = Value::deserialize(deserializer)?;
-        Amount::of(&value).ok_or_else(|| {
+        Amount::from_value(&value).ok_or_else(|| {
             let found = value.to_string();
             D::Error::invalid_value(Unexpected::Other(&found), &EXPECTED)
         })

@@ -70,7 +70,7 @@ pub struct ToSi {
 
 impl ToSi {
     /// The value in SI units.
-    pub fn of(self, value: f64) -> f64 {
+    pub fn apply(self, value: f64) -> f64 {
         (value + self.offset) * self.scale
     }
 
@@ -84,9 +84,9 @@ impl ToSi {
 /// is further away.
 const SLIPS: usize = 2;
 
-const ACCELERATION: Dimension = Dimension::of(1.0, 0.0, -2.0, 0.0);
-const VELOCITY: Dimension = Dimension::of(1.0, 0.0, -1.0, 0.0);
-const ANGLE: Dimension = Dimension::of(0.0, 0.0, 0.0, 1.0);
+const ACCELERATION: Dimension = Dimension::new(1.0, 0.0, -2.0, 0.0);
+const VELOCITY: Dimension = Dimension::new(1.0, 0.0, -1.0, 0.0);
+const ANGLE: Dimension = Dimension::new(0.0, 0.0, 0.0, 1.0);
 
 /// Units of recordings beyond those of [`unit`]: name, dimension, and size in SI units.
 const RECORDED: [(&str, Dimension, f64); 6] = [
@@ -270,7 +270,7 @@ fn to_si(channel: &Channel, quantity: Quantity) -> Result<ToSi, Error> {
         },
     };
     if found != dimension {
-        return Err(Error::found(
+        return Err(Error::unexpected(
             "unit",
             format!("'{}'", channel.unit),
             expected,
@@ -449,7 +449,7 @@ mod tests {
         let Meaning::CrankAngle(degrees) = of("crank angle", "deg") else {
             panic!("no angle");
         };
-        assert!((degrees.of(180.0) - TAU / 2.0).abs() < 1e-15);
+        assert!((degrees.apply(180.0) - TAU / 2.0).abs() < 1e-15);
         assert!((degrees.back(TAU) - 360.0).abs() < 1e-12);
     }
 
@@ -466,7 +466,7 @@ mod tests {
             panic!("no pressure");
         };
         // 14.6 psi is 100 663.456 Pa.
-        assert!((to_si.of(0.0) - 100_663.456).abs() < 1e-3);
+        assert!((to_si.apply(0.0) - 100_663.456).abs() < 1e-3);
     }
 
     #[test]

@@ -201,18 +201,18 @@ impl Calibration {
     /// All mistakes, with their lines.
     pub fn read(path: &Path) -> Result<(Self, Document), Error> {
         let document = Document::open(path)?;
-        Ok((Self::of(&document)?, document))
+        Ok((Self::from_document(&document)?, document))
     }
 
     /// The settings in the file with the content `document`.
     ///
     /// # Errors
     /// All mistakes, with their lines.
-    pub fn of(document: &Document) -> Result<Self, Error> {
+    pub fn from_document(document: &Document) -> Result<Self, Error> {
         Self::checked(document, |_, _| Ok(()))
     }
 
-    /// As [`Calibration::of`], where `further` finds further mistakes in the settings and the content that they were
+    /// As [`Calibration::from_document`], where `further` finds further mistakes in the settings and the content that they were
     /// read from; their keys are those of the file.
     ///
     /// # Errors
@@ -244,7 +244,7 @@ impl Calibration {
                 let key = format!("parameters.{path}.bounds");
                 let found = format!("{} to {}", low.to_value(), high.to_value());
                 let expected = "two values of one unit, the lesser first";
-                return Err(Error::found(key, found.replace('"', ""), expected));
+                return Err(Error::unexpected(key, found.replace('"', ""), expected));
             }
         }
         if let Optimiser::Genetic(Some(genetic)) = self.optimiser
@@ -318,7 +318,7 @@ mod tests {
     use serde_json::json;
 
     fn read(text: &str) -> Result<Calibration, Error> {
-        Calibration::of(&Document::parse(text, "c.yaml")?)
+        Calibration::from_document(&Document::parse(text, "c.yaml")?)
     }
 
     fn message(text: &str) -> String {

@@ -25,10 +25,10 @@ pub struct Measure {
 
 impl Dimension {
     /// A pure number.
-    pub const NONE: Self = Self::of(0.0, 0.0, 0.0, 0.0);
+    pub const NONE: Self = Self::new(0.0, 0.0, 0.0, 0.0);
 
     /// m^length kg^mass s^time rad^angle.
-    pub const fn of(length: f64, mass: f64, time: f64, angle: f64) -> Self {
+    pub const fn new(length: f64, mass: f64, time: f64, angle: f64) -> Self {
         Self {
             length,
             mass,
@@ -39,7 +39,7 @@ impl Dimension {
 
     /// N/m^n: the stiffness of a contact law with exponent n.
     pub const fn stiffness(exponent: f64) -> Self {
-        Self::of(1.0 - exponent, 1.0, -2.0, 0.0)
+        Self::new(1.0 - exponent, 1.0, -2.0, 0.0)
     }
 
     /// The exponent n, if this is N/m^n.

@@ -159,7 +159,7 @@ impl Error {
     }
 
     /// `found` stands at `key` where `expected` belongs.
-    pub fn found(
+    pub fn unexpected(
         key: impl Into<String>,
         found: impl fmt::Display,
         expected: impl fmt::Display,
@@ -200,7 +200,7 @@ impl Error {
     /// What stands at `key` does not go together with the rest of the file;
     /// [`Document::locate`](crate::yaml::Document::locate) fills in what it is, as it is written.
     pub fn clash(key: impl Into<String>, expected: impl fmt::Display) -> Self {
-        Self::found(key, "", expected)
+        Self::unexpected(key, "", expected)
     }
 
     /// The key `name` must be there and is not.
@@ -368,15 +368,15 @@ impl serde::de::Error for Error {
     }
 
     fn invalid_type(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
-        Self::found("", words(&found), expected)
+        Self::unexpected("", words(&found), expected)
     }
 
     fn invalid_value(found: Unexpected, expected: &dyn serde::de::Expected) -> Self {
-        Self::found("", words(&found), expected)
+        Self::unexpected("", words(&found), expected)
     }
 
     fn invalid_length(length: usize, expected: &dyn serde::de::Expected) -> Self {
-        Self::found("", format_args!("a list of {length}"), expected)
+        Self::unexpected("", format_args!("a list of {length}"), expected)
     }
 
     fn unknown_variant(found: &str, known: &'static [&'static str]) -> Self {

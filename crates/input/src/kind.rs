@@ -60,25 +60,25 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Length, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0);
-    Clearance, "a length", "m", "0.1 mm", Dimension::of(1.0, 0.0, 0.0, 0.0), Sided;
-    Mass, "a mass", "kg", "12 kg", Dimension::of(0.0, 1.0, 0.0, 0.0);
-    Duration, "a duration", "s", "0.5 s", Dimension::of(0.0, 0.0, 1.0, 0.0);
-    Angle, "an angle", "rad", "30 deg", Dimension::of(0.0, 0.0, 0.0, 1.0);
-    Speed, "a rotational speed", "rad/s", "500 rpm", Dimension::of(0.0, 0.0, -1.0, 1.0);
-    Frequency, "a frequency", "Hz", "10 kHz", Dimension::of(0.0, 0.0, -1.0, 0.0);
-    Velocity, "a velocity", "m/s", "0.01 m/s", Dimension::of(1.0, 0.0, -1.0, 0.0);
-    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::of(1.0, 0.0, -2.0, 0.0), Gravities;
-    Force, "a force", "N", "200 N", Dimension::of(1.0, 1.0, -2.0, 0.0);
-    Torque, "a torque", "N m", "60 N m", Dimension::of(2.0, 1.0, -2.0, 0.0);
-    TorqueSlope, "a torque per speed", "N m s", "40 N m s", Dimension::of(2.0, 1.0, -1.0, 0.0);
-    Pressure, "a pressure", "Pa", "0.393 MPa", Dimension::of(-1.0, 1.0, -2.0, 0.0);
-    Inertia, "a moment of inertia", "kg m^2", "0.6 kg m^2", Dimension::of(2.0, 1.0, 0.0, 0.0);
-    Damping, "a damping", "N s/m", "2e4 N s/m", Dimension::of(0.0, 1.0, -1.0, 0.0);
-    Area, "an area", "m^2", "2 mm^2", Dimension::of(2.0, 0.0, 0.0, 0.0);
-    Compliance, "a length per force", "m/N", "5 nm/N", Dimension::of(0.0, -1.0, 2.0, 0.0);
-    Viscosity, "a viscosity", "Pa s", "0.05 Pa s", Dimension::of(-1.0, 1.0, -1.0, 0.0);
+    Length, "a length", "m", "0.1 mm", Dimension::new(1.0, 0.0, 0.0, 0.0);
+    Clearance, "a length", "m", "0.1 mm", Dimension::new(1.0, 0.0, 0.0, 0.0), Sided;
+    Mass, "a mass", "kg", "12 kg", Dimension::new(0.0, 1.0, 0.0, 0.0);
+    Duration, "a duration", "s", "0.5 s", Dimension::new(0.0, 0.0, 1.0, 0.0);
+    Angle, "an angle", "rad", "30 deg", Dimension::new(0.0, 0.0, 0.0, 1.0);
+    Speed, "a rotational speed", "rad/s", "500 rpm", Dimension::new(0.0, 0.0, -1.0, 1.0);
+    Frequency, "a frequency", "Hz", "10 kHz", Dimension::new(0.0, 0.0, -1.0, 0.0);
+    Velocity, "a velocity", "m/s", "0.01 m/s", Dimension::new(1.0, 0.0, -1.0, 0.0);
+    Acceleration, "an acceleration", "m/s^2", "9.81 m/s^2", Dimension::new(1.0, 0.0, -2.0, 0.0), Gravities;
+    Force, "a force", "N", "200 N", Dimension::new(1.0, 1.0, -2.0, 0.0);
+    Torque, "a torque", "N m", "60 N m", Dimension::new(2.0, 1.0, -2.0, 0.0);
+    TorqueSlope, "a torque per speed", "N m s", "40 N m s", Dimension::new(2.0, 1.0, -1.0, 0.0);
+    Pressure, "a pressure", "Pa", "0.393 MPa", Dimension::new(-1.0, 1.0, -2.0, 0.0);
+    Inertia, "a moment of inertia", "kg m^2", "0.6 kg m^2", Dimension::new(2.0, 1.0, 0.0, 0.0);
+    Damping, "a damping", "N s/m", "2e4 N s/m", Dimension::new(0.0, 1.0, -1.0, 0.0);
+    Area, "an area", "m^2", "2 mm^2", Dimension::new(2.0, 0.0, 0.0, 0.0);
+    Compliance, "a length per force", "m/N", "5 nm/N", Dimension::new(0.0, -1.0, 2.0, 0.0);
+    Viscosity, "a viscosity", "Pa s", "0.05 Pa s", Dimension::new(-1.0, 1.0, -1.0, 0.0);
     StiffnessPerRoot, "a stiffness in N/m^1.5", "N/m^1.5", "20 GN/m^1.5", Dimension::stiffness(1.5);
-    ForcePerPressure, "a force per pressure", "N/Pa", "1e-4 N/Pa", Dimension::of(2.0, 0.0, 0.0, 0.0);
+    ForcePerPressure, "a force per pressure", "N/Pa", "1e-4 N/Pa", Dimension::new(2.0, 0.0, 0.0, 0.0);
     Ratio, "a percentage", "%", "5 %", Dimension::NONE;
 }

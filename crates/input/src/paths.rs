@@ -33,7 +33,7 @@ pub fn set(tree: &mut Value, path: &str, value: Value) -> Result<(), Error> {
                 if !other.is_null() {
                     let at = keys[..depth].join(".");
                     let expected = format!("a section, so that {path} can be set");
-                    return Err(Error::found(at, shown(other), expected));
+                    return Err(Error::unexpected(at, shown(other), expected));
                 }
                 *other = Value::Object(Map::new());
                 &mut other[key.as_str()]
@@ -189,7 +189,7 @@ pub fn expected(path: &str) -> Result<Option<(String, Amount)>, Error> {
         };
         keys.push(part.to_owned());
     }
-    let example = schema.values().iter().find_map(Amount::of);
+    let example = schema.values().iter().find_map(Amount::from_value);
     Ok(example.map(|example| {
         let words = || format!("a value of its kind, e.g. {}", example.to_value());
         (schema.expected().unwrap_or_else(words), example)

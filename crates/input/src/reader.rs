@@ -34,7 +34,7 @@ impl<'de> Reader<'de> {
     }
 
     fn mismatch(&self, expected: &str) -> Error {
-        Error::found("", shown(self.node), expected)
+        Error::unexpected("", shown(self.node), expected)
     }
 
     /// The variant of an enum that a section's key `tag` names.
@@ -179,7 +179,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                         [] => "an empty section".to_owned(),
                         _ => format!("the keys {}", keys.join(", ")),
                     };
-                    return Err(Error::found("", found, list));
+                    return Err(Error::unexpected("", found, list));
                 }
             },
             _ => return Err(self.mismatch(&format!("one of {}", variants.join(", ")))),

@@ -142,7 +142,7 @@ fn of_throws<'a>(run: &'a Value, key: &str, machine: &Value) -> Result<Vec<OfThr
     let names: Vec<&str> = throws.iter().filter_map(|t| t["name"].as_str()).collect();
     let Value::Object(by_throw) = value else {
         let expected = format!("a section with the keys {}", names.join(", "));
-        return Err(Error::found(key, shown(value), expected));
+        return Err(Error::unexpected(key, shown(value), expected));
     };
     let places = by_throw.iter().map(|(name, value)| {
         if !names.contains(&name.as_str()) {

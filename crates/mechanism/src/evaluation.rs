@@ -140,6 +140,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             big,
             [at.speed, spin],
             &at.mode.big_end,
+            #[inline(always)]
             || at_joint(Joint::BigEnd, Vec2::new(pin.1, pin.0)),
         );
         find_joint::<S, PLAIN>(
@@ -148,6 +149,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             small,
             [guide[1].y, spin],
             &at.mode.small_end,
+            #[inline(always)]
             || at_joint(Joint::SmallEnd, crosshead),
         );
         match &throw.guide {

@@ -11,5 +11,5 @@ use serde_json::Value;
 /// A key or a value that a calibration file does not have.
 pub fn settings(text: &str) -> Result<Calibration, Failure> {
     let tree: Value = serde_json::from_str(text).map_err(Failure::input)?;
-    Ok(Calibration::of(&Document::from_tree(tree))?)
+    Ok(Calibration::from_document(&Document::from_tree(tree))?)
 }

@@ -48,7 +48,7 @@ pub struct ColumnEntry {
 
 impl ColumnEntry {
     /// The columns of a table.
-    pub fn of(schema: &Schema) -> Vec<Self> {
+    pub fn from_schema(schema: &Schema) -> Vec<Self> {
         schema.columns().iter().map(Self::from).collect()
     }
 }

@@ -35,7 +35,7 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// What `folder` holds, by its files; none where it has no page.
-    pub fn of(folder: &Path) -> Option<Self> {
+    pub fn detect(folder: &Path) -> Option<Self> {
         let kinds = [
             Self::Calibration,
             Self::Wear,
@@ -125,7 +125,7 @@ impl FolderKind {
 /// # Errors
 /// A folder that holds nothing with a page, or a page that cannot be made or written.
 pub fn write(folder: &Path, out: &Path) -> Result<Option<DatasetPage>, Error> {
-    match FolderKind::of(folder) {
+    match FolderKind::detect(folder) {
         Some(kind) if !matches!(kind, FolderKind::Dataset | FolderKind::UnderWay) => {
             kind.write(folder, out).map(|()| None)
         }

@@ -103,8 +103,11 @@ pub trait Scalar:
         let steep = Self::one().lt(self.abs());
         let slope = Self::select(steep, -(Self::one() / self), self);
         let square = slope * slope;
-        let sum = |sum: Self, c: &f64| sum * square + *c;
-        let angle = slope * COEFFICIENTS.iter().rev().fold(Self::zero(), sum);
+        let mut sum = Self::zero();
+        for coefficient in COEFFICIENTS.into_iter().rev() {
+            sum = sum * square + coefficient;
+        }
+        let angle = slope * sum;
         let (sine, cosine) = angle.sin_cos();
         let angle = angle + (slope * cosine - sine) / (cosine + slope * sine);
         let quarter = Self::constant(std::f64::consts::FRAC_PI_2);

@@ -171,7 +171,7 @@ async fn serve(stream: TcpStream, shared: Arc<Shared>) {
 async fn respond(request: &Request<Incoming>, shared: Arc<Shared>) -> Response<Full<Bytes>> {
     let answer = match guard::refuse(request, shared.port) {
         Some(refused) => refused,
-        None => match Place::of(request.uri().path()) {
+        None => match Place::parse(request.uri().path()) {
             Some(place) => answer(place, shared).await,
             None => Answer::nothing(),
         },

@@ -40,7 +40,7 @@ pub(crate) fn entries(root: &Path, kept: &Kept<FolderEntry>) -> (Vec<FolderEntry
         }
         looked_into += 1;
         let folder = root.join(names.iter().collect::<PathBuf>());
-        let kind = FolderKind::of(&folder);
+        let kind = FolderKind::detect(&folder);
         entries.extend(kind.map(|kind| entry(root, &folder, &names, kind, kept)));
         if names.len() < DEEPEST {
             left.extend(folders(&folder).into_iter().map(|name| {
@@ -83,7 +83,7 @@ fn entry(
     };
     let read = || read(folder, names, kind);
     let key = (folder.to_owned(), kind.name().to_owned());
-    match Stamp::of(&files, root) {
+    match Stamp::read(&files, root) {
         Ok(stamp) => match kept.get(&key, stamp, |_| 1, || Ok::<_, ()>(read())) {
             Ok(entry) => (*entry).clone(),
             Err(()) => read(),

@@ -19,7 +19,7 @@ impl Stamp {
     ///
     /// # Errors
     /// A folder that cannot be read, or one with a link that leads out of `root`, which is canonical.
-    pub(crate) fn of(folder: &Path, root: &Path) -> io::Result<Self> {
+    pub(crate) fn read(folder: &Path, root: &Path) -> io::Result<Self> {
         let mut stamp = Vec::new();
         for entry in fs::read_dir(folder)? {
             let path = entry?.path();
@@ -181,7 +181,7 @@ mod tests {
     fn a_thing_is_made_again_when_its_files_change() {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path().canonicalize().unwrap();
-        let stamp = || Stamp::of(&root, &root).unwrap();
+        let stamp = || Stamp::read(&root, &root).unwrap();
         let path = root.join("manifest.json");
         fs::write(&path, "a").unwrap();
         let kept = Kept::new(2);
@@ -228,10 +228,10 @@ mod tests {
         let link = root.join("inside/sweep.yaml");
         std::os::unix::fs::symlink(root.join("a"), &link).unwrap();
         let (inside, stamp) = (root.join("inside"), |root: &Path| {
-            Stamp::of(&root.join("inside"), root)
+            Stamp::read(&root.join("inside"), root)
         });
         stamp(&root).unwrap();
-        let refused = Stamp::of(&inside, &inside).unwrap_err();
+        let refused = Stamp::read(&inside, &inside).unwrap_err();
         assert_eq!(refused.kind(), io::ErrorKind::PermissionDenied);
     }
 }

@@ -35,7 +35,7 @@ pub(crate) struct Place {
 impl Place {
     /// Takes the path of a request apart; none of one that leads nowhere. Names that are hidden, empty, or lead elsewhere
     /// (`..`, a slash or a backslash that is encoded, a NUL) lead nowhere.
-    pub(crate) fn of(path: &str) -> Option<Self> {
+    pub(crate) fn parse(path: &str) -> Option<Self> {
         let rest = path.strip_prefix('/')?;
         let (rest, is_folder) = match rest.strip_suffix('/') {
             Some(folder) => (folder, true),
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     fn place(path: &str) -> Option<(String, Wanted)> {
-        Place::of(path).map(|place| (place.folders.join("/"), place.wanted))
+        Place::parse(path).map(|place| (place.folders.join("/"), place.wanted))
     }
 
     #[test]
@@ -193,10 +193,10 @@ mod tests {
 
     #[test]
     fn an_address_leads_back() {
-        let at = Place::of("/a%20b/%C3%A4%3F").unwrap();
+        let at = Place::parse("/a%20b/%C3%A4%3F").unwrap();
         assert_eq!(at.address("report.html"), "/a%20b/%C3%A4%3F/report.html");
         assert_eq!(
-            Place::of("/").unwrap().address("report.html"),
+            Place::parse("/").unwrap().address("report.html"),
             "/report.html"
         );
     }

@@ -79,8 +79,8 @@ impl Site {
     /// What `answer` gives for the result at a place.
     fn at<T>(&self, place: &Place, answer: impl FnOnce(&Found) -> T) -> Result<T, Answer> {
         let folder = place.folder(&self.root).ok_or_else(Answer::nothing)?;
-        let kind = FolderKind::of(&folder).ok_or_else(Answer::nothing)?;
-        let stamp = Stamp::of(&folder, &self.root).map_err(Answer::failure)?;
+        let kind = FolderKind::detect(&folder).ok_or_else(Answer::nothing)?;
+        let stamp = Stamp::read(&folder, &self.root).map_err(Answer::failure)?;
         let named = self.named.join(place.folders.iter().collect::<PathBuf>());
         Ok(answer(&Found {
             folder: &named,

@@ -186,7 +186,8 @@ impl Samples {
         }
         let seen = &mut self.seen;
         let mut show = |_, values: &[f64]| seen.extend(values);
-        self.lookout.look(step, &self.times, &[sensor()], &mut show);
+        self.lookout
+            .observe(step, &self.times, &[sensor()], &mut show);
     }
 
     fn finish(&mut self) {

@@ -57,7 +57,7 @@ impl Chamber {
             area,
             stroke: 2.0 * throw.crank_radius,
             clearance_volume: area * dead,
-            mechanism: SliderCrank::of(throw),
+            mechanism: SliderCrank::from_throw(throw),
             angle: throw.local_angle(0.0),
         }
     }

@@ -14,7 +14,7 @@ pub trait Lookout: Send {
 
     /// Looks at the instants `times`, s, all of them within the step, and shows `show` what each sensor
     /// sees at those that need not wait, in their order.
-    fn look(
+    fn observe(
         &mut self,
         step: &Step<f64>,
         times: &[f64],
@@ -91,7 +91,7 @@ impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
         self.dynamics.set_mode(mode);
     }
 
-    fn look(
+    fn observe(
         &mut self,
         step: &Step<f64>,
         mut times: &[f64],

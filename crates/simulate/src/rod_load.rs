@@ -63,7 +63,7 @@ impl RodLoad {
         let throws = machine.throws.iter().zip(&trace.throws);
         throws
             .map(|(throw, traced)| {
-                let mechanism = SliderCrank::of(throw);
+                let mechanism = SliderCrank::from_throw(throw);
                 let turning = trace.crank_speed.iter().zip(&trace.crank_acceleration);
                 let at = trace.crank_angle.iter().zip(turning);
                 let inertia = at.map(|(angle, (speed, angular))| {

@@ -234,7 +234,7 @@ impl<'a> Sampler<'a> {
         let (sensors, series) = (self.sensors, &mut self.series);
         let mut show = |i: usize, seen: &[f64]| series.extend(i, &sensors[i], seen.iter().copied());
         if let Some((lookout, _)) = &mut self.lookout {
-            lookout.look(step, &times, sensors, &mut show);
+            lookout.observe(step, &times, sensors, &mut show);
         }
         self.times = times;
         self.seen += within;
@@ -262,7 +262,7 @@ impl<'a> Sampler<'a> {
         let mut all = vec![Vec::with_capacity(times.len()); self.sensors.len()];
         let mut show = |i: usize, seen: &[f64]| all[i].extend_from_slice(seen);
         if let Some((lookout, _)) = &mut self.lookout {
-            lookout.look(step, times, self.sensors, &mut show);
+            lookout.observe(step, times, self.sensors, &mut show);
             lookout.finish(self.sensors, &mut show);
         }
         all

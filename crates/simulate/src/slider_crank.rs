@@ -12,7 +12,7 @@ pub(crate) struct SliderCrank {
 }
 
 impl SliderCrank {
-    pub(crate) fn of(throw: &Throw<f64>) -> Self {
+    pub(crate) fn from_throw(throw: &Throw<f64>) -> Self {
         Self {
             radius: throw.crank_radius,
             rod: throw.rod.length,

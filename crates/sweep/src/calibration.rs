@@ -426,7 +426,7 @@ impl Estimate {
         }
         let deviation = Amount {
             si: deviation,
-            dimension: Amount::of(value).and_then(|amount| amount.dimension),
+            dimension: Amount::from_value(value).and_then(|amount| amount.dimension),
         };
         json!({"normal": {"mean": value, "deviation": deviation.to_value(), "range": range}})
     }

@@ -209,7 +209,7 @@ fn item(item: &Value) -> Option<(Id, Vec<f64>)> {
     let orders = entry.parameters.iter().filter(|parameter| parameter.whole);
     let orders = orders.filter_map(|parameter| section.get(parameter.key).map(Value::to_string));
     let value = |parameter: &Parameter| {
-        let amount = section.get(parameter.key).and_then(Amount::of);
+        let amount = section.get(parameter.key).and_then(Amount::from_value);
         amount.map_or(parameter.absent.unwrap_or(0.0), |amount| amount.si)
     };
     let id = Id {

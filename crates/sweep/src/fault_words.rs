@@ -108,7 +108,7 @@ pub(crate) struct Severities(BTreeMap<String, Vec<Vec<f64>>>);
 
 impl Severities {
     /// Of cases with these faults.
-    pub fn of(cases: impl IntoIterator<Item = Vec<Fault>>) -> Self {
+    pub fn from_cases(cases: impl IntoIterator<Item = Vec<Fault>>) -> Self {
         let mut sizes: BTreeMap<String, Vec<Vec<f64>>> = BTreeMap::new();
         for fault in cases.into_iter().flatten() {
             sizes.entry(fault.name).or_default().push(fault.size);

@@ -103,7 +103,9 @@ impl Joint {
     /// The clearance that the machine file `tree` gives it, before any effect changes it, m.
     fn stated_clearance(&self, tree: &Value) -> f64 {
         let value = paths::get(tree, &self.clearance_path).ok().flatten();
-        value.and_then(Amount::of).map_or(0.0, |amount| amount.si)
+        value
+            .and_then(Amount::from_value)
+            .map_or(0.0, |amount| amount.si)
     }
 
     /// Whether it is faulty in the case with the machine file `tree`, which is `resolved`. `own` is

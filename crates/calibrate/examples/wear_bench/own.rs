@@ -132,7 +132,7 @@ fn draw(random: &mut Stream, seed: u64, number: u64) -> Result<Drawn, Box<dyn Er
     let throws = random.random_range(1..=2_usize);
     let mut tree = healthy(throws)?;
     let joints = joints(&tree, throws)?;
-    let speed = Parameter::of(&tree, "speed")?.nominal;
+    let speed = Parameter::at(&tree, "speed")?.nominal;
     let file = contacts(random, &mut tree, &joints)?;
     let truth = clearances(random, &joints, worn);
     if number.is_multiple_of(3) {
@@ -196,7 +196,7 @@ fn joints(tree: &Value, throws: usize) -> Result<Vec<Joint>, Box<dyn Error>> {
             .collect(),
     };
     let joint = |(path, is_clear): (String, bool)| {
-        let normal = Parameter::of(tree, &format!("{path}.normal_clearance"))?.nominal;
+        let normal = Parameter::at(tree, &format!("{path}.normal_clearance"))?.nominal;
         Ok(Joint {
             path,
             normal,
@@ -215,7 +215,7 @@ fn contacts(
     let mut file = tree.clone();
     for joint in joints {
         for key in CONTACT {
-            let nominal = Parameter::of(tree, &format!("{}.{key}", joint.path))?;
+            let nominal = Parameter::at(tree, &format!("{}.{key}", joint.path))?;
             let truth = nominal.nominal * random.random_range(0.6..1.4);
             nominal.write(tree, truth)?;
             nominal.write(&mut file, truth * random.random_range(0.99..1.01))?;
@@ -249,7 +249,7 @@ fn another_relation(
     for joint in joints.iter().filter(|joint| joint.is_clear) {
         let times = truth.get(&joint.path).map_or(1.0, |c| c / joint.normal);
         for key in &CONTACT[..2] {
-            let parameter = Parameter::of(tree, &format!("{}.{key}", joint.path))?;
+            let parameter = Parameter::at(tree, &format!("{}.{key}", joint.path))?;
             let factor = times.powf(random.random_range(-EXPONENT..EXPONENT));
             parameter.write(tree, parameter.nominal * factor)?;
         }
@@ -267,6 +267,6 @@ fn frame(tree: &Value) -> Result<Vec<Measured>, Box<dyn Error>> {
 }
 
 fn set(tree: &mut Value, path: &str, si: f64) -> Result<(), input::Error> {
-    let dimension = Dimension::of(1.0, 0.0, 0.0, 0.0);
+    let dimension = Dimension::new(1.0, 0.0, 0.0, 0.0);
     paths::set(tree, path, json!(Measure { si, dimension }.to_string()))
 }

@@ -38,7 +38,7 @@ pub(super) fn read(
         let samples = || samples_of(&series, channel).iter().map(|x| f64::from(*x));
         match meaning {
             Meaning::CrankAngle(to_si) => {
-                let wrapped = samples().map(|x| to_si.of(x).rem_euclid(TAU));
+                let wrapped = samples().map(|x| to_si.apply(x).rem_euclid(TAU));
                 crank_angle = Some(wrapped.collect::<Vec<f64>>());
             }
             Meaning::Tacho { at } => {
@@ -49,7 +49,7 @@ pub(super) fn read(
             }
             Meaning::Measured { column, to_si } => channels.push(Channel {
                 column: column.clone(),
-                samples: samples().map(|x| to_si.of(x)).collect(),
+                samples: samples().map(|x| to_si.apply(x)).collect(),
             }),
             Meaning::Time | Meaning::Other => {}
         }

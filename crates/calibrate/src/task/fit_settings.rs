@@ -34,7 +34,7 @@ pub(super) fn with_defaults(
             }
             if ids.iter().all(|id| named.iter().any(|held| held == id)) {
                 let expected = "at least one run to fit to";
-                let error = input::Error::found("hold_out", "every run", expected);
+                let error = input::Error::unexpected("hold_out", "every run", expected);
                 return Err((settings.locate)(error).into());
             }
             named.clone()

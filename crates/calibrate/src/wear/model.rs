@@ -173,7 +173,7 @@ fn contact_parameters(
         let joint = &joints[*i].path;
         CONTACT.map(|key| format!("{joint}.{key}"))
     });
-    paths.filter_map(move |path| Parameter::of(tree, &path).ok())
+    paths.filter_map(move |path| Parameter::at(tree, &path).ok())
 }
 
 /// Gives bearings that have no relation between clearances that of Eq. (5), as a calibration does, and returns all bearings.
@@ -191,7 +191,7 @@ fn set_relation(tree: &mut Value) -> Result<Vec<ClearJoint>, Error> {
 
 /// A length as a machine file has it.
 fn length(si: f64) -> Value {
-    let dimension = Dimension::of(1.0, 0.0, 0.0, 0.0);
+    let dimension = Dimension::new(1.0, 0.0, 0.0, 0.0);
     Measure { si, dimension }.to_string().into()
 }
 

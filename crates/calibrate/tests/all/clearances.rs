@@ -98,8 +98,8 @@ fn fitted(runs: Vec<Observation>, relation: Relation, held_out: &[&str]) -> (Fit
     assert_eq!(joints[0].clearance, 1e-4);
     relation.set(&mut tree, &joints).unwrap();
     let mut parameters = vec![
-        Parameter::of(&tree, STIFFNESS).unwrap(),
-        Parameter::of(&tree, DAMPING).unwrap(),
+        Parameter::at(&tree, STIFFNESS).unwrap(),
+        Parameter::at(&tree, DAMPING).unwrap(),
     ];
     if relation == Relation::Fitted {
         parameters.extend(exponents(&tree).unwrap());

@@ -82,7 +82,7 @@ fn recorded(truth: &Value) -> Vec<Observation> {
 fn truth(changed: &[(&str, Value)]) -> Value {
     let mut tree = machine();
     for (path, factor) in CONTACT {
-        let parameter = Parameter::of(&tree, path).unwrap();
+        let parameter = Parameter::at(&tree, path).unwrap();
         parameter
             .write(&mut tree, factor * parameter.nominal)
             .unwrap();
@@ -281,7 +281,7 @@ fn a_clearance_is_looked_for_on_a_grid() {
     let mut tree = machine();
     tree["joints"]["small_end"]["clearance"] = json!("0.04 mm");
     let mut problem = problem(tree);
-    let clearance = Parameter::of(&problem.tree, "joints.small_end.clearance").unwrap();
+    let clearance = Parameter::at(&problem.tree, "joints.small_end.clearance").unwrap();
     problem.parameters.insert(0, clearance);
     problem.runs = runs;
     let settings = FitSettings {

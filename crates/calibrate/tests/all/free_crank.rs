@@ -29,7 +29,7 @@ fn problem(paths_of_parameters: &[&str]) -> Problem {
     }
     MachineFile::from_tree(&tree).unwrap().resolve().unwrap();
     let parameters = paths_of_parameters.iter();
-    let parameters = parameters.map(|path| Parameter::of(&tree, path).unwrap());
+    let parameters = parameters.map(|path| Parameter::at(&tree, path).unwrap());
     Problem {
         parameters: parameters.collect(),
         tree,

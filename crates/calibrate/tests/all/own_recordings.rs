@@ -30,7 +30,7 @@ pub fn problem(
     highest: usize,
     variance: f64,
 ) -> Problem {
-    let of = |(path, _): &(&str, f64)| Parameter::of(&tree, path).unwrap();
+    let of = |(path, _): &(&str, f64)| Parameter::at(&tree, path).unwrap();
     let mut problem = Problem {
         parameters: truth.iter().map(of).collect(),
         tree,

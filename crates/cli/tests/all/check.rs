@@ -106,7 +106,7 @@ fn check(files: &[&Path]) -> Output {
 }
 
 /// Line and key of each message about `file`.
-fn found(output: &Output, file: &Path) -> Vec<(u64, String)> {
+fn errors_about(output: &Output, file: &Path) -> Vec<(u64, String)> {
     let prefix = format!("error: {}:", file.display());
     let lines = text(&output.stderr).lines();
     let lines = lines.filter_map(|line| line.strip_prefix(&prefix));
@@ -180,11 +180,11 @@ fn mistakes_of_a_sweep_and_of_its_machine_are_told_together_by_every_verb() {
             (7, "cases.0.grid.joints.1.0".to_owned()),
         ];
         let of_machine = [(7, "rod.mass".to_owned()), (16, "cylinder.bak".to_owned())];
-        assert_eq!(found(&output, &sweep), of_sweep, "{verb}");
-        assert_eq!(found(&output, &machine), of_machine, "{verb}");
+        assert_eq!(errors_about(&output, &sweep), of_sweep, "{verb}");
+        assert_eq!(errors_about(&output, &machine), of_machine, "{verb}");
     }
     let output = crosshead(&["simulate"]).arg(&machine).output().unwrap();
-    assert_eq!(found(&output, &machine).len(), 2);
+    assert_eq!(errors_about(&output, &machine).len(), 2);
     assert_eq!(output.status.code(), Some(2));
 }
 
@@ -216,11 +216,11 @@ fn a_bundle_is_held_against_the_headings_of_its_recordings() {
         missing(3, "cylinder_pressure_pa"),
     ];
     let output = check(&[folder.path()]);
-    assert_eq!(found(&output, &out), expected);
+    assert_eq!(errors_about(&output, &out), expected);
     assert!(text(&output.stderr).contains("p [bar]"), "{output:?}");
     std::fs::write(&recording, "x\n").unwrap();
     let expected = [(line("file: run01.csv") as u64, "runs.0.file".to_owned())];
-    assert_eq!(found(&check(&[folder.path()]), &out), expected);
+    assert_eq!(errors_about(&check(&[folder.path()]), &out), expected);
     let real = Path::new(env!("CARGO_MANIFEST_DIR"));
     let real = real.join("../../data/recordings/recip-compressor-pressure");
     assert!(check(&[&real]).status.success());

@@ -110,7 +110,7 @@ const TAKE_LISTS: [&str; 1] = ["bundle"];
 
 impl Mutation {
     /// The line, wrong; none where it cannot be got wrong in this way.
-    fn of(self, line: &str) -> Option<String> {
+    fn apply(self, line: &str) -> Option<String> {
         let (code, comment) = line.split_once(" #").unwrap_or((line, ""));
         if code.trim_start().starts_with('#') || comment.contains('"') {
             return None;
@@ -153,7 +153,7 @@ fn mutated(content: &str, draws: &mut Draws) -> (String, BTreeMap<u64, (Mutation
         let mutation = MUTATIONS[draws.below(MUTATIONS.len())];
         if wrong.len() < wanted
             && !wrong.contains_key(&(at as u64 + 1))
-            && let Some(line) = mutation.of(&lines[at])
+            && let Some(line) = mutation.apply(&lines[at])
         {
             lines[at].clone_from(&line);
             wrong.insert(at as u64 + 1, (mutation, line));

@@ -25,7 +25,7 @@ impl KnownMachine {
     }
 
     /// This machine.
-    pub fn of(machine: &Resolved) -> Self {
+    pub fn from_resolved(machine: &Resolved) -> Self {
         let machine = &machine.machine;
         Self {
             chambers: Arc::new(Chamber::of_machine(machine)),
@@ -41,7 +41,7 @@ impl KnownMachine {
     }
 
     fn new(file: &MachineFile) -> Result<Self, input::Error> {
-        Ok(Self::of(&file.resolve()?))
+        Ok(Self::from_resolved(&file.resolve()?))
     }
 
     /// The chambers whose pressures are among these channels of a file, each under the name of its

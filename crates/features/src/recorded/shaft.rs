@@ -173,7 +173,7 @@ pub(super) fn crank(samples: &[f32], by: &Scaled) -> Option<Result<Crank, signal
     };
     match by.role {
         Role::CrankAngle { top_dead_centre } => {
-            let angles = samples.iter().map(|x| by.to_si.of(f64::from(*x)));
+            let angles = samples.iter().map(|x| by.to_si.apply(f64::from(*x)));
             Some(Ok(from(angles.collect(), top_dead_centre)))
         }
         Role::Tacho { top_dead_centre } => {

@@ -51,7 +51,7 @@ impl Scaled {
                 offset: 0.0,
                 scale: 1.0,
             } => sample,
-            to_si => to_si.of(f64::from(sample)) as f32,
+            to_si => to_si.apply(f64::from(sample)) as f32,
         }
     }
 }
@@ -172,7 +172,7 @@ mod tests {
         }
         let angle = scaled(&channel("crank_angle_deg", Some("deg")), None).unwrap();
         assert!(matches!(angle.role, Role::CrankAngle { .. }));
-        assert!((angle.to_si.of(180.0) - std::f64::consts::PI).abs() < 1e-15);
+        assert!((angle.to_si.apply(180.0) - std::f64::consts::PI).abs() < 1e-15);
         assert!(scaled(&channel("crank_angle", None), None).is_err());
     }
 

@@ -103,7 +103,7 @@ static KEYS: LazyLock<[Vec<String>; 2]> = LazyLock::new(|| {
 pub fn from_bundle(machine: &Value) -> Result<Value, Error> {
     let Value::Object(section) = machine else {
         let expected = "a section with the machine's values";
-        return Err(Error::found("", shown(machine), expected));
+        return Err(Error::unexpected("", shown(machine), expected));
     };
     if machine_file::is_machine_file(section) {
         return of_machine_file(machine);
@@ -113,7 +113,7 @@ pub fn from_bundle(machine: &Value) -> Result<Value, Error> {
     let throws = match &whole.throws {
         None => vec![Throw::only(shared)?],
         Some(throws) if throws.is_empty() => {
-            return Err(Error::found(
+            return Err(Error::unexpected(
                 "throws",
                 "an empty list",
                 "at least one throw",
@@ -197,7 +197,7 @@ impl Throw {
         let at = format!("throws.{index}");
         let Value::Object(own) = own else {
             let expected = "a section with a throw's values";
-            return Err(Error::found(at, shown(own), expected));
+            return Err(Error::unexpected(at, shown(own), expected));
         };
         if !own.contains_key("name") {
             return Err(Error::missing(join(&at, "name")));

@@ -205,7 +205,7 @@ impl ThrowValues {
             Some(stroke) if (stroke.get() / radius.get() - 2.0).abs() > 1e-3 => {
                 let (found, twice) = (stroke.get(), 2.0 * radius.get());
                 let expected = format_args!("{twice}, twice crank_radius_m");
-                Err(Error::found("stroke_m", found, expected))
+                Err(Error::unexpected("stroke_m", found, expected))
             }
             _ => Ok(radius),
         }
@@ -215,7 +215,7 @@ impl ThrowValues {
         match self.direction.map_or(1.0, |sign| sign.get()) {
             1.0 => Ok("forward"),
             -1.0 => Ok("opposed"),
-            other => Err(Error::found("direction", other, "1 or -1")),
+            other => Err(Error::unexpected("direction", other, "1 or -1")),
         }
     }
 
@@ -248,7 +248,7 @@ impl ThrowValues {
             });
         } else if self.crank_end_clearance_m.is_some() {
             let expected = "true, as crank_end_clearance_m is there";
-            return Err(Error::found("double_acting", false, expected));
+            return Err(Error::unexpected("double_acting", false, expected));
         }
         Ok(cylinder)
     }
@@ -312,7 +312,11 @@ impl ThrowValues {
     fn stiffness(&self, end: End) -> Result<Value, Error> {
         if let Some(exponent) = self.contact_exponent.filter(|n| n.get() != 1.5) {
             let expected = "1.5: the stiffness is in N/m^1.5";
-            return Err(Error::found("contact_exponent", exponent.get(), expected));
+            return Err(Error::unexpected(
+                "contact_exponent",
+                exponent.get(),
+                expected,
+            ));
         }
         let materials = (self.youngs_modulus_pa, self.poisson_ratio);
         match (&self.contact_stiffness_nominal_n_m15, materials) {

@@ -338,14 +338,14 @@ fn resolve_stiffness(
             "",
             format_args!("a stiffness in {unit}, because the exponent is {exponent}"),
         )),
-        Or::Section(_) if unit != Dimension::stiffness(1.5) => Err(Error::found(
+        Or::Section(_) if unit != Dimension::stiffness(1.5) => Err(Error::unexpected(
             "",
             format_args!("a stiffness from materials with the exponent {exponent}"),
             format_args!("the exponent 1.5, or a stiffness in {unit}"),
         )),
         Or::Section(materials) => match surfaces {
             Surfaces::Journal { radius, clearance } => Ok(materials.stiffness(radius, clearance)),
-            Surfaces::Flat { .. } => Err(Error::found(
+            Surfaces::Flat { .. } => Err(Error::unexpected(
                 "",
                 "a stiffness from materials",
                 materials::GUIDE_NEEDS,

@@ -219,7 +219,7 @@ fn one(written: &mut Written, place: &str, synonym: &Synonym, key: &str, mistake
         );
         mistakes.note(
             written,
-            Error::found(&from, crate::error::shown(value), expected),
+            Error::unexpected(&from, crate::error::shown(value), expected),
         );
         take(&mut written.tree, &from);
         return;
@@ -278,7 +278,7 @@ fn meant(written: &Written, place: &str, synonym: &Synonym, value: &Value) -> Re
             let unit = unit_of(synonym.name);
             let Some(number) = value.as_f64().filter(|_| value.is_number()) else {
                 let expected = format!("a plain number, in {unit}: the key names its unit");
-                return Err(Error::found("", crate::error::shown(value), expected));
+                return Err(Error::unexpected("", crate::error::shown(value), expected));
             };
             let share = if synonym.meaning == Meaning::HalfSi {
                 0.5

@@ -132,7 +132,7 @@ impl Sections {
             return self.only_throw(top).map(|(t, n)| (vec![t], vec![n]));
         };
         if throws.is_empty() {
-            return Err(Error::found(
+            return Err(Error::unexpected(
                 "throws",
                 "an empty list",
                 "at least one throw",

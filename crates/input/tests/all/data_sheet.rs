@@ -301,7 +301,7 @@ proptest! {
             let _ = input::check_bundle(Path::new("."), &document);
         }
         if let Ok(document) = input::yaml::Document::parse(&damaged(&calibration, at, length, &insert), "c.yaml") {
-            let _ = input::calibration::Calibration::of(&document);
+            let _ = input::calibration::Calibration::from_document(&document);
         }
     }
 }

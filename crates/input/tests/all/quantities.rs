@@ -122,18 +122,18 @@ fn dimensions_tell_quantities_apart() {
 #[test]
 fn values_are_written_short_and_in_si() {
     let text = |si, dimension| Measure { si, dimension }.to_string();
-    assert_eq!(text(0.0001, Dimension::of(1.0, 0.0, 0.0, 0.0)), "0.0001 m");
-    assert_eq!(text(-0.25, Dimension::of(0.0, 0.0, 0.0, 1.0)), "-0.25 rad");
+    assert_eq!(text(0.0001, Dimension::new(1.0, 0.0, 0.0, 0.0)), "0.0001 m");
+    assert_eq!(text(-0.25, Dimension::new(0.0, 0.0, 0.0, 1.0)), "-0.25 rad");
     assert_eq!(text(2.4e10, Dimension::stiffness(1.5)), "2.4e10 N/m^1.5");
     assert_eq!(text(2.4e8, Dimension::stiffness(1.0)), "2.4e8 N/m");
     assert_eq!(text(0.05, Dimension::NONE), "5 %");
     assert_eq!(text(0.005, Dimension::NONE), "0.5 %");
     assert_eq!(
-        text(105e3, Dimension::of(-1.0, 1.0, -2.0, 0.0)),
+        text(105e3, Dimension::new(-1.0, 1.0, -2.0, 0.0)),
         "105000 Pa"
     );
     assert_eq!(
-        text(1234.5, Dimension::of(0.0, 0.0, 2.0, -1.0)),
+        text(1234.5, Dimension::new(0.0, 0.0, 2.0, -1.0)),
         "1234.5 s^2 rad^-1"
     );
 }
@@ -180,7 +180,7 @@ proptest! {
         halves in prop::array::uniform4(-6i8..=6),
     ) {
         let [length, mass, time, angle] = halves.map(|n| f64::from(n) / 2.0);
-        let measure = Measure { si: value, dimension: Dimension::of(length, mass, time, angle) };
+        let measure = Measure { si: value, dimension: Dimension::new(length, mass, time, angle) };
         prop_assert_eq!(parse(&measure.to_string()), Ok(measure));
     }
 

@@ -144,7 +144,8 @@ fn what_is_suggested_is_right_too() {
     let (text, taken) = with_suggestions(&calibration("recordings").unwrap());
     assert!(taken >= 4, "{text}");
     let document = input::yaml::Document::parse(&text, "c.yaml").unwrap();
-    input::calibration::Calibration::of(&document).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    input::calibration::Calibration::from_document(&document)
+        .unwrap_or_else(|e| panic!("{e}\n{text}"));
 }
 
 #[test]

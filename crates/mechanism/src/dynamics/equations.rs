@@ -128,6 +128,7 @@ impl<S: Scalar> Dynamics<S> {
             pair(y, self.layout.main),
             [speed, S::zero()],
             &self.mode.main,
+            #[inline(always)]
             || AtJoint {
                 acting: on_shaft,
                 joint: Joint::Main,
@@ -252,7 +253,10 @@ impl<S: Scalar> Dynamics<S> {
             if give {
                 pin += throw.local(shaft.centre) + turned(at.motion.pin) * shaft.angular;
             }
-            let forces = throw.has_rigid_end().then(|| response.forces(pin));
+            let forces = throw.has_rigid_end().then(
+                #[inline(always)]
+                || response.forces(pin),
+            );
             at.accelerations
                 .find(throw, &at.loads, &at.joints, pin, forces);
             if throw.guide.clear().is_none() {

@@ -162,11 +162,14 @@ impl<S: Scalar> ChamberAt<S> {
     #[inline(always)]
     pub fn since_opening(&self, [suction, discharge]: [S; 2]) -> [S; 2] {
         let ratio = self.discharge / self.suction;
-        let [compression, expansion] = self.exponents.map(|m| S::one() / m);
+        let [compression, expansion] = self.exponents;
         let opened = [
-            (self.dead * (ratio / suction).powf(expansion), self.side),
             (
-                self.filled / (ratio * discharge).powf(compression),
+                self.dead * (ratio / suction).powf(S::one() / expansion),
+                self.side,
+            ),
+            (
+                self.filled / (ratio * discharge).powf(S::one() / compression),
                 -self.side,
             ),
         ];

@@ -71,14 +71,20 @@ impl<S: Scalar> RotatingUnbalance<S> {
 impl<S: Scalar> Acts<S> for RotatingUnbalance<S> {
     #[inline(always)]
     fn frame_acceleration(&self, angle: S, speed: S) -> Option<Vec2<S>> {
-        (self.body == Shaken::Frame).then(|| self.acceleration(angle, speed))
+        match self.body {
+            Shaken::Frame => Some(self.acceleration(angle, speed)),
+            _ => None,
+        }
     }
 
     #[inline(always)]
     fn frame_motion(&self, angle: S, speed: S) -> Option<[Vec2<S>; 2]> {
         let (sine, cosine) = (angle + self.phase).sin_cos();
         let place = Vec2::new(cosine, sine) * -self.eccentricity;
-        (self.body == Shaken::Frame).then(|| [place, turned(place) * speed])
+        match self.body {
+            Shaken::Frame => Some([place, turned(place) * speed]),
+            _ => None,
+        }
     }
 
     #[inline(always)]

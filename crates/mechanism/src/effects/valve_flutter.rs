@@ -17,7 +17,7 @@ use super::acts::{Acts, ChamberAt};
 use super::alternatives::Alternatives;
 use crate::declaration;
 use crate::lift::parameters;
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 use std::f64::consts::TAU;
 
 parameters! {
@@ -66,10 +66,13 @@ impl<S: Scalar> Acts<S> for ValveFlutter<S> {
     fn line_pressures(&self, [suction, discharge]: [S; 2], at: &ChamberAt<S>) -> [S; 2] {
         let opened = [S::one() - self.suction, S::one() + self.discharge];
         let since = at.since_opening(opened);
-        let [intake, outlet] = since.map(|angle| self.swing(angle / at.speed.abs()));
+        let swing = inlined(
+            #[inline(always)]
+            |angle: S| self.swing(angle / at.speed.abs()),
+        );
         [
-            suction * (S::one() - self.suction * intake),
-            discharge * (S::one() + self.discharge * outlet),
+            suction * (S::one() - self.suction * swing(since[0])),
+            discharge * (S::one() + self.discharge * swing(since[1])),
         ]
     }
 }

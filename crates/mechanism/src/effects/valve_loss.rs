@@ -16,7 +16,7 @@
 use super::acts::{Acts, ChamberAt};
 use crate::declaration;
 use crate::lift::parameters;
-use scalar::Scalar;
+use scalar::{Scalar, inlined};
 
 parameters! {
     /// Parameters of the valves, the same in every chamber.
@@ -70,7 +70,10 @@ impl<S: Scalar> Acts<S> for ValveLoss<S> {
             self.discharge * flow + self.discharge_linear * at.growth,
         ];
         let since = at.since_opening([S::one() - self.suction_overshoot, S::one() + self.discharge_overshoot]);
-        let faded = |angle: S| (-(angle.max(S::zero()) / self.overshoot_angle)).exp();
+        let faded = inlined(
+            #[inline(always)]
+            |angle: S| (-(angle.max(S::zero()) / self.overshoot_angle)).exp(),
+        );
         [
             suction * (S::one() - lost[0] - self.suction_overshoot * faded(since[0])),
             discharge * (S::one() - lost[1] + self.discharge_overshoot * faded(since[1])),

@@ -47,7 +47,7 @@ impl<S: Scalar> Constraint<S> {
     /// The matrix that turns the missing relative acceleration into the joint's force, given how
     /// the relative acceleration answers to that force.
     #[inline(always)]
-    fn stiffen(&self, answer: impl FnOnce() -> Mat2<S>) -> Option<Mat2<S>> {
+    fn stiffen(&self, answer: impl Fn() -> Mat2<S>) -> Option<Mat2<S>> {
         match *self {
             Constraint::Open => None,
             Constraint::Pinned => Some(answer().inverse()),

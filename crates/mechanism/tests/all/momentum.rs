@@ -26,7 +26,7 @@ struct Balance {
 }
 
 impl Balance {
-    fn of(machine: &Machine, at: &Evaluation<f64>) -> Self {
+    fn at(machine: &Machine, at: &Evaluation<f64>) -> Self {
         let zero = Vec2::new(0.0, 0.0);
         let mut sum = Balance {
             momentum_rate: zero,
@@ -133,7 +133,7 @@ proptest! {
         let mut y = random_state(&dynamics, &seeds);
         settle(&mut dynamics, t, &mut y);
         let at = dynamics.evaluate(t, &y).clone();
-        let sum = Balance::of(&machine, &at);
+        let sum = Balance::at(&machine, &at);
 
         let linear = (sum.momentum_rate - sum.weight - sum.outside).norm() / sum.size;
         prop_assert!(linear < 1e-13, "linear: {linear:e}");
@@ -200,7 +200,7 @@ fn rod_and_crosshead_in_free_contact_keep_their_momentum() {
         let mut isolated = at.clone();
         isolated.shaft.bearing_force = Vec2::new(0.0, 0.0);
         isolated.shaft.torque = 0.0;
-        let sum = Balance::of(&loose, &isolated);
+        let sum = Balance::at(&loose, &isolated);
         worst = worst
             .max(sum.momentum_rate.norm() / sum.size)
             .max(sum.spin_rate.abs() / sum.size);

@@ -36,11 +36,11 @@ pub(super) fn format_of_file(path: &Path) -> Result<&'static RecordingFormat, Er
         (Some(named), Shown::Format(shown, _)) if named.name == shown.name => Ok(named),
         (_, Shown::Other(what)) => {
             let reason = format!("it looks like {what}: save it as {}", names("or"));
-            Err(Error::damaged(of(named), path, reason))
+            Err(Error::damaged(name_of(named), path, reason))
         }
         (Some(_), Shown::Format(_, what)) => {
             let reason = format!("it looks like {what}");
-            Err(Error::damaged(of(named), path, reason))
+            Err(Error::damaged(name_of(named), path, reason))
         }
         (Some(named), Shown::Binary) if named.signature_at.is_none() => {
             Err(Error::damaged(named.name, path, "it is not text"))
@@ -50,7 +50,7 @@ pub(super) fn format_of_file(path: &Path) -> Result<&'static RecordingFormat, Er
         (None, Shown::Format(format, _)) => Ok(format),
         (None, Shown::Binary) => {
             let reason = format!("it is none of {}", names("and"));
-            Err(Error::damaged(of(named), path, reason))
+            Err(Error::damaged(name_of(named), path, reason))
         }
     }
 }
@@ -62,7 +62,7 @@ fn names(last: &str) -> String {
     format!("{} {last} {end}", others.join(", "))
 }
 
-fn of(named: Option<&RecordingFormat>) -> &'static str {
+fn name_of(named: Option<&RecordingFormat>) -> &'static str {
     named.map_or("a recording", |named| named.name)
 }
 

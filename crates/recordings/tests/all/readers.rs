@@ -254,7 +254,12 @@ impl Dataset {
         }
         let columns = subsets
             .iter()
-            .map(|subset| (subset.name.clone(), ColumnEntry::of(&subset.schema)))
+            .map(|subset| {
+                (
+                    subset.name.clone(),
+                    ColumnEntry::from_schema(&subset.schema),
+                )
+            })
             .collect();
         let card = DatasetCard {
             title: "Compressor: \"small\"".into(),

@@ -25,7 +25,7 @@ pub struct Answer {
 }
 
 impl Served {
-    pub fn of(folder: &Path) -> Self {
+    pub fn start(folder: &Path) -> Self {
         let server = Server::bind(folder, SocketAddr::from((Ipv4Addr::LOCALHOST, 0))).unwrap();
         let address = server.address();
         let stop = Arc::new(AtomicBool::new(false));

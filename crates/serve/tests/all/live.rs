@@ -9,7 +9,7 @@ use std::time::Duration;
 #[test]
 fn what_appears_is_in_the_index() {
     let folder = tempfile::tempdir().unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     assert_eq!(served.json("/index.json")["entries"], json!([]));
     assert!(served.body("/").contains("There is nothing here yet"));
 
@@ -51,7 +51,7 @@ fn what_appears_is_in_the_index() {
 fn a_sweep_under_way_becomes_a_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let (plan, set) = (plan(folder.path()), folder.path().join("set"));
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     begin(&plan, &set);
     make(&set, 0..2, &|| {});
     // Shards of two cases that were finished four seconds apart.

@@ -8,7 +8,7 @@ use report::folder_kind::FolderKind;
 fn a_dataset_has_its_pages_and_figures() {
     let (folder, set) = dataset();
     let before = files(folder.path());
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     for page in ["report.html", "chaos.html", "features.html"] {
         let made = FolderKind::Dataset.render(&set, page).unwrap().unwrap();
         let path = format!("/set/{page}");
@@ -39,7 +39,7 @@ fn a_dataset_has_its_pages_and_figures() {
 #[test]
 fn a_page_has_nothing_that_its_policy_stops() {
     let (folder, _) = dataset();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     for path in [
         "/",
         "/set/report.html",
@@ -75,23 +75,23 @@ fn a_page_has_nothing_that_its_policy_stops() {
 fn a_folder_leads_to_its_page() {
     let (folder, set) = dataset();
     for path in ["/set", "/set/"] {
-        let answer = Served::of(folder.path()).get(path);
+        let answer = Served::start(folder.path()).get(path);
         assert_eq!(answer.status, 307);
         assert_eq!(answer.header("location"), Some("/set/report.html"));
     }
     // A dataset may be what is served.
-    let served = Served::of(&set);
+    let served = Served::start(&set);
     assert!(served.body("/").contains("href=\"/report.html\""));
     assert_eq!(
         served.body("/report.html"),
-        Served::of(folder.path()).body("/set/report.html")
+        Served::start(folder.path()).body("/set/report.html")
     );
 }
 
 #[test]
 fn a_case_is_simulated_again() {
     let (folder, set) = dataset();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let case = served.body("/set/cases/case-000007.html");
     let headings = case
         .split("<h3>")
@@ -129,7 +129,7 @@ fn a_case_is_simulated_again() {
 #[test]
 fn a_case_that_is_none_or_has_failed_says_so() {
     let (folder, _) = dataset();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     for other in ["case-000008", "case-1", "x"] {
         let answer = served.get(&format!("/set/cases/{other}.html"));
         assert_eq!(answer.status, 404);

@@ -12,7 +12,7 @@ fn paths_stay_in_the_folder() {
     let inside = folder.path().join("inside");
     fs::create_dir(&inside).unwrap();
     // What lies beside the folder that is served.
-    let served = Served::of(&inside);
+    let served = Served::start(&inside);
     for path in [
         "/../set/report.html",
         "/%2e%2e/set/report.html",
@@ -44,7 +44,7 @@ fn links_lead_nowhere_outside() {
     symlink(&set, inside.join("link")).unwrap();
     fs::write(folder.path().join("secret"), "secret: 1").unwrap();
     symlink(folder.path().join("secret"), inside.join("fake/wear.json")).unwrap();
-    let served = Served::of(&inside);
+    let served = Served::start(&inside);
     assert_eq!(served.get("/link/report.html").status, 404);
     assert_eq!(served.get("/link").status, 404);
     let fake = served.get("/fake/report.html");
@@ -64,7 +64,7 @@ fn links_lead_nowhere_outside() {
     // A link within the folder is a way as good as another.
     symlink(&set, folder.path().join("way")).unwrap();
     assert!(
-        Served::of(folder.path())
+        Served::start(folder.path())
             .body("/way/features.html")
             .contains("small")
     );
@@ -75,7 +75,7 @@ fn files_that_are_no_pages_are_not_sent() {
     let (folder, set) = dataset();
     fs::write(set.join("report.html"), "written by somebody").unwrap();
     fs::write(set.join("notes.html"), "private").unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     for path in [
         "/set/manifest.json",
         "/set/sweep.yaml",
@@ -98,7 +98,7 @@ fn files_that_are_no_pages_are_not_sent() {
 #[test]
 fn other_names_of_the_server_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let port = served.address.port();
     let ask = |headers: &str| {
         served
@@ -130,7 +130,7 @@ fn other_names_of_the_server_are_refused() {
 fn only_reading_is_allowed() {
     let folder = tempfile::tempdir().unwrap();
     plan(folder.path());
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     for method in ["POST", "PUT", "DELETE", "OPTIONS", "PATCH", "TRACE"] {
         let answer = served.ask(method, "/");
         assert_eq!(
@@ -150,7 +150,7 @@ fn only_reading_is_allowed() {
 #[test]
 fn requests_have_a_bound() {
     let folder = tempfile::tempdir().unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let host = served.address;
     let many: String = (0..100).map(|i| format!("X-{i}: 1\r\n")).collect();
     let long = "a".repeat(40_000);
@@ -178,7 +178,7 @@ fn requests_have_a_bound() {
 #[test]
 fn an_address_is_free_and_of_this_machine() {
     let folder = tempfile::tempdir().unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let taken = Server::bind(folder.path(), served.address).unwrap_err();
     assert!(
         matches!(taken, Error::InUse(address) if address == served.address) && !taken.is_input()

@@ -9,7 +9,7 @@ use std::net::TcpStream;
 #[test]
 fn a_slow_client_does_not_hold_up_others() {
     let folder = tempfile::tempdir().unwrap();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let mut slow: Vec<TcpStream> = (0..20).map(|_| served.connect()).collect();
     for stream in &mut slow {
         stream.write_all(b"GET / HTTP/1.1\r\nHost: ").unwrap();
@@ -30,7 +30,7 @@ fn a_slow_client_does_not_hold_up_others() {
 #[test]
 fn pages_asked_for_at_once_are_the_same() {
     let (folder, _) = dataset();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let pages: Vec<String> = std::thread::scope(|scope| {
         let asking: Vec<_> = (0..6)
             .map(|_| scope.spawn(|| served.body("/set/report.html")))
@@ -43,7 +43,7 @@ fn pages_asked_for_at_once_are_the_same() {
 #[test]
 fn damage_is_said_and_mended() {
     let (folder, set) = dataset();
-    let served = Served::of(folder.path());
+    let served = Served::start(folder.path());
     let whole = served.body("/set/report.html");
     let manifest = fs::read(set.join("manifest.json")).unwrap();
     fs::write(set.join("manifest.json"), "{").unwrap();

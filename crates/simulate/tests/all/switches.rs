@@ -102,7 +102,7 @@ fn disturb(dynamics: &Dynamics<Number>, y: &mut [Number], number: usize, parts: 
 
 /// The state at the end of a look that begins disturbed (by a value or a tangent); `None` where it
 /// meets another number of switches.
-fn look((dynamics, from): &Run, number: usize, parts: Number) -> Option<Vec<Number>> {
+fn state_after_look((dynamics, from): &Run, number: usize, parts: Number) -> Option<Vec<Number>> {
     let mut dynamics = dynamics.clone();
     let mut y = from.state().to_vec();
     disturb(&dynamics, &mut y, number, parts);
@@ -122,9 +122,12 @@ fn error(run: &Run) -> Option<f64> {
     };
     let (mut off, mut longest) = (0.0_f64, 0.0_f64);
     for number in 0..scales.len() {
-        let tangent = look(run, number, Number::variable(0.0, 0))?;
+        let tangent = state_after_look(run, number, Number::variable(0.0, 0))?;
         let difference = |h: f64| -> Option<Vec<f64>> {
-            let (more, less) = (look(run, number, plain(h))?, look(run, number, plain(-h))?);
+            let (more, less) = (
+                state_after_look(run, number, plain(h))?,
+                state_after_look(run, number, plain(-h))?,
+            );
             let pairs = more.iter().zip(&less);
             Some(
                 pairs

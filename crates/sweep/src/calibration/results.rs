@@ -145,7 +145,7 @@ impl Estimate {
     /// number there.
     fn from_results(machine: &Value, place: &str, found: &results::Estimate) -> Option<Self> {
         let value = paths::get(machine, place).ok()??.clone();
-        let dimension = Amount::of(&value)?.dimension;
+        let dimension = Amount::from_value(&value)?.dimension;
         let width = match (found.known(), found.logarithmic) {
             (Known::Within([low, high]), true) => Some(ln(high / low)),
             (Known::Within([low, high]), false) => Some(high - low),

@@ -208,7 +208,7 @@ impl Parts {
                 rows,
             },
             columns: (card.subsets.iter().chain(&card.unsplit))
-                .map(|table| (table.name.clone(), ColumnEntry::of(&table.schema)))
+                .map(|table| (table.name.clone(), ColumnEntry::from_schema(&table.schema)))
                 .collect(),
             files,
             failed,

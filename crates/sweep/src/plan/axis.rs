@@ -57,14 +57,14 @@ impl Frame<'_> {
     ) -> Result<Target, Error> {
         match name {
             "clearance" if sets.is_some() => Ok(Target::Clearance),
-            "clearance" => Err(Error::found(
+            "clearance" => Err(Error::unexpected(
                 key,
                 "a clearance without joints",
                 "an axis joints beside it, e.g. 'joints: [[], [big_end]]'",
             )),
             "load" => Ok(Target::Load),
             // A dataset has one sample rate.
-            "sample_rate" => Err(Error::found(
+            "sample_rate" => Err(Error::unexpected(
                 key,
                 "sample_rate",
                 "one rate for all cases, as run.sample_rate, e.g. 10 kHz",
@@ -124,7 +124,11 @@ impl Frame<'_> {
     pub(super) fn set(&self, value: &Value) -> Result<JointSet, Error> {
         let Value::Array(names) = value else {
             let found = value.to_string();
-            return Err(Error::found("", found, "a list of joints, e.g. [big_end]"));
+            return Err(Error::unexpected(
+                "",
+                found,
+                "a list of joints, e.g. [big_end]",
+            ));
         };
         let known: Vec<&str> = self.joints.iter().map(|j| j.name.as_str()).collect();
         let mut set = names
@@ -144,7 +148,7 @@ impl Frame<'_> {
     /// What is said of `joints` that are no list of sets.
     pub(super) fn not_sets() -> Error {
         let expected = "a list of lists of joints, e.g. [[], [big_end], [big_end, small_end]]";
-        Error::found("", "something else", expected)
+        Error::unexpected("", "something else", expected)
     }
 
     /// What `target` at `value` sets in a case with the oversized joints `set`; `own` are the
@@ -215,7 +219,7 @@ const LOAD: [&str; 2] = ["suction", "discharge"];
 fn check_pressures(load: &Value) -> Result<(), Error> {
     const EXPECTED: &str = "'{suction: 0.1 MPa, discharge: 0.4 MPa}'";
     let Some(section) = load.as_object().filter(|section| !section.is_empty()) else {
-        return Err(Error::found("", load, EXPECTED));
+        return Err(Error::unexpected("", load, EXPECTED));
     };
     match section.keys().find(|key| !LOAD.contains(&key.as_str())) {
         Some(key) => Err(Error::unknown_key(key, &LOAD)),
@@ -261,7 +265,7 @@ pub(super) fn check_clearances<V>(
             let path = &frame.joints[joint].clearance_path;
             let expected = format!("an axis clearance, or {path}, beside it");
             let key = format!("{key}.joints");
-            Err(Error::found(key, "joints without clearance", expected))
+            Err(Error::unexpected(key, "joints without clearance", expected))
         }
     }
 }

@@ -40,11 +40,19 @@ impl Plan {
     fn check_columns(&self, case: &Case) -> Result<(), Error> {
         if channels(&case.resolved, &self.throws) != self.channels() {
             let found = "sensors that measure something else";
-            return Err(Error::found("sensors", found, "those of the machine file"));
+            return Err(Error::unexpected(
+                "sensors",
+                found,
+                "those of the machine file",
+            ));
         }
         if joints(&case.resolved.machine) != self.joints {
             let found = "throws with other names";
-            return Err(Error::found("throws", found, "those of the machine file"));
+            return Err(Error::unexpected(
+                "throws",
+                found,
+                "those of the machine file",
+            ));
         }
         Ok(())
     }

@@ -76,7 +76,7 @@ impl Diagram {
         });
         check_clearances(std::slice::from_ref(&set), &axes, &key, frame).map_err(|_| {
             let expected = "their clearance as path, or beside it, e.g. 'set: {clearance: 0.2 mm}'";
-            Error::found(
+            Error::unexpected(
                 format!("{key}.joints"),
                 "joints without clearance",
                 expected,
@@ -121,7 +121,7 @@ impl Diagram {
 
     /// Value number `value`, SI; in rpm for a speed.
     pub fn value(&self, value: usize) -> f64 {
-        let amount = Amount::of(&self.parameter().values.at(value));
+        let amount = Amount::from_value(&self.parameter().values.at(value));
         match amount {
             Some(amount) if amount.dimension == Some(Speed::DIMENSION) => rpm(amount.si),
             amount => amount.map_or(f64::NAN, |amount| amount.si),
@@ -199,7 +199,11 @@ fn target(
 ) -> Result<Target, Error> {
     if name == "clearance" && sets.is_none() {
         let expected = "joints beside it, e.g. 'joints: [big_end]'";
-        return Err(Error::found(key, "a clearance without joints", expected));
+        return Err(Error::unexpected(
+            key,
+            "a clearance without joints",
+            expected,
+        ));
     }
     frame.target(name, sets, key)
 }
@@ -210,14 +214,14 @@ fn parameter(file: &Bifurcation, set: &JointSet, frame: &Frame) -> Result<Target
     match target(&file.path, sets, "path", frame)? {
         Target::Load => {
             let expected = "the path of one number, e.g. cylinder.discharge";
-            Err(Error::found("path", "load", expected))
+            Err(Error::unexpected("path", "load", expected))
         }
         Target::ClearanceOf { joint } if !set.contains(&joint) => {
             let expected = format!("{} among joints", frame.joints[joint].name);
-            Err(Error::found("path", &file.path, expected))
+            Err(Error::unexpected("path", &file.path, expected))
         }
         Target::Clearance if set.is_empty() => {
-            Err(Error::found("joints", "no joint", "at least one"))
+            Err(Error::unexpected("joints", "no joint", "at least one"))
         }
         target => Ok(target),
     }
@@ -234,7 +238,7 @@ fn values(file: &Bifurcation) -> Result<Levels, Error> {
     }))?;
     if from.si >= to.si {
         let expected = format!("more than {}, where it begins", text(&from));
-        return Err(Error::found("to", text(&to), expected));
+        return Err(Error::unexpected("to", text(&to), expected));
     }
     Ok(levels)
 }

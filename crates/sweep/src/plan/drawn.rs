@@ -82,7 +82,7 @@ impl Drawn {
         let (draws, most) = (block.dimensions(), sobol::DIMENSIONS);
         if block.design == Design::Sobol && draws > most {
             let expected = format!("at most {most} with sobol; latin_hypercube has no limit");
-            return Err(Error::found(
+            return Err(Error::unexpected(
                 key,
                 format_args!("{draws} draws a case"),
                 expected,

@@ -34,7 +34,7 @@ impl Levels {
         let between = match range.spacing {
             Spacing::Linear => Distribution::Uniform { low, high },
             Spacing::Log if low > 0.0 && high > 0.0 => Distribution::LogUniform { low, high },
-            Spacing::Log => return Err(Error::found("spacing", "log", "ends above 0 for it")),
+            Spacing::Log => return Err(Error::unexpected("spacing", "log", "ends above 0 for it")),
         };
         let count = range.count.get();
         Ok(Self::Steps {

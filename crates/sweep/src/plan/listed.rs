@@ -55,7 +55,11 @@ impl Listed {
         });
         if total.is_none() {
             let found = "more than 2^64 combinations";
-            return Err(Error::found(key, found, "fewer values, or a random design"));
+            return Err(Error::unexpected(
+                key,
+                found,
+                "fewer values, or a random design",
+            ));
         }
         let arrangement = Arrangement::Grid { sizes };
         Ok(Self {
@@ -84,7 +88,7 @@ impl Listed {
         let count = several.first().map_or(1, |(_, length)| *length);
         if let Some((axis, length)) = several.iter().find(|(_, length)| *length != count) {
             let expected = format!("{count} values, as {} has, or one", several[0].0);
-            return Err(Error::found(
+            return Err(Error::unexpected(
                 axis,
                 format_args!("{length} values"),
                 expected,

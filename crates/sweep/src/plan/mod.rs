@@ -149,7 +149,7 @@ impl Plan {
         name::check_dataset(&file.name)?;
         if file.calibrate.is_some() {
             let expected = "a machine that is calibrated, as in the sweep.yaml of the dataset";
-            return Err(Error::found(
+            return Err(Error::unexpected(
                 "calibrate",
                 "a calibration to be made",
                 expected,
@@ -261,7 +261,7 @@ impl Plan {
         check_windows(file)?;
         let recordable = plan.settings.check(plan.base.speed);
         recordable.map_err(|Unrecordable { rate, expected }| {
-            Error::found("run.sample_rate", format_args!("{rate} Hz"), expected)
+            Error::unexpected("run.sample_rate", format_args!("{rate} Hz"), expected)
         })?;
         plan.settings_at(plan.base.speed)?;
         for (position, block) in file.cases.iter().enumerate() {
@@ -278,7 +278,7 @@ impl Plan {
             let varies = |path: &&str| plan.varied().any(|(_, other)| other == *path);
             if let Some(path) = together.paths().find(varies) {
                 let key = format!("{key}.parameters.{path}");
-                return Err(Error::found(
+                return Err(Error::unexpected(
                     key,
                     "an unknown that varies already",
                     "it once",
@@ -294,7 +294,7 @@ impl Plan {
             if plan.diagrams.iter().any(|other| other.name == diagram.name) {
                 let key = format!("bifurcations.{position}.name");
                 let expected = "another name than the diagrams before";
-                return Err(Error::found(key, diagram.name, expected));
+                return Err(Error::unexpected(key, diagram.name, expected));
             }
             plan.diagrams.push(diagram);
         }
@@ -304,10 +304,10 @@ impl Plan {
             .try_fold(0_u64, |n, b| n.checked_add(b.count()));
         match cases.and_then(|n| n.checked_mul(plan.repeats)) {
             Some(0) => {
-                let none = Error::found("cases", "no case at all", "at least one");
+                let none = Error::unexpected("cases", "no case at all", "at least one");
                 Err(none.against("/cases.*.*.*.*.*.*.*.*"))
             }
-            None => Err(Error::found("cases", "more than 2^64 cases", "fewer")),
+            None => Err(Error::unexpected("cases", "more than 2^64 cases", "fewer")),
             Some(_) => {
                 plan.effects = plan.find_effects();
                 plan.parameters = plan.find_parameters();

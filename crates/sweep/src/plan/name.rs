@@ -20,7 +20,7 @@ pub(super) fn check_dataset(name: &str) -> Result<(), Error> {
         "the name of a folder: a letter or digit, then letters, digits, '-', '_', '.' and spaces, \
          {LONGEST} characters at most, e.g. bearing-faults"
     );
-    Err(Error::found("name", found, expected))
+    Err(Error::unexpected("name", found, expected))
 }
 
 /// Checks the name of a bifurcation diagram, which is part of file names and of object keys.
@@ -31,5 +31,5 @@ pub(super) fn check_diagram(name: &str) -> Result<(), Error> {
     }
     let found = format_args!("'{name}'");
     let expected = "letters, digits, '-' and '_', e.g. big-end-clearance";
-    Err(Error::found("name", found, expected))
+    Err(Error::unexpected("name", found, expected))
 }

@@ -42,7 +42,7 @@ impl OverAngle {
                 Some(_) => {
                     let found = "a start without samples_per_revolution";
                     let expected = "samples_per_revolution beside it, e.g. 512";
-                    Err(Error::found("run.start", found, expected))
+                    Err(Error::unexpected("run.start", found, expected))
                 }
                 None => Ok(None),
             };
@@ -51,7 +51,7 @@ impl OverAngle {
             let found = format_args!("{} beside sample_rate {} Hz", samples.get(), rate.si());
             let expected =
                 "one of the two; sensors are recorded at the sample_rate of the machine file";
-            let error = Error::found(key, found, expected);
+            let error = Error::unexpected(key, found, expected);
             return Err(error.against("/run.sample_rate"));
         }
         Self::check(file.format)?;
@@ -65,7 +65,7 @@ impl OverAngle {
             let found = "a crank whose speed changes and whose angle no sensor reads";
             let expected =
                 "the sensor crank_angle in the machine file, to resample the channels by";
-            return Err(Error::found(key, found, expected));
+            return Err(Error::unexpected(key, found, expected));
         }
         Ok(Some(Self {
             samples_per_revolution: samples.get(),
@@ -79,7 +79,7 @@ impl OverAngle {
             return Ok(());
         }
         let expected = "format parquet: in MCAP every sample has a time";
-        let error = Error::found("run.samples_per_revolution", "format mcap", expected);
+        let error = Error::unexpected("run.samples_per_revolution", "format mcap", expected);
         Err(error.against("/format"))
     }
 
@@ -98,7 +98,11 @@ impl OverAngle {
                 rpm(speed),
                 signals.sample_rate
             );
-            return Err(Error::found("run.samples_per_revolution", wanted, expected));
+            return Err(Error::unexpected(
+                "run.samples_per_revolution",
+                wanted,
+                expected,
+            ));
         }
         Ok(Settings {
             revolutions: signals.revolutions + MARGIN,

@@ -32,7 +32,7 @@ impl Parameter {
             return effect.value(amplitude, tree).into();
         }
         match paths::get(tree, &self.path).ok().flatten() {
-            Some(value) if self.is_number => Amount::of(value).map(|a| a.si).into(),
+            Some(value) if self.is_number => Amount::from_value(value).map(|a| a.si).into(),
             Some(Value::String(text)) => text.as_str().into(),
             Some(value) => value.to_string().into(),
             None => recordings::Value::Missing,

@@ -77,7 +77,7 @@ impl Sampler {
 
 fn equally_likely(values: &[Value]) -> Result<Sampler, Error> {
     if values.is_empty() {
-        return Err(Error::found("", "an empty list", "at least one value"));
+        return Err(Error::unexpected("", "an empty list", "at least one value"));
     }
     Ok(Sampler::Choice {
         values: values.to_vec(),
@@ -120,7 +120,7 @@ fn of_spread(spread: &Spread, given: Option<&Value>) -> Result<Sampler, Error> {
             if weights.len() != choice.values.len() || weights.iter().sum::<f64>() <= 0.0 {
                 let found = format_args!("{} weights", weights.len());
                 let expected = format_args!("one per value, {}, not all 0", choice.values.len());
-                return Err(Error::found("choice.weights", found, expected));
+                return Err(Error::unexpected("choice.weights", found, expected));
             }
             Ok(Sampler::Choice {
                 values: choice.values.clone(),
@@ -137,8 +137,10 @@ pub(super) fn gaussian(
     given: Option<&Value>,
 ) -> Result<(Gaussian, Scale), Error> {
     let given = || {
-        let amount = given.and_then(Amount::of);
-        amount.ok_or_else(|| Error::found("", "no number in the machine file", "one to vary about"))
+        let amount = given.and_then(Amount::from_value);
+        amount.ok_or_else(|| {
+            Error::unexpected("", "no number in the machine file", "one to vary about")
+        })
     };
     let scale = |name: &str, amounts: &[Amount], range: Option<[Amount; 2]>| {
         same_dimension(amounts).map_err(|e| e.under(name))?;
@@ -156,7 +158,7 @@ pub(super) fn gaussian(
             let mean = normal.mean.map_or_else(given, Ok)?;
             if normal.deviation.si < 0.0 {
                 let found = text(&normal.deviation);
-                return Err(Error::found("normal.deviation", found, "0 or more"));
+                return Err(Error::unexpected("normal.deviation", found, "0 or more"));
             }
             let gaussian = Gaussian::Normal {
                 mean: mean.si,
@@ -191,7 +193,7 @@ fn positive(amount: &Amount) -> Result<(), Error> {
     if amount.si > 0.0 {
         Ok(())
     } else {
-        Err(Error::found("", text(amount), "more than 0"))
+        Err(Error::unexpected("", text(amount), "more than 0"))
     }
 }
 
@@ -201,7 +203,7 @@ pub(super) fn same_dimension(amounts: &[Amount]) -> Result<(), Error> {
         None => Ok(()),
         Some(other) => {
             let found = format_args!("{} beside {}", text(other), text(&amounts[0]));
-            Err(Error::found("", found, "values of one kind"))
+            Err(Error::unexpected("", found, "values of one kind"))
         }
     }
 }

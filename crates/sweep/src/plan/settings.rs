@@ -13,7 +13,7 @@ pub(super) fn settings(run: &Run, sample_rate: Option<f64>) -> Result<Settings, 
     let tolerance = run.tolerance.map_or(default.tolerance, |t| t.get());
     if !(1e-13..=1e-3).contains(&tolerance) {
         let found = format_args!("{tolerance:e}");
-        return Err(Error::found(
+        return Err(Error::unexpected(
             "run.tolerance",
             found,
             "1e-13 to 1e-3, e.g. 1e-9",
@@ -66,7 +66,7 @@ pub(super) fn shares(file: &SweepFile) -> Result<[f64; 3], Error> {
     let total: f64 = shares.iter().sum();
     if (total - 1.0).abs() > 1e-9 {
         let found = format_args!("{} % together", (total * 1e9).round() / 1e7);
-        let error = Error::found("splits", found, "shares that add up to 100 %");
+        let error = Error::unexpected("splits", found, "shares that add up to 100 %");
         return Err(error.against("/splits.*"));
     }
     Ok(shares)
@@ -84,6 +84,6 @@ pub(super) fn check_windows(file: &SweepFile) -> Result<(), Error> {
     }
     let found = format_args!("{count} windows of {each} revolutions");
     let expected = format_args!("no more than run.revolutions, {recorded}");
-    let error = Error::found("windows", found, expected);
+    let error = Error::unexpected("windows", found, expected);
     Err(error.against("/windows.*").against("/run.revolutions"))
 }

@@ -99,7 +99,7 @@ impl Survey {
         Self {
             splits,
             census,
-            severities: Severities::of(faults),
+            severities: Severities::from_cases(faults),
         }
     }
 }

@@ -49,10 +49,15 @@ impl Plan {
 /// The parameter at `path`, by the machine file or else by the first case. It is a number only if
 /// no case has another kind of value there, such as a stiffness by a formula.
 fn parameter(plan: &Plan, path: &str, role: Role) -> Parameter {
-    let value = |tree: &Value| paths::get(tree, path).ok().flatten().and_then(Amount::of);
+    let value = |tree: &Value| {
+        paths::get(tree, path)
+            .ok()
+            .flatten()
+            .and_then(Amount::from_value)
+    };
     let first = || value(&plan.case_before_splits(0).ok()?.tree);
     let amount = value(&plan.tree).or_else(first);
-    let amount = amount.filter(|_| !plan.listed(path).any(|v| Amount::of(&v).is_none()));
+    let amount = amount.filter(|_| !plan.listed(path).any(|v| Amount::from_value(&v).is_none()));
     let unit = amount.and_then(|a| a.dimension).map(|d| d.to_string());
     Parameter::at(path, amount.is_some(), unit, role)
 }

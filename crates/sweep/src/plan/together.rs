@@ -83,7 +83,7 @@ fn check(rows: &[Vec<f64>], count: usize) -> Result<(), Error> {
     let wrong = |key: String, found: String| {
         let expected =
             format_args!("a symmetric matrix with ones on its diagonal, {count} rows of {count}");
-        Err(Error::found(key, found, expected))
+        Err(Error::unexpected(key, found, expected))
     };
     if rows.len() != count {
         return wrong(String::new(), format!("{} rows", rows.len()));
@@ -132,7 +132,7 @@ fn root(rows: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Error> {
 
 fn contradiction() -> Error {
     let expected = "those of some distribution: a matrix without negative eigenvalues";
-    Error::found("", "correlations that contradict each other", expected)
+    Error::unexpected("", "correlations that contradict each other", expected)
 }
 
 #[cfg(test)]

@@ -26,11 +26,15 @@ impl Varied {
         };
         if path == "sample_rate" {
             let expected = "one rate for all cases, as run.sample_rate, e.g. 10 kHz";
-            return Err(Error::found(path, path, expected));
+            return Err(Error::unexpected(path, path, expected));
         }
         let Some(first) = places.first() else {
             let expected = "a path that stands for a value of the machine file";
-            return Err(Error::found(path, "nothing in the machine file", expected));
+            return Err(Error::unexpected(
+                path,
+                "nothing in the machine file",
+                expected,
+            ));
         };
         let given = paths::get(machine, first).map_err(at_path)?;
         Ok(Self {

@@ -84,7 +84,7 @@ impl Dataset {
             sample_rate_hz: self.plan.settings.sample_rate,
             revolutions: self.revolutions_per_window(),
             motion: self.plan.chaos,
-            machine: KnownMachine::of(&self.plan.base),
+            machine: KnownMachine::from_resolved(&self.plan.base),
         })
     }
 }

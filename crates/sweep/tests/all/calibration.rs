@@ -49,7 +49,7 @@ fn write(folder: &Path, text: &str) -> PathBuf {
     path
 }
 
-fn found(sweep: &Sweep) -> Calibration {
+fn calibration_of(sweep: &Sweep) -> Calibration {
     let mut machine = sweep.machine().unwrap().unwrap();
     input::paths::set(&mut machine, STIFFNESS, json!("19.5 GN/m^1.5")).unwrap();
     let estimate = |path: &str, value: Value, bounds: [Value; 2], deviation| Estimate {
@@ -85,14 +85,14 @@ fn found(sweep: &Sweep) -> Calibration {
 
 fn value(case: &Case, path: &str) -> f64 {
     let value = input::paths::get(&case.tree, path).unwrap().unwrap();
-    sweep::sweep_file::Amount::of(value).unwrap().si
+    sweep::sweep_file::Amount::from_value(value).unwrap().si
 }
 
 #[test]
 fn the_resolved_sweep_holds_machine_and_uncertainty_and_no_recordings() {
     let folder = tempfile::tempdir().unwrap();
     let sweep = Sweep::read(&write(folder.path(), SWEEP)).unwrap();
-    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let plan = sweep.calibrated(&calibration_of(&sweep)).unwrap();
     let resolved = plan.sweep();
     assert!(resolved.get("calibrate").is_none());
     let entry = &resolved["vary_together"][0];
@@ -124,7 +124,7 @@ fn uncertainty_is_drawn_only_on_request_and_where_the_sweep_does_not_vary_itself
     let folder = tempfile::tempdir().unwrap();
     let plain = SWEEP.replace(", uncertainty: sampled, undetermined: prior", "");
     let sweep = Sweep::read(&write(folder.path(), &plain)).unwrap();
-    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let plan = sweep.calibrated(&calibration_of(&sweep)).unwrap();
     assert!(plan.sweep().get("vary_together").is_none());
     assert_eq!(value(&plan.case(3).unwrap(), STIFFNESS), 19.5e9);
     assert_eq!(
@@ -134,7 +134,7 @@ fn uncertainty_is_drawn_only_on_request_and_where_the_sweep_does_not_vary_itself
 
     let own = format!("{SWEEP}  {FRICTION}: {{uniform: [0.04, 0.05]}}\n");
     let sweep = Sweep::read(&write(folder.path(), &own)).unwrap();
-    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let plan = sweep.calibrated(&calibration_of(&sweep)).unwrap();
     let entry = &plan.sweep()["vary_together"][0];
     assert_eq!(entry["correlations"], json!([[1.0]]));
     let friction = value(&plan.case(0).unwrap(), FRICTION);
@@ -224,7 +224,7 @@ fn a_calibration_is_kept_beside_the_dataset_until_it_is_replaced() {
     claim.calibration(false).unwrap();
     assert!(calibration.join("calibration.json").exists());
     calibration_at(&calibration, &machine);
-    let plan = sweep.calibrated(&found(&sweep)).unwrap();
+    let plan = sweep.calibrated(&calibration_of(&sweep)).unwrap();
     generate(claim, Existing::Resume, &plan).unwrap();
 
     let manifest = || fs::read_to_string(root.join("manifest.json")).unwrap();
@@ -279,7 +279,7 @@ fn relations_that_the_recordings_do_not_exclude_are_drawn() {
             "speed: {from: 400 rpm, to: 500 rpm, count: 400}",
         );
     let sweep = Sweep::read(&write(folder.path(), &many)).unwrap();
-    let mut calibration = found(&sweep);
+    let mut calibration = calibration_of(&sweep);
     calibration.relations = Relations {
         weights: vec![
             (json!("eq5"), 1.0),
@@ -327,7 +327,7 @@ fn undetermined_exponents_of_a_relation_are_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let text = SWEEP.replace(", undetermined: prior", "");
     let sweep = Sweep::read(&write(folder.path(), &text)).unwrap();
-    let mut calibration = found(&sweep);
+    let mut calibration = calibration_of(&sweep);
     let path = "joints.big_end.contact.relation";
     let exponents = json!({"stiffness": 0.0, "damping": -0.2});
     input::paths::set(&mut calibration.machine, path, exponents).unwrap();

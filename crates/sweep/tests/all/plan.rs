@@ -285,7 +285,7 @@ vary_together:
     .unwrap();
     let value = |case: &Case, path: &str| {
         let value = input::paths::get(&case.tree, path).unwrap().unwrap();
-        sweep::sweep_file::Amount::of(value).unwrap().si
+        sweep::sweep_file::Amount::from_value(value).unwrap().si
     };
     let drawn: Vec<[f64; 3]> = all(&plan, |case| {
         let stiffness = value(&case, "joints.big_end.contact.stiffness");

@@ -168,10 +168,10 @@ impl Mutator {
     /// Puts something that means something in the place of `at`.
     fn replace(&self, bytes: &mut Vec<u8>, at: Range<usize>, random: &mut Random) {
         let piece = match random.below(4) {
-            0 if !self.words.is_empty() => random.of(&self.words),
-            1 => *random.of(NUMBERS),
-            2 => *random.of(MARKS),
-            _ => *random.of(UNITS),
+            0 if !self.words.is_empty() => random.pick(&self.words),
+            1 => *random.pick(NUMBERS),
+            2 => *random.pick(MARKS),
+            _ => *random.pick(UNITS),
         };
         bytes.splice(at, piece.bytes());
     }
@@ -210,7 +210,7 @@ fn number(bytes: &mut Vec<u8>, random: &mut Random) {
     };
     let part = |byte: &u8| byte.is_ascii_digit() || b".e".contains(byte);
     let length = bytes[start..].iter().take_while(|byte| part(byte)).count();
-    bytes.splice(start..start + length, random.of(NUMBERS).bytes());
+    bytes.splice(start..start + length, random.pick(NUMBERS).bytes());
 }
 
 /// The word at a random place.

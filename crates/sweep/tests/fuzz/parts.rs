@@ -91,17 +91,20 @@ impl Parts {
         if parts.is_empty() || others.is_empty() || random.below(8) == 0 {
             return bytes(file, 0..file.len(), random);
         }
-        let part = random.of(&parts).clone();
+        let part = random.pick(&parts).clone();
         match random.below(6) {
             0 => drop(file.splice(part.whole, [])),
             1 => {
-                let at = random.of(&parts).whole.start;
+                let at = random.pick(&parts).whole.start;
                 let copy = file[part.whole].to_vec();
                 drop(file.splice(at..at, copy));
             }
-            2 => drop(file.splice(part.whole, other[random.of(&others).whole.clone()].to_vec())),
+            2 => drop(file.splice(
+                part.whole,
+                other[random.pick(&others).whole.clone()].to_vec(),
+            )),
             3 => match &part.length {
-                Some(field) => field.write(file, *random.of(&NUMBERS)),
+                Some(field) => field.write(file, *random.pick(&NUMBERS)),
                 None => bytes(file, part.body, random),
             },
             _ => {
@@ -131,7 +134,7 @@ fn bytes(file: &mut Vec<u8>, range: Range<usize>, random: &mut Random) {
         }
         2 => {
             let width = 1 << random.below(4);
-            let mut number = random.of(&NUMBERS).to_le_bytes()[..width].to_vec();
+            let mut number = random.pick(&NUMBERS).to_le_bytes()[..width].to_vec();
             if random.below(4) == 0 {
                 number.reverse();
             }

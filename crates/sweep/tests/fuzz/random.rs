@@ -23,7 +23,7 @@ impl Random {
     }
 
     /// One of `items`, of which there is at least one.
-    pub fn of<'a, T>(&mut self, items: &'a [T]) -> &'a T {
+    pub fn pick<'a, T>(&mut self, items: &'a [T]) -> &'a T {
         &items[self.below(items.len())]
     }
 }

@@ -79,13 +79,13 @@ pub fn records(executions: u64) {
         let place = turn % RECORDS.len();
         turn += 1;
         fs::write(root.join(RECORDS[place]), text).unwrap();
-        let answer = look(&root);
+        let answer = open_status_finalize(&root);
         fs::write(root.join(RECORDS[place]), &whole[place]).unwrap();
         answer.map_err(|error| error.to_string())
     });
 }
 
-fn look(root: &Path) -> Result<String, Error> {
+fn open_status_finalize(root: &Path) -> Result<String, Error> {
     let (output, plan) = Output::open_read_only(root)?;
     let status = status(&output, &plan, false)?;
     let manifest = finalize(&output, &plan)?;

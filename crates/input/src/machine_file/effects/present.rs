@@ -47,7 +47,7 @@ impl Effects {
             if let Some(first) = sections[..i].iter().position(alike) {
                 let found = format_args!("the effect of effects.{first} again");
                 let expected = "each effect at most once at its place";
-                let error = Error::found(i.to_string(), found, expected);
+                let error = Error::unexpected(i.to_string(), found, expected);
                 return Err(error.against("/effects.*.*.*"));
             }
         }

@@ -19,7 +19,7 @@ pub(crate) fn resolve(sections: &[SensorSection], machine: &Machine) -> Result<V
         let sensor = section.resolve(machine, &names).map_err(|e| e.under(i))?;
         if let Some(first) = sensors.iter().position(|s| s.measured == sensor.measured) {
             let found = format_args!("what sensors.{first} measures already");
-            let error = Error::found(i.to_string(), found, "each quantity at most once");
+            let error = Error::unexpected(i.to_string(), found, "each quantity at most once");
             return Err(error.against("/sensors.*.*"));
         }
         sensors.push(sensor);
@@ -40,7 +40,7 @@ impl SensorSection {
         }
         if let (Some(bits), None) = (chain.bits, chain.range) {
             let found = format_args!("{bits} without a range");
-            return Err(Error::found("bits", found, "a key range beside it"));
+            return Err(Error::unexpected("bits", found, "a key range beside it"));
         }
         let measured = (entry.measured)(place);
         chain.structure = measured.structure(machine);
