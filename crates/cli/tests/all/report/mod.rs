@@ -68,7 +68,7 @@ struct Dataset {
 }
 
 impl Dataset {
-    fn generate(sweep: &str, format: Format) -> Self {
+    fn with_sweep(sweep: &str, format: Format) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let machine = single_stage();
         let text = format!(
@@ -159,7 +159,7 @@ fn stands_alone(html: &str) {
 
 #[test]
 fn a_grid_is_compared_and_its_claims_are_printed() {
-    let dataset = Dataset::generate(GRID, Format::Parquet);
+    let dataset = Dataset::with_sweep(GRID, Format::Parquet);
     let output = dataset.report(&[]);
     assert!(output.status.success());
     let html = dataset.html();
@@ -192,7 +192,7 @@ fn a_grid_is_compared_and_its_claims_are_printed() {
 /// The levels of the page are those of the samples themselves.
 #[test]
 fn levels_are_those_of_the_recordings() {
-    let dataset = Dataset::generate(GRID, Format::Parquet);
+    let dataset = Dataset::with_sweep(GRID, Format::Parquet);
     let page = dataset.page();
     let Design::Grid(grids) = &page.design else {
         panic!("a grid")
@@ -229,7 +229,7 @@ fn levels_are_those_of_the_recordings() {
 /// The pages beside the first, their figures as files, and the numbers of the dataset on them.
 #[test]
 fn chaos_and_features_have_pages_of_their_own() {
-    let dataset = Dataset::generate(CHAOS, Format::Parquet);
+    let dataset = Dataset::with_sweep(CHAOS, Format::Parquet);
     fs::create_dir(dataset.path().join("figures")).unwrap();
     for name in ["chaos-99-gone.svg", "mine.svg"] {
         fs::write(dataset.path().join("figures").join(name), "").unwrap();
@@ -318,7 +318,7 @@ fn chaos_and_features_have_pages_of_their_own() {
 
 #[test]
 fn random_cases_have_distributions() {
-    let dataset = Dataset::generate(RANDOM, Format::Parquet);
+    let dataset = Dataset::with_sweep(RANDOM, Format::Parquet);
     let out = dataset.folder.path().join("page.html");
     let output = dataset.report(&["--out", out.to_str().unwrap()]);
     assert_eq!(
@@ -352,7 +352,7 @@ fn random_cases_have_distributions() {
 
 #[test]
 fn a_dataset_of_mcap_files_has_a_page_without_recordings() {
-    let dataset = Dataset::generate(GRID, Format::Mcap);
+    let dataset = Dataset::with_sweep(GRID, Format::Mcap);
     assert!(dataset.report(&[]).status.success());
     let html = dataset.html();
     assert!(html.contains("The recordings of this dataset are MCAP files"));
@@ -369,7 +369,7 @@ fn a_dataset_of_mcap_files_has_a_page_without_recordings() {
 
 #[test]
 fn the_page_is_the_same_each_time_and_takes_the_place_of_the_last() {
-    let dataset = Dataset::generate(RANDOM, Format::Parquet);
+    let dataset = Dataset::with_sweep(RANDOM, Format::Parquet);
     fs::write(dataset.path().join("report.html"), "the last").unwrap();
     assert!(dataset.report(&[]).status.success());
     let first = dataset.html();
@@ -381,7 +381,7 @@ fn the_page_is_the_same_each_time_and_takes_the_place_of_the_last() {
 /// A page of cases that are no longer there would mislead.
 #[test]
 fn a_dataset_that_replaces_another_takes_its_page_away() {
-    let dataset = Dataset::generate(GRID, Format::Parquet);
+    let dataset = Dataset::with_sweep(GRID, Format::Parquet);
     assert!(dataset.report(&[]).status.success());
     let mine = dataset.path().join("figures/mine.svg");
     fs::write(&mine, "").unwrap();

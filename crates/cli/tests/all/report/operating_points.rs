@@ -117,7 +117,7 @@ fn a_machine_with_a_frame_sensor_alone_has_figures() {
 #[test]
 fn every_operating_point_is_on_the_page() {
     let sweep = GRID.replace("[500 rpm]", "[500 rpm, 400 rpm]");
-    let dataset = Dataset::generate(&sweep, Format::Parquet);
+    let dataset = Dataset::with_sweep(&sweep, Format::Parquet);
     let output = dataset.report(&[]);
     assert!(output.status.success());
     let html = dataset.html();
@@ -152,7 +152,7 @@ fn settings_of_the_contacts_are_operating_points() {
         - 24 GN/m^1.5
         - {from: eq5, youngs_modulus: 207 GPa, poisson_ratio: 0.3}",
     );
-    let dataset = Dataset::generate(&sweep, Format::Parquet);
+    let dataset = Dataset::with_sweep(&sweep, Format::Parquet);
     let page = dataset.page();
     let Design::Grid(grids) = &page.design else {
         panic!("a grid")

@@ -37,7 +37,7 @@ fn what_is_no_dataset_is_refused() {
 
 #[test]
 fn a_damaged_dataset_is_refused_and_the_last_page_left() {
-    let dataset = Dataset::generate(RANDOM, Format::Parquet);
+    let dataset = Dataset::with_sweep(RANDOM, Format::Parquet);
     fs::write(dataset.path().join("report.html"), "the last").unwrap();
     let signals = dataset.path().join("signals/train-00000-of-00001.parquet");
     let features = dataset.path().join("features/train-00000-of-00001.parquet");
@@ -91,8 +91,8 @@ fn a_damaged_dataset_is_refused_and_the_last_page_left() {
 #[test]
 fn a_missing_column_is_named() {
     let (random, grid) = (
-        Dataset::generate(RANDOM, Format::Parquet),
-        Dataset::generate(GRID, Format::Parquet),
+        Dataset::with_sweep(RANDOM, Format::Parquet),
+        Dataset::with_sweep(GRID, Format::Parquet),
     );
     for file in ["manifest.json", "features/train-00000-of-00001.parquet"] {
         fs::copy(grid.path().join(file), random.path().join(file)).unwrap();
@@ -110,7 +110,7 @@ fn a_missing_column_is_named() {
 
 #[test]
 fn a_page_that_cannot_be_written_is_failed_work() {
-    let dataset = Dataset::generate(RANDOM, Format::Parquet);
+    let dataset = Dataset::with_sweep(RANDOM, Format::Parquet);
     let out = dataset.folder.path().join("gone/page.html");
     let (status, message) = dataset.refusal(&["--out", out.to_str().unwrap()]);
     assert_eq!(status, 1);
