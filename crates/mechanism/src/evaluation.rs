@@ -157,8 +157,8 @@ impl<S: Scalar> ThrowEvaluation<S> {
             Guide::Ideal => joints.guide.release(),
             Guide::Clear(_) if PLAIN => {}
             Guide::Clear(clear) => {
-                joints.guide =
-                    clear.state(guide[0], guide[1], motion.crosshead_rate, &at.mode.guide);
+                let (guide_at, mode) = (&mut joints.guide, &at.mode.guide);
+                clear.find(guide_at, guide[0], guide[1], motion.crosshead_rate, mode);
             }
         }
         let cylinder = CylinderAt {

@@ -140,19 +140,22 @@ impl<S: Scalar> GuideState<S> {
 }
 
 impl<S: Scalar> GuideClearance<S> {
-    /// The guide with the crosshead at `position` and `rate`, running along it at `speed`, m/s.
+    /// Finds the guide with the crosshead at `position` and `rate`, running along it at `speed`, m/s.
     #[inline(never)]
-    pub(crate) fn state(
+    pub(crate) fn find(
         &self,
+        guide: &mut GuideState<S>,
         position: Vec2<S>,
         rate: Vec2<S>,
         speed: S,
         modes: &[ContactMode<S>; 4],
-    ) -> GuideState<S> {
+    ) {
         S::vectorised(
             #[inline(always)]
             || {
-                let mut guide = GuideState::ideal();
+                guide.release();
+                guide.friction_power = S::zero();
+                guide.damping_power = S::zero();
                 guide.position = position;
                 guide.rate = rate;
                 let (sine, cosine) = position.y.sin_cos();
@@ -186,7 +189,6 @@ impl<S: Scalar> GuideClearance<S> {
                         excess: law.excess,
                     };
                 }
-                guide
             },
         )
     }
