@@ -245,6 +245,7 @@ fn conclude(
         joints,
         found,
         discrepancy,
+        complete: whole,
         worn_from,
     };
     let verdicts = (0..joints.len())

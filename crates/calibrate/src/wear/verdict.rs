@@ -28,6 +28,8 @@ pub(super) struct Grounds<'a> {
     pub found: &'a Found,
     /// What is known where that model is wrong.
     pub discrepancy: Option<&'a Discrepancy>,
+    /// Whether the search came to its end.
+    pub complete: bool,
     /// A joint counts as worn from this many times its normal clearance.
     pub worn_from: f64,
 }
@@ -38,21 +40,33 @@ impl Grounds<'_> {
     /// # Errors
     /// A machine that cannot be simulated.
     pub fn verdict(&self, index: usize, together: &[Together]) -> Result<JointWear, Error> {
-        match self.found.model.clear.iter().position(|i| *i == index) {
+        let place = self.found.model.clear.iter().position(|i| *i == index);
+        if let Some(doubt) = self.doubt() {
+            let value = place.map(|place| self.found.fit.estimates[place].value);
+            return Ok(self.wear(index, Verdict::Unclear, doubt.to_owned(), value, None));
+        }
+        match place {
             Some(place) => Ok(self.of_clear(index, place, together)),
             None => self.of_ideal(index),
+        }
+    }
+
+    /// Why the model says nothing of any joint, one that is ideal in it included; none where it explains the recordings.
+    fn doubt(&self) -> Option<&'static str> {
+        let fit = &self.found.fit;
+        match self.discrepancy {
+            Some(_) => None,
+            None if !self.complete => Some("the search was stopped: this is the best so far"),
+            None if !fit.model_is_adequate() => Some(
+                "the best fit is far from the recordings, and may be another minimum than that of the machine",
+            ),
+            None => None,
         }
     }
 
     fn of_clear(&self, index: usize, place: usize, together: &[Together]) -> JointWear {
         let estimate = &self.found.fit.estimates[place];
         let limit = self.limit(index);
-        // What is far from the recordings does not say what they show.
-        let explains = self.found.fit.model_is_adequate() || self.discrepancy.is_some();
-        if estimate.interval.is_none() && explains {
-            let reason = self.not_identifiable(index, together);
-            return self.wear(index, Verdict::NotIdentifiable, reason, None, None);
-        }
         let (value, interval) = match self.discrepancy {
             Some(discrepancy) => {
                 let value = estimate.parameter.value(discrepancy.x[place]);
@@ -61,7 +75,7 @@ impl Grounds<'_> {
                 let of = |x| estimate.parameter.value(x).clamp(least, greatest);
                 (value, ends.map(|ends| ends.map(of)))
             }
-            None if self.found.fit.model_is_adequate() && self.found.fit.complete => {
+            None => {
                 // What is left counts as noise.
                 let by = self.found.misfit().max(1.0);
                 let [least, greatest] = estimate.parameter.bounds;
@@ -72,7 +86,6 @@ impl Grounds<'_> {
                 let interval = estimate.interval.map(|ends| ends.map(wider));
                 (estimate.value, interval)
             }
-            None => (estimate.value, None),
         };
         let (verdict, reason) = match interval {
             Some([low, _]) if low > limit => (
@@ -87,23 +100,24 @@ impl Grounds<'_> {
                 Verdict::Unclear,
                 "the interval includes the clearance from which the joint counts as worn",
             ),
-            None if !self.found.fit.complete => (
-                Verdict::Unclear,
-                "the search was stopped: this is the best so far",
-            ),
-            None => (
-                Verdict::Unclear,
-                "the best fit is far from the recordings, and may be another minimum than that of the machine",
-            ),
+            None => {
+                let reason = self.not_identifiable(index, together);
+                return self.wear(index, Verdict::NotIdentifiable, reason, None, None);
+            }
         };
         self.wear(index, verdict, reason.to_owned(), Some(value), interval)
     }
 
     /// A joint that is ideal in the machine file and in the model: healthy if the recordings would show it worn.
     fn of_ideal(&self, index: usize) -> Result<JointWear, Error> {
-        let deviance = |model: &Model, x: &[f64]| Likelihood::new(&model.problem).mean_deviance(x);
+        let timing = self.discrepancy.map_or(0.0, |d| d.timing);
+        let deviance =
+            |model: &Model, x: &[f64]| Likelihood::coarse(&model.problem, timing).mean_deviance(x);
         let best = &self.found.model;
-        let x = self.found.fit.coordinates();
+        let x = match self.discrepancy {
+            Some(discrepancy) => discrepancy.x.clone(),
+            None => self.found.fit.coordinates(),
+        };
         let clear = best.clear.iter().copied().chain([index]).collect();
         let worn = Model::new(self.healthy, self.joints, clear, best.contacts)?;
         let mut at = worn.coordinates_of(best, &x);
