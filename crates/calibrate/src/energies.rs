@@ -223,11 +223,20 @@ impl<'a> Energies<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn squares(&self, x: &[f64]) -> Result<f64, Error> {
-        let all = self.residuals(x);
-        match all.contains(&FAILED) {
+        self.squares_of_all(&[x.to_vec()]).swap_remove(0)
+    }
+
+    /// The same at each of several points, which are simulated side by side.
+    ///
+    /// # Errors
+    /// Each its own, as [`squares`](Self::squares).
+    pub(crate) fn squares_of_all(&self, all: &[Vec<f64>]) -> Vec<Result<f64, Error>> {
+        let squares = |residuals: Vec<f64>| match residuals.contains(&FAILED) {
             true => Err(Error::Nothing("a run cannot be simulated")),
-            false => Ok(all.iter().map(|r| r * r).sum()),
-        }
+            false => Ok(residuals.iter().map(|r| r * r).sum()),
+        };
+        let residuals = self.residuals_of_all(all).into_iter();
+        residuals.map(squares).collect()
     }
 
     /// The residuals of each of these runs at these coordinates.

@@ -5,11 +5,13 @@ use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
 use crate::prediction::{Accuracy, Prediction, Wanted, predictions, to_a_thread, with_derivatives};
 use crate::problem::Problem;
+use crate::region::bits;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use signal::Complex64;
 use signal::order_lines::OrderLines;
+use std::collections::HashMap;
 
 /// A misfit below this, in standard deviations of the noise, is noise: no better fit is looked for.
 pub const NOISE: f64 = 1.15;
@@ -100,24 +102,44 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn likeliest(&self, x: &[f64], timings: &[f64]) -> Result<(f64, f64), Error> {
+        self.likeliest_of_all(&[x.to_vec()], timings).swap_remove(0)
+    }
+
+    /// The same at each of several points, which are simulated side by side.
+    ///
+    /// # Errors
+    /// Each its own, as [`likeliest`](Self::likeliest).
+    pub(crate) fn likeliest_of_all(
+        &self,
+        all: &[Vec<f64>],
+        timings: &[f64],
+    ) -> Vec<Result<(f64, f64), Error>> {
         let what = ("likeliest", self.timing, self.parts.is_some(), timings);
-        let mut failure = None;
-        let best = self.problem.once(&what, x, || match self.predictions(x) {
-            Ok(predictions) => {
+        let mut failures = HashMap::new();
+        let best = self.problem.once_each(&what, all, |unknown| {
+            let of_point = |(x, predictions): (&Vec<f64>, Result<Vec<Prediction>, Error>)| {
+                let predictions = match predictions {
+                    Ok(predictions) => predictions,
+                    Err(error) => {
+                        failures.insert(bits(x), error);
+                        return Vec::new();
+                    }
+                };
                 let left = |timing: &f64| self.deviance_of(&predictions, *timing);
-                let all = timings.iter().map(|timing| [*timing, left(timing)]);
-                let best = all.min_by(|a, b| a[1].total_cmp(&b[1]));
+                let each = timings.iter().map(|timing| [*timing, left(timing)]);
+                let best = each.min_by(|a, b| a[1].total_cmp(&b[1]));
                 best.map_or_else(Vec::new, Vec::from)
-            }
-            Err(error) => {
-                failure = Some(error);
-                Vec::new()
-            }
+            };
+            let predictions = self.predictions_of_all(unknown);
+            unknown.iter().zip(predictions).map(of_point).collect()
         });
-        match best[..] {
+        let of_point = |(best, x): (Vec<f64>, &Vec<f64>)| match best[..] {
             [timing, left] => Ok((timing, left)),
-            _ => Err(failure.unwrap_or(Error::Nothing("a run cannot be simulated"))),
-        }
+            _ => Err(failures
+                .remove(&bits(x))
+                .unwrap_or(Error::Nothing("a run cannot be simulated"))),
+        };
+        best.into_iter().zip(all).map(of_point).collect()
     }
 
     fn deviance_of(&self, predictions: &[Prediction], timing: f64) -> f64 {
@@ -170,8 +192,24 @@ impl<'a> Likelihood<'a> {
     /// # Errors
     /// The first run that cannot be simulated.
     pub fn predictions(&self, x: &[f64]) -> Result<Vec<Prediction>, Error> {
-        let wanted: Vec<Wanted> = self.problem.runs.iter().map(|run| (run, x)).collect();
-        self.predicted(&wanted).into_iter().collect()
+        self.predictions_of_all(&[x.to_vec()]).swap_remove(0)
+    }
+
+    /// The predictions of all runs at each of several points.
+    fn predictions_of_all(&self, all: &[Vec<f64>]) -> Vec<Result<Vec<Prediction>, Error>> {
+        let mut predictions = self.predicted(&self.wanted(all)).into_iter();
+        let of_point = |_| {
+            let of_runs = predictions.by_ref().take(self.problem.runs.len());
+            let of_runs: Vec<Result<Prediction, Error>> = of_runs.collect();
+            of_runs.into_iter().collect()
+        };
+        all.iter().map(of_point).collect()
+    }
+
+    /// All runs at each of these points.
+    fn wanted<'w>(&'w self, all: &'w [Vec<f64>]) -> Vec<Wanted<'w>> {
+        let of_point = |x: &'w Vec<f64>| self.problem.runs.iter().map(move |run| (run, &x[..]));
+        all.iter().flat_map(of_point).collect()
     }
 
     /// The residuals of each run.
@@ -207,11 +245,7 @@ impl LeastSquares for Likelihood<'_> {
     fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let what = ("residuals", self.timing, self.parts.is_some());
         self.problem.once_each(&what, all, |unknown| {
-            let runs = &self.problem.runs;
-            let wanted = unknown
-                .iter()
-                .flat_map(|x| runs.iter().map(move |run| (run, &x[..])));
-            let wanted: Vec<Wanted> = wanted.collect();
+            let wanted = self.wanted(unknown);
             let of_run = |((run, _), prediction): (&Wanted, _)| match prediction {
                 Ok(prediction) => residuals(run, &prediction, self.timing),
                 Err(_) => vec![FAILED; residual_count(run)],
@@ -219,7 +253,7 @@ impl LeastSquares for Likelihood<'_> {
             let found = self.predicted(&wanted);
             let parts: Vec<Vec<f64>> = wanted.iter().zip(found).map(of_run).collect();
             parts
-                .chunks(runs.len().max(1))
+                .chunks(self.problem.runs.len().max(1))
                 .map(<[Vec<f64>]>::concat)
                 .collect()
         })

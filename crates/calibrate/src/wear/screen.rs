@@ -11,11 +11,9 @@ use super::effort::Effort;
 use super::joint::Joint;
 use super::model::Model;
 use crate::energies::Energies;
-use crate::error::Error;
 use crate::likelihood::Likelihood;
 use crate::observation::Observation;
 use crate::problem::{Problem, throw};
-use rayon::prelude::*;
 
 /// Step of the logarithm of a clearance. The time in which a gap is crossed goes with its root and changes by a tenth.
 pub(super) const STEP: f64 = 0.2;
@@ -29,7 +27,9 @@ const TOGETHER: usize = 2;
 const BEAM: usize = 4;
 /// Runs that are looked at.
 const RUNS: usize = 3;
-/// Points that are looked at, or descended from, before the search may be stopped.
+/// Points of a grid that are looked at side by side, before the search may be stopped.
+const GRID_AT_ONCE: usize = 64;
+/// Descents before the search may be stopped.
 pub(super) const AT_ONCE: usize = 16;
 
 /// A point with what is left there, and the groups of joints that have moved in it.
@@ -52,7 +52,7 @@ pub(super) fn screened(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let left = |x: &[f64]| energies.squares(x);
+    let left = |points: &[Vec<f64>]| energies_left(&energies, points);
     let mut all = looked_at(left, vec![x.to_vec()], &[], effort);
     let mut beam = all.clone();
     let groups = groups(model);
@@ -89,7 +89,7 @@ pub(super) fn with_one_more(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let energies = Energies::new(&few);
-    let left = |x: &[f64]| energies.squares(x);
+    let left = |points: &[Vec<f64>]| energies_left(&energies, points);
     let along = starts
         .iter()
         .flat_map(|x| product(model, joints, &[place], STEP, x));
@@ -117,7 +117,11 @@ pub(super) fn by_lines(
 ) -> Vec<Point> {
     let few = few(&model.problem);
     let lines = Likelihood::new(&few);
-    let left = |x: &[f64]| Ok(lines.likeliest(x, &TIMINGS)?.1);
+    let left = |points: &[Vec<f64>]| {
+        let all = lines.likeliest_of_all(points, &TIMINGS).into_iter();
+        all.map(|found| found.map_or(f64::INFINITY, |(_, left)| left))
+            .collect()
+    };
     let along = |x: &Vec<f64>| product(model, joints, &[place], STEP_OF_LINES, x);
     looked_at(left, starts.iter().flat_map(along).collect(), &[], effort)
 }
@@ -173,25 +177,29 @@ fn product(
     points
 }
 
-/// These points with what is `left` there; those before a stop.
+fn energies_left(energies: &Energies, points: &[Vec<f64>]) -> Vec<f64> {
+    let all = energies.squares_of_all(points).into_iter();
+    all.map(|left| left.unwrap_or(f64::INFINITY)).collect()
+}
+
+/// These points with what is `left` there, infinite where a run cannot be simulated; those before a stop.
 fn looked_at(
-    left: impl Fn(&[f64]) -> Result<f64, Error> + Sync,
+    left: impl Fn(&[Vec<f64>]) -> Vec<f64>,
     points: Vec<Vec<f64>>,
     moved: &[usize],
     effort: &mut Effort,
 ) -> Vec<Point> {
     let mut all = Vec::new();
-    for part in points.chunks(AT_ONCE) {
+    for part in points.chunks(GRID_AT_ONCE) {
         if effort.stopped {
             break;
         }
-        let part = part.par_iter().map(|x| Point {
+        all.extend(part.iter().zip(left(part)).map(|(x, left)| Point {
             x: x.clone(),
-            left: left(x).unwrap_or(f64::INFINITY),
+            left,
             moved: moved.to_vec(),
-        });
-        all.extend(part.collect::<Vec<_>>());
-        effort.evaluated(AT_ONCE as u64);
+        }));
+        effort.evaluated(part.len() as u64);
     }
     all
 }

@@ -121,7 +121,7 @@ fn the_number_of_shards_can_be_chosen() {
 
 #[test]
 fn readers_count_right_beside_what_a_crash_left() {
-    let (folder, sweep) = begin(SLOW);
+    let (folder, sweep) = begin(&SLOW.replace("transient: 30", "transient: 2"));
     let out = folder.path().join("out");
     let place = out.to_str().unwrap();
     run(crosshead(&["sweep", "plan"])

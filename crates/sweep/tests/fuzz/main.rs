@@ -92,7 +92,7 @@ fn bundles() {
         "bundle",
         seeds("bundle"),
         Mutator::new(words),
-        executions(500, 200),
+        executions(200, 200),
         text(readers::bundle),
     );
 }
