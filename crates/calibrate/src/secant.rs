@@ -6,6 +6,7 @@
 
 use crate::optimiser::{LeastSquares, Progress, Watch, derivatives};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Damping to begin with, over the greatest element of the normal matrix.
 const DAMPING: f64 = 1e-3;
@@ -24,50 +25,177 @@ pub fn secant(
     watch: Watch,
 ) -> Progress {
     let bounds = problem.bounds();
-    let each = derivatives(start.len());
-    let mut descent = Descent::at(problem, start);
-    let mut evaluations = 1 + each;
-    let mut damping = DAMPING * descent.normal().diagonal().max();
-    let (mut fresh, mut failures, mut growth) = (true, 0, 2.0);
+    let limits = Limits { change, most };
+    let residuals = problem.residuals(start);
+    let mut walk = Walk::new(start, residuals, problem.jacobian(start), limits);
     loop {
-        let progress = descent.progress(problem.count(), evaluations);
-        let stopped = watch(&progress).is_break();
-        if stopped || evaluations >= most || !damping.is_finite() || damping > NO_STEP {
+        let progress = walk.progress(problem.count());
+        if watch(&progress).is_break() {
             return progress;
         }
-        let Some((x, predicted)) = descent.step(damping, &bounds) else {
+        let Some(step) = walk.step(&bounds) else {
             return progress;
         };
-        let residuals = DVector::from_vec(problem.residuals(x.as_slice()));
-        evaluations += 1;
-        let cost = descent.cost();
+        let residuals = problem.residuals(step.x.as_slice());
+        match walk.take(step, residuals) {
+            Next::Step => {}
+            Next::Derivatives => walk.renew(problem.jacobian(walk.descent.x.as_slice())),
+            Next::End => return walk.progress(problem.count()),
+        }
+    }
+}
+
+/// The same from each of several starts. What they ask for at the same time is evaluated together; none depends on another.
+pub(crate) fn secants(
+    problem: &(impl LeastSquares + Sync),
+    starts: &[Vec<f64>],
+    change: f64,
+    most: u64,
+) -> Vec<Progress> {
+    let bounds = problem.bounds();
+    let limits = Limits { change, most };
+    let begun = starts.iter().zip(problem.residuals_of_all(starts));
+    let begun: Vec<(&Vec<f64>, Vec<f64>)> = begun.collect();
+    let new = |(start, residuals): (&Vec<f64>, Vec<f64>)| {
+        Walk::new(start, residuals, problem.jacobian(start), limits)
+    };
+    let mut walks: Vec<Walk> = begun.into_par_iter().map(new).collect();
+    let mut going: Vec<&mut Walk> = walks.iter_mut().collect();
+    while !going.is_empty() {
+        let steps = going.into_iter().filter_map(|walk| {
+            let step = walk.step(&bounds)?;
+            Some((walk, step))
+        });
+        let steps: Vec<(&mut Walk, Step)> = steps.collect();
+        let points = steps.iter().map(|(_, step)| step.x.as_slice().to_vec());
+        let residuals = problem.residuals_of_all(&points.collect::<Vec<_>>());
+        let taken = steps.into_par_iter().zip(residuals);
+        let next = taken.filter_map(|((walk, step), residuals)| {
+            match walk.take(step, residuals) {
+                Next::Step => {}
+                Next::Derivatives => walk.renew(problem.jacobian(walk.descent.x.as_slice())),
+                Next::End => return None,
+            }
+            Some(walk)
+        });
+        going = next.collect();
+    }
+    let count = problem.count();
+    walks.iter().map(|walk| walk.progress(count)).collect()
+}
+
+/// Where a descent ends.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Relative change of the sum of squares.
+    change: f64,
+    /// Evaluations.
+    most: u64,
+}
+
+/// A descent under way.
+struct Walk {
+    descent: Descent,
+    limits: Limits,
+    evaluations: u64,
+    damping: f64,
+    /// Factor of the damping after the next step that fails.
+    growth: f64,
+    /// Whether the derivatives are those of the point itself.
+    fresh: bool,
+    /// Steps in a row that have failed.
+    failures: usize,
+}
+
+/// A step that is to be evaluated.
+struct Step {
+    x: DVector<f64>,
+    /// By how much it should lower the cost.
+    predicted: f64,
+}
+
+/// What a descent needs next.
+enum Next {
+    Step,
+    Derivatives,
+    End,
+}
+
+impl Walk {
+    fn new(start: &[f64], residuals: Vec<f64>, jacobian: DMatrix<f64>, limits: Limits) -> Self {
+        let descent = Descent {
+            x: DVector::from_column_slice(start),
+            residuals: DVector::from_vec(residuals),
+            jacobian,
+        };
+        Self {
+            damping: DAMPING * descent.normal().diagonal().max(),
+            descent,
+            limits,
+            evaluations: 1 + derivatives(start.len()),
+            growth: 2.0,
+            fresh: true,
+            failures: 0,
+        }
+    }
+
+    fn progress(&self, count: usize) -> Progress {
+        Progress {
+            x: self.descent.x.as_slice().to_vec(),
+            cost: self.descent.cost(),
+            count,
+            evaluations: self.evaluations,
+        }
+    }
+
+    /// The next step; none where the descent ends.
+    fn step(&self, bounds: &[[f64; 2]]) -> Option<Step> {
+        let is_spent = self.evaluations >= self.limits.most;
+        if is_spent || !self.damping.is_finite() || self.damping > NO_STEP {
+            return None;
+        }
+        let (x, predicted) = self.descent.step(self.damping, bounds)?;
+        Some(Step { x, predicted })
+    }
+
+    /// Takes a step, where it leads down, and learns from it.
+    fn take(&mut self, step: Step, residuals: Vec<f64>) -> Next {
+        let residuals = DVector::from_vec(residuals);
+        self.evaluations += 1;
+        let cost = self.descent.cost();
         let gained = cost - 0.5 * residuals.norm_squared();
-        descent.correct(&x, &residuals);
-        let was_fresh = fresh;
+        self.descent.correct(&step.x, &residuals);
+        let was_fresh = self.fresh;
         let mut ends = false;
         if gained > 0.0 {
-            ends = gained < change * cost;
-            (descent.x, descent.residuals) = (x, residuals);
-            let quality = gained / predicted.max(f64::MIN_POSITIVE);
-            damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
-            (growth, failures, fresh) = (2.0, 0, false);
+            ends = gained < self.limits.change * cost;
+            (self.descent.x, self.descent.residuals) = (step.x, residuals);
+            let quality = gained / step.predicted.max(f64::MIN_POSITIVE);
+            self.damping *= (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
+            (self.growth, self.failures, self.fresh) = (2.0, 0, false);
         } else {
-            damping *= growth;
-            growth *= 2.0;
-            failures += 1;
+            self.damping *= self.growth;
+            self.growth *= 2.0;
+            self.failures += 1;
         }
         // A step that changes little ends the descent where its derivatives were no corrected ones.
         if ends && was_fresh {
-            return descent.progress(problem.count(), evaluations);
+            return Next::End;
         }
-        if (ends || failures >= FAILURES) && !fresh {
-            if evaluations + each >= most {
-                return descent.progress(problem.count(), evaluations);
-            }
-            descent.jacobian = problem.jacobian(descent.x.as_slice());
-            evaluations += each;
-            (fresh, failures, growth) = (true, 0, 2.0);
+        if !(ends || self.failures >= FAILURES) || self.fresh {
+            return Next::Step;
         }
+        match self.evaluations + derivatives(self.descent.x.len()) >= self.limits.most {
+            true => Next::End,
+            false => Next::Derivatives,
+        }
+    }
+
+    /// Goes on with these derivatives of the point itself.
+    fn renew(&mut self, jacobian: DMatrix<f64>) {
+        self.descent.jacobian = jacobian;
+        self.evaluations += derivatives(self.descent.x.len());
+        (self.fresh, self.failures, self.growth) = (true, 0, 2.0);
     }
 }
 
@@ -80,26 +208,9 @@ struct Descent {
 }
 
 impl Descent {
-    fn at(problem: &impl LeastSquares, x: &[f64]) -> Self {
-        Self {
-            x: DVector::from_column_slice(x),
-            residuals: DVector::from_vec(problem.residuals(x)),
-            jacobian: problem.jacobian(x),
-        }
-    }
-
     /// Half the sum of squares.
     fn cost(&self) -> f64 {
         0.5 * self.residuals.norm_squared()
-    }
-
-    fn progress(&self, count: usize, evaluations: u64) -> Progress {
-        Progress {
-            x: self.x.as_slice().to_vec(),
-            cost: self.cost(),
-            count,
-            evaluations,
-        }
     }
 
     fn normal(&self) -> DMatrix<f64> {
@@ -155,6 +266,17 @@ mod tests {
         let go = &mut |_: &Progress| ControlFlow::Continue(());
         let found = secant(&Valley, &[-1.2, 1.0], 1e-9, 500, go);
         assert!(found.cost < 1e-8, "{found:?}");
+    }
+
+    #[test]
+    fn several_descents_lead_where_each_leads_by_itself() {
+        let starts = [vec![-1.2, 1.0], vec![0.3, -0.7], vec![2.0, 2.0]];
+        for most in [5, 30, 500] {
+            let go = &mut |_: &Progress| ControlFlow::Continue(());
+            let mut alone = |start: &Vec<f64>| secant(&Valley, start, 1e-9, most, go);
+            let alone: Vec<Progress> = starts.iter().map(&mut alone).collect();
+            assert_eq!(secants(&Valley, &starts, 1e-9, most), alone);
+        }
     }
 
     #[test]

@@ -17,9 +17,8 @@ use crate::prior::{self, Prior, WithPriors};
 use crate::problem::Problem;
 use crate::region::KEPT;
 use crate::search::CHANGE;
-use crate::secant::secant;
+use crate::secant::secants;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
 
 /// What a stage compares, and the evaluations that it may take.
 #[derive(Clone, Copy, Debug)]
@@ -76,9 +75,8 @@ pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -
             if effort.stopped {
                 break;
             }
-            let each = together.par_iter_mut();
-            let spent = each.map(|led| descend(&part, &model.priors, led, stage));
-            effort.evaluated(spent.sum());
+            let spent = descend(&part, &model.priors, together, stage);
+            effort.evaluated(spent);
         }
         led.sort_by(|a, b| a.left.total_cmp(&b.left));
         led.truncate(led.len().div_ceil(KEPT).max(FOLLOWED));
@@ -88,19 +86,13 @@ pub(super) fn roughly(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -
 
 /// The best coordinates that descents from these ends lead to with all runs.
 pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Result<Vec<f64>, Error> {
-    let mut ends: Vec<Led> = Vec::new();
-    for mut led in led.into_iter().take(FOLLOWED) {
-        for stage in FINE {
-            if effort.stopped {
-                break;
-            }
-            let spent = descend(&model.problem, &model.priors, &mut led, stage);
-            effort.evaluated(spent);
-        }
-        ends.push(led);
+    let mut ends: Vec<Led> = led.into_iter().take(FOLLOWED).collect();
+    for stage in FINE {
         if effort.stopped {
             break;
         }
+        let spent = descend(&model.problem, &model.priors, &mut ends, stage);
+        effort.evaluated(spent);
     }
     ends.sort_by(|a, b| a.left.total_cmp(&b.left));
     let best = ends.into_iter().next();
@@ -108,44 +100,52 @@ pub(super) fn finely(model: &Model, led: Vec<Led>, effort: &mut Effort) -> Resul
         .ok_or(Error::Nothing("no descent has led anywhere"))
 }
 
-/// One stage of a descent, and the evaluations that it has taken. Where the machine cannot be simulated, nothing is moved.
-fn descend(problem: &Problem, priors: &[Prior], led: &mut Led, stage: Stage) -> u64 {
-    let (measured, spent) = match stage {
+/// One stage of these descents, and the evaluations that they have taken. Where the machine cannot be simulated, nothing is moved.
+fn descend(problem: &Problem, priors: &[Prior], all: &mut [Led], stage: Stage) -> u64 {
+    let starts: Vec<Vec<f64>> = all.iter().map(|led| led.x.clone()).collect();
+    let (ends, spent, left) = match stage {
         Stage::Energies(most) => {
             let energies = Energies::new(problem);
-            let (x, spent) = secants(&energies, priors, &led.x, most);
-            (energies.squares(&x).map(|left| (x, left)), spent)
+            let (ends, spent) = descents(&energies, priors, &starts, most);
+            let left = energies.squares_of_all(&ends).into_iter();
+            let left: Vec<Option<f64>> = left.map(Result::ok).collect();
+            (ends, spent, left)
         }
         Stage::Lines(timing, most) => {
             let lines = Likelihood::in_parts(problem, timing);
-            let (x, spent) = secants(&lines, priors, &led.x, most);
-            let measured = lines.likeliest(&x, &TIMINGS);
-            (measured.map(|(_, left)| (x, left)), spent)
+            let (ends, spent) = descents(&lines, priors, &starts, most);
+            let left = lines.likeliest_of_all(&ends, &TIMINGS).into_iter();
+            let left = left.map(|found| found.ok().map(|(_, left)| left));
+            let left: Vec<Option<f64>> = left.collect();
+            (ends, spent, left)
         }
     };
-    match measured {
-        Ok((x, left)) => {
-            led.left = left + prior::squares(priors, &x);
-            led.x = x;
+    for ((led, x), left) in all.iter_mut().zip(ends).zip(left) {
+        match left {
+            Some(left) => {
+                led.left = left + prior::squares(priors, &x);
+                led.x = x;
+            }
+            None => led.left = f64::INFINITY,
         }
-        Err(_) => led.left = f64::INFINITY,
     }
     spent
 }
 
-fn secants(
-    compared: &impl LeastSquares,
+/// Where descents lead from these starts, and the evaluations that they have taken.
+fn descents(
+    compared: &(impl LeastSquares + Sync),
     priors: &[Prior],
-    x: &[f64],
+    starts: &[Vec<f64>],
     most: u64,
-) -> (Vec<f64>, u64) {
+) -> (Vec<Vec<f64>>, u64) {
     let compared = WithPriors {
         inner: compared,
         priors,
     };
-    let go = &mut |_: &Progress| ControlFlow::Continue(());
-    let found = secant(&compared, x, ENDED, most, go);
-    (found.x, found.evaluations)
+    let found = secants(&compared, starts, ENDED, most);
+    let spent = found.iter().map(|found| found.evaluations).sum();
+    (found.into_iter().map(|found| found.x).collect(), spent)
 }
 
 /// The fit of a model from `x`, with intervals. What is not identifiable keeps its value at `x`.
