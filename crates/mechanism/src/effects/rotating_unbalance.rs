@@ -73,7 +73,7 @@ impl<S: Scalar> Acts<S> for RotatingUnbalance<S> {
     fn frame_acceleration(&self, angle: S, speed: S) -> Option<Vec2<S>> {
         match self.body {
             Shaken::Frame => Some(self.acceleration(angle, speed)),
-            _ => None,
+            Shaken::Crosshead => None,
         }
     }
 
@@ -83,7 +83,7 @@ impl<S: Scalar> Acts<S> for RotatingUnbalance<S> {
         let place = Vec2::new(cosine, sine) * -self.eccentricity;
         match self.body {
             Shaken::Frame => Some([place, turned(place) * speed]),
-            _ => None,
+            Shaken::Crosshead => None,
         }
     }
 

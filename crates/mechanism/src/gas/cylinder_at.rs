@@ -9,7 +9,7 @@ use crate::machine::Throw;
 use crate::mode::{ChamberMode, ThrowMode, flagged};
 use crate::plane::Vec2;
 use crate::throw::Motion;
-use scalar::{Scalar, inlined};
+use scalar::Scalar;
 use std::f64::consts::PI;
 
 /// Rate, per radian of the crank, at which a valve that has opened again brings a chamber back to the
@@ -58,31 +58,27 @@ impl<S: Scalar> CylinderAt<'_, S> {
                 (gas, force)
             }
         };
-        let piston = inlined(
-            #[inline(always)]
-            || PistonAt {
-                speed: motion.crosshead_rate,
-                pressure: head_end.pressure,
-                discharge: throw.cylinder.discharge,
-                angle: motion.angle,
-                crank_speed: self.speed,
-                mass: throw.crosshead.mass,
-                displacement: motion.crosshead - throw.rod.length,
-                crank_radius: throw.crank_radius,
-                rod_length: throw.rod.length,
-                rod_slope: motion.rod_sin_cos.0 / motion.rod_sin_cos.1,
-                gas_force: force,
-                area: face,
-                offsets: [
-                    eccentricity(&throw.big_end, self.offsets[0]),
-                    eccentricity(&throw.small_end, self.offsets[1]),
-                ],
-            },
-        );
         let effects = match self.effects.any() {
             false => S::zero(),
             true => {
-                let piston = piston();
+                let piston = PistonAt {
+                    speed: motion.crosshead_rate,
+                    pressure: head_end.pressure,
+                    discharge: throw.cylinder.discharge,
+                    angle: motion.angle,
+                    crank_speed: self.speed,
+                    mass: throw.crosshead.mass,
+                    displacement: motion.crosshead - throw.rod.length,
+                    crank_radius: throw.crank_radius,
+                    rod_length: throw.rod.length,
+                    rod_slope: motion.rod_sin_cos.0 / motion.rod_sin_cos.1,
+                    gas_force: force,
+                    area: face,
+                    offsets: [
+                        eccentricity(&throw.big_end, self.offsets[0]),
+                        eccentricity(&throw.small_end, self.offsets[1]),
+                    ],
+                };
                 let mut sum = S::zero();
                 for effect in self.effects.all() {
                     sum += effect.piston_force(&piston);

@@ -45,7 +45,7 @@ impl<S: Scalar> Constraint<S> {
     }
 
     /// The matrix that turns the missing relative acceleration into the joint's force, given how
-    /// the relative acceleration answers to that force.
+    /// the relative acceleration answers to that force. `Fn`, as the compiler keeps calls of a `FnOnce` out of line.
     #[inline(always)]
     fn stiffen(&self, answer: impl Fn() -> Mat2<S>) -> Option<Mat2<S>> {
         match *self {
