@@ -5,13 +5,11 @@ use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
 use crate::prediction::{Accuracy, Prediction, Wanted, predictions, to_a_thread, with_derivatives};
 use crate::problem::Problem;
-use crate::region::bits;
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use signal::Complex64;
 use signal::order_lines::OrderLines;
-use std::collections::HashMap;
 
 /// A misfit below this, in standard deviations of the noise, is noise: no better fit is looked for.
 pub const NOISE: f64 = 1.15;
@@ -115,13 +113,13 @@ impl<'a> Likelihood<'a> {
         timings: &[f64],
     ) -> Vec<Result<(f64, f64), Error>> {
         let what = ("likeliest", self.timing, self.parts.is_some(), timings);
-        let mut failures = HashMap::new();
+        let mut failures: Vec<(Vec<f64>, Error)> = Vec::new();
         let best = self.problem.once_each(&what, all, |unknown| {
             let of_point = |(x, predictions): (&Vec<f64>, Result<Vec<Prediction>, Error>)| {
                 let predictions = match predictions {
                     Ok(predictions) => predictions,
                     Err(error) => {
-                        failures.insert(bits(x), error);
+                        failures.push((x.clone(), error));
                         return Vec::new();
                     }
                 };
@@ -135,9 +133,10 @@ impl<'a> Likelihood<'a> {
         });
         let of_point = |(best, x): (Vec<f64>, &Vec<f64>)| match best[..] {
             [timing, left] => Ok((timing, left)),
-            _ => Err(failures
-                .remove(&bits(x))
-                .unwrap_or(Error::Nothing("a run cannot be simulated"))),
+            _ => Err(match failures.iter().position(|(at, _)| at == x) {
+                Some(i) => failures.swap_remove(i).1,
+                None => Error::Nothing("a run cannot be simulated"),
+            }),
         };
         best.into_iter().zip(all).map(of_point).collect()
     }

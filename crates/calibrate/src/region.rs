@@ -146,7 +146,7 @@ impl<T: LeastSquares> LeastSquares for Ahead<'_, T> {
 }
 
 /// The bits of coordinates, which are equal where these are the same.
-pub(crate) fn bits(x: &[f64]) -> Vec<u64> {
+fn bits(x: &[f64]) -> Vec<u64> {
     x.iter().map(|x| x.to_bits()).collect()
 }
 
