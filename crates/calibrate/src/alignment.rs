@@ -287,16 +287,13 @@ mod tests {
                 fluctuation: Vec::new(),
             },
             channels: vec![Observed {
+                scatter: Vec::new(),
                 column: "x".into(),
                 lines: lines(turned.collect()),
                 orders: (0..model.len()).collect(),
             }],
         };
-        let predicted = Prediction {
-            lines: vec![lines(model.to_vec())],
-            derivatives: Vec::new(),
-            periodic: true,
-        };
+        let predicted = Prediction::new(vec![lines(model.to_vec())], true);
         (observed, predicted)
     }
 

@@ -142,11 +142,7 @@ fn of_channel(
     let [before, after] = predictions.map(|prediction| {
         let lines = prediction.lines[index].clone();
         let wave = wave(&lines, has_mean);
-        let prediction = Prediction {
-            lines: vec![lines],
-            derivatives: Vec::new(),
-            periodic: prediction.periodic,
-        };
+        let prediction = Prediction::new(vec![lines], prediction.periodic);
         (wave, residuals(&alone, &prediction, 0.0))
     });
     let of_order = |(i, order): (usize, &usize)| {

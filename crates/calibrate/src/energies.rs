@@ -1,25 +1,21 @@
 //! How strongly a machine rings, where in its revolution, and in which band of orders.
 //!
 //! The phase of ringing has many local minima, its energy has few: a fit to energies leads to where a fit to lines may
-//! begin. The lowest orders, which do not ring, count as lines.
+//! begin. The lowest orders, which do not ring, count as lines. Where revolutions scatter, the mean of their energies is compared: that of
+//! their mean is less, and differs by chance.
 
 use crate::error::Error;
 use crate::likelihood::{FAILED, amplitude, push, stacked, weights};
-use crate::observation::{Observation, Observed, POINTS};
+use crate::observation::{Observation, Observed};
 use crate::optimiser::LeastSquares;
 use crate::prediction::{Accuracy, Prediction, to_a_thread};
 use crate::problem::Problem;
+use crate::sectors::{FIRST, KNOCKING, Sectors, between_orders, counts, knocks, noise};
 use crate::superposition::Superposition;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use signal::Complex64;
-use std::f64::consts::PI;
 
-/// The first order of the lowest band; the bands are octaves.
-const FIRST: usize = 8;
-/// Least and greatest number of sectors of a band, and its orders to a sector: a band does not resolve more.
-const SECTORS: [usize; 2] = [4, 24];
-const ORDERS: usize = 2;
 /// Energies below this share of a band's mean are not told apart.
 const QUIET: f64 = 0.03;
 /// Standard deviation of the logarithm of an energy that a law somewhat off predicts: 16 % of the amplitude.
@@ -40,45 +36,22 @@ struct Run<'a> {
     channels: Vec<Vec<Recorded>>,
 }
 
-/// A band of one channel.
-struct Band {
-    orders: std::ops::Range<usize>,
-    sectors: usize,
-}
-
-/// A band with what was recorded in it.
+/// What was recorded in a band.
 struct Recorded {
-    band: Band,
-    /// The sector that each point of the grid lies in, and its share in that; the rest is the next sector's.
-    shares: Vec<(usize, f64)>,
+    sectors: Sectors,
     /// What is added to each energy before its logarithm is taken.
     floor: f64,
-    /// The energy of each sector.
+    /// The energy of each sector, in the mean over the revolutions where these scatter.
     energies: Vec<f64>,
-}
-
-/// The bands of a channel that is compared up to the order `last`.
-fn bands(last: usize) -> Vec<Band> {
-    let mut bands = Vec::new();
-    let mut first = FIRST;
-    while first <= last {
-        let orders = first..(2 * first).min(last + 1);
-        let sectors = (orders.len() / ORDERS).clamp(SECTORS[0], SECTORS[1]);
-        bands.push(Band { orders, sectors });
-        first *= 2;
-    }
-    bands
-}
-
-fn last(observed: &Observed) -> usize {
-    observed.orders.last().copied().unwrap_or(0)
+    /// What of that is noise.
+    noise: f64,
+    /// Scatter that would not show beside the noise.
+    unseen: f64,
 }
 
 fn residual_count(run: &Observation) -> usize {
-    let of = |channel: &Observed| {
-        let bands: usize = bands(last(channel)).iter().map(|band| band.sectors).sum();
-        bands + 2 * lowest(channel).count()
-    };
+    let of =
+        |channel: &Observed| counts(&channel.orders).sum::<usize>() + 2 * lowest(channel).count();
     run.channels.iter().map(of).sum()
 }
 
@@ -86,75 +59,55 @@ fn lowest(observed: &Observed) -> impl Iterator<Item = &usize> {
     observed.orders.iter().take_while(|k| **k < FIRST)
 }
 
-impl Band {
-    /// The signal of its orders over the grid of crank angles.
-    fn signal(&self, lines: &[Complex64]) -> Vec<Complex64> {
-        let mut signal = vec![Complex64::ZERO; POINTS];
-        for k in self.orders.clone() {
-            signal[k] = lines.get(k).copied().unwrap_or_default();
-        }
-        fourier::inverse_complex(&mut signal);
-        signal
-    }
-
-    /// The sector of each point of the grid, and the point's share in it. Sectors overlap by half.
-    fn shares(&self) -> Vec<(usize, f64)> {
-        let width = POINTS as f64 / self.sectors as f64;
-        let of = |point: usize| {
-            let place = point as f64 / width;
-            let share = 0.5 * (1.0 + (PI * place.fract()).cos());
-            (place.floor() as usize, share)
+impl Recorded {
+    /// What an observation shows in a band, with the scatter of its sectors.
+    fn new(sectors: Sectors, observed: &Observed, scatter: &[f64]) -> Self {
+        let lines = &observed.lines;
+        let sum = |of: &[f64]| -> f64 { sectors.orders.clone().filter_map(|k| of.get(k)).sum() };
+        let powers: Vec<f64> = lines.amplitude.iter().map(|c| c.norm_sqr()).collect();
+        // A share of the band's own energy, and its noise.
+        let floor = sum(&lines.variance) + QUIET * sum(&powers);
+        let mut recorded = Self {
+            floor: floor.max(f64::MIN_POSITIVE),
+            energies: sectors.energies(&lines.amplitude),
+            noise: 0.0,
+            unseen: 0.0,
+            sectors,
         };
-        (0..POINTS).map(of).collect()
-    }
-
-    /// A share of its own energy, and its noise.
-    fn floor(&self, observed: &Observed) -> f64 {
-        let sum = |of: &[f64]| -> f64 { self.orders.clone().filter_map(|k| of.get(k)).sum() };
-        let energies: Vec<f64> = observed
-            .lines
-            .amplitude
-            .iter()
-            .map(|c| c.norm_sqr())
-            .collect();
-        let floor = sum(&observed.lines.variance) + QUIET * sum(&energies);
-        floor.max(f64::MIN_POSITIVE)
+        let between = between_orders(lines, recorded.sectors.orders.clone());
+        let noise = noise(scatter, between);
+        match knocks(scatter, noise) {
+            true => {
+                add(&mut recorded.energies, scatter);
+                recorded.noise = noise;
+            }
+            false => recorded.unseen = KNOCKING * noise,
+        }
+        recorded
     }
 }
 
-impl Recorded {
-    /// What an observation shows in a band.
-    fn new(band: Band, observed: &Observed) -> Self {
-        let signal = band.signal(&observed.lines.amplitude);
-        let mut recorded = Self {
-            shares: band.shares(),
-            floor: band.floor(observed),
-            energies: Vec::new(),
-            band,
-        };
-        recorded.energies = recorded.means(|i| signal[i].norm_sqr());
-        recorded
-    }
+/// Takes the next of these values, as many as there are at most.
+fn next<'s>(values: &mut &'s [f64], count: usize) -> &'s [f64] {
+    let (next, rest) = values.split_at(count.min(values.len()));
+    *values = rest;
+    next
+}
 
-    /// Means of a function of the grid over the sectors.
-    fn means(&self, of: impl Fn(usize) -> f64) -> Vec<f64> {
-        let count = self.band.sectors;
-        let mut means = vec![0.0; count];
-        for (point, (sector, share)) in self.shares.iter().enumerate() {
-            let value = of(point);
-            means[*sector] += share * value;
-            means[(sector + 1) % count] += (1.0 - share) * value;
-        }
-        let scale = count as f64 / POINTS as f64;
-        means.iter().map(|mean| mean * scale).collect()
-    }
+fn add(sum: &mut [f64], of: &[f64]) {
+    sum.iter_mut().zip(of).for_each(|(sum, of)| *sum += of);
 }
 
 impl<'a> Run<'a> {
     fn new(observed: &'a Observation) -> Self {
         let of_channel = |channel: &Observed| -> Vec<Recorded> {
-            let bands = bands(last(channel)).into_iter();
-            bands.map(|band| Recorded::new(band, channel)).collect()
+            let mut scatter = &channel.scatter[..];
+            let of_band = |sectors: Sectors| {
+                let of_band = next(&mut scatter, sectors.count);
+                Recorded::new(sectors, channel, of_band)
+            };
+            let sectors = Sectors::of_channel(&channel.orders).into_iter();
+            sectors.map(of_band).collect()
         };
         Self {
             observed,
@@ -183,18 +136,25 @@ impl<'a> Run<'a> {
                     push(slopes, slope * weight, *k);
                 }
             }
+            let mut scatter = prediction
+                .scatter
+                .get(channel)
+                .map_or(&[][..], Vec::as_slice);
             for recorded in recorded {
-                let floor = recorded.floor;
-                let signal_of = |lines| recorded.band.signal(lines);
-                let signal = signal_of(&predicted.amplitude);
-                let here = recorded.means(|i| signal[i].norm_sqr());
+                let (floor, sectors) = (recorded.floor, &recorded.sectors);
+                let signal = sectors.signal(&predicted.amplitude);
+                let mut here = sectors.means(|i| signal[i].norm_sqr());
+                for (here, scatter) in here.iter_mut().zip(next(&mut scatter, sectors.count)) {
+                    *here += (scatter - recorded.unseen).max(0.0);
+                }
+                here.iter_mut().for_each(|energy| *energy += recorded.noise);
                 let apart = here.iter().zip(&recorded.energies);
                 all.extend(
                     apart.map(|(here, there)| ((here + floor) / (there + floor)).ln() / SPREAD),
                 );
                 for (parameter, slopes) in slopes.iter_mut().enumerate() {
-                    let moved = signal_of(derivative(parameter));
-                    let change = recorded.means(|i| 2.0 * (signal[i].conj() * moved[i]).re);
+                    let moved = sectors.signal(derivative(parameter));
+                    let change = sectors.means(|i| 2.0 * (signal[i].conj() * moved[i]).re);
                     let each = change.iter().zip(&here);
                     slopes.extend(each.map(|(change, here)| change / (here + floor) / SPREAD));
                 }
@@ -311,9 +271,10 @@ impl LeastSquares for Energies<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sectors::scatter;
     use mechanism::drive::GivenSpeed;
     use signal::order_lines::OrderLines;
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     const LAST: usize = 70;
 
@@ -347,6 +308,7 @@ mod tests {
                 column: "crosshead_acceleration_m_s2".into(),
                 orders: (0..=LAST).collect(),
                 lines: lines(amplitude),
+                scatter: Vec::new(),
             }],
         }
     }
@@ -357,9 +319,8 @@ mod tests {
 
     fn predicted(amplitude: Vec<Complex64>, derivatives: Vec<Vec<Vec<Complex64>>>) -> Prediction {
         Prediction {
-            lines: vec![lines(amplitude)],
             derivatives,
-            periodic: true,
+            ..Prediction::new(vec![lines(amplitude)], true)
         }
     }
 
@@ -379,6 +340,29 @@ mod tests {
         // Where it begins a quarter of a revolution later the energies stand elsewhere.
         let later = norm(ring(1.0 + 0.25 * TAU, 1.0));
         assert!(later > 2.0 * turned, "{turned} {later}");
+    }
+
+    #[test]
+    fn revolutions_that_scatter_are_compared_by_the_mean_of_their_energies() {
+        // Half of the revolutions ring at 1 rad, the others do not.
+        let half = ring(1.0, 0.5);
+        let opposite: Vec<Complex64> = half.iter().map(|c| -c).collect();
+        let orders: Vec<usize> = (0..=LAST).collect();
+        let revolutions = [&half, &half, &opposite, &opposite].map(Vec::clone);
+        let scatter = scatter(&orders, &revolutions);
+        let mut recorded = run(half.clone());
+        recorded.channels[0].scatter = scatter.clone();
+        recorded.channels[0].lines.variance.fill(1e-12);
+        let residual = |predicted: &Prediction| {
+            let (residuals, _) = shown(&recorded).compared(predicted, 0);
+            residuals.iter().map(|r| r * r).sum::<f64>().sqrt()
+        };
+        let mut same = predicted(half.clone(), Vec::new());
+        same.scatter = vec![scatter];
+        assert!(residual(&same) < 0.1, "{}", residual(&same));
+        // Without its scatter, the mean rings with half the energy.
+        let mean = residual(&predicted(half, Vec::new()));
+        assert!(mean > 10.0 * residual(&same), "{mean}");
     }
 
     #[test]

@@ -7,10 +7,12 @@ use crate::likelihood::{Likelihood, misfit};
 use crate::observation::Observation;
 use crate::optimiser::{self, Genetic, Progress};
 use crate::parameter::Parameter;
+use crate::prior::{Prior, WithPriors};
 use crate::problem::Problem;
 use crate::relation::{ClearJoint, clearances};
 use crate::search;
 use crate::statistical_linearization::statistical_linearization;
+use crate::statistics::Statistics;
 use nalgebra::DMatrix;
 use std::ops::ControlFlow;
 
@@ -255,6 +257,7 @@ pub fn calibrate(
 /// As [`statistical_linearization`].
 pub(crate) fn linearized(
     problem: &Problem,
+    priors: &[Prior],
     start: &[f64],
     far: f64,
     watch: optimiser::Watch,
@@ -266,7 +269,11 @@ pub(crate) fn linearized(
         answer
     };
     let likelihood = Likelihood::new(problem);
-    let (found, information) = statistical_linearization(&likelihood, start, far, &mut watch)?;
+    let statistics = WithPriors {
+        inner: &Statistics::new(problem),
+        priors,
+    };
+    let (found, information) = statistical_linearization(&statistics, start, far, &mut watch)?;
     let bounds = problem.parameters.iter().map(|p| p.box_bounds());
     let both = information.intervals.iter().zip(bounds).enumerate();
     let free = both.filter(|(_, (interval, bounds))| is_identifiable(interval, bounds));

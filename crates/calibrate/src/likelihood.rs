@@ -389,6 +389,7 @@ mod tests {
 
     fn weights_of(observed: OrderLines, predicted: &OrderLines, timing: f64) -> Vec<f64> {
         let observed = Observed {
+            scatter: Vec::new(),
             column: "crosshead_acceleration_m_s2".into(),
             orders: (0..31).collect(),
             lines: observed,

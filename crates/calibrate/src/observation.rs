@@ -3,16 +3,17 @@
 use crate::crank_motion;
 use crate::error::Error;
 use crate::few_revolutions;
+pub use crate::sectors::POINTS;
+use crate::sectors::{bands, between_orders, count, knocks, noise, scatter};
 use mechanism::drive::GivenSpeed;
 use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
-use signal::order_lines::{OrderLines, order_lines};
+use signal::order_lines::{OrderLines, deviations, order_lines};
 use simulate::sensor::Quantity;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
-/// Points per revolution over which orders are found.
-pub const POINTS: usize = 1024;
 /// A recording that stands at its greatest or least value for this many samples is clipped.
 const CLIPPED: usize = 4;
 /// Relative difference between stated and recorded speed that is a contradiction.
@@ -105,11 +106,15 @@ pub struct Observed {
     pub lines: OrderLines,
     /// The orders that are compared.
     pub orders: Vec<usize>,
+    /// The energies by band and sector that its revolutions have beside the mean of every other one. Empty where that is not known.
+    pub scatter: Vec<f64>,
 }
 
 /// Most of a channel's power that may differ from revolution to revolution in a motion that repeats
 /// itself: noise of 14 % of the signal.
 const SCATTER: f64 = 0.02;
+/// The same of what is no noise, as it stands where something knocks: 5 % of the signal.
+const KNOCKS: f64 = 0.0025;
 /// How many times the least scatter of its runs a channel may have where it repeats itself.
 const REPEATS: f64 = 4.0;
 
@@ -136,6 +141,20 @@ impl Observed {
         let variance: f64 = lines.variance.iter().skip(1).sum();
         [power, lines.revolutions as f64 * variance]
     }
+
+    /// How much of its revolutions' differences is no noise: a mean square.
+    fn knocks(&self) -> f64 {
+        let mut scatter = &self.scatter[..];
+        let of_band = |orders: Range<usize>| {
+            let count = count(&orders);
+            let (of_band, rest) = scatter.split_at(count.min(scatter.len()));
+            scatter = rest;
+            let noise = noise(of_band, between_orders(&self.lines, orders));
+            knocks(of_band, noise)
+                .then(|| of_band.iter().map(|of| of - noise).sum::<f64>() / count as f64)
+        };
+        bands(&self.orders).filter_map(of_band).sum()
+    }
 }
 
 impl Observation {
@@ -143,7 +162,7 @@ impl Observation {
     pub(crate) fn repeats(&self) -> bool {
         self.channels.iter().all(|channel| {
             let [power, scatter] = channel.power_and_scatter();
-            scatter <= SCATTER * power
+            scatter <= SCATTER * power && channel.knocks() <= KNOCKS * power
         })
     }
 
@@ -188,20 +207,24 @@ impl Observation {
         let grid = AngleGrid::new(&angle, POINTS);
         let of_channel = |samples: &[f64]| {
             if short && let Some(lines) = few_revolutions::lines(&angle, samples) {
-                return Ok(lines);
+                return Ok((lines, Vec::new()));
             }
-            lines(grid.as_ref().map_err(Clone::clone)?, samples)
+            let grid = grid.as_ref().map_err(Clone::clone)?;
+            let revolutions = grid.resample(samples)?;
+            let lines = order_lines(&revolutions, highest(grid))?;
+            Ok((lines, deviations(&revolutions, highest(grid))))
         };
         let channels = chosen
             .into_iter()
             .map(|channel| {
                 not_clipped(run, channel)?;
-                let lines = of_channel(&channel.samples)
+                let (lines, deviations) = of_channel(&channel.samples)
                     .map_err(|source| signal_error(run, channel, source))?;
                 let orders = orders(&lines);
                 let observed = Observed {
                     column: channel.column.clone(),
                     lines,
+                    scatter: scatter(&orders, &deviations),
                     orders,
                 };
                 if observed.orders.len() <= LOW_ORDERS && !observed.stands_out() {
@@ -224,8 +247,12 @@ impl Observation {
 
 /// The lines of samples on a grid of crank angles.
 pub(crate) fn lines(grid: &AngleGrid, samples: &[f64]) -> Result<OrderLines, signal::Error> {
-    let highest = grid.highest_order().min(POINTS / 2 - 1);
-    order_lines(&grid.resample(samples)?, highest)
+    order_lines(&grid.resample(samples)?, highest(grid))
+}
+
+/// The highest order that samples on a grid of crank angles have.
+pub(crate) fn highest(grid: &AngleGrid) -> usize {
+    grid.highest_order().min(POINTS / 2 - 1)
 }
 
 fn signal_error(run: &Run, channel: &Channel, source: signal::Error) -> Error {
@@ -323,6 +350,7 @@ mod tests {
                 fluctuation: Vec::new(),
             },
             channels: vec![Observed {
+                scatter: Vec::new(),
                 column: "crosshead_acceleration_m_s2".into(),
                 lines,
                 orders: vec![1],
@@ -340,6 +368,30 @@ mod tests {
         let all = [quiet, strong, weak, restless];
         let repeats = all.each_ref().map(|run| run.repeats_like(&all));
         assert_eq!(repeats, [true, true, true, false]);
+    }
+
+    #[test]
+    fn a_run_of_period_two_repeats_and_one_that_knocks_now_and_then_does_not() {
+        // A knock of order 9, which band and sectors of the lowest octave show.
+        let orders: Vec<usize> = (0..=15).collect();
+        let knock = |size: f64| -> Vec<Complex64> {
+            let line =
+                |k: &usize| Complex64::from_polar(if *k < 8 { 0.0 } else { size }, -(*k as f64));
+            orders.iter().map(line).collect()
+        };
+        let repeats = |sizes: &[f64]| {
+            let revolutions: Vec<Vec<Complex64>> = sizes.iter().map(|size| knock(*size)).collect();
+            let mut run = run(10.0, 0.02);
+            let channel = &mut run.channels[0];
+            channel.orders = orders.clone();
+            channel.scatter = scatter(&orders, &revolutions);
+            run.repeats()
+        };
+        assert!(repeats(&[0.5, -0.5, 0.5, -0.5, 0.5, -0.5, 0.5, -0.5]));
+        assert!(!repeats(&[0.5, -0.5, -0.5, 0.5, 0.5, -0.5, -0.5, 0.5]));
+        assert!(repeats(&[
+            0.05, -0.05, -0.05, 0.05, 0.05, -0.05, -0.05, 0.05
+        ]));
     }
 
     #[test]

@@ -3,12 +3,13 @@
 use crate::error::Error;
 use crate::observation::{self, Observation, POINTS};
 use crate::problem::{Problem, throw};
+use crate::sectors::scatter;
 use input::Resolved;
 use signal::Complex64;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::high_pass::HighPass;
-use signal::order_lines::OrderLines;
+use signal::order_lines::{OrderLines, deviations};
 use simulate::{
     Asked, Sensitivities, Sensor, Settings, Structure, Transient, sensitivities, settled_together,
 };
@@ -87,6 +88,21 @@ pub struct Prediction {
     pub derivatives: Vec<Vec<Vec<Complex64>>>,
     /// True where the motion repeats itself.
     pub periodic: bool,
+    /// For each channel the energies by band and sector that its revolutions have beside the mean of every other one, where energies
+    /// are asked for and there are several.
+    pub scatter: Vec<Vec<f64>>,
+}
+
+impl Prediction {
+    /// Lines without derivatives.
+    pub fn new(lines: Vec<OrderLines>, periodic: bool) -> Self {
+        Self {
+            lines,
+            derivatives: Vec::new(),
+            periodic,
+            scatter: Vec::new(),
+        }
+    }
 }
 
 /// The lines of a run with the parameters at these coordinates.
@@ -134,10 +150,13 @@ pub(crate) fn predictions(
         let record = at.recorded(record.ok_or(Error::Nothing("nothing was simulated"))?)?;
         problem.meter.add(record.steps);
         let shown = at.shown(&record)?;
+        let lines = at.lines_of_all(&shown.grid, shown.series)?;
         Ok(Prediction {
-            lines: at.lines_of_all(&shown.grid, shown.series)?,
-            derivatives: Vec::new(),
-            periodic: record.settled,
+            scatter: match accuracy {
+                Accuracy::Rough => at.scatter(&shown)?,
+                _ => Vec::new(),
+            },
+            ..Prediction::new(lines, record.settled)
         })
     };
     all.into_iter().map(of).collect()
@@ -183,11 +202,16 @@ pub(crate) fn with_derivatives(
     let record = at.recorded(sensitivities(machine, sensors, &moved, settings))?;
     problem.meter.add(record.steps);
     let periodic = record.settled;
+    let shown = at.shown(&record)?;
+    let scatter = match accuracy {
+        Accuracy::Coarse => at.scatter(&shown)?,
+        _ => Vec::new(),
+    };
     let Shown {
         angle,
         grid,
         series,
-    } = at.shown(&record)?;
+    } = shown;
     let lines = at.lines_of_all(&grid, series)?;
     let mut derivatives = record
         .derivatives
@@ -230,9 +254,9 @@ pub(crate) fn with_derivatives(
         }
     }
     Ok(Prediction {
-        lines,
         derivatives,
-        periodic,
+        scatter,
+        ..Prediction::new(lines, periodic)
     })
 }
 
@@ -338,6 +362,25 @@ impl<'a> At<'a> {
         Ok(self.slow[channel].shown(later(lines, self.offset), self.turning))
     }
 
+    /// The energies of each channel's bands and sectors that its revolutions have beside the mean of every other one.
+    fn scatter(&self, shown: &Shown) -> Result<Vec<Vec<f64>>, Error> {
+        let of_channel = |(channel, samples): (usize, &Vec<f64>)| {
+            let revolutions = self.analysed(shown.grid.resample(samples))?;
+            if revolutions.count() < 3 {
+                return Ok(Vec::new());
+            }
+            let mut all = deviations(&revolutions, observation::highest(&shown.grid));
+            for (k, c) in all
+                .iter_mut()
+                .flat_map(|lines| lines.iter_mut().enumerate())
+            {
+                *c *= self.slow[channel].response(k, self.turning) * turned(k, self.offset);
+            }
+            Ok(scatter(&self.run.channels[channel].orders, &all))
+        };
+        shown.series.iter().enumerate().map(of_channel).collect()
+    }
+
     fn lines_of_all(
         &self,
         grid: &AngleGrid,
@@ -411,9 +454,14 @@ fn inner_rate(machine: &Resolved) -> f64 {
 /// The lines over a crank angle that reads `offset` more than the crank has turned.
 fn later(mut lines: OrderLines, offset: f64) -> OrderLines {
     for (k, c) in lines.amplitude.iter_mut().enumerate() {
-        *c *= Complex64::from_polar(1.0, -(k as f64) * offset);
+        *c *= turned(k, offset);
     }
     lines
+}
+
+/// What an order is multiplied by over a crank angle that reads `offset` more.
+fn turned(order: usize, offset: f64) -> Complex64 {
+    Complex64::from_polar(1.0, -(order as f64) * offset)
 }
 
 /// The derivatives of each parameter from those of groups. A channel of a throw feels the group's parameter of

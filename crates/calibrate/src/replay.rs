@@ -138,7 +138,7 @@ pub fn replay(
                 channels: vec![observed.clone()],
                 ..observation.clone()
             };
-            let prediction = prediction(vec![lines.clone()], same);
+            let prediction = Prediction::new(vec![lines.clone()], same);
             let has_mean = observed.quantity().has_mean();
             let replayed = Replayed {
                 column: observed.column.clone(),
@@ -153,7 +153,7 @@ pub fn replay(
         .collect::<Result<_, _>>()
         .map_err(analysis)?;
     let (channels, lines): (Vec<Replayed>, Vec<OrderLines>) = channels.into_iter().unzip();
-    let prediction = prediction(lines, same);
+    let prediction = Prediction::new(lines, same);
     let simulated = speed(&chosen.crank_angle, run.sample_rate).map_err(analysis)?;
     Ok(Replay {
         angle_difference: angle_difference(&chosen.crank_angle, recorded.angles()),
@@ -164,14 +164,6 @@ pub fn replay(
         misfit: misfit(&residuals(observation, &prediction, 0.0)),
         crank_angle: chosen.crank_angle,
     })
-}
-
-fn prediction(lines: Vec<OrderLines>, periodic: bool) -> Prediction {
-    Prediction {
-        lines,
-        derivatives: Vec::new(),
-        periodic,
-    }
 }
 
 /// Where a crank stands at the first sample, and how fast it turns.

@@ -68,6 +68,7 @@ pub(crate) fn statistical_linearization(
     };
     let mut cloud = Cloud::first(&bounds);
     let mut best: Option<Best> = None;
+    let mut clouds: Vec<Points> = Vec::new();
     for number in 0..CLOUDS {
         let stopped = watch(&at).is_break();
         if stopped || (number >= BEGINNING && at.misfit() > far) {
@@ -90,6 +91,12 @@ pub(crate) fn statistical_linearization(
         let spreads = cloud.spreads.clone();
         at.x = moved(&at.x, &spreads.component_mul(&step), &bounds);
         at.cost = linear.cost;
+        if !linear.is_curved {
+            clouds.push(Points {
+                places: points,
+                residuals,
+            });
+        }
         let narrowest = cloud.reshape(&linear, &bounds);
         let ends = linear.shown.iter().all(|shown| *shown)
             && narrowest > 1.0 / NARROWER
@@ -105,6 +112,7 @@ pub(crate) fn statistical_linearization(
     }
     let covariance = match best {
         Some(best) => {
+            let best = best.with_earlier(&clouds, &bounds);
             at.x.clone_from(&best.next);
             best.covariance()
         }
@@ -112,6 +120,41 @@ pub(crate) fn statistical_linearization(
     };
     let known = intervals_of(&at.x, &bounds, &covariance);
     Ok((at, known))
+}
+
+/// By how much less the coordinates `known` are known where the others are not, but lie within their bounds: factors of their
+/// standard deviations. They are known to these `spreads`.
+pub(crate) fn widening(
+    problem: &impl LeastSquares,
+    x: &[f64],
+    known: &[usize],
+    spreads: &[f64],
+) -> Vec<f64> {
+    if known.is_empty() {
+        return Vec::new();
+    }
+    let bounds = problem.bounds();
+    let mut cloud = Cloud::first(&bounds);
+    for (i, spread) in known.iter().zip(spreads) {
+        // At a bound an interval may have no width.
+        if *spread > 0.0 {
+            cloud.spreads[*i] = OVER_KNOWN * spread;
+        }
+    }
+    let points = cloud.points(CLOUDS, x, &bounds);
+    let residuals = problem.residuals_of_all(&points);
+    let Some(linear) = Linear::fitted(&cloud, x, &points, &residuals, &bounds) else {
+        return vec![1.0; known.len()];
+    };
+    let whole = inverse(linear.information());
+    let information = linear.known + DMatrix::from_diagonal(&linear.before);
+    let alone = DMatrix::from_fn(known.len(), known.len(), |i, j| {
+        information[(known[i], known[j])]
+    });
+    let alone = inverse(alone.symmetric_eigen());
+    let factor = |(place, i): (usize, &usize)| (whole[(*i, *i)] / alone[(place, place)]).sqrt();
+    let factors = known.iter().enumerate().map(factor);
+    factors.map(|factor| factor.max(1.0)).collect()
 }
 
 /// The last cloud that was no worse than the one before.
@@ -122,7 +165,48 @@ struct Best {
     spreads: DVector<f64>,
 }
 
+/// The points of a cloud, or of several, and their residuals.
+#[derive(Clone, Debug, Default)]
+struct Points {
+    places: Vec<Vec<f64>>,
+    residuals: Vec<Vec<f64>>,
+}
+
 impl Best {
+    /// The same from the points of as many of these clouds, from the last one on, as make the coordinates best known: one cloud may leave a
+    /// direction unknown by chance, and over earlier ones, which are farther away, the residuals may not be linear.
+    fn with_earlier(self, clouds: &[Points], bounds: &[[f64; 2]]) -> Self {
+        let (at, cloud) = (
+            self.next.clone(),
+            Cloud {
+                spreads: self.spreads.clone(),
+            },
+        );
+        let mut points = Points::default();
+        let mut best = self;
+        let mut volume = f64::INFINITY;
+        for of_cloud in clouds.iter().rev() {
+            points.places.extend(of_cloud.places.iter().cloned());
+            points.residuals.extend(of_cloud.residuals.iter().cloned());
+            let linear = Linear::fitted(&cloud, &at, &points.places, &points.residuals, bounds);
+            let Some(linear) = linear else {
+                continue;
+            };
+            let known = linear.covariance().symmetric_eigenvalues();
+            let logarithms: f64 = known.iter().map(|variance| variance.max(0.0).ln()).sum();
+            if logarithms < volume {
+                volume = logarithms;
+                let step = cloud.spreads.component_mul(&linear.step());
+                best = Self {
+                    next: moved(&at, &step, bounds),
+                    linear,
+                    spreads: cloud.spreads.clone(),
+                };
+            }
+        }
+        best
+    }
+
     /// The covariance of the coordinates.
     fn covariance(&self) -> DMatrix<f64> {
         let over = self.linear.covariance();
@@ -374,14 +458,18 @@ impl Linear {
     /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
     /// that of a simulation (the sandwich of Huber 1967).
     fn covariance(&self) -> DMatrix<f64> {
-        let SymmetricEigen {
-            eigenvectors,
-            eigenvalues,
-        } = self.information();
-        let inverse = DMatrix::from_diagonal(&eigenvalues.map(|known| 1.0 / known));
-        let inverse = &eigenvectors * inverse * eigenvectors.transpose();
+        let inverse = inverse(self.information());
         &inverse + &inverse * &self.of_gradient * &inverse
     }
+}
+
+fn inverse(information: SymmetricEigen<f64, nalgebra::Dyn>) -> DMatrix<f64> {
+    let SymmetricEigen {
+        eigenvectors,
+        eigenvalues,
+    } = information;
+    let inverse = eigenvalues.map(|known| 1.0 / known.max(f64::MIN_POSITIVE));
+    &eigenvectors * DMatrix::from_diagonal(&inverse) * eigenvectors.transpose()
 }
 
 #[cfg(test)]
@@ -457,5 +545,36 @@ mod tests {
         for held in held {
             assert!(held >= 36, "{held} of 40");
         }
+    }
+
+    /// Residuals that feel the sum of two coordinates, and the first one a little by itself.
+    struct Alike;
+
+    impl LeastSquares for Alike {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-10.0, 10.0], [-0.1, 0.1]]
+        }
+        fn count(&self) -> usize {
+            2
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            vec![100.0 * (x[0] + x[1]), 10.0 * x[0]]
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::from_row_slice(2, 2, &[100.0, 100.0, 10.0, 0.0])
+        }
+    }
+
+    #[test]
+    fn what_is_unknown_beside_it_widens_an_interval_as_in_the_textbook() {
+        let factor = widening(&Alike, &[0.0, 0.0], &[0], &[0.01])[0];
+        // Schur's complement: the first coordinate's information less what the second, of variance 0.2²/12, takes of it.
+        let (alone, second) = (1e4 + 1e2, 1e4 + 12.0 / 0.04_f64);
+        let expected = f64::sqrt(alone / (alone - 1e8 / second));
+        assert!(
+            (factor / expected - 1.0).abs() < 1e-3,
+            "{factor} {expected}"
+        );
+        assert!(widening(&Alike, &[0.0, 0.0], &[], &[]).is_empty());
     }
 }

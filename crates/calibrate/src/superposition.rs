@@ -164,9 +164,9 @@ fn nothing(run: &Observation, parameters: usize) -> Prediction {
     };
     let channels = run.channels.len();
     Prediction {
-        lines: vec![none; channels],
         derivatives: vec![vec![Vec::new(); channels]; parameters],
-        periodic: true,
+        scatter: vec![Vec::new(); channels],
+        ..Prediction::new(vec![none; channels], true)
     }
 }
 
@@ -185,6 +185,10 @@ fn add(
         let (whole, lines) = (&mut sum.lines[at], &share.lines[of_own]);
         add_to(&mut whole.amplitude, &lines.amplitude);
         add_to(&mut whole.variance, &lines.variance);
+        // Throws scatter each by itself.
+        if let Some(scatter) = share.scatter.get(of_own) {
+            add_to(&mut sum.scatter[at], scatter);
+        }
         whole.revolutions = whole.revolutions.min(lines.revolutions);
         for (place, derivatives) in throw.parameters.iter().zip(&share.derivatives) {
             if let Some(whole) = sum.derivatives.get_mut(*place) {
@@ -227,6 +231,7 @@ mod tests {
         let clearance = |throw| format!("throws.{throw}.joints.big_end.clearance");
         let parameter = |throw| Parameter::at(&tree, &clearance(throw)).unwrap();
         let channel = |column: &str| Observed {
+            scatter: Vec::new(),
             column: column.into(),
             orders: (1..100).collect(),
             lines: OrderLines {

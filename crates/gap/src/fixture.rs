@@ -55,6 +55,7 @@ pub(crate) fn problem_of(effects: Value) -> Problem {
     truth.tree["effects"] = effects;
     for rpm in [400.0, 560.0] {
         let observed = |lines| Observed {
+            scatter: Vec::new(),
             column: "crosshead_acceleration_m_s2".into(),
             lines,
             orders: (1..=50).collect(),

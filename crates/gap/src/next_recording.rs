@@ -188,6 +188,7 @@ fn proposals(model: &Model, runs: &[Observation]) -> Result<Vec<Proposal>, Error
         let more = columns(&machine).into_iter();
         let more = more.filter(|c| foretold(c) && own().all(|own| own != c));
         let unrecorded = |column| Observed {
+            scatter: Vec::new(),
             column,
             lines: OrderLines {
                 amplitude: Vec::new(),

@@ -81,6 +81,24 @@ pub fn order_lines(x: &Revolutions, highest: usize) -> Result<OrderLines, Error>
     })
 }
 
+/// By how much the lines of each revolution differ from those of the synchronous mean, up to order `highest`, which is below half
+/// the points per revolution.
+pub fn deviations(x: &Revolutions, highest: usize) -> Vec<Vec<Complex64>> {
+    let mean = x.synchronous_mean();
+    let scale = |k: usize| if k == 0 { 1.0 } else { 2.0 } / mean.len() as f64;
+    let of_revolution = |samples: &[f64]| {
+        let mut apart: Vec<f64> = samples
+            .iter()
+            .zip(&mean)
+            .map(|(x, mean)| x - mean)
+            .collect();
+        let spectrum = fourier::forward(&mut apart);
+        let line = |k: usize| spectrum[k] * x.phase(k) * scale(k);
+        (0..=highest).map(line).collect()
+    };
+    x.iter().map(of_revolution).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,14 +108,36 @@ mod tests {
 
     const PER_REVOLUTION: usize = 256;
 
-    fn lines(revolutions: usize, wave: impl FnMut(usize) -> f64) -> OrderLines {
+    fn resampled(revolutions: usize, wave: impl FnMut(usize) -> f64) -> Revolutions {
         let samples = revolutions * PER_REVOLUTION;
         let angle: Vec<f64> = (0..samples)
             .map(|i| (TAU * i as f64 / PER_REVOLUTION as f64).rem_euclid(TAU))
             .collect();
         let grid = AngleGrid::new(&CrankAngle::from_encoder(&angle).unwrap(), PER_REVOLUTION);
         let x: Vec<f64> = (0..samples).map(wave).collect();
-        order_lines(&grid.unwrap().resample(&x).unwrap(), 60).unwrap()
+        grid.unwrap().resample(&x).unwrap()
+    }
+
+    fn lines(revolutions: usize, wave: impl FnMut(usize) -> f64) -> OrderLines {
+        order_lines(&resampled(revolutions, wave), 60).unwrap()
+    }
+
+    #[test]
+    fn every_other_revolution_of_a_subharmonic_is_as_far_from_the_mean() {
+        // Order 3.5 of amplitude 2 is the negative of itself a revolution later, and order 5 is in the mean.
+        let x = resampled(8, |i| {
+            let angle = TAU * i as f64 / PER_REVOLUTION as f64;
+            2.0 * (3.5 * angle).cos() + (5.0 * angle).cos()
+        });
+        let all = deviations(&x, 60);
+        assert_eq!(all.len(), 8);
+        let power = |lines: &[Complex64]| lines[1..].iter().map(|c| c.norm_sqr()).sum::<f64>();
+        for pair in all.chunks(2) {
+            let sum = pair[0].iter().zip(&pair[1]).map(|(a, b)| (a + b).norm());
+            assert!(sum.fold(0.0, f64::max) < 1e-9);
+            let mean_square = pair[0][0].norm_sqr() + 0.5 * power(&pair[0]);
+            assert!((mean_square - 2.0).abs() < 0.02, "{mean_square}");
+        }
     }
 
     #[test]

@@ -198,7 +198,7 @@ fn without_derivatives(model: &Model, x: &[f64], effort: &mut Effort) -> Result<
         effort.fitted(progress.misfit());
         effort.shown(progress.evaluations)
     };
-    let fit = linearized(&model.problem, x, FAR, &mut watch)?;
+    let fit = linearized(&model.problem, &model.priors, x, FAR, &mut watch)?;
     effort.spent += fit.evaluations;
     Ok(fit)
 }

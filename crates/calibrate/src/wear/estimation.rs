@@ -226,14 +226,14 @@ fn conclude(
     worn_from: f64,
     effort: &mut Effort,
 ) -> Result<Concluded, Error> {
-    widen(joints, found);
+    let recorded = found.model.problem.runs.iter().all(Observation::repeats);
+    let repeats = recorded && descent::repeats(&found.model.problem, &found.fit.coordinates());
+    widen(joints, found, repeats);
     let fit = &found.fit;
     let problem = &found.model.problem;
     let whole = fit.complete && !effort.stopped;
     let adequate = fit.model_is_adequate();
     // An adequate model may leave more than noise, and then the noise alone is no measure of what is known.
-    let recorded = problem.runs.iter().all(Observation::repeats);
-    let repeats = recorded && descent::repeats(problem, &fit.coordinates());
     let wrong = match whole && repeats && !fit.is_at_noise() {
         true => discrepancy(problem, fit, effort)?,
         false => None,

@@ -18,7 +18,7 @@
 //! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
 //!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
 //! 7. A motion that does not repeat itself has no derivatives, be it recorded or that of the best fit. The last fit and the
-//!    intervals come from a statistical linearisation then (`crate::statistical_linearization`).
+//!    intervals come from a statistical linearisation of lines and energies then (`crate::statistical_linearization`).
 
 mod cell;
 mod descent;

@@ -53,8 +53,7 @@ impl fmt::Display for Results {
             ),
             (Interval::Scatter, _) => writeln!(
                 f,
-                "the motion does not repeat itself: the intervals include its scatter, but not that contact parameters of the \
-                 machine file may be off"
+                "the motion does not repeat itself: the intervals include its scatter"
             ),
             (Interval::None, _) => {
                 writeln!(f, "no interval: the model does not explain the recordings")

@@ -56,6 +56,7 @@ fn nominal() -> Value {
 fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observation {
     let settings = [("speed", speed), ("joints.small_end.clearance", clearance)];
     let channel = |lines| Observed {
+        scatter: Vec::new(),
         column: COLUMN.into(),
         lines,
         orders: (1..=ORDERS).collect(),

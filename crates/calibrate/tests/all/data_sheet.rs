@@ -51,6 +51,7 @@ fn recorded(truth: &Value) -> Vec<Observation> {
     let problem = problem(truth.clone());
     let of_speed = |rpm: &f64| {
         let zeros = |column: &str| Observed {
+            scatter: Vec::new(),
             column: column.into(),
             lines: OrderLines {
                 amplitude: Vec::new(),

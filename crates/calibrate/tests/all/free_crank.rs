@@ -41,6 +41,7 @@ fn problem(paths_of_parameters: &[&str]) -> Problem {
 
 fn run() -> Observation {
     let observed = |column: &str| Observed {
+        scatter: Vec::new(),
         column: column.into(),
         orders: (1..=ORDERS).collect(),
         lines: OrderLines {

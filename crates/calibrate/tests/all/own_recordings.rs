@@ -40,6 +40,7 @@ pub fn problem(
     };
     let truth: Vec<f64> = truth.iter().map(|(_, x)| *x).collect();
     let observed = |lines| Observed {
+        scatter: Vec::new(),
         column: "crosshead_acceleration_m_s2".into(),
         lines,
         orders: (1..=highest).collect(),
@@ -76,6 +77,7 @@ pub fn problem(
 pub fn scattering(tree: Value) -> Problem {
     let mut problem = problem(tree, &[], &[], 0, 0.0);
     let channel = |lines, orders| Observed {
+        scatter: Vec::new(),
         column: "crosshead_acceleration_m_s2".into(),
         lines,
         orders,

@@ -44,6 +44,7 @@ pub(crate) fn problem(tree: Value, runs: Vec<Observation>) -> Problem {
 /// What the machine with these effects shows at a speed and a discharge pressure.
 pub(crate) fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> Observation {
     let observed = |lines| Observed {
+        scatter: Vec::new(),
         column: COLUMN.into(),
         lines,
         orders: (0..=ORDERS).collect(),

@@ -83,9 +83,7 @@ fn warnings(results: &Results) -> Vec<String> {
             text::number(1e3 * timing, 2)
         )),
         (Interval::Scatter, _) => warnings.push(
-            "The motion does not repeat itself. The ranges include its scatter, but not that contact parameters of the machine \
-             file may be off."
-                .to_owned(),
+            "The motion does not repeat itself. The ranges include its scatter.".to_owned(),
         ),
         (Interval::None, _) if results.complete => warnings.push(format!(
             "The model does not explain the recordings ({misfit} times the noise), and no interval can be given. \
