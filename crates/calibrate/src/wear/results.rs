@@ -136,8 +136,7 @@ pub enum Interval {
     Noise,
     /// Noise, and a discrepancy of the model.
     Discrepancy,
-    /// Noise, and the scatter of a motion that does not repeat itself; not that contact parameters of the machine file may be
-    /// off.
+    /// Noise, and the scatter of a motion that does not repeat itself.
     Scatter,
     /// There is no interval.
     None,
