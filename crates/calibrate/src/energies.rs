@@ -27,7 +27,17 @@ pub const TIMING: f64 = 0.03;
 pub struct Energies<'a> {
     problem: &'a Problem,
     machine: Superposition<'a>,
+    noise: Noise,
     runs: Vec<Run<'a>>,
+}
+
+/// Below which noise energies are not told apart.
+#[derive(Clone, Copy, Debug)]
+enum Noise {
+    /// That of the mean over all revolutions.
+    Mean,
+    /// That of a single revolution.
+    Revolution,
 }
 
 /// A run with the recorded energies of each channel and band.
@@ -60,13 +70,14 @@ fn lowest(observed: &Observed) -> impl Iterator<Item = &usize> {
 }
 
 impl Recorded {
-    /// What an observation shows in a band, with the scatter of its sectors.
-    fn new(sectors: Sectors, observed: &Observed, scatter: &[f64]) -> Self {
+    /// What an observation shows in a band, with the scatter of its sectors. Its noise is that of the mean over its revolutions,
+    /// so many times.
+    fn new(sectors: Sectors, observed: &Observed, scatter: &[f64], revolutions: f64) -> Self {
         let lines = &observed.lines;
         let sum = |of: &[f64]| -> f64 { sectors.orders.clone().filter_map(|k| of.get(k)).sum() };
         let powers: Vec<f64> = lines.amplitude.iter().map(|c| c.norm_sqr()).collect();
         // A share of the band's own energy, and its noise.
-        let floor = sum(&lines.variance) + QUIET * sum(&powers);
+        let floor = revolutions * sum(&lines.variance) + QUIET * sum(&powers);
         let mut recorded = Self {
             floor: floor.max(f64::MIN_POSITIVE),
             energies: sectors.energies(&lines.amplitude),
@@ -99,12 +110,16 @@ fn add(sum: &mut [f64], of: &[f64]) {
 }
 
 impl<'a> Run<'a> {
-    fn new(observed: &'a Observation) -> Self {
+    fn new(observed: &'a Observation, noise: Noise) -> Self {
         let of_channel = |channel: &Observed| -> Vec<Recorded> {
             let mut scatter = &channel.scatter[..];
+            let revolutions = match noise {
+                Noise::Mean => 1.0,
+                Noise::Revolution => channel.lines.revolutions as f64,
+            };
             let of_band = |sectors: Sectors| {
                 let of_band = next(&mut scatter, sectors.count);
-                Recorded::new(sectors, channel, of_band)
+                Recorded::new(sectors, channel, of_band, revolutions)
             };
             let sectors = Sectors::of_channel(&channel.orders).into_iter();
             sectors.map(of_band).collect()
@@ -169,11 +184,22 @@ impl<'a> Run<'a> {
 impl<'a> Energies<'a> {
     /// Of this problem.
     pub fn new(problem: &'a Problem) -> Self {
+        Self::above(problem, Noise::Mean)
+    }
+
+    /// The same where energies below the noise of a single revolution are not told apart, for a search from far away: what is that
+    /// quiet has many small valleys.
+    pub fn loud(problem: &'a Problem) -> Self {
+        Self::above(problem, Noise::Revolution)
+    }
+
+    fn above(problem: &'a Problem, noise: Noise) -> Self {
         let runs = problem.runs.iter();
-        let runs = runs.map(Run::new).collect();
+        let runs = runs.map(|run| Run::new(run, noise)).collect();
         Self {
             problem,
             machine: Superposition::new(problem),
+            noise,
             runs,
         }
     }
@@ -241,18 +267,19 @@ impl LeastSquares for Energies<'_> {
     }
 
     fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        self.problem.once_each(&"energies", all, |unknown| {
-            let runs = unknown
-                .iter()
-                .flat_map(|x| self.runs.iter().map(move |run| (run, &x[..])));
-            let runs: Vec<_> = runs.collect();
-            let parts: Vec<Vec<f64>> = runs
-                .par_chunks(to_a_thread(runs.len()))
-                .flat_map_iter(|runs| self.of_runs(runs))
-                .collect();
-            let of_each = parts.chunks(self.runs.len().max(1));
-            of_each.map(<[Vec<f64>]>::concat).collect()
-        })
+        self.problem
+            .once_each(&("energies", self.noise), all, |unknown| {
+                let runs = unknown
+                    .iter()
+                    .flat_map(|x| self.runs.iter().map(move |run| (run, &x[..])));
+                let runs: Vec<_> = runs.collect();
+                let parts: Vec<Vec<f64>> = runs
+                    .par_chunks(to_a_thread(runs.len()))
+                    .flat_map_iter(|runs| self.of_runs(runs))
+                    .collect();
+                let of_each = parts.chunks(self.runs.len().max(1));
+                of_each.map(<[Vec<f64>]>::concat).collect()
+            })
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
@@ -263,7 +290,9 @@ impl LeastSquares for Energies<'_> {
             });
             whole.as_slice().to_vec()
         };
-        let values = self.problem.once(&"derivatives of energies", x, columns);
+        let values = self
+            .problem
+            .once(&("derivatives of energies", self.noise), x, columns);
         DMatrix::from_vec(self.count(), x.len(), values)
     }
 }
@@ -314,7 +343,7 @@ mod tests {
     }
 
     fn shown(run: &Observation) -> Run<'_> {
-        Run::new(run)
+        Run::new(run, Noise::Mean)
     }
 
     fn predicted(amplitude: Vec<Complex64>, derivatives: Vec<Vec<Vec<Complex64>>>) -> Prediction {

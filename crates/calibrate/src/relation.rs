@@ -26,9 +26,6 @@ pub enum Relation {
 /// Exponents that a fit of the relation starts from, and keeps where they are not identifiable: those of Eq. (5),
 /// of stiffness and damping.
 const NOMINAL: [f64; 2] = [0.0, -0.2];
-/// Exponents of stiffness and damping by the named relations, for a contact of Hertz's exponent: constant, Eq. (5), conformal.
-pub(crate) const KNOWN: [[f64; 2]; 3] =
-    [[0.0, 0.0], NOMINAL, [CONFORMAL, CONFORMAL / (HERTZ + 1.0)]];
 /// Exponent of the clearance that the stiffness of a conformal bearing follows.
 const CONFORMAL: f64 = -0.5;
 /// Exponent of the penetration in Hertz's law, which is that of a contact that states none.

@@ -6,7 +6,6 @@
 use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::model::Model;
-use super::screen::{AT_ONCE, few};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate, linearized};
@@ -42,6 +41,10 @@ const FINE: [Stage; 4] = [
     Stage::Lines(0.001, 20),
     Stage::Lines(0.0, 40),
 ];
+/// Runs that are looked at roughly.
+const RUNS: usize = 3;
+/// Rough descents before the search may be stopped.
+const AT_ONCE: usize = 16;
 /// Ends of rough descents that are followed with all runs.
 const FOLLOWED: usize = 3;
 /// Relative change of the sum of squares at which a stage ends.
@@ -60,6 +63,18 @@ pub(super) struct Led {
     pub x: Vec<f64>,
     /// What is left there, in the units of the last stage: with lines, twice the negative logarithm of the likelihood.
     pub left: f64,
+}
+
+/// The problem with a few of its runs, of speeds as different as there are.
+pub(super) fn few(problem: &Problem) -> Problem {
+    let mut runs: Vec<&Observation> = problem.runs.iter().collect();
+    runs.sort_by(|a, b| a.crank.speed.total_cmp(&b.crank.speed));
+    let last = runs.len().saturating_sub(1);
+    let chosen: Vec<String> = (0..RUNS)
+        .filter_map(|i| runs.get(i * last / (RUNS - 1)))
+        .map(|run| run.id.clone())
+        .collect();
+    problem.with_runs(|run| chosen.contains(&run.id))
 }
 
 /// Where short descents from these starts lead with a few of the runs, the best first.

@@ -114,25 +114,6 @@ impl Model {
         parameters.map(of).collect()
     }
 
-    /// The coordinates `x` with each of the known relations between clearances beside that of the machine file, where exponents
-    /// are unknown.
-    pub fn related(&self, x: &[f64]) -> Vec<Vec<f64>> {
-        let of = |[stiffness, damping]: [f64; 2]| {
-            let mut x = x.to_vec();
-            for (x, parameter) in x.iter_mut().zip(&self.problem.parameters) {
-                if parameter.path.ends_with(".relation.stiffness") {
-                    *x = parameter.coordinate(stiffness);
-                } else if parameter.path.ends_with(".relation.damping") {
-                    *x = parameter.coordinate(damping);
-                }
-            }
-            x
-        };
-        let all = relation::KNOWN.map(of).into_iter();
-        let differs = |y: &Vec<f64>| y.iter().zip(x).any(|(a, b)| (a - b).abs() > 1e-9);
-        all.filter(differs).collect()
-    }
-
     /// By how much the logarithm of the contact parameter at `path` differs, at the coordinates `x`, from that by the relation
     /// of the machine file; none where no exponent says so.
     fn moved(&self, path: &str, x: &[f64]) -> Option<f64> {
@@ -256,26 +237,6 @@ mod tests {
         assert_eq!(y[place(&fitted, "friction.coefficient")], 0.0);
         let value = fitted.problem.parameters[0].value(y[0]);
         assert!((value - 2.5e-4).abs() < 1e-18);
-    }
-
-    #[test]
-    fn the_known_relations_are_those_that_the_file_does_not_have() {
-        let exponents = |relation: &str| -> Vec<[f64; 2]> {
-            let related = model(&healthy(relation), Contacts::Related);
-            let x = vec![0.0; related.problem.parameters.len()];
-            let value = |x: &[f64], ends: &str| {
-                let place = place(&related, ends);
-                let exponent = related.problem.parameters[place].value(x[place]);
-                (1e9 * exponent).round() / 1e9
-            };
-            let all = related.related(&x);
-            all.iter()
-                .map(|x| ["relation.stiffness", "relation.damping"].map(|key| value(x, key)))
-                .collect()
-        };
-        assert_eq!(exponents("eq5"), [[0.0, 0.0], [-0.5, -0.2]]);
-        assert_eq!(exponents("constant"), [[0.0, -0.2], [-0.5, -0.2]]);
-        assert_eq!(exponents("conformal"), [[0.0, 0.0], [0.0, -0.2]]);
     }
 
     #[test]
