@@ -28,7 +28,7 @@ const TIMINGS: [f64; 4] = [0.1, 0.03, 0.01, 0.003];
 /// Points per parameter that are looked at with the coarsest timing, and the best of them from which
 /// the search descends.
 const POINTS_PER_PARAMETER: usize = 4;
-const STARTS: usize = 8;
+pub(crate) const STARTS: usize = 8;
 /// By how much a coordinate is moved out of a local minimum: a third of a value, about as much as
 /// design values are wrong.
 const KICK: f64 = 0.3;

@@ -40,7 +40,7 @@ const CHANCE: f64 = 2.0;
 /// that adds.
 const SHOWN: f64 = 1.0;
 /// The damping of a step to begin with, over the most that is known of a direction, and how often it is doubled.
-const DAMPING: f64 = 1e-6;
+pub(crate) const DAMPING: f64 = 1e-6;
 const DOUBLINGS: i32 = 100;
 
 /// The best fit within bounds that clouds from `start` on lead to, and the information there. Ends early where more than the

@@ -9,6 +9,7 @@ use super::descent::Led;
 use super::effort::Effort;
 use crate::likelihood::FAILED;
 use crate::optimiser::LeastSquares;
+use crate::statistical_linearization::DAMPING;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
@@ -25,8 +26,7 @@ const GO_ON: usize = 2;
 const NEAR: f64 = 1.3;
 /// How far a step leads at most, over the half width of the cloud. Half of each step is looked at, too.
 const STEP: f64 = 1.5;
-/// The damping of a step to begin with, over the mean square of slopes, and by what it grows until the step is short enough.
-const DAMPING: f64 = 1e-6;
+/// By what the damping of a step grows until the step is short enough.
 const MORE: f64 = 3.0;
 const MOST_DAMPINGS: usize = 60;
 

@@ -15,12 +15,12 @@ use crate::error::Error;
 use crate::optimiser::LeastSquares;
 use crate::prior::WithPriors;
 use crate::problem::Problem;
+use crate::search::STARTS;
 use crate::stages::Stage;
 use std::collections::BTreeMap;
 
-/// Points that are drawn for each clear joint, and descents from the best of them.
+/// Points that are drawn for each clear joint.
 const DRAWN: usize = 64;
-const STARTS: usize = 8;
 /// Points that are looked at side by side, before the search may be stopped.
 const AT_ONCE: usize = 64;
 /// Half the width of a cloud to begin with: of the logarithm of a clearance, and of what is known before, in standard deviations.
