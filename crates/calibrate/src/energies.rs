@@ -225,6 +225,44 @@ impl<'a> Energies<'a> {
         residuals.map(squares).collect()
     }
 
+    /// Where exchanges of throws lead from this choice of a point for each throw, and what is left there.
+    fn exchange(&self, all: &[Vec<f64>], mut chosen: Vec<usize>) -> (Vec<usize>, f64) {
+        let mut least = self.squares_of_mixture(&points(all, &chosen));
+        let mut unchanged = 0;
+        for throw in (0..chosen.len()).cycle() {
+            if unchanged == chosen.len() {
+                break;
+            }
+            let with = |number: usize| {
+                let mut chosen = chosen.clone();
+                chosen[throw] = number;
+                (number, self.squares_of_mixture(&points(all, &chosen)))
+            };
+            let each: Vec<(usize, f64)> = (0..all.len()).into_par_iter().map(with).collect();
+            let best = each.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+            match best.filter(|(_, left)| *left < least) {
+                Some((number, left)) => {
+                    (chosen[throw], least) = (number, left);
+                    unchanged = 1;
+                }
+                None => unchanged += 1,
+            }
+        }
+        (chosen, least)
+    }
+
+    /// The squares of a machine whose throws are each at one of these points; infinite where it cannot be simulated.
+    fn squares_of_mixture(&self, points: &[&[f64]]) -> f64 {
+        let of_run = |run: &Run| {
+            let prediction = self.machine.mixture(run.observed, points);
+            prediction.map_or(f64::INFINITY, |prediction| {
+                let residuals = run.compared(&prediction, 0).0;
+                residuals.iter().map(|r| r * r).sum()
+            })
+        };
+        self.runs.iter().map(of_run).sum()
+    }
+
     /// The residuals of each of these runs at these coordinates.
     fn of_runs(&self, runs: &[(&Run, &[f64])]) -> Vec<Vec<f64>> {
         let wanted: Vec<_> = runs.iter().map(|(run, x)| (run.observed, *x)).collect();
@@ -247,6 +285,11 @@ impl<'a> Energies<'a> {
         let prediction = machine.with_derivatives(run.observed, x, Accuracy::Coarse)?;
         Ok(run.compared(&prediction, x.len()).1)
     }
+}
+
+/// The point that is chosen for each throw.
+fn points<'p>(all: &'p [Vec<f64>], chosen: &[usize]) -> Vec<&'p [f64]> {
+    chosen.iter().map(|number| &all[*number][..]).collect()
 }
 
 impl LeastSquares for Energies<'_> {
@@ -280,6 +323,24 @@ impl LeastSquares for Energies<'_> {
                 let of_each = parts.chunks(self.runs.len().max(1));
                 of_each.map(<[Vec<f64>]>::concat).collect()
             })
+    }
+
+    /// The best machines whose throws are each as in one of the points `all`, from so many of the first of these points: throw after throw is
+    /// exchanged for that of another point, as long as the squares become less. With what is left of each; the points themselves are
+    /// left out where the throws are not simulated by themselves.
+    fn mixed(&self, all: &[Vec<f64>], first: usize) -> Vec<(Vec<f64>, f64)> {
+        let throws = self.machine.throws();
+        let firsts = 0..if throws > 1 { first.min(all.len()) } else { 0 };
+        let mut found: Vec<(Vec<usize>, f64)> = Vec::new();
+        for number in firsts {
+            let end = self.exchange(all, vec![number; throws]);
+            if !found.contains(&end) {
+                found.push(end);
+            }
+        }
+        let point =
+            |(chosen, left): (Vec<usize>, f64)| (self.machine.mixed(&points(all, &chosen)), left);
+        found.into_iter().map(point).collect()
     }
 
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {

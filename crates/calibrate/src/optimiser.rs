@@ -22,6 +22,11 @@ pub trait LeastSquares {
     fn residuals_of_all(&self, all: &[Vec<f64>]) -> Vec<Vec<f64>> {
         all.iter().map(|x| self.residuals(x)).collect()
     }
+    /// Points that have some coordinates of one of `all` and some of another one, and whose sum of squares is least, from so many of
+    /// the first ones; with that sum. None where what coordinates add to the residuals cannot be taken apart.
+    fn mixed(&self, _all: &[Vec<f64>], _first: usize) -> Vec<(Vec<f64>, f64)> {
+        Vec::new()
+    }
     /// Their derivatives: a row per residual, a column per coordinate.
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64>;
 }

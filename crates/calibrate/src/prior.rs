@@ -59,6 +59,15 @@ impl<T: LeastSquares> LeastSquares for WithPriors<'_, T> {
         residuals
     }
 
+    fn mixed(&self, all: &[Vec<f64>], first: usize) -> Vec<(Vec<f64>, f64)> {
+        let mixed = self.inner.mixed(all, first).into_iter();
+        let with_priors = |(x, left): (Vec<f64>, f64)| {
+            let left = left + squares(self.priors, &x);
+            (x, left)
+        };
+        mixed.map(with_priors).collect()
+    }
+
     fn jacobian(&self, x: &[f64]) -> DMatrix<f64> {
         let inner = self.inner.jacobian(x);
         let rows = inner.nrows();

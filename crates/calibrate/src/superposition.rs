@@ -15,7 +15,7 @@ use std::ops::AddAssign;
 use std::sync::{Arc, Mutex};
 
 /// Predictions of throws that are kept.
-const KEPT: usize = 2048;
+const KEPT: usize = 4096;
 
 /// Predictions of a problem, from those of its throws where it can be taken apart.
 pub(crate) struct Superposition<'a> {
@@ -106,6 +106,40 @@ impl<'a> Superposition<'a> {
             }
         }
         sums
+    }
+
+    /// How many throws are simulated by themselves.
+    pub fn throws(&self) -> usize {
+        self.throws.len()
+    }
+
+    /// The coordinates of a machine whose throws have those that each of them has at one of these points. What several throws share is in the
+    /// middle of their values.
+    pub fn mixed(&self, points: &[&[f64]]) -> Vec<f64> {
+        let mut mixed = points.first().map_or(Vec::new(), |x| x.to_vec());
+        for (place, x) in mixed.iter_mut().enumerate() {
+            let throws = self.throws.iter().zip(points);
+            let of = throws.filter(|(throw, _)| throw.parameters.contains(&place));
+            let of: Vec<f64> = of.map(|(_, point)| point[place]).collect();
+            if !of.is_empty() {
+                *x = of.iter().sum::<f64>() / of.len() as f64;
+            }
+        }
+        mixed
+    }
+
+    /// What the machine shows in a run whose throws are each at one of these points; rough. None where one cannot be simulated.
+    pub fn mixture(&self, run: &Observation, points: &[&[f64]]) -> Option<Prediction> {
+        let mut sum = nothing(run, 0);
+        for ((i, throw), x) in self.throws.iter().enumerate().zip(points) {
+            let Some(part) = throw.part(run, x) else {
+                continue;
+            };
+            let shares = self.shares((i, throw), std::iter::once(&part), Accuracy::Rough);
+            let share = shares.into_values().next()?.ok()?;
+            add(&mut sum, run, (throw, part.0, &share));
+        }
+        Some(sum)
     }
 
     /// What a throw shows in these runs at these coordinates of its own.
@@ -298,6 +332,21 @@ mod tests {
         assert!(10 * one < 7 * both, "{one} of {both}");
         let [a, b] = [&rough, &whole].map(|of| &of.lines[0].amplitude);
         assert!(apart(a, b) < 5e-2, "{}", apart(a, b));
+    }
+
+    #[test]
+    fn throws_of_two_points_are_mixed() {
+        let problem = problem([
+            "frame_acceleration_x_m_s2",
+            "throw2.crosshead_acceleration_m_s2",
+        ]);
+        let parts = Superposition::new(&problem);
+        let run = &problem.runs[0];
+        let points = [&[0.3, -0.2][..], &[0.1, 0.4][..]];
+        assert_eq!(parts.mixed(&points), [0.3, 0.4]);
+        let mixture = parts.mixture(run, &points).unwrap();
+        let mut same = parts.predictions(&[(run, &[0.3, 0.4])], Accuracy::Rough);
+        assert_eq!(mixture.lines, same.remove(0).unwrap().lines);
     }
 
     #[test]

@@ -163,7 +163,7 @@ fn descents(
     (found.into_iter().map(|found| found.x).collect(), spent)
 }
 
-/// The fit of a model from `x`, with intervals. What is not identifiable keeps its value at `x`.
+/// The fit of a model from `x`, with intervals. What is not identifiable there keeps its value.
 ///
 /// # Errors
 /// As [`calibrate`].
@@ -176,13 +176,24 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
     if scatters || !repeats(&model.problem, &x) {
         return without_derivatives(model, &x, effort);
     }
-    let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
     let likelihood = Likelihood::new(&model.problem);
-    let begun = levenberg_marquardt(&likelihood, &x, CHANGE, BEGINNING, &mut watch)?;
-    effort.spent += begun.evaluations;
-    let most = if begun.misfit() > FAR { 1 } else { LAST };
+    let mut led = Progress {
+        x,
+        cost: f64::INFINITY,
+        count: 1,
+        evaluations: 0,
+    };
+    for most in [BEGINNING, LAST] {
+        let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
+        led = levenberg_marquardt(&likelihood, &led.x, CHANGE, most, &mut watch)?;
+        effort.spent += led.evaluations;
+        if led.misfit() > FAR {
+            break;
+        }
+    }
+    let most = if led.misfit() > FAR { 1 } else { LAST };
     let mut problem = model.problem.clone();
-    for (parameter, x) in problem.parameters.iter_mut().zip(&begun.x) {
+    for (parameter, x) in problem.parameters.iter_mut().zip(&led.x) {
         parameter.nominal = parameter.value(*x);
     }
     let settings = FitSettings {

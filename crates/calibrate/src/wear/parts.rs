@@ -15,6 +15,8 @@ const COMBINED: usize = 2;
 
 /// A part of a model.
 pub(super) struct Part {
+    /// How many parts there are.
+    pub of: usize,
     /// Its own model.
     pub model: Model,
     /// The places of its coordinates among those of the whole.
@@ -32,11 +34,14 @@ pub(super) fn parts(model: &Model) -> Result<Vec<Part>, Error> {
     let whole = (0..model.problem.parameters.len()).all(|place| held.contains(&place));
     if throws.is_empty() || !whole || !throws.iter().all(shown) {
         return Ok(vec![Part {
+            of: 1,
             places: (0..model.problem.parameters.len()).collect(),
             model: model.clone(),
         }]);
     }
-    Ok(throws.into_iter().map(|throw| part(model, throw)).collect())
+    let of = throws.len();
+    let parts = throws.into_iter().map(|throw| part(model, throw, of));
+    Ok(parts.collect())
 }
 
 /// Whether every run has a channel that shows clearances.
@@ -45,7 +50,7 @@ fn shows_motion(problem: &Problem) -> bool {
     runs.all(|run| run.channels.iter().any(|c| !c.quantity().is_pressure()))
 }
 
-fn part(model: &Model, throw: ThrowAlone) -> Part {
+fn part(model: &Model, throw: ThrowAlone, of: usize) -> Part {
     let places = throw.parameters;
     let clear = places.iter().filter_map(|place| model.clear.get(*place));
     let prior = |(place, whole): (usize, &usize)| {
@@ -57,6 +62,7 @@ fn part(model: &Model, throw: ThrowAlone) -> Part {
         })
     };
     Part {
+        of,
         model: Model {
             clear: clear.copied().collect(),
             contacts: model.contacts,

@@ -14,9 +14,6 @@ use crate::optimiser::LeastSquares;
 use crate::problem::Problem;
 use crate::stages::Stage;
 
-/// Sets of the same size that are fitted, and to which one more joint is added: the best by energies.
-const BEST: usize = 3;
-
 /// A model with its fit.
 pub(super) struct Found {
     /// The model.
@@ -59,33 +56,16 @@ pub(super) fn selected(
     let found = search.near_file(&model, &at, effort);
     effort.ends();
     let mut best = found?;
-    let mut wider = vec![Vec::new()];
-    let mut least = f64::INFINITY;
     let mut ended: Vec<Ends> = Vec::new();
-    while !wider.is_empty() && search.goes_on(&best, effort) {
-        let mut level = Vec::new();
-        for more in std::mem::take(&mut wider) {
-            level.push((sets.ends(&more, effort)?, more));
-        }
-        level.sort_by(|a, b| a.0.criterion.total_cmp(&b.0.criterion));
-        level.truncate(BEST);
-        let before = least;
-        for (ends, more) in level {
-            if !search.goes_on(&best, effort) {
-                break;
+    if search.goes_on(&best, effort) {
+        best = search.with_set(best, sets.ends(&[], effort)?, &mut ended, effort)?;
+    }
+    if search.goes_on(&best, effort) {
+        for more in sets.likely(effort)? {
+            if search.goes_on(&best, effort) {
+                best = search.with_set(best, sets.ends(&more, effort)?, &mut ended, effort)?;
             }
-            effort.begins(Stage::Clearances);
-            let found = search.better(best, &ends.model, ends.led.clone(), effort);
-            effort.ends();
-            best = found?;
-            if ends.criterion < before {
-                least = least.min(ends.criterion);
-                wider.extend(with_one_more(&more, &sets.ideal()));
-            }
-            ended.push(ends);
         }
-        wider.sort();
-        wider.dedup();
     }
     if !search.goes_on(&best, effort) {
         return Ok(best);
@@ -94,17 +74,6 @@ pub(super) fn selected(
     let found = search.with_contacts(best, &ended, effort);
     effort.ends();
     found
-}
-
-/// These joints and one of the others, in ascending order.
-fn with_one_more(joints: &[usize], all: &[usize]) -> Vec<Vec<usize>> {
-    let others = all.iter().filter(|joint| !joints.contains(joint));
-    let with = |other: &usize| {
-        let mut with = [joints, &[*other]].concat();
-        with.sort_unstable();
-        with
-    };
-    others.map(with).collect()
 }
 
 /// A search under way.
@@ -127,6 +96,21 @@ impl Search<'_> {
         let led = roughly(&model, &[at], effort);
         let x = finely(&model, led, effort)?;
         self.settled(&model, x, effort)
+    }
+
+    /// The better one of `best` and the fits that descents from the ends of a set lead to, which are added to `ended`.
+    fn with_set(
+        &self,
+        best: Found,
+        ends: Ends,
+        ended: &mut Vec<Ends>,
+        effort: &mut Effort,
+    ) -> Result<Found, Error> {
+        effort.begins(Stage::Clearances);
+        let found = self.better(best, &ends.model, ends.led.clone(), effort);
+        effort.ends();
+        ended.push(ends);
+        found
     }
 
     /// The better one of `best` and the fits that descents from these ends lead to.
@@ -219,16 +203,4 @@ fn judged(model: Model, fit: Fit) -> Result<Found, Error> {
         fit,
         criterion,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_set_is_followed_by_those_with_one_joint_more() {
-        assert_eq!(with_one_more(&[], &[2, 5]), [[2], [5]]);
-        assert_eq!(with_one_more(&[5], &[2, 5, 7]), [[2, 5], [5, 7]]);
-        assert!(with_one_more(&[2, 5], &[2, 5]).is_empty());
-    }
 }

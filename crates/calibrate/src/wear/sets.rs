@@ -1,7 +1,7 @@
 //! Where a search leads for each set of joints that are clear.
 //!
 //! Joints act on each other, and those that are clear make up for one that is missing. So all clearances of a set are searched
-//! at once: by energies, which have few minima, from many points.
+//! at once: by energies, which have few minima, from many points. The best of these points says already which sets are likely.
 
 use super::cloud::{Width, descended};
 use super::descent::{Led, few};
@@ -9,7 +9,7 @@ use super::draws::draws;
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
-use super::parts::{joined, parts};
+use super::parts::{Part, joined, parts};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::optimiser::LeastSquares;
@@ -23,9 +23,16 @@ use std::collections::BTreeMap;
 const DRAWN: usize = 64;
 /// Points that are looked at side by side, before the search may be stopped.
 const AT_ONCE: usize = 64;
+/// The best points of which parts are exchanged for those of others.
+const MIXED: usize = 16;
 /// Half the width of a cloud to begin with: of the logarithm of a clearance, and of what is known before, in standard deviations.
 const CLEARANCE: f64 = 0.5;
 const SPREADS: f64 = 1.0;
+/// Sets of the same size to which one more joint is added, and sets that are searched: the best by the points that are drawn.
+const BEST: usize = 3;
+
+/// A part of the machine: how many there are, and which of its joints are clear.
+type OfPart = (usize, Vec<usize>);
 
 /// A search over sets of joints.
 pub(super) struct Sets<'a> {
@@ -35,8 +42,9 @@ pub(super) struct Sets<'a> {
     joints: &'a [Joint],
     /// Where what else is unknown begins.
     x: &'a [f64],
-    /// The ends of each part of the machine with each set of its joints.
-    known: BTreeMap<(usize, Vec<usize>), Vec<Led>>,
+    /// Points that were drawn for each part of the machine with each set of its joints, and where descents from them have led.
+    drawn: BTreeMap<OfPart, Vec<Led>>,
+    ended: BTreeMap<OfPart, Vec<Led>>,
 }
 
 /// A set with where descents have led.
@@ -45,8 +53,6 @@ pub(super) struct Ends {
     pub model: Model,
     /// The ends, the best one first.
     pub led: Vec<Led>,
-    /// What is left of the energies at the best end, and ln n for each clearance (Schwarz 1978).
-    pub criterion: f64,
 }
 
 impl<'a> Sets<'a> {
@@ -56,7 +62,8 @@ impl<'a> Sets<'a> {
             healthy,
             joints,
             x,
-            known: BTreeMap::new(),
+            drawn: BTreeMap::new(),
+            ended: BTreeMap::new(),
         }
     }
 
@@ -75,10 +82,55 @@ impl<'a> Sets<'a> {
         Ok((model, at))
     }
 
-    /// Joints that are ideal in the machine file.
-    pub fn ideal(&self) -> Vec<usize> {
+    /// Sets of joints that are ideal in the machine file, but may be clear, the likeliest first: with each joint more the best point that
+    /// is drawn is better.
+    ///
+    /// # Errors
+    /// An invalid machine.
+    pub fn likely(&mut self, effort: &mut Effort) -> Result<Vec<Vec<usize>>, Error> {
         let all = 0..self.joints.len();
-        all.filter(|i| self.joints[*i].stated.is_none()).collect()
+        let ideal: Vec<usize> = all.filter(|i| self.joints[*i].stated.is_none()).collect();
+        let mut level = vec![(Vec::new(), self.criterion(&[], effort)?)];
+        let mut likely = Vec::new();
+        while !level.is_empty() {
+            let mut wider: Vec<(Vec<usize>, f64)> = Vec::new();
+            for (joints, before) in &level {
+                for more in with_one_more(joints, &ideal) {
+                    let criterion = self.criterion(&more, effort)?;
+                    if criterion < *before && !wider.iter().any(|(known, _)| *known == more) {
+                        wider.push((more, criterion));
+                    }
+                }
+            }
+            wider.sort_by(|a, b| a.1.total_cmp(&b.1));
+            wider.truncate(BEST);
+            likely.extend(wider.iter().cloned());
+            level = wider;
+        }
+        likely.sort_by(|a, b| a.1.total_cmp(&b.1));
+        likely.truncate(BEST);
+        Ok(likely.into_iter().map(|(joints, _)| joints).collect())
+    }
+
+    /// What is left of the energies at the best point that is drawn with these ideal joints clear, too, and ln n for each clearance (Schwarz
+    /// 1978).
+    fn criterion(&mut self, more: &[usize], effort: &mut Effort) -> Result<f64, Error> {
+        let (model, at) = self.model(more)?;
+        let mut left = 0.0;
+        for part in &parts(&model)? {
+            let best = self.drawn(part, &at, effort).first();
+            left += best.map_or(f64::INFINITY, |best| best.left);
+        }
+        let count = Energies::loud(&few(&model.problem)).count() as f64;
+        Ok(left + model.clear.len() as f64 * count.ln())
+    }
+
+    /// Points of a part, the best one first.
+    fn drawn(&mut self, part: &Part, at: &[f64], effort: &mut Effort) -> &[Led] {
+        let asked = (part.of, part.model.clear.clone());
+        let joints = self.joints;
+        let new = || drawn(&part.model, joints, &part.of_whole(at), effort);
+        self.drawn.entry(asked).or_insert_with(new)
     }
 
     /// Where descents lead with these ideal joints clear, too.
@@ -90,27 +142,39 @@ impl<'a> Sets<'a> {
         let parts = parts(&model)?;
         let mut ends = Vec::new();
         for part in &parts {
-            let asked = (parts.len(), part.model.clear.clone());
-            let led = match self.known.remove(&asked) {
+            let asked = (part.of, part.model.clear.clone());
+            let led = match self.ended.remove(&asked) {
                 Some(led) => led,
-                None => ends_of(&part.model, self.joints, &part.of_whole(&at), effort),
+                None => {
+                    let drawn = self.drawn(part, &at, effort);
+                    let starts: Vec<Vec<f64>> =
+                        drawn.iter().take(STARTS).map(|led| led.x.clone()).collect();
+                    ends_of(&part.model, &starts, effort)
+                }
             };
-            self.known.insert(asked, led.clone());
+            self.ended.insert(asked, led.clone());
             ends.push(led);
         }
-        let led = joined(&parts, &ends, &at);
-        let count = Energies::loud(&few(&model.problem)).count() as f64;
-        let left = led.first().map_or(f64::INFINITY, |led| led.left);
         Ok(Ends {
-            criterion: left + model.clear.len() as f64 * count.ln(),
+            led: joined(&parts, &ends, &at),
             model,
-            led,
         })
     }
 }
 
-/// The ends of descents from the best of many points of a model, the best one first.
-fn ends_of(model: &Model, joints: &[Joint], x: &[f64], effort: &mut Effort) -> Vec<Led> {
+/// These joints and one of the others, in ascending order.
+fn with_one_more(joints: &[usize], all: &[usize]) -> Vec<Vec<usize>> {
+    let others = all.iter().filter(|joint| !joints.contains(joint));
+    let with = |other: &usize| {
+        let mut with = [joints, &[*other]].concat();
+        with.sort_unstable();
+        with
+    };
+    others.map(with).collect()
+}
+
+/// Points that are drawn for a model, and those that combine parts of them, the best one first.
+fn drawn(model: &Model, joints: &[Joint], x: &[f64], effort: &mut Effort) -> Vec<Led> {
     let few = few(&model.problem);
     let energies = Energies::loud(&few);
     let compared = WithPriors {
@@ -134,15 +198,42 @@ fn ends_of(model: &Model, joints: &[Joint], x: &[f64], effort: &mut Effort) -> V
         drawn.extend(led);
         effort.evaluated(points.len() as u64);
     }
+    drawn.sort_by(|a, b| a.left.total_cmp(&b.left));
+    let points: Vec<Vec<f64>> = drawn.iter().map(|led| led.x.clone()).collect();
+    let first = if effort.stopped { 0 } else { MIXED };
+    let mixed = compared.mixed(&points, first).into_iter();
+    drawn.extend(mixed.map(|(x, left)| Led { x, left }));
     effort.ends();
     drawn.sort_by(|a, b| a.left.total_cmp(&b.left));
-    let starts: Vec<Vec<f64>> = drawn.into_iter().take(STARTS).map(|led| led.x).collect();
+    drawn
+}
+
+/// The ends of descents of a model from these points, the best one first.
+fn ends_of(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -> Vec<Led> {
+    let few = few(&model.problem);
+    let energies = Energies::loud(&few);
+    let compared = WithPriors {
+        inner: &energies,
+        priors: &model.priors,
+    };
     let clearances = (0..model.clear.len()).map(|place| (place, CLEARANCE));
     let priors = model.priors.iter();
     let priors = priors.map(|prior| (prior.place, SPREADS * prior.spread));
     let widths: Vec<Width> = clearances.chain(priors).collect();
     effort.begins(Stage::Clearances);
-    let led = descended(&compared, &starts, &widths, effort);
+    let led = descended(&compared, starts, &widths, effort);
     effort.ends();
     led
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_set_is_followed_by_those_with_one_joint_more() {
+        assert_eq!(with_one_more(&[], &[2, 5]), [[2], [5]]);
+        assert_eq!(with_one_more(&[5], &[2, 5, 7]), [[2, 5], [5, 7]]);
+        assert!(with_one_more(&[2, 5], &[2, 5]).is_empty());
+    }
 }
