@@ -11,8 +11,8 @@
 //! 3. Where they end above the noise, all clearances are searched at once, by energies: from the best of many points that are drawn,
 //!    through clouds of points that become narrower. The best ends are descended from.
 //! 4. From there the file's own relation and free contact parameters are fitted too. Schwarz's criterion (1978) decides.
-//! 5. Where still more than noise is left, the same is done for each set with one more joint that is ideal in the file, then with two
-//!    more, as long as energies favour it. Only then follow free contact parameters from all ends.
+//! 5. Where still more than noise is left, the same is done for sets with more joints that are ideal in the file: those whose best
+//!    drawn points are better than with one joint less. Only then follow free contact parameters from all ends.
 //! 6. Intervals follow as those of a calibration, and include a tolerance of contact parameters that were not fitted. Where the
 //!    model is wrong, the size of its discrepancy is estimated as an error of timing. What follows is a range that includes it.
 //! 7. A motion that does not repeat itself has no derivatives, be it recorded or that of the best fit. The last fit and the
