@@ -292,6 +292,7 @@ mod tests {
                 lines: lines(turned.collect()),
                 orders: (0..model.len()).collect(),
             }],
+            warm_start: None,
         };
         let predicted = Prediction::new(vec![lines(model.to_vec())], true);
         (observed, predicted)

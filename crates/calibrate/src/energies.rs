@@ -400,6 +400,7 @@ mod tests {
                 lines: lines(amplitude),
                 scatter: Vec::new(),
             }],
+            warm_start: None,
         }
     }
 

@@ -22,6 +22,7 @@
 
 pub mod alignment;
 mod bounded;
+mod branch;
 pub mod bundle;
 pub mod bundle_replay;
 pub mod calibration;

@@ -18,7 +18,7 @@ pub const NOISE: f64 = 1.15;
 /// are never trusted beyond it.
 const ACCURACY: f64 = 2e-5;
 /// Simulations of a motion that scatters over which something is a mean, and by how much their coordinates differ.
-const SAMPLES: u32 = 8;
+pub(crate) const SAMPLES: u32 = 8;
 const BESIDE: f64 = 1e-6;
 /// Residual that stands in for every one of a run that cannot be simulated.
 pub(crate) const FAILED: f64 = 1e3;
@@ -89,10 +89,9 @@ impl<'a> Likelihood<'a> {
     pub(crate) fn samples(&self, x: &[f64]) -> Vec<Vec<f64>> {
         let count = match self.problem.runs.iter().all(Observation::repeats) {
             true => 1,
-            false => SAMPLES,
+            false => SAMPLES as usize,
         };
-        let beside = |number| x.iter().map(|x| x + f64::from(number) * BESIDE).collect();
-        (0..count).map(beside).collect()
+        beside(x).take(count).collect()
     }
 
     /// The allowance among `timings` with which the recordings are likeliest at `x`, and the deviance there.
@@ -275,6 +274,11 @@ impl Likelihood<'_> {
             }
         })
     }
+}
+
+/// Coordinates so near to `x`, itself first, that their machines are the same but for how their motions begin to part.
+pub(crate) fn beside(x: &[f64]) -> impl Iterator<Item = Vec<f64>> {
+    (0..SAMPLES).map(|number| x.iter().map(|x| x + f64::from(number) * BESIDE).collect())
 }
 
 /// The rows of each run, one under another.

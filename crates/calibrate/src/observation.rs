@@ -10,6 +10,7 @@ use serde_json::Value;
 use signal::angle_resampling::AngleGrid;
 use signal::crank_angle::CrankAngle;
 use signal::order_lines::{OrderLines, deviations, order_lines};
+use simulate::WarmStart;
 use simulate::sensor::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -95,6 +96,8 @@ pub struct Observation {
     pub crank: GivenSpeed,
     /// The observed channels.
     pub channels: Vec<Observed>,
+    /// The motion from which its simulations go on; they begin at rest without one.
+    pub warm_start: Option<WarmStart>,
 }
 
 /// The lines of one channel.
@@ -241,6 +244,7 @@ impl Observation {
             settings: run.settings.clone(),
             crank: crank_motion::recorded(&angle, run.sample_rate),
             channels,
+            warm_start: None,
         })
     }
 }
@@ -355,6 +359,7 @@ mod tests {
                 lines,
                 orders: vec![1],
             }],
+            warm_start: None,
         }
     }
 

@@ -11,7 +11,8 @@ use signal::crank_angle::CrankAngle;
 use signal::high_pass::HighPass;
 use signal::order_lines::{OrderLines, deviations};
 use simulate::{
-    Asked, Sensitivities, Sensor, Settings, Structure, Transient, sensitivities, settled_together,
+    Asked, Sensitivities, Sensor, Settings, Structure, Transient, WarmStart, sensitivities, settle,
+    settled_together,
 };
 use std::f64::consts::TAU;
 
@@ -162,6 +163,20 @@ pub(crate) fn predictions(
     all.into_iter().map(of).collect()
 }
 
+/// The motion that a run settles on from where its simulations begin, with the parameters at these coordinates; none where it
+/// does not settle.
+///
+/// # Errors
+/// As [`predict`].
+pub(crate) fn settled(
+    problem: &Problem,
+    run: &Observation,
+    x: &[f64],
+) -> Result<Option<WarmStart>, Error> {
+    let at = At::new(problem, run, x, Accuracy::Fine)?;
+    at.recorded(settle(&at.asked()))
+}
+
 /// The prediction of this accuracy, with derivatives.
 ///
 /// # Errors
@@ -194,12 +209,7 @@ pub(crate) fn with_derivatives(
         ..
     } = &at;
     let turning = *turning;
-    let Asked {
-        machine,
-        sensors,
-        settings,
-    } = at.asked();
-    let record = at.recorded(sensitivities(machine, sensors, &moved, settings))?;
+    let record = at.recorded(sensitivities(&at.asked(), &moved))?;
     problem.meter.add(record.steps);
     let periodic = record.settled;
     let shown = at.shown(&record)?;
@@ -317,13 +327,11 @@ impl<'a> At<'a> {
             machine: &self.machine.machine,
             sensors: &self.machine.sensors,
             settings: &self.settings,
+            warm_start: self.run.warm_start.as_ref(),
         }
     }
 
-    fn recorded(
-        &self,
-        record: Result<Sensitivities, simulate::Error>,
-    ) -> Result<Sensitivities, Error> {
+    fn recorded<T>(&self, record: Result<T, simulate::Error>) -> Result<T, Error> {
         record.map_err(|source| Error::Simulation {
             run: self.run.id.clone(),
             source,

@@ -169,6 +169,14 @@ impl Problem {
         })
     }
 
+    /// Takes over on which motion each run of another problem is.
+    pub(crate) fn take_over_branches(&mut self, other: &Self) {
+        for run in &mut self.runs {
+            let same = other.runs.iter().find(|other| other.id == run.id);
+            run.warm_start = same.and_then(|other| other.warm_start.clone());
+        }
+    }
+
     /// The same problem with a meter of its own.
     #[must_use]
     pub fn metered(&self) -> Self {

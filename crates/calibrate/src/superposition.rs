@@ -285,6 +285,7 @@ mod tests {
                     fluctuation: Vec::new(),
                 },
                 channels: columns.map(channel).into(),
+                warm_start: None,
             }],
             crank: CrankMotion::Driven,
             meter: Meter::default(),

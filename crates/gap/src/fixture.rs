@@ -72,6 +72,7 @@ pub(crate) fn problem_of(effects: Value) -> Problem {
                 variance: Vec::new(),
                 revolutions: 30,
             })],
+            warm_start: None,
         };
         let shown = predict(&truth, &run, &[0.0]).unwrap();
         let lines = shown.lines.into_iter().next().unwrap();

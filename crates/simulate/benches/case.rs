@@ -52,11 +52,7 @@ fn sixteen(c: &mut Criterion) {
     };
     let asked: Vec<Asked> = machines
         .iter()
-        .map(|resolved| Asked {
-            machine: &resolved.machine,
-            sensors: &resolved.sensors,
-            settings: &settings,
-        })
+        .map(|resolved| Asked::from_rest(&resolved.machine, &resolved.sensors, &settings))
         .collect();
     let mut group = c.benchmark_group("sixteen cases");
     group.bench_function("one by one", |b| {

@@ -1,11 +1,12 @@
 //! Many records at once: machines of one build run in lanes, and whoever is done makes room for the
 //! next.
 
+use crate::asked::Asked;
 use crate::error::Error;
 use crate::record::Record;
 use crate::recorder::Sensitivities;
 use crate::sampler::observe_lanes;
-use crate::task::{Asked, Kept, Task};
+use crate::task::{Kept, Task};
 use integrate::{Ensemble, Step, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};

@@ -9,6 +9,7 @@
 //! [`regime`] of a motion with its Lyapunov exponents. What its user looks at first: the
 //! [`indicator_card`] of each chamber and the [`rod_load`] of each throw.
 
+mod asked;
 pub mod bifurcation;
 mod chain;
 pub mod chamber;
@@ -39,6 +40,7 @@ pub mod sensitivity;
 pub mod sensor;
 pub mod sensors;
 pub mod settings;
+mod settle;
 mod simulate;
 mod slider_crank;
 mod span;
@@ -47,7 +49,9 @@ pub mod structure;
 mod tangents;
 mod task;
 pub mod trace;
+mod warm_start;
 
+pub use asked::Asked;
 pub use chamber::Chamber;
 pub use ensemble::{settled_together, simulate_together};
 pub use error::Error;
@@ -68,6 +72,7 @@ pub use sensor::{
     Structure,
 };
 pub use settings::{Settings, Transient, Unrecordable};
+pub use settle::settle;
 pub use simulate::{simulate, simulate_later, simulate_watched};
-pub use task::Asked;
 pub use trace::{JointTrace, ThrowTrace, Trace};
+pub use warm_start::WarmStart;

@@ -3,9 +3,8 @@
 use crate::error::Error;
 use crate::run::LONGEST_STEP;
 use crate::section::{Impact, Joint, JointPoint, Revolution, ThrowPoint, clear_joints};
+use crate::warm_start::rescale;
 use integrate::{Integrator, Step, System};
-use mechanism::joints::guide::Guide;
-use mechanism::joints::revolute::Revolute;
 use mechanism::mode::{ContactMode, Mode};
 use mechanism::{Dynamics, Machine};
 use std::f64::consts::TAU;
@@ -94,38 +93,6 @@ impl ReturnMap {
             if !self.integrator.state().iter().all(|y| y.is_finite()) {
                 return Err(Error::NotFinite { time: end });
             }
-        }
-    }
-}
-
-/// Offsets in `y` of a machine with other clearances.
-fn rescale(before: &Machine, dynamics: &Dynamics<f64>, y: &mut [f64]) {
-    let (after, layout) = (dynamics.machine(), dynamics.layout());
-    let mut journal = |at: Option<usize>, joints: [&_; 2]| {
-        let [old, new] = joints.map(Revolute::clear);
-        if let (Some(i), Some(old), Some(new)) = (at, old, new) {
-            let distance = y[i].hypot(y[i + 1]);
-            let depth = distance - old.clearance;
-            let factor = if depth > 0.0 {
-                (new.clearance + depth) / distance
-            } else {
-                new.clearance / old.clearance
-            };
-            y[i] *= factor;
-            y[i + 1] *= factor;
-        }
-    };
-    journal(layout.main, [&before.main, &after.main]);
-    let throws = before.throws.iter().zip(&after.throws);
-    for ((old, new), at) in throws.clone().zip(&layout.throws) {
-        journal(at.big_end, [&old.big_end, &new.big_end]);
-        journal(at.small_end, [&old.small_end, &new.small_end]);
-    }
-    for ((old, new), at) in throws.zip(&layout.throws) {
-        if let (Some(i), Guide::Clear(old), Guide::Clear(new)) = (at.guide, &old.guide, &new.guide)
-        {
-            y[i] *= new.clearance / old.clearance;
-            y[i + 1] *= new.clearance / old.clearance;
         }
     }
 }

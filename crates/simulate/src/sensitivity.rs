@@ -9,6 +9,7 @@
 pub use crate::moved::Moved;
 pub use crate::recorder::Sensitivities;
 
+use crate::asked::Asked;
 use crate::error::Error;
 use crate::orbit::Orbit;
 use crate::recorder::{Recorder, apart};
@@ -20,23 +21,24 @@ use integrate::Real;
 use mechanism::{Machine, lift};
 use scalar::Dual;
 
-/// Runs `machine` and records `sensors` with the derivatives toward each of `moved`. Of a motion that
+/// Runs a machine and records its sensors with the derivatives toward each of `moved`. Of a motion that
 /// settles no more is recorded than its period, and a revolution beyond where the crank is free and
 /// does not keep to its reference speed. Of one that was to settle and does not there are no
 /// derivatives. A motion that takes some 50 times as many steps as a usual one is given up.
 ///
 /// # Errors
 /// As [`simulate`](crate::simulate()).
-pub fn sensitivities(
-    machine: &Machine,
-    sensors: &[Sensor],
-    moved: &[Moved],
-    settings: &Settings,
-) -> Result<Sensitivities, Error> {
+pub fn sensitivities(asked: &Asked, moved: &[Moved]) -> Result<Sensitivities, Error> {
+    let Asked {
+        machine,
+        sensors,
+        settings,
+        ..
+    } = *asked;
     if matches!(settings.transient, Transient::Revolutions(_)) {
-        return from_start(machine, sensors, moved, settings);
+        return from_start(asked, moved);
     }
-    let mut run = Run::start(lift::constants(machine), settings.tolerance, false);
+    let mut run = Run::begin(asked, machine.clone(), false);
     run.hurry();
     let (transient, period) = run.leave_transient(settings.transient)?;
     let Some(period) = period else {
@@ -66,16 +68,11 @@ pub fn sensitivities(
 
 /// The derivatives of the motion from its start, eight of them at a time; the last tangents of an
 /// incomplete chunk are 0.
-fn from_start(
-    machine: &Machine,
-    sensors: &[Sensor],
-    moved: &[Moved],
-    settings: &Settings,
-) -> Result<Sensitivities, Error> {
+fn from_start(asked: &Asked, moved: &[Moved]) -> Result<Sensitivities, Error> {
     let part = |chunk: &[Moved]| match chunk.len() {
-        0 => values(machine, sensors, settings),
-        1 => tangents::<1>(machine, sensors, chunk, settings),
-        _ => tangents::<8>(machine, sensors, chunk, settings),
+        0 => values(asked),
+        1 => tangents::<1>(asked, chunk),
+        _ => tangents::<8>(asked, chunk),
     };
     let mut chunks = moved.chunks(8);
     let mut all = part(chunks.next().unwrap_or_default())?;
@@ -87,12 +84,14 @@ fn from_start(
     Ok(all)
 }
 
-fn values(
-    machine: &Machine,
-    sensors: &[Sensor],
-    settings: &Settings,
-) -> Result<Sensitivities, Error> {
-    let mut run = Run::start(lift::constants(machine), settings.tolerance, false);
+fn values(asked: &Asked) -> Result<Sensitivities, Error> {
+    let Asked {
+        machine,
+        sensors,
+        settings,
+        ..
+    } = *asked;
+    let mut run = Run::begin(asked, machine.clone(), false);
     run.hurry();
     let (transient, period) = run.leave_transient(settings.transient)?;
     let (recorder, inner) = recorded(&mut run, transient, sensors, settings)?;
@@ -103,15 +102,16 @@ fn values(
     })
 }
 
-fn tangents<const N: usize>(
-    machine: &Machine,
-    sensors: &[Sensor],
-    moved: &[Moved],
-    settings: &Settings,
-) -> Result<Sensitivities, Error> {
+fn tangents<const N: usize>(asked: &Asked, moved: &[Moved]) -> Result<Sensitivities, Error> {
+    let Asked {
+        machine,
+        sensors,
+        settings,
+        ..
+    } = *asked;
     let towards = std::array::from_fn(|i| moved.get(i).map_or(machine, |moved| &moved.machine));
     let lifted = lift::gradient::<N, Machine>(machine, towards);
-    let mut run = Run::<Dual<f64, N>>::start(lifted, settings.tolerance, false);
+    let mut run = Run::<Dual<f64, N>>::begin(asked, lifted, false);
     run.hurry();
     let (transient, period) = run.leave_transient(settings.transient)?;
     let (recorder, inner) = recorded(&mut run, transient, sensors, settings)?;

@@ -1,10 +1,11 @@
 //! From machine to record: transient, sampling, energy ledger.
 
+use crate::asked::Asked;
 use crate::error::Error;
 use crate::record::Record;
 use crate::sensor::Sensor;
 use crate::settings::Settings;
-use crate::task::{Asked, Kept, Task};
+use crate::task::{Kept, Task};
 use mechanism::Machine;
 use std::ops::ControlFlow;
 
@@ -35,11 +36,7 @@ pub fn simulate_later(
     delay: f64,
     traced: bool,
 ) -> Result<Record, Error> {
-    let asked = Asked {
-        machine,
-        sensors,
-        settings,
-    };
+    let asked = Asked::from_rest(machine, sensors, settings);
     let kept = if traced { Kept::Trace } else { Kept::Series };
     Task::start(asked, delay, kept)?.finish(&mut |_| ControlFlow::Continue(()))
 }
@@ -55,10 +52,6 @@ pub fn simulate_watched(
     settings: &Settings,
     watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Record, Error> {
-    let asked = Asked {
-        machine,
-        sensors,
-        settings,
-    };
+    let asked = Asked::from_rest(machine, sensors, settings);
     Task::start(asked, 0.0, Kept::Trace)?.finish(watch)
 }

@@ -1,5 +1,6 @@
 //! A record under way, as a sequence of courses; the caller integrates to the end of each.
 
+use crate::asked::Asked;
 use crate::chain::{Sampling, check_settling};
 use crate::error::Error;
 use crate::leaving::{Leaving, Left};
@@ -7,25 +8,12 @@ use crate::record::Record;
 use crate::recorder::Recorder;
 use crate::run::{Ledger, Run};
 use crate::sampler::{Sampler, Seen, Taken};
-use crate::sensor::Sensor;
 use crate::settings::{Settings, Transient};
 use crate::span::Span;
 use crate::trace::Trace;
 use integrate::{Course, Trial};
-use mechanism::Machine;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
-
-/// What is to be recorded.
-#[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
-    /// The machine.
-    pub machine: &'a Machine,
-    /// What looks at it.
-    pub sensors: &'a [Sensor],
-    /// For how long, how finely, how accurately.
-    pub settings: &'a Settings,
-}
 
 /// What is kept of a run beside its series, and with it over what its energy is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,13 +61,9 @@ struct Recording<'a> {
 impl<'a> Task<'a> {
     /// Begins at the start of the machine.
     pub fn start(asked: Asked<'a>, delay: f64, kept: Kept) -> Result<Self, Error> {
-        let Settings {
-            tolerance,
-            transient,
-            ..
-        } = *asked.settings;
+        let transient = asked.settings.transient;
         (asked.settings).check(asked.machine.drive.reference_speed())?;
-        let mut run = Run::start(asked.machine.clone(), tolerance, kept == Kept::Trace);
+        let mut run = Run::begin(&asked, asked.machine.clone(), kept == Kept::Trace);
         if kept == Kept::Period {
             run.hurry();
         }
@@ -133,6 +117,7 @@ impl<'a> Task<'a> {
             machine,
             sensors,
             settings,
+            ..
         } = self.asked;
         if self.kept == Kept::Period {
             return self.period(left);

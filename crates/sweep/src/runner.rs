@@ -10,10 +10,9 @@ use simulate::{Asked, Record, machine_motion, measure, simulate_together};
 pub fn simulate_cases(cases: &[Case]) -> Vec<Result<Recording, Failure>> {
     let asked: Vec<Asked> = cases
         .iter()
-        .map(|case| Asked {
-            machine: &case.resolved.machine,
-            sensors: &case.resolved.sensors,
-            settings: &case.settings,
+        .map(|case| {
+            let resolved = &case.resolved;
+            Asked::from_rest(&resolved.machine, &resolved.sensors, &case.settings)
         })
         .collect();
     simulate_together(&asked, |i, record| recording(&cases[i], &record?))

@@ -6,6 +6,7 @@
 use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::model::Model;
+use crate::branch::{EVALUATIONS, on_best_branches};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate, linearized};
@@ -163,20 +164,20 @@ fn descents(
     (found.into_iter().map(|found| found.x).collect(), spent)
 }
 
-/// The fit of a model from `x`, with intervals. What is not identifiable there keeps its value.
+/// The fit of a model from `x`, with intervals, on the motions that explain the recordings best. What is not identifiable there
+/// keeps its value.
 ///
 /// # Errors
 /// As [`calibrate`].
-pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
-    let scatters = !model.problem.runs.iter().all(Observation::repeats);
-    let x = match scatters {
-        true => x,
-        false => repeating(&model.problem, x, effort),
-    };
-    if scatters || !repeats(&model.problem, &x) {
+pub(super) fn fit(model: &mut Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit, Error> {
+    if !model.problem.runs.iter().all(Observation::repeats) {
         return without_derivatives(model, &x, effort);
     }
-    let likelihood = Likelihood::new(&model.problem);
+    branch(model, &x, effort);
+    let x = repeating(&model.problem, x, effort);
+    if !repeats(&model.problem, &x) {
+        return without_derivatives(model, &x, effort);
+    }
     let mut led = Progress {
         x,
         cost: f64::INFINITY,
@@ -184,6 +185,8 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
         evaluations: 0,
     };
     for most in [BEGINNING, LAST] {
+        branch(model, &led.x, effort);
+        let likelihood = Likelihood::new(&model.problem);
         let mut watch = |progress: &Progress| effort.shown(progress.evaluations);
         led = levenberg_marquardt(&likelihood, &led.x, CHANGE, most, &mut watch)?;
         effort.spent += led.evaluations;
@@ -192,6 +195,7 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
         }
     }
     let most = if led.misfit() > FAR { 1 } else { LAST };
+    branch(model, &led.x, effort);
     let mut problem = model.problem.clone();
     for (parameter, x) in problem.parameters.iter_mut().zip(&led.x) {
         parameter.nominal = parameter.value(*x);
@@ -216,6 +220,12 @@ pub(super) fn fit(model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Fit
         true => without_derivatives(model, &end, effort),
         false => Ok(fit),
     }
+}
+
+/// Puts the runs on the motions near `x` that explain them best.
+fn branch(model: &mut Model, x: &[f64], effort: &mut Effort) {
+    model.problem = on_best_branches(&model.problem, x);
+    effort.evaluated(EVALUATIONS);
 }
 
 /// The fit from `x` of a motion that does not repeat itself.

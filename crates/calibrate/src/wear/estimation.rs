@@ -161,12 +161,13 @@ impl Prepared {
                 runs: std::mem::take(&mut self.task.problem.runs),
                 ..found.model.problem.clone()
             };
+            self.task.problem.take_over_branches(&found.model.problem);
             if effort.stopped || !self.task.zeroed.contains(&false) || !self.task.align(&x)? {
                 break;
             }
             found.model.problem = compared(&self.task.problem).0;
             effort.begins(Stage::Clearances);
-            let fit = descent::fit(&found.model, x, effort);
+            let fit = descent::fit(&mut found.model, x, effort);
             effort.ends();
             found.fit = fit?;
         }

@@ -132,13 +132,14 @@ impl Search<'_> {
     /// The fit of a model from `x`. Where that leads near the noise, the models with less and with more unknown of the contacts
     /// are fitted too, and the evidence decides.
     fn settled(&self, model: &Model, x: Vec<f64>, effort: &mut Effort) -> Result<Found, Error> {
-        let found = judged(model.clone(), fit(model, x, effort)?)?;
+        let found = judged(model.clone(), x, effort)?;
         // Of motions that scatter, sums of squares differ by chance by more than with such models.
         if found.misfit() > FAR || !model.problem.runs.iter().all(Observation::repeats) {
             return Ok(found);
         }
         let from = found.fit.coordinates();
         let at_noise = found.fit.is_at_noise();
+        let on = found.model.clone();
         let mut best = found;
         for contacts in [Contacts::Stated, Contacts::Related, Contacts::Fitted] {
             // What is simpler leaves at least as much.
@@ -146,11 +147,12 @@ impl Search<'_> {
             if effort.stopped || contacts == model.contacts || hopeless {
                 continue;
             }
-            let other = Model::new(self.healthy, self.joints, model.clear.clone(), contacts)?;
+            let clear = model.clear.clone();
+            let mut other = Model::new(self.healthy, self.joints, clear, contacts)?;
+            other.problem.take_over_branches(&on.problem);
             let x = other.coordinates_of(model, &from);
-            match fit(&other, x, effort) {
-                Ok(fit) => {
-                    let other = judged(other, fit)?;
+            match judged(other, x, effort) {
+                Ok(other) => {
                     if other.criterion < best.criterion && other.is_identifiable() {
                         best = other;
                     }
@@ -188,8 +190,9 @@ impl Search<'_> {
     }
 }
 
-/// A fit with its criterion.
-fn judged(model: Model, fit: Fit) -> Result<Found, Error> {
+/// The fit of a model from `x`, with its criterion.
+fn judged(mut model: Model, x: Vec<f64>, effort: &mut Effort) -> Result<Found, Error> {
+    let fit = fit(&mut model, x, effort)?;
     let likelihood = Likelihood::new(&model.problem);
     let free = fit
         .estimates

@@ -5,6 +5,7 @@ use super::joint::Joint;
 use super::model::Model;
 use super::results::{JointWear, Together, Verdict};
 use super::selection::Found;
+use crate::branch::on_best_branches;
 use crate::error::Error;
 use crate::identifiability::information;
 use crate::likelihood::Likelihood;
@@ -119,10 +120,11 @@ impl Grounds<'_> {
             None => self.found.fit.coordinates(),
         };
         let clear = best.clear.iter().copied().chain([index]).collect();
-        let worn = Model::new(self.healthy, self.joints, clear, best.contacts)?;
+        let mut worn = Model::new(self.healthy, self.joints, clear, best.contacts)?;
         let mut at = worn.coordinates_of(best, &x);
         let place = worn.clear.len() - 1;
         at[place] = worn.problem.parameters[place].coordinate(self.limit(index));
+        worn.problem = on_best_branches(&worn.problem, &at);
         let shown = match deviance(&worn, &at) {
             Ok((with, chance)) => {
                 let (without, other) = deviance(best, &x)?;

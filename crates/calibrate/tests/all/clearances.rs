@@ -75,6 +75,7 @@ fn recording(tree: &Value, id: &str, speed: &str, clearance: &str) -> Observatio
             variance: Vec::new(),
             revolutions: 30,
         })],
+        warm_start: None,
     };
     let machine = Problem {
         tree: tree.clone(),

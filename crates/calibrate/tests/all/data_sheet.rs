@@ -68,6 +68,7 @@ fn recorded(truth: &Value) -> Vec<Observation> {
                 fluctuation: Vec::new(),
             },
             channels: vec![zeros("crosshead_acceleration_m_s2")],
+            warm_start: None,
         };
         let shown = predict(&problem, &run, &[0.0; 4]).unwrap();
         for (channel, lines) in run.channels.iter_mut().zip(shown.lines) {

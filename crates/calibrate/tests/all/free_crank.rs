@@ -58,6 +58,7 @@ fn run() -> Observation {
             fluctuation: Vec::new(),
         },
         channels: COLUMNS.map(observed).into(),
+        warm_start: None,
     }
 }
 

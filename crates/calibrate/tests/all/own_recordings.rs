@@ -58,6 +58,7 @@ pub fn problem(
                 variance: Vec::new(),
                 revolutions: 30,
             })],
+            warm_start: None,
         };
         let shown = predict(&problem, &run, &truth).unwrap();
         assert!(shown.periodic);
@@ -95,6 +96,7 @@ pub fn scattering(tree: Value) -> Problem {
             fluctuation: Vec::new(),
         },
         channels: vec![channel(scattering, vec![1])],
+        warm_start: None,
     };
     let shown = predict(&problem, &run, &[]).unwrap();
     assert!(!shown.periodic);

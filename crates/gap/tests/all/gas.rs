@@ -64,6 +64,7 @@ pub(crate) fn recorded(effects: &Value, id: &str, rpm: f64, discharge: &str) -> 
             variance: Vec::new(),
             revolutions: 30,
         })],
+        warm_start: None,
     };
     let mut tree = machine();
     tree["effects"] = effects.clone();

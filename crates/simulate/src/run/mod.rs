@@ -4,6 +4,7 @@ mod ledger;
 
 pub(crate) use ledger::Ledger;
 
+use crate::asked::Asked;
 use crate::error::{Error, MOST_SLIP};
 use crate::instants::Instants;
 use integrate::{Course, Integrator, Real, Step, System, Work};
@@ -57,6 +58,24 @@ impl<S: Real> Run<S> {
             state,
             hurried: false,
         }
+    }
+
+    /// Begins as is asked: at rest, or where a motion near it has settled. `machine` is the asked one over these numbers.
+    pub(crate) fn begin(asked: &Asked, machine: Machine<S>, ledger: bool) -> Self {
+        let tolerance = asked.settings.tolerance;
+        let mut run = Self::start(machine, tolerance, ledger);
+        let warm_start = asked.warm_start;
+        if let Some((state, mode)) = warm_start.and_then(|from| from.taken_over(asked.machine)) {
+            let constants = state.iter().map(|y| S::constant(*y));
+            for (y, value) in run.state.iter_mut().zip(constants) {
+                *y = value;
+            }
+            let longest = LONGEST_STEP * run.revolution;
+            let (dynamics, state) = (&mut run.dynamics, &run.state);
+            dynamics.resume(S::zero(), state, &lift::constants(mode));
+            run.integrator = Integrator::new(dynamics, 0.0, state, tolerance, longest);
+        }
+        run
     }
 
     /// Goes on where another run, of which these are the numbers, stands; with `ledger` the works, four

@@ -4,7 +4,7 @@
 use input::effects::{CATALOGUE, Entry, Parameter};
 use input::{MachineFile, Resolved, paths};
 use serde_json::{Value, json};
-use simulate::{Moved, Settings, Transient, sensitivities, simulate};
+use simulate::{Asked, Moved, Settings, Transient, sensitivities, simulate};
 use std::f64::consts::TAU;
 
 /// The shipped machine with 0.2 mm at the small end, and a list of effects.
@@ -210,7 +210,11 @@ fn derivatives_of_the_whole_catalogue_equal_differences() {
                 sensors: m.sensors,
             })
             .collect();
-        let found = sensitivities(&centre.machine, &centre.sensors, &all, &settings).unwrap();
+        let found = sensitivities(
+            &Asked::from_rest(&centre.machine, &centre.sensors, &settings),
+            &all,
+        )
+        .unwrap();
         for (i, derivative) in free.into_iter().zip(&found.derivatives) {
             let parameter = &entry.parameters[i];
             let step = step(entry, parameter);

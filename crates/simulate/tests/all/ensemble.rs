@@ -3,7 +3,8 @@
 use input::{MachineFile, Resolved};
 use serde_json::Value;
 use simulate::{
-    Asked, Settings, Transient, sensitivities, settled_together, simulate, simulate_together,
+    Asked, Settings, Transient, WarmStart, sensitivities, settle, settled_together, simulate,
+    simulate_together,
 };
 use std::path::Path;
 
@@ -64,10 +65,8 @@ fn settings(index: usize) -> Settings {
 }
 
 fn asked<'a>(machines: &'a [Resolved], settings: &'a [Settings]) -> Vec<Asked<'a>> {
-    let of = |(resolved, settings): (&'a Resolved, &'a Settings)| Asked {
-        machine: &resolved.machine,
-        sensors: &resolved.sensors,
-        settings,
+    let of = |(resolved, settings): (&'a Resolved, &'a Settings)| {
+        Asked::from_rest(&resolved.machine, &resolved.sensors, settings)
     };
     machines.iter().zip(settings).map(of).collect()
 }
@@ -110,14 +109,13 @@ fn a_record_that_fails_does_not_touch_the_others() {
     };
     let asked: Vec<Asked> = [usual, impossible, usual]
         .iter()
-        .map(|settings| Asked {
-            machine: &resolved.machine,
-            sensors: &resolved.sensors,
-            settings: if settings.tolerance < 1e-20 {
+        .map(|settings| {
+            let settings = if settings.tolerance < 1e-20 {
                 &impossible
             } else {
                 &usual
-            },
+            };
+            Asked::from_rest(&resolved.machine, &resolved.sensors, settings)
         })
         .collect();
     let records = simulate_together(&asked, |_, record| record);
@@ -153,19 +151,94 @@ fn a_settled_motion_has_the_same_bits_alone_and_in_any_lane_and_is_what_derivati
         let found = found.unwrap();
         let alone = settled_together(std::slice::from_ref(asked)).remove(0);
         assert_eq!(found, alone.unwrap(), "record {i}");
-        let with_derivatives =
-            sensitivities(asked.machine, asked.sensors, &[], asked.settings).unwrap();
+        let with_derivatives = sensitivities(asked, &[]).unwrap();
         assert_eq!(found.settled, with_derivatives.settled, "record {i}");
         settled += usize::from(found.settled);
         for (found, expected) in found.series.iter().zip(&with_derivatives.series) {
-            let largest = expected.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
-            let apart = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
-            let most = apart.fold(0.0, f64::max);
             assert_eq!(found.len(), expected.len());
             // Of one that has not settled they part, as from any other start.
             let within = if with_derivatives.settled { 1e-2 } else { 2.0 };
-            assert!(most <= within * largest, "record {i}: {most} of {largest}");
+            let apart = apart(found, expected);
+            assert!(apart <= within, "record {i}: {apart}");
         }
     }
     assert!((10..asked.len()).contains(&settled), "{settled}");
+}
+
+/// The greatest difference of two series over the greatest value.
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let largest = b.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn a_machine_that_goes_on_from_its_settled_motion_has_it_again_in_fewer_steps() {
+    let machines = machines();
+    let settings: Vec<Settings> = (0..machines.len()).map(of_a_fit).collect();
+    let from_rest = asked(&machines, &settings);
+    let starts = from_rest.iter().map(settle);
+    let starts: Vec<Option<WarmStart>> = starts.collect::<Result<_, _>>().unwrap();
+    let pairs = from_rest.iter().zip(&starts);
+    let warm = pairs.map(|(asked, start)| Asked {
+        warm_start: start.as_ref(),
+        ..*asked
+    });
+    let warm: Vec<Asked> = warm.collect();
+    let [before, after] = [&from_rest, &warm].map(|all| settled_together(all));
+    let mut settled = 0;
+    for (i, (before, after)) in before.into_iter().zip(after).enumerate() {
+        let (before, after) = (before.unwrap(), after.unwrap());
+        let alone = settled_together(&warm[i..=i]).remove(0).unwrap();
+        assert_eq!(after, alone, "record {i}");
+        assert_eq!(starts[i].is_some(), before.settled, "record {i}");
+        if !before.settled {
+            assert_eq!(before, after, "record {i}");
+            continue;
+        }
+        settled += 1;
+        assert!(after.settled && after.steps < before.steps, "record {i}");
+        let with_derivatives = sensitivities(&warm[i], &[]).unwrap();
+        let channels = after.series.iter().zip(&before.series);
+        for ((after, before), other) in channels.zip(&with_derivatives.series) {
+            // A crank that is free settles slowly.
+            let within = if i < 11 { 1e-3 } else { 3e-2 };
+            let [from_rest, of_derivatives] = [before, other].map(|x| apart(after, x));
+            assert!(
+                from_rest < within && of_derivatives < 1e-5,
+                "record {i}: {from_rest} {of_derivatives}"
+            );
+        }
+    }
+    assert!(settled >= 10, "{settled}");
+}
+
+#[test]
+fn a_machine_of_another_build_begins_at_rest() {
+    let clear = |clearance| {
+        machine(
+            "single-stage.yaml",
+            &[("joints.big_end.clearance", clearance)],
+        )
+    };
+    let machines = [
+        clear("0.1 mm"),
+        clear("0.1001 mm"),
+        machine("two-stage.yaml", &[]),
+    ];
+    let settings = [0, 0, 0].map(of_a_fit);
+    let from_rest = asked(&machines, &settings);
+    let start = settle(&from_rest[0]).unwrap();
+    assert!(start.is_some());
+    let found = |asked: &Asked| {
+        let all = [None, start.as_ref()].map(|warm_start| Asked {
+            warm_start,
+            ..*asked
+        });
+        settled_together(&all).into_iter().map(Result::unwrap)
+    };
+    let alike: Vec<_> = found(&from_rest[1]).collect();
+    assert!(alike[1].settled && alike[1].steps < alike[0].steps);
+    let other: Vec<_> = found(&from_rest[2]).collect();
+    assert_eq!(other[0], other[1]);
 }

@@ -2,7 +2,7 @@
 
 use input::{MachineFile, Resolved};
 use serde_json::Value;
-use simulate::{Moved, Settings, Transient, sensitivities, simulate};
+use simulate::{Asked, Moved, Settings, Transient, sensitivities, simulate};
 
 /// The shipped machine with 0.1 mm at both ends: a periodic motion.
 fn tree() -> Value {
@@ -80,7 +80,11 @@ fn derivatives_equal_differences_of_records() {
         ..Settings::default()
     };
     let (centre, moved) = centre_and_moved();
-    let found = sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap();
+    let found = sensitivities(
+        &Asked::from_rest(&centre.machine, &centre.sensors, &settings),
+        &moved,
+    )
+    .unwrap();
     let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
     // Evaluated at every instant here, by polynomials within steps there.
     for (found, plain) in found.series.iter().zip(&plain.series) {
@@ -124,7 +128,11 @@ fn derivatives_of_a_settled_motion_are_those_of_its_orbit() {
     let (centre, moved) = centre_and_moved();
     let found = |transient| {
         let settings = settings(transient);
-        sensitivities(&centre.machine, &centre.sensors, &moved, &settings).unwrap()
+        sensitivities(
+            &Asked::from_rest(&centre.machine, &centre.sensors, &settings),
+            &moved,
+        )
+        .unwrap()
     };
     let from_start = found(Transient::Revolutions(25));
     let of_orbit = found(Transient::Settled {

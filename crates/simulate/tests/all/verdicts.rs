@@ -44,11 +44,7 @@ fn settings() -> Settings {
 fn run(machine: &Resolved, settings: &Settings) -> Result<Record, Error> {
     let of = |traced| simulate(&machine.machine, &machine.sensors, settings, traced);
     let (alone, traced) = (of(false), of(true));
-    let asked = Asked {
-        machine: &machine.machine,
-        sensors: &machine.sensors,
-        settings,
-    };
+    let asked = Asked::from_rest(&machine.machine, &machine.sensors, settings);
     let together = simulate_together(&[asked; 3], |_, record| record);
     for other in together.into_iter().chain([traced]) {
         match (&alone, other) {
@@ -116,11 +112,7 @@ fn forces_lost_in_rounding_are_an_open_ledger() {
     );
     let settings = settings();
     let traced = simulate(&machine.machine, &machine.sensors, &settings, true);
-    let asked = Asked {
-        machine: &machine.machine,
-        sensors: &machine.sensors,
-        settings: &settings,
-    };
+    let asked = Asked::from_rest(&machine.machine, &machine.sensors, &settings);
     // In a dataset the works are kept along for one revolution, after the record.
     let together = simulate_together(&[asked, asked], |_, record| record);
     for record in together.into_iter().chain([traced]) {
@@ -136,11 +128,7 @@ fn a_record_that_is_kept_balances() {
         &[("joints.big_end.clearance", "0.2 mm")],
     );
     let settings = settings();
-    let asked = Asked {
-        machine: &machine.machine,
-        sensors: &machine.sensors,
-        settings: &settings,
-    };
+    let asked = Asked::from_rest(&machine.machine, &machine.sensors, &settings);
     for record in simulate_together(&[asked, asked, asked], |_, record| record) {
         let missing = record.unwrap().energy_residual.unwrap();
         assert!(missing != 0.0 && missing.abs() < 1e-7, "{missing:e}");
