@@ -92,11 +92,10 @@ fn what_is_hidden_is_named_and_where_nothing_is_nothing_is() {
     fs::write(out.join("cases.jsonl"), &lines[..lines.len() - 20]).unwrap();
     let resumed = hidden_effects(&settings, &out, &["--resume", "--keep"]);
     assert!(resumed.status.success(), "{}", said(&resumed));
-    assert!(
-        said(&resumed).starts_with("1 of 1: case 3"),
-        "{}",
-        said(&resumed)
-    );
+    // On a slow machine a line of progress may come before.
+    let lines = said(&resumed);
+    let made = lines.lines().any(|line| line.starts_with("1 of 1: case 3"));
+    assert!(made, "{lines}");
     assert_eq!(cases(&out), first);
     the_workflow_sees_recordings_alone(&out.join("cases/0003-nothing/bundle"));
 
