@@ -1,18 +1,18 @@
-"""Open a dataset with everything that should open it, and compare what each one finds.
+"""Open datasets with everything that should open them, and compare what each one finds.
 
-    python read_dataset.py DIR [--expected FILE.json]
+    python read_dataset.py DIR... [--expected FILE.json...]
 
 Reads every table with pyarrow, pandas, polars, duckdb and Hugging Face datasets, and with deltalake and
 polars where it was exported as a Delta table, every MCAP file with mcap and mcap-ros2-support, validates
 croissant.json and reads records by it with mlcroissant, and runs the Python code of the data card. What is expected comes from
 manifest.json and from the files themselves, which must agree with each other: checksums, counts,
-splits, labels and units. With --expected also every value is compared with those of the file:
+splits, labels and units. With --expected, one file for each folder, also every value is compared with those of the file:
 
     {"units": {COLUMN: UNIT}, "tables": {PATH: {COLUMN: [VALUE]}},
      "mcap": {PATH: {"sample_rate_hz": X, "labels": {NAME: TEXT}, "units": {FIELD: UNIT},
                      "channels": {FIELD: [VALUE]}}}}
 
-Exit status 1 and a message at the first difference.
+Exit status 1 and a line with the first difference of each dataset that has one.
 """
 
 import argparse
@@ -264,7 +264,8 @@ def read_with_croissant(folder, manifest, tables):
     """croissant.json is valid, has the checksums of the manifest, and gives the records of the tables."""
     path = folder / "croissant.json"
     # It raises where the metadata is not valid.
-    metadata = mlcroissant.Dataset(jsonld=str(path)).metadata
+    dataset = mlcroissant.Dataset(jsonld=str(path))
+    metadata = dataset.metadata
     same(list(metadata.issues.errors), [], f"errors in {path}")
     sums = {file["path"]: file["sha256"] for file in manifest["files"]}
     files = [f for f in metadata.distribution if isinstance(f, mlcroissant.FileObject)]
@@ -276,8 +277,7 @@ def read_with_croissant(folder, manifest, tables):
             continue
         key = [column for column in ("case_id", "window", "value", "direction", "bifurcation") if column in every]
         rows = list(zip(*(every[column] for column in key)))
-        records = mlcroissant.Dataset(jsonld=str(path)).records(name)
-        for record in itertools.islice(records, RECORDS):
+        for record in itertools.islice(dataset.records(name), RECORDS):
             found = {column.removeprefix(f"{name}/"): of_croissant(value) for column, value in record.items()}
             row = rows.index(tuple(found[column] for column in key))
             wanted = {column: values[row : row + 1] for column, values in every.items()}
@@ -408,15 +408,7 @@ def run_card(folder):
     return len(blocks)
 
 
-def main():
-    arguments = argparse.ArgumentParser(description="Open a dataset with every reader.")
-    arguments.add_argument("folder", type=Path)
-    arguments.add_argument("--expected", type=Path)
-    arguments = arguments.parse_args()
-    folder = arguments.folder.resolve()
-    expected = arguments.expected and json.loads(arguments.expected.read_text())
-
-    datasets.disable_progress_bars()
+def read_dataset(folder, expected):
     manifest = check_manifest(folder)
     subsets = [subset for subset in SUBSETS if (folder / subset).is_dir()]
     tables = {subset: read_subset(folder, subset, expected) for subset in subsets}
@@ -442,8 +434,24 @@ def main():
     print(f"{len(cases)} MCAP files, {blocks} pieces of code of the data card")
 
 
+def main():
+    arguments = argparse.ArgumentParser(description="Open datasets with every reader.")
+    arguments.add_argument("folders", type=Path, nargs="+", metavar="DIR")
+    arguments.add_argument("--expected", type=Path, nargs="+", metavar="FILE")
+    arguments = arguments.parse_args()
+    folders = [folder.resolve() for folder in arguments.folders]
+    expected = arguments.expected and [json.loads(path.read_text()) for path in arguments.expected]
+
+    datasets.disable_progress_bars()
+    differences = 0
+    for folder, values in zip(folders, expected or [None] * len(folders), strict=True):
+        try:
+            read_dataset(folder, values)
+        except Difference as difference:
+            print(f"read_dataset.py: {difference}", file=sys.stderr)
+            differences += 1
+    return 1 if differences else 0
+
+
 if __name__ == "__main__":
-    try:
-        main()
-    except Difference as difference:
-        sys.exit(f"read_dataset.py: {difference}")
+    sys.exit(main())

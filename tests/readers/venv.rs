@@ -5,7 +5,7 @@
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// `tests/readers/` of the workspace, as seen from a crate.
 pub fn readers() -> PathBuf {
@@ -52,11 +52,15 @@ pub fn python() -> PathBuf {
     python
 }
 
+/// Runs a command to its end. Python may keep what it compiles: half of a run of a script is to compile what it imports.
+pub fn output(command: &mut Command) -> Output {
+    let output = command.env_remove("PYTHONDONTWRITEBYTECODE").output();
+    output.unwrap_or_else(|error| panic!("{command:?}: {error}"))
+}
+
 /// Runs a command and panics with what it said unless it succeeds.
 pub fn run(command: &mut Command) {
-    let output = command
-        .output()
-        .unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let output = output(command);
     assert!(
         output.status.success(),
         "{command:?}: {}\n{}{}",

@@ -3,6 +3,7 @@
 
 use crate::venv;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -60,10 +61,10 @@ pub fn clone() -> tempfile::TempDir {
     clone
 }
 
-/// Runs the commands of a text in `clone` and counts them. Of a dataset that takes minutes only the plan is made, and
-/// `cargo test` is running already.
+/// Runs the commands of a text in `clone`, each once, and counts them. Of a dataset that takes minutes only the plan is made,
+/// and `cargo test` is running already.
 pub fn run(text: &str, clone: &Path) -> usize {
-    let mut run = 0;
+    let mut run = BTreeSet::new();
     for command in commands(text) {
         if command.starts_with("cargo test") || command.ends_with("report datasets/chaos-map") {
             continue;
@@ -76,6 +77,9 @@ pub fn run(text: &str, clone: &Path) -> usize {
         } else {
             command
         };
+        if !run.insert(command.clone()) {
+            continue;
+        }
         let line = command
             .replace(
                 "cargo run --release --bin gen-dataset --",
@@ -93,9 +97,8 @@ pub fn run(text: &str, clone: &Path) -> usize {
             .unwrap();
         let message = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{command}: {message}");
-        run += 1;
     }
-    run
+    run.len()
 }
 
 #[test]

@@ -12,7 +12,7 @@ use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const SWEEP: &str = "seed: 7\nmachine: {}\n";
@@ -54,7 +54,6 @@ fn a_difference_is_found() {
     dataset.mcap(0, 100);
     dataset.finish(vec![features], Some("mcap/case-0.mcap".into()));
     let path = "features/test-00000-of-00001.parquet";
-    let expected = dataset.expected.clone();
     let changes = [
         (
             vec!["tables", path, "rms_m_s2"],
@@ -83,29 +82,35 @@ fn a_difference_is_found() {
             "labels",
         ),
     ];
+    let mut told = Vec::new();
     for (place, value, message) in changes {
-        dataset.expected = expected.clone();
-        let place = place
-            .iter()
-            .fold(&mut dataset.expected, |json, key| &mut json[key]);
+        let mut expected = dataset.expected.clone();
+        let place = place.iter().fold(&mut expected, |json, key| &mut json[key]);
         *place = value;
-        assert!(
-            dataset.complaint().contains(message),
-            "{message}: {}",
-            dataset.complaint()
-        );
+        told.push((dataset.place(), expected, message));
     }
-
-    dataset.expected = expected;
-    let path = dataset.folder.path().join("dataset").join(path);
-    let mut bytes = fs::read(&path).unwrap();
+    let damaged = dataset.copy("damaged");
+    let file = damaged.join(path);
+    let mut bytes = fs::read(&file).unwrap();
     bytes[100] ^= 1;
-    fs::write(&path, bytes).unwrap();
-    assert!(
-        dataset.complaint().contains("sha256"),
-        "{}",
-        dataset.complaint()
-    );
+    fs::write(&file, bytes).unwrap();
+    told.push((damaged, dataset.expected.clone(), "sha256"));
+
+    let read: Vec<_> = told
+        .iter()
+        .map(|(place, value, _)| (place.as_path(), value))
+        .collect();
+    let output = venv::output(&mut dataset.command(&read));
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let output = String::from_utf8(output.stderr).unwrap();
+    let lines: Vec<&str> = output
+        .lines()
+        .filter(|line| line.starts_with("read_dataset.py: "))
+        .collect();
+    assert_eq!(lines.len(), told.len(), "{output}");
+    for (line, (_, _, message)) in lines.iter().zip(&told) {
+        assert!(line.contains(message), "{message}: {line}");
+    }
 }
 
 /// A dataset under way, and what must be found in it.
@@ -307,30 +312,37 @@ impl Dataset {
         }
     }
 
-    fn command(&self) -> Command {
-        let expected = self.folder.path().join("expected.json");
-        fs::write(&expected, self.expected.to_string()).unwrap();
+    fn place(&self) -> PathBuf {
+        self.folder.path().join("dataset")
+    }
+
+    /// The same files in another folder.
+    fn copy(&self, name: &str) -> PathBuf {
+        let copy = self.folder.path().join(name);
+        let status = Command::new("cp")
+            .arg("-r")
+            .args([&self.place(), &copy])
+            .status();
+        assert!(status.unwrap().success());
+        copy
+    }
+
+    /// The script on datasets, each with the values that it must have.
+    fn command(&self, datasets: &[(&Path, &Json)]) -> Command {
         let mut command = Command::new(venv::python());
-        let script = venv::readers().join("read_dataset.py");
-        let dataset = self.folder.path().join("dataset");
-        command.args([
-            Path::new(&script),
-            &dataset,
-            Path::new("--expected"),
-            &expected,
-        ]);
+        command.arg(venv::readers().join("read_dataset.py"));
+        command.args(datasets.iter().map(|(place, _)| place));
+        command.arg("--expected");
+        for (i, (_, expected)) in datasets.iter().enumerate() {
+            let path = self.folder.path().join(format!("expected-{i}.json"));
+            fs::write(&path, expected.to_string()).unwrap();
+            command.arg(path);
+        }
         command
     }
 
     fn read(&self) {
-        venv::run(&mut self.command());
-    }
-
-    /// What the script says; it must not be content.
-    fn complaint(&self) -> String {
-        let output = self.command().output().unwrap();
-        assert_eq!(output.status.code(), Some(1), "{output:?}");
-        String::from_utf8(output.stderr).unwrap()
+        venv::run(&mut self.command(&[(&self.place(), &self.expected)]));
     }
 }
 
