@@ -5,15 +5,20 @@
 //! fitted to it: its slopes are those of a statistical linearisation (Gelb 1974, section 6.2; Lefebvre, Bruyninckx and De
 //! Schutter 2002), and a step of Gauss and Newton's method with them leads to the next cloud (as in iterative ensemble
 //! smoothers, Chen and Oliver 2013). What the linear model does not explain is scatter and curvature; what these add to the
-//! squares of the slopes is taken off, so that a coordinate that nothing shows is not taken for a known one.
+//! squares of the slopes is taken off, so that a direction that nothing shows is not taken for a known one.
+//!
+//! Clouds along the coordinates are as wide as each of them is known where the others are. They give the narrowest intervals, but
+//! do not follow a valley that is oblique to the coordinates, and bent. Clouds along the principal directions of what is known are
+//! as long as such a valley, and what bends over them counts as scatter. So they come second, where more than noise is left.
 
 use crate::error::Error;
 use crate::identifiability::{Information, intervals_of};
-use crate::likelihood::FAILED;
+use crate::likelihood::{FAILED, NOISE};
 use crate::optimiser::{LeastSquares, Progress, Watch};
 use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
 use rand::RngExt;
 use scalar::random::{Purpose, stream};
+use std::cmp::Ordering;
 
 /// Pairs of points of a cloud, for each unknown of the linear model.
 const PAIRS: usize = 4;
@@ -25,18 +30,19 @@ const WIDEST: f64 = 0.25;
 /// of the slopes, but not less than this many standard deviations of what is known.
 const OVER_SCATTER: f64 = 4.0;
 const OVER_KNOWN: f64 = 2.0;
-/// A cloud becomes narrower and wider along a coordinate by these factors at most.
+/// A cloud becomes narrower and wider along an axis by these factors at most.
 const NARROWER: f64 = 3.0;
 const WIDER: f64 = 2.0;
 /// A step leads this many standard deviations of the cloud far at most, and one of less than that ends the search.
 const STEP: f64 = 2.0;
 const ENDED: f64 = 0.5;
-/// Clouds at most, and after how many a fit that is still `far` ends.
+/// Clouds at most along coordinates and along principal directions, and after how many a fit that is still `far` may end.
 const CLOUDS: u64 = 6;
+const SEARCHED: u64 = 12;
 const BEGINNING: u64 = 2;
 /// Standard deviations by which the sum of squares in the middle of a cloud may grow by chance.
 const CHANCE: f64 = 2.0;
-/// A coordinate is shown where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
+/// A direction is shown where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
 /// that adds.
 const SHOWN: f64 = 1.0;
 /// The damping of a step to begin with, over the most that is known of a direction, and how often it is doubled.
@@ -55,71 +61,121 @@ pub(crate) fn statistical_linearization(
     watch: Watch,
 ) -> Result<(Progress, Information), Error> {
     let bounds = problem.bounds();
-    let count = problem.count();
-    let residuals = problem.residuals(start);
-    if !is_simulated(&residuals) {
-        return Err(Error::Nothing("the start of a fit cannot be simulated"));
-    }
-    let mut at = Progress {
-        x: start.to_vec(),
-        cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
-        count,
-        evaluations: 1,
-    };
-    let mut cloud = Cloud::first(&bounds);
-    let mut best: Option<Best> = None;
-    let mut clouds: Vec<Points> = Vec::new();
-    for number in 0..CLOUDS {
-        let stopped = watch(&at).is_break();
-        if stopped || (number >= BEGINNING && at.misfit() > far) {
-            break;
-        }
-        let points = cloud.points(number, &at.x, &bounds);
-        let residuals = problem.residuals_of_all(&points);
-        at.evaluations += points.len() as u64;
-        let Some(linear) = Linear::fitted(&cloud, &at.x, &points, &residuals, &bounds) else {
-            // Too many of them cannot be simulated.
-            cloud.spreads *= 1.0 / NARROWER;
-            continue;
-        };
-        if let Some(best) = best.as_ref().filter(|best| linear.is_worse(&best.linear)) {
-            at.x.clone_from(&best.next);
-            cloud.spreads = &best.spreads / NARROWER;
-            continue;
-        }
-        let step = linear.step();
-        let spreads = cloud.spreads.clone();
-        at.x = moved(&at.x, &spreads.component_mul(&step), &bounds);
-        at.cost = linear.cost;
-        if !linear.is_curved {
-            clouds.push(Points {
-                places: points,
-                residuals,
-            });
-        }
-        let narrowest = cloud.reshape(&linear, &bounds);
-        let ends = linear.shown.iter().all(|shown| *shown)
-            && narrowest > 1.0 / NARROWER
-            && step.amax() < ENDED;
-        best = Some(Best {
-            next: at.x.clone(),
-            linear,
-            spreads,
-        });
-        if ends {
-            break;
+    let mut search = Search::new(problem, &bounds, start, far)?;
+    let mut best = search.led(Along::Coordinates, watch);
+    if search.at.misfit() > NOISE && !search.stopped {
+        let first = search.at.clone();
+        search.at.x = start.to_vec();
+        let other = search.led(Along::PrincipalDirections, watch);
+        if search.at.cost < first.cost {
+            best = other;
+        } else {
+            let evaluations = search.at.evaluations;
+            search.at = Progress {
+                evaluations,
+                ..first
+            };
         }
     }
     let covariance = match best {
-        Some(best) => {
-            let best = best.with_earlier(&clouds, &bounds);
-            at.x.clone_from(&best.next);
-            best.covariance()
-        }
+        Some(best) => best.covariance(),
         None => DMatrix::from_diagonal(&range_variances(&bounds)),
     };
-    let known = intervals_of(&at.x, &bounds, &covariance);
-    Ok((at, known))
+    let known = intervals_of(&search.at.x, &bounds, &covariance);
+    Ok((search.at, known))
+}
+
+/// A search under way.
+struct Search<'a, P> {
+    problem: &'a P,
+    bounds: &'a [[f64; 2]],
+    far: f64,
+    at: Progress,
+    /// Clouds so far.
+    clouds: u64,
+    stopped: bool,
+}
+
+impl<'a, P: LeastSquares> Search<'a, P> {
+    fn new(problem: &'a P, bounds: &'a [[f64; 2]], start: &[f64], far: f64) -> Result<Self, Error> {
+        let residuals = problem.residuals(start);
+        if !is_simulated(&residuals) {
+            return Err(Error::Nothing("the start of a fit cannot be simulated"));
+        }
+        let at = Progress {
+            x: start.to_vec(),
+            cost: 0.5 * residuals.iter().map(|r| r * r).sum::<f64>(),
+            count: problem.count(),
+            evaluations: 1,
+        };
+        Ok(Self {
+            problem,
+            bounds,
+            far,
+            at,
+            clouds: 0,
+            stopped: false,
+        })
+    }
+
+    /// The last cloud that is no worse than the one before, of those that lead on from where the search stands. It stands where the step of
+    /// that one leads then.
+    fn led(&mut self, along: Along, watch: Watch) -> Option<Best> {
+        let bounds = self.bounds;
+        let mut cloud = Cloud::first(bounds, along);
+        let most = match along {
+            Along::Coordinates => CLOUDS,
+            Along::PrincipalDirections => SEARCHED,
+        };
+        let mut best: Option<Best> = None;
+        let mut straight: Vec<Points> = Vec::new();
+        for number in 0..most {
+            self.stopped = watch(&self.at).is_break();
+            // A cloud over which the residuals are curved says little of its middle.
+            let is_curved = best.as_ref().is_some_and(|best| best.linear.is_curved);
+            let goes_on = is_curved && matches!(along, Along::PrincipalDirections);
+            let is_far = self.at.misfit() > self.far && !goes_on;
+            if self.stopped || (number >= BEGINNING && is_far) {
+                break;
+            }
+            let points = self.points(&cloud);
+            let Some(linear) = Linear::fitted(&cloud, &self.at.x, &points, bounds) else {
+                // Too many of them cannot be simulated.
+                cloud.axes *= 1.0 / NARROWER;
+                continue;
+            };
+            if let Some(best) = best.as_ref().filter(|best| linear.is_worse(&best.linear)) {
+                self.at.x.clone_from(&best.next);
+                cloud.axes = &best.cloud.axes / NARROWER;
+                continue;
+            }
+            if !linear.is_curved {
+                straight.push(points);
+            }
+            let led = Best::new(cloud.clone(), &self.at.x, linear, bounds);
+            self.at.x.clone_from(&led.next);
+            self.at.cost = led.linear.cost;
+            let narrowest = cloud.reshape(&led.linear, bounds);
+            let ends = led.linear.along.iter().all(Option::is_some)
+                && narrowest > 1.0 / NARROWER
+                && led.linear.step().amax() < ENDED;
+            best = Some(led);
+            if ends {
+                break;
+            }
+        }
+        let best = best?.with_earlier(straight, bounds);
+        self.at.x.clone_from(&best.next);
+        Some(best)
+    }
+
+    fn points(&mut self, cloud: &Cloud) -> Points {
+        let places = cloud.points(self.clouds, &self.at.x, self.bounds);
+        self.clouds += 1;
+        self.at.evaluations += places.len() as u64;
+        let residuals = self.problem.residuals_of_all(&places);
+        Points { places, residuals }
+    }
 }
 
 /// By how much less the coordinates `known` are known where the others are not, but lie within their bounds: factors of their
@@ -134,20 +190,20 @@ pub(crate) fn widening(
         return Vec::new();
     }
     let bounds = problem.bounds();
-    let mut cloud = Cloud::first(&bounds);
+    let mut cloud = Cloud::first(&bounds, Along::Coordinates);
     for (i, spread) in known.iter().zip(spreads) {
         // At a bound an interval may have no width.
         if *spread > 0.0 {
-            cloud.spreads[*i] = OVER_KNOWN * spread;
+            cloud.axes[(*i, *i)] = OVER_KNOWN * spread;
         }
     }
-    let points = cloud.points(CLOUDS, x, &bounds);
-    let residuals = problem.residuals_of_all(&points);
-    let Some(linear) = Linear::fitted(&cloud, x, &points, &residuals, &bounds) else {
+    let places = cloud.points(CLOUDS, x, &bounds);
+    let residuals = problem.residuals_of_all(&places);
+    let Some(linear) = Linear::fitted(&cloud, x, &Points { places, residuals }, &bounds) else {
         return vec![1.0; known.len()];
     };
-    let whole = inverse(linear.information());
-    let information = linear.known + DMatrix::from_diagonal(&linear.before);
+    let whole = inverse(linear.information().symmetric_eigen());
+    let information = linear.information();
     let alone = DMatrix::from_fn(known.len(), known.len(), |i, j| {
         information[(known[i], known[j])]
     });
@@ -157,12 +213,11 @@ pub(crate) fn widening(
     factors.map(|factor| factor.max(1.0)).collect()
 }
 
-/// The last cloud that was no worse than the one before.
+/// A cloud, the linear model over it, and where its step leads.
 struct Best {
-    /// Where its step has led.
-    next: Vec<f64>,
+    cloud: Cloud,
     linear: Linear,
-    spreads: DVector<f64>,
+    next: Vec<f64>,
 }
 
 /// The points of a cloud, or of several, and their residuals.
@@ -173,46 +228,44 @@ struct Points {
 }
 
 impl Best {
+    fn new(cloud: Cloud, x: &[f64], linear: Linear, bounds: &[[f64; 2]]) -> Self {
+        let next = moved(x, &(&cloud.axes * linear.step()), bounds);
+        Self {
+            cloud,
+            linear,
+            next,
+        }
+    }
+
     /// The same from the points of as many of these clouds, from the last one on, as make the coordinates best known: one cloud may leave a
     /// direction unknown by chance, and over earlier ones, which are farther away, the residuals may not be linear.
-    fn with_earlier(self, clouds: &[Points], bounds: &[[f64; 2]]) -> Self {
-        let (at, cloud) = (
-            self.next.clone(),
-            Cloud {
-                spreads: self.spreads.clone(),
-            },
-        );
+    fn with_earlier(self, clouds: Vec<Points>, bounds: &[[f64; 2]]) -> Self {
+        let (at, cloud) = (self.next.clone(), self.cloud.clone());
         let mut points = Points::default();
-        let mut best = self;
-        let mut volume = f64::INFINITY;
-        for of_cloud in clouds.iter().rev() {
-            points.places.extend(of_cloud.places.iter().cloned());
-            points.residuals.extend(of_cloud.residuals.iter().cloned());
-            let linear = Linear::fitted(&cloud, &at, &points.places, &points.residuals, bounds);
-            let Some(linear) = linear else {
-                continue;
-            };
-            let known = linear.covariance().symmetric_eigenvalues();
-            let logarithms: f64 = known.iter().map(|variance| variance.max(0.0).ln()).sum();
-            if logarithms < volume {
-                volume = logarithms;
-                let step = cloud.spreads.component_mul(&linear.step());
-                best = Self {
-                    next: moved(&at, &step, bounds),
-                    linear,
-                    spreads: cloud.spreads.clone(),
-                };
-            }
+        let mut best: Option<Self> = None;
+        for of_cloud in clouds.into_iter().rev() {
+            points.places.extend(of_cloud.places);
+            points.residuals.extend(of_cloud.residuals);
+            let linear = Linear::fitted(&cloud, &at, &points, bounds);
+            let found = linear.map(|linear| Self::new(cloud.clone(), &at, linear, bounds));
+            best = best.into_iter().chain(found).min_by(Self::by_volume);
         }
-        best
+        best.unwrap_or(self)
+    }
+
+    /// In the order of the volume that the coordinates are known to.
+    fn by_volume(one: &Self, other: &Self) -> Ordering {
+        let volume = |best: &Self| {
+            let known = best.linear.covariance().symmetric_eigenvalues();
+            known.map(|variance| variance.max(0.0).ln()).sum()
+        };
+        volume(one).total_cmp(&volume(other))
     }
 
     /// The covariance of the coordinates.
     fn covariance(&self) -> DMatrix<f64> {
-        let over = self.linear.covariance();
-        DMatrix::from_fn(over.nrows(), over.ncols(), |i, j| {
-            self.spreads[i] * self.spreads[j] * over[(i, j)]
-        })
+        let axes = &self.cloud.axes;
+        axes * self.linear.covariance() * axes.transpose()
     }
 }
 
@@ -235,16 +288,30 @@ fn moved(x: &[f64], by: &DVector<f64>, bounds: &[[f64; 2]]) -> Vec<f64> {
         .collect()
 }
 
-/// How far points lie from the best one, along each coordinate.
+/// Which axes the clouds after the first one have.
+#[derive(Clone, Copy, Debug)]
+enum Along {
+    /// The coordinates.
+    Coordinates,
+    /// The directions that are known by themselves.
+    PrincipalDirections,
+}
+
+/// How far points lie from the best one, along each of its axes, which are columns.
+#[derive(Clone, Debug)]
 struct Cloud {
-    spreads: DVector<f64>,
+    axes: DMatrix<f64>,
+    along: Along,
 }
 
 impl Cloud {
-    fn first(bounds: &[[f64; 2]]) -> Self {
+    /// That of which nothing is known: along the coordinates.
+    fn first(bounds: &[[f64; 2]], along: Along) -> Self {
         let spread = |[low, high]: &[f64; 2]| FIRST.min(WIDEST * (high - low));
+        let spreads = DVector::from_iterator(bounds.len(), bounds.iter().map(spread));
         Self {
-            spreads: DVector::from_iterator(bounds.len(), bounds.iter().map(spread)),
+            axes: DMatrix::from_diagonal(&spreads),
+            along,
         }
     }
 
@@ -254,9 +321,8 @@ impl Cloud {
         // A uniform number within ±√3 has the variance 1.
         let width = 3.0_f64.sqrt();
         let pairs = (0..PAIRS * (x.len() + 1)).map(|_| {
-            let by = self
-                .spreads
-                .map(|spread| spread * random.random_range(-width..width));
+            let along = DVector::from_fn(x.len(), |_, _| random.random_range(-width..width));
+            let by = &self.axes * along;
             [moved(x, &by, bounds), moved(x, &-by, bounds)]
         });
         pairs.flatten().collect()
@@ -272,32 +338,40 @@ impl Cloud {
                 WIDER,
             ),
         };
-        let factor = |i: usize| match linear.shown[i] {
-            true => (wide / linear.known[(i, i)].sqrt()).clamp(1.0 / NARROWER, WIDER),
-            false => unknown,
+        let factor = |along: Option<f64>| match along {
+            Some(known) => (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER),
+            None => unknown,
         };
-        let factors = DVector::from_fn(bounds.len(), |i, _| factor(i));
-        for (i, [low, high]) in bounds.iter().enumerate() {
-            self.spreads[i] = (self.spreads[i] * factors[i]).min(WIDEST * (high - low));
+        let factors = linear.along.map(factor);
+        self.axes = &self.axes * &linear.directions * DMatrix::from_diagonal(&factors);
+        for (mut of_coordinate, [low, high]) in self.axes.row_iter_mut().zip(bounds) {
+            let widest = WIDEST * (high - low);
+            let wide = of_coordinate.norm();
+            if wide > widest {
+                of_coordinate *= widest / wide;
+            }
         }
         factors.min()
     }
 }
 
-/// A linear model of the residuals over a cloud, whose widths are the units of its coordinates.
+/// A linear model of the residuals over a cloud, whose axes are the units of its coordinates.
 struct Linear {
-    /// Which coordinates the residuals show. All below is 0 for the others.
-    shown: Vec<bool>,
+    /// Directions of the axes of the next cloud, as columns, and the squares of the slopes along each, without what scatter and
+    /// curvature add; none where the residuals do not show it.
+    directions: DMatrix<f64>,
+    along: DVector<Option<f64>>,
     /// Half the derivative of the sum of squares.
     gradient: DVector<f64>,
     /// Its covariance by the scatter of one point: that of orders that scatter together is more than the variance of each says.
     of_gradient: DMatrix<f64>,
-    /// Squares of the slopes, without what scatter and curvature add.
+    /// Squares of the slopes, without what scatter and curvature add. These and the gradient are 0 along directions that
+    /// the residuals do not show.
     known: DMatrix<f64>,
     /// What these add to each square, the mean over the coordinates.
     scatter: f64,
     /// What is known before: a coordinate lies within its bounds.
-    before: DVector<f64>,
+    before: DMatrix<f64>,
     /// Whether the linear model leaves more than the noise of each residual, of which scatter is a part.
     is_curved: bool,
     /// Half the sum of squares in the middle, without scatter; and how far it is off by chance, a standard deviation.
@@ -305,23 +379,15 @@ struct Linear {
     chance: f64,
 }
 
-/// Where the points of a cloud around `x` lie, over its width and with a 1 for the middle, and their residuals: a row for each that
+/// Where the points of a cloud around `x` lie along its axes, with a 1 for the middle, and their residuals: a row for each that
 /// can be simulated. None where there is none.
-fn simulated(
-    cloud: &Cloud,
-    x: &[f64],
-    points: &[Vec<f64>],
-    residuals: &[Vec<f64>],
-) -> Option<[DMatrix<f64>; 2]> {
+fn simulated(cloud: &Cloud, x: &[f64], points: &Points) -> Option<[DMatrix<f64>; 2]> {
+    let inverse = cloud.axes.clone().try_inverse()?;
     let (mut places, mut rows) = (Vec::new(), Vec::new());
-    for (point, residuals) in points.iter().zip(residuals) {
+    for (point, residuals) in points.places.iter().zip(&points.residuals) {
         if is_simulated(residuals) {
-            let place = |i: usize| (point[i] - x[i]) / cloud.spreads[i];
-            places.push(
-                DVector::from_fn(x.len(), |i, _| place(i))
-                    .push(1.0)
-                    .transpose(),
-            );
+            let away = DVector::from_fn(x.len(), |i, _| point[i] - x[i]);
+            places.push((&inverse * away).push(1.0).transpose());
             rows.push(DVector::from_column_slice(residuals).transpose());
         }
     }
@@ -376,45 +442,50 @@ fn chance(rows: &DMatrix<f64>) -> f64 {
     (variance / points).sqrt()
 }
 
+/// The squares of slopes along these directions, where they are more than what scatter adds.
+fn along(
+    directions: &DMatrix<f64>,
+    squares: &DMatrix<f64>,
+    of_scatter: &DMatrix<f64>,
+) -> DVector<Option<f64>> {
+    let of = |squares: &DMatrix<f64>| (directions.transpose() * squares * directions).diagonal();
+    of(squares).zip_map(&of(of_scatter), |known, by_scatter| {
+        (known > SHOWN * by_scatter).then_some(known)
+    })
+}
+
 impl Linear {
     /// That of a cloud around `x`. Points that cannot be simulated are left out; none where too few are left.
-    fn fitted(
-        cloud: &Cloud,
-        x: &[f64],
-        points: &[Vec<f64>],
-        residuals: &[Vec<f64>],
-        bounds: &[[f64; 2]],
-    ) -> Option<Self> {
-        let [places, rows] = simulated(cloud, x, points, residuals)?;
+    fn fitted(cloud: &Cloud, x: &[f64], points: &Points, bounds: &[[f64; 2]]) -> Option<Self> {
+        let [places, rows] = simulated(cloud, x, points)?;
         let Regression {
-            mut slopes,
+            slopes,
             middle,
             left,
             free,
             variance,
             of_scatter,
         } = Regression::fit(&places, &rows)?;
-        let known = &slopes * slopes.transpose() - &of_scatter;
-        let shown = (0..x.len()).map(|i| known[(i, i)] > SHOWN * of_scatter[(i, i)]);
-        let shown: Vec<bool> = shown.collect();
+        let squares = &slopes * slopes.transpose() - &of_scatter;
+        let directions = match cloud.along {
+            Along::Coordinates => DMatrix::identity(x.len(), x.len()),
+            Along::PrincipalDirections => squares.clone().symmetric_eigen().eigenvectors,
+        };
+        let along = along(&directions, &squares, &of_scatter);
         // Scatter alone leads nowhere.
-        for (mut slope, shown) in slopes.row_iter_mut().zip(&shown) {
-            if !shown {
-                slope.fill(0.0);
-            }
-        }
+        let shown = along.map(|along| f64::from(u8::from(along.is_some())));
+        let projector = &directions * DMatrix::from_diagonal(&shown) * directions.transpose();
+        let slopes = &projector * slopes;
         let pulled = left * slopes.transpose();
-        let widths = cloud.spreads.map(|spread| spread.powi(2));
+        let ranges = DMatrix::from_diagonal(&range_variances(bounds).map(f64::recip));
         Some(Self {
             gradient: &slopes * middle.transpose(),
             of_gradient: pulled.transpose() * &pulled / free,
-            known: known.map_with_location(|i, j, known| match shown[i] && shown[j] {
-                true => known,
-                false => 0.0,
-            }),
-            shown,
+            known: &projector * squares * &projector,
+            along,
+            directions,
             scatter: of_scatter.trace() / x.len() as f64,
-            before: widths.component_div(&range_variances(bounds)),
+            before: cloud.axes.transpose() * ranges * &cloud.axes,
             is_curved: variance > rows.ncols() as f64,
             cost: 0.5 * (middle.norm_squared() - variance / places.nrows() as f64),
             chance: chance(&rows),
@@ -426,15 +497,14 @@ impl Linear {
         self.cost - than.cost > CHANCE * self.chance.hypot(than.chance)
     }
 
-    /// What is known, with its principal directions. What is taken off for scatter may be more than there is.
-    fn information(&self) -> SymmetricEigen<f64, nalgebra::Dyn> {
+    /// What is known. What is taken off for scatter may be more than there is.
+    fn information(&self) -> DMatrix<f64> {
         let SymmetricEigen {
             eigenvectors,
             eigenvalues,
         } = self.known.clone().symmetric_eigen();
-        let shown = DMatrix::from_diagonal(&eigenvalues.map(|known| known.max(0.0)));
-        let shown = &eigenvectors * shown * eigenvectors.transpose();
-        (shown + DMatrix::from_diagonal(&self.before)).symmetric_eigen()
+        let known = DMatrix::from_diagonal(&eigenvalues.map(|known| known.max(0.0)));
+        &eigenvectors * known * eigenvectors.transpose() + &self.before
     }
 
     /// The next step, over the width of the cloud: Levenberg and Marquardt's, no further than the cloud bears it.
@@ -442,7 +512,7 @@ impl Linear {
         let SymmetricEigen {
             eigenvectors,
             eigenvalues,
-        } = self.information();
+        } = self.information().symmetric_eigen();
         let along = eigenvectors.transpose() * &self.gradient;
         let step = |damping: f64| {
             let along = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
@@ -458,7 +528,7 @@ impl Linear {
     /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
     /// that of a simulation (the sandwich of Huber 1967).
     fn covariance(&self) -> DMatrix<f64> {
-        let inverse = inverse(self.information());
+        let inverse = inverse(self.information().symmetric_eigen());
         &inverse + &inverse * &self.of_gradient * &inverse
     }
 }
@@ -544,6 +614,70 @@ mod tests {
         }
         for held in held {
             assert!(held >= 36, "{held} of 40");
+        }
+    }
+
+    /// Residuals with a valley that is oblique to the coordinates, bent, and forty times as long as it is wide.
+    struct Valley(u64);
+
+    impl LeastSquares for Valley {
+        fn bounds(&self) -> Vec<[f64; 2]> {
+            vec![[-1.0, 1.0]; 2]
+        }
+        fn count(&self) -> usize {
+            COUNT
+        }
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            let bits = x[0].to_bits() ^ x[1].to_bits().rotate_left(21);
+            let own = Scattering::noise(self.0, 0).into_iter();
+            let noise = own.zip(Scattering::noise(self.0, bits));
+            let [across, along] = [x[0] + x[1], x[0] - x[1]];
+            let across = across - along.powi(2);
+            let signal = |k: f64| 800.0 * across * (0.3 * k).sin() + 20.0 * along * (0.7 * k).cos();
+            noise
+                .enumerate()
+                .map(|(k, (own, other))| signal(k as f64) + own + other)
+                .collect()
+        }
+        fn jacobian(&self, _: &[f64]) -> DMatrix<f64> {
+            DMatrix::zeros(COUNT, 2)
+        }
+    }
+
+    #[test]
+    fn clouds_along_principal_directions_follow_an_oblique_valley() {
+        let go = &mut |_: &Progress| ControlFlow::Continue(());
+        for seed in 0..5 {
+            let valley = Valley(seed);
+            let bounds = valley.bounds();
+            let mut search = Search::new(&valley, &bounds, &[0.06, -0.05], 1e3).unwrap();
+            let best = search.led(Along::PrincipalDirections, go).unwrap();
+            assert!(search.at.misfit() < 1.2, "{seed}: {}", search.at.misfit());
+            let known = intervals_of(&search.at.x, &bounds, &best.covariance());
+            for (x, [low, high]) in search.at.x.iter().zip(&known.intervals) {
+                // The slope of 20 times a wave of mean square 1/2 along the valley, which both coordinates share.
+                let textbook = 1.96 / (20.0 * (0.5 * COUNT as f64).sqrt());
+                let ratio = (high - low) / textbook;
+                assert!((0.9..2.5).contains(&ratio), "{seed}: {ratio}");
+                assert!(low <= &0.0 && &0.0 <= high, "{seed}: {x} {low} {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn where_clouds_along_coordinates_end_far_others_lead_nearer() {
+        let go = &mut |_: &Progress| ControlFlow::Continue(());
+        for seed in 0..3 {
+            let (valley, start) = (Valley(seed), [0.2, -0.15]);
+            let bounds = valley.bounds();
+            let mut first = Search::new(&valley, &bounds, &start, 1e3).unwrap();
+            first.led(Along::Coordinates, go).unwrap();
+            let (found, _) = statistical_linearization(&valley, &start, 1e3, go).unwrap();
+            let [first, found] = [first.at.misfit(), found.misfit()];
+            assert!(
+                first > 2.0 && found < 0.97 * first,
+                "{seed}: {first} {found}"
+            );
         }
     }
 
