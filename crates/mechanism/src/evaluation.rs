@@ -73,6 +73,8 @@ pub(crate) struct Standing<'a, S> {
     pub shaft: [Vec2<S>; 2],
     pub angle: S,
     pub speed: S,
+    /// Whether the speed stays what it is.
+    pub is_constant: bool,
     pub gravity: Vec2<S>,
 }
 
@@ -169,6 +171,7 @@ impl<S: Scalar> ThrowEvaluation<S> {
             offsets: [big[0], small[0]],
             mode: at.mode,
             drift: layout.gas.map(two),
+            centres: self.gas.centres.filter(|_| at.is_constant),
         };
         self.gas = cylinder.gas::<PLAIN>();
         let spring = effects.rod();

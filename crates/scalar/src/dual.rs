@@ -246,6 +246,11 @@ impl<S: Scalar, const N: usize> Scalar for Dual<S, N> {
     fn ln(self) -> Self {
         self.chain(self.value.ln(), S::one() / self.value)
     }
+    #[inline]
+    fn atan(self) -> Self {
+        let slope = S::one() / self.value.mul_add(self.value, S::one());
+        self.chain(self.value.atan(), slope)
+    }
     #[inline(always)]
     fn vectorised<T>(work: impl FnOnce() -> T) -> T {
         S::vectorised(work)

@@ -116,6 +116,7 @@ impl<S: Scalar> Dynamics<S> {
             false => &self.machine.effects,
         };
         let (angle, speed) = self.crank(t, y);
+        let is_constant = self.machine.drive.is_constant();
         let on_shaft = Acting::on_shaft(effects);
         self.evaluation.shaken = on_shaft.frame_acceleration(angle, speed);
         let gravity = self.gravity();
@@ -151,6 +152,7 @@ impl<S: Scalar> Dynamics<S> {
                     shaft,
                     angle,
                     speed,
+                    is_constant,
                     gravity,
                 },
                 y,

@@ -108,6 +108,8 @@ pub(crate) struct ChamberAt<S> {
     /// Pressures of suction and discharge line, Pa.
     pub suction: S,
     pub discharge: S,
+    /// The same as effects make them, at the dead centres where strokes start.
+    pub lines: [S; 2],
     /// Polytropic exponents of compression and expansion, and that of the stroke.
     pub exponents: [S; 2],
     pub exponent: S,

@@ -69,14 +69,19 @@ impl<S: Scalar> Acts<S> for ValveLoss<S> {
             self.suction * flow + self.suction_linear * at.growth,
             self.discharge * flow + self.discharge_linear * at.growth,
         ];
+        let through = [S::one() - lost[0], S::one() - lost[1]];
+        // When a plate lets go costs more than all else of the law.
+        if self.suction_overshoot.is_zero() && self.discharge_overshoot.is_zero() {
+            return [suction * through[0], discharge * through[1]];
+        }
         let since = at.since_opening([S::one() - self.suction_overshoot, S::one() + self.discharge_overshoot]);
         let faded = inlined(
             #[inline(always)]
             |angle: S| (-(angle.max(S::zero()) / self.overshoot_angle)).exp(),
         );
         [
-            suction * (S::one() - lost[0] - self.suction_overshoot * faded(since[0])),
-            discharge * (S::one() - lost[1] + self.discharge_overshoot * faded(since[1])),
+            suction * (through[0] - self.suction_overshoot * faded(since[0])),
+            discharge * (through[1] + self.discharge_overshoot * faded(since[1])),
         ]
     }
 }

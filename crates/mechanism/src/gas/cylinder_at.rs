@@ -31,6 +31,8 @@ pub(crate) struct CylinderAt<'a, S> {
     pub mode: &'a ThrowMode<S>,
     /// Logarithms of how far head end and crank end have left their polytropes.
     pub drift: Option<[S; 2]>,
+    /// Suction and discharge pressure of head end and crank end at the dead centres, where they are known.
+    pub centres: Option<[[S; 2]; 2]>,
 }
 
 impl<S: Scalar> CylinderAt<'_, S> {
@@ -92,6 +94,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
             force,
             effects,
             drift: self.drifts([(&head_end, head), (&crank_end, crank)]),
+            centres: head.map(|head| [head.lines, crank.map_or(head.lines, |crank| crank.lines)]),
         }
     }
 
@@ -137,7 +140,11 @@ impl<S: Scalar> CylinderAt<'_, S> {
         }
         chamber.filled -= self.retreat(end);
         let mut seen = self.seen(end, &chamber, distance, expanding, mode);
-        chamber.lines = self.lines_at_centres(end, seen);
+        chamber.lines = match self.centres {
+            Some(known) => known[end as usize],
+            None => self.lines_at_centres(end, seen),
+        };
+        seen.lines = chamber.lines;
         let drift = self.drift.map(|drift| drift[end as usize]);
         let open = self.lines(end, &seen);
         let state = chamber.state(distance, expanding, open, drift, mode);
@@ -188,6 +195,7 @@ impl<S: Scalar> CylinderAt<'_, S> {
             warmth: S::one(),
             suction: cylinder.suction,
             discharge: cylinder.discharge,
+            lines: chamber.lines,
             exponents: chamber.exponents,
             exponent: flagged(expanding, cylinder.expansion_exponent, cylinder.exponent),
             closed: S::one() - mode.suction - mode.discharge,

@@ -17,6 +17,9 @@ pub struct Gas<S> {
     pub effects: S,
     /// Rates of the drifts of head end and crank end off their polytropes, 1/s.
     pub(crate) drift: [S; 2],
+    /// Suction and discharge pressure of head end and crank end at the dead centres, where effects may have moved them.
+    /// They stay what they are while the speed is constant.
+    pub(crate) centres: Option<[[S; 2]; 2]>,
 }
 
 impl<S: Scalar> Gas<S> {
@@ -29,6 +32,7 @@ impl<S: Scalar> Gas<S> {
             force: S::zero(),
             effects: S::zero(),
             drift: [S::zero(); 2],
+            centres: None,
         }
     }
 
