@@ -11,21 +11,20 @@
 //! do not follow a valley that is oblique to the coordinates, and bent. Clouds along the principal directions of what is known are
 //! as long as such a valley, and what bends over them counts as scatter. So they come second, where more than noise is left.
 
+mod cloud;
+mod linear_model;
+
+pub(crate) use linear_model::DAMPING;
+
 use crate::error::Error;
 use crate::identifiability::{Information, intervals_of};
-use crate::likelihood::{FAILED, NOISE};
+use crate::likelihood::NOISE;
 use crate::optimiser::{LeastSquares, Progress, Watch};
-use nalgebra::{DMatrix, DVector, RowDVector, SymmetricEigen};
-use rand::RngExt;
-use scalar::random::{Purpose, stream};
+use cloud::{Axes, Cloud, Points, moved, range_variances};
+use linear_model::{Linear, inverse, is_simulated};
+use nalgebra::DMatrix;
 use std::cmp::Ordering;
 
-/// Pairs of points of a cloud, for each unknown of the linear model.
-const PAIRS: usize = 4;
-/// Standard deviation of the coordinates in the first cloud: a few hundredths of a clearance, as wide as its valleys are.
-const FIRST: f64 = 0.03;
-/// The widest cloud, as a share of a coordinate's range.
-const WIDEST: f64 = 0.25;
 /// A cloud is so wide that slopes add this many times as much to the squares of the residuals as scatter does to the squares
 /// of the slopes, but not less than this many standard deviations of what is known.
 const OVER_SCATTER: f64 = 4.0;
@@ -33,21 +32,12 @@ const OVER_KNOWN: f64 = 2.0;
 /// A cloud becomes narrower and wider along an axis by these factors at most.
 const NARROWER: f64 = 3.0;
 const WIDER: f64 = 2.0;
-/// A step leads this many standard deviations of the cloud far at most, and one of less than that ends the search.
-const STEP: f64 = 2.0;
+/// A step of less than this many standard deviations of the cloud ends the search.
 const ENDED: f64 = 0.5;
 /// Clouds at most along coordinates and along principal directions, and after how many a fit that is still `far` may end.
 const CLOUDS: u64 = 6;
 const SEARCHED: u64 = 12;
 const BEGINNING: u64 = 2;
-/// Standard deviations by which the sum of squares in the middle of a cloud may grow by chance.
-const CHANCE: f64 = 2.0;
-/// A direction is shown where its slopes add so much more to the squares of the residuals than scatter alone, as a share of what
-/// that adds.
-const SHOWN: f64 = 1.0;
-/// The damping of a step to begin with, over the most that is known of a direction, and how often it is doubled.
-pub(crate) const DAMPING: f64 = 1e-6;
-const DOUBLINGS: i32 = 100;
 
 /// The best fit within bounds that clouds from `start` on lead to, and the information there. Ends early where more than the
 /// misfit `far` is left after two clouds.
@@ -62,11 +52,11 @@ pub(crate) fn statistical_linearization(
 ) -> Result<(Progress, Information), Error> {
     let bounds = problem.bounds();
     let mut search = Search::new(problem, &bounds, start, far)?;
-    let mut best = search.led(Along::Coordinates, watch);
+    let mut best = search.led(Axes::Coordinates, watch);
     if search.at.misfit() > NOISE && !search.stopped {
         let first = search.at.clone();
         search.at.x = start.to_vec();
-        let other = search.led(Along::PrincipalDirections, watch);
+        let other = search.led(Axes::PrincipalDirections, watch);
         if search.at.cost < first.cost {
             best = other;
         } else {
@@ -120,12 +110,12 @@ impl<'a, P: LeastSquares> Search<'a, P> {
 
     /// The last cloud that is no worse than the one before, of those that lead on from where the search stands. It stands where the step of
     /// that one leads then.
-    fn led(&mut self, along: Along, watch: Watch) -> Option<Best> {
+    fn led(&mut self, along: Axes, watch: Watch) -> Option<Best> {
         let bounds = self.bounds;
         let mut cloud = Cloud::first(bounds, along);
         let most = match along {
-            Along::Coordinates => CLOUDS,
-            Along::PrincipalDirections => SEARCHED,
+            Axes::Coordinates => CLOUDS,
+            Axes::PrincipalDirections => SEARCHED,
         };
         let mut best: Option<Best> = None;
         let mut straight: Vec<Points> = Vec::new();
@@ -133,7 +123,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             self.stopped = watch(&self.at).is_break();
             // A cloud over which the residuals are curved says little of its middle.
             let is_curved = best.as_ref().is_some_and(|best| best.linear.is_curved);
-            let goes_on = is_curved && matches!(along, Along::PrincipalDirections);
+            let goes_on = is_curved && matches!(along, Axes::PrincipalDirections);
             let is_far = self.at.misfit() > self.far && !goes_on;
             if self.stopped || (number >= BEGINNING && is_far) {
                 break;
@@ -155,7 +145,7 @@ impl<'a, P: LeastSquares> Search<'a, P> {
             let led = Best::new(cloud.clone(), &self.at.x, linear, bounds);
             self.at.x.clone_from(&led.next);
             self.at.cost = led.linear.cost;
-            let narrowest = cloud.reshape(&led.linear, bounds);
+            let narrowest = reshape(&mut cloud, &led.linear, bounds);
             let ends = led.linear.along.iter().all(Option::is_some)
                 && narrowest > 1.0 / NARROWER
                 && led.linear.step().amax() < ENDED;
@@ -190,7 +180,7 @@ pub(crate) fn widening(
         return Vec::new();
     }
     let bounds = problem.bounds();
-    let mut cloud = Cloud::first(&bounds, Along::Coordinates);
+    let mut cloud = Cloud::first(&bounds, Axes::Coordinates);
     for (i, spread) in known.iter().zip(spreads) {
         // At a bound an interval may have no width.
         if *spread > 0.0 {
@@ -218,13 +208,6 @@ struct Best {
     cloud: Cloud,
     linear: Linear,
     next: Vec<f64>,
-}
-
-/// The points of a cloud, or of several, and their residuals.
-#[derive(Clone, Debug, Default)]
-struct Points {
-    places: Vec<Vec<f64>>,
-    residuals: Vec<Vec<f64>>,
 }
 
 impl Best {
@@ -269,282 +252,30 @@ impl Best {
     }
 }
 
-/// The variance of each coordinate that may lie anywhere within its bounds.
-fn range_variances(bounds: &[[f64; 2]]) -> DVector<f64> {
-    DVector::from_iterator(
-        bounds.len(),
-        bounds.iter().map(|[low, high]| (high - low).powi(2) / 12.0),
-    )
-}
-
-/// Whether none of these stands in for one of a run that cannot be simulated.
-fn is_simulated(residuals: &[f64]) -> bool {
-    residuals.iter().all(|r| r.is_finite() && *r != FAILED)
-}
-
-fn moved(x: &[f64], by: &DVector<f64>, bounds: &[[f64; 2]]) -> Vec<f64> {
-    let each = x.iter().zip(by.iter()).zip(bounds);
-    each.map(|((x, by), [low, high])| (x + by).clamp(*low, *high))
-        .collect()
-}
-
-/// Which axes the clouds after the first one have.
-#[derive(Clone, Copy, Debug)]
-enum Along {
-    /// The coordinates.
-    Coordinates,
-    /// The directions that are known by themselves.
-    PrincipalDirections,
-}
-
-/// How far points lie from the best one, along each of its axes, which are columns.
-#[derive(Clone, Debug)]
-struct Cloud {
-    axes: DMatrix<f64>,
-    along: Along,
-}
-
-impl Cloud {
-    /// That of which nothing is known: along the coordinates.
-    fn first(bounds: &[[f64; 2]], along: Along) -> Self {
-        let spread = |[low, high]: &[f64; 2]| FIRST.min(WIDEST * (high - low));
-        let spreads = DVector::from_iterator(bounds.len(), bounds.iter().map(spread));
-        Self {
-            axes: DMatrix::from_diagonal(&spreads),
-            along,
-        }
-    }
-
-    /// Pairs of opposite points, within the bounds.
-    fn points(&self, number: u64, x: &[f64], bounds: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        let mut random = stream(0, number, Purpose::Variation);
-        // A uniform number within ±√3 has the variance 1.
-        let width = 3.0_f64.sqrt();
-        let pairs = (0..PAIRS * (x.len() + 1)).map(|_| {
-            let along = DVector::from_fn(x.len(), |_, _| random.random_range(-width..width));
-            let by = &self.axes * along;
-            [moved(x, &by, bounds), moved(x, &-by, bounds)]
-        });
-        pairs.flatten().collect()
-    }
-
-    /// Makes it as wide as a linear model over it says, and returns by what factor it is wider where that is least.
-    fn reshape(&mut self, linear: &Linear, bounds: &[[f64; 2]]) -> f64 {
-        // What curvature leaves becomes less in a narrower cloud, what scatter leaves counts less in a wider one.
-        let (wide, unknown) = match linear.is_curved {
-            true => (OVER_KNOWN, 1.0 / NARROWER),
-            false => (
-                OVER_KNOWN.max((OVER_SCATTER * linear.scatter).sqrt()),
-                WIDER,
-            ),
-        };
-        let factor = |along: Option<f64>| match along {
-            Some(known) => (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER),
-            None => unknown,
-        };
-        let factors = linear.along.map(factor);
-        self.axes = &self.axes * &linear.directions * DMatrix::from_diagonal(&factors);
-        for (mut of_coordinate, [low, high]) in self.axes.row_iter_mut().zip(bounds) {
-            let widest = WIDEST * (high - low);
-            let wide = of_coordinate.norm();
-            if wide > widest {
-                of_coordinate *= widest / wide;
-            }
-        }
-        factors.min()
-    }
-}
-
-/// A linear model of the residuals over a cloud, whose axes are the units of its coordinates.
-struct Linear {
-    /// Directions of the axes of the next cloud, as columns, and the squares of the slopes along each, without what scatter and
-    /// curvature add; none where the residuals do not show it.
-    directions: DMatrix<f64>,
-    along: DVector<Option<f64>>,
-    /// Half the derivative of the sum of squares.
-    gradient: DVector<f64>,
-    /// Its covariance by the scatter of one point: that of orders that scatter together is more than the variance of each says.
-    of_gradient: DMatrix<f64>,
-    /// Squares of the slopes, without what scatter and curvature add. These and the gradient are 0 along directions that
-    /// the residuals do not show.
-    known: DMatrix<f64>,
-    /// What these add to each square, the mean over the coordinates.
-    scatter: f64,
-    /// What is known before: a coordinate lies within its bounds.
-    before: DMatrix<f64>,
-    /// Whether the linear model leaves more than the noise of each residual, of which scatter is a part.
-    is_curved: bool,
-    /// Half the sum of squares in the middle, without scatter; and how far it is off by chance, a standard deviation.
-    cost: f64,
-    chance: f64,
-}
-
-/// Where the points of a cloud around `x` lie along its axes, with a 1 for the middle, and their residuals: a row for each that
-/// can be simulated. None where there is none.
-fn simulated(cloud: &Cloud, x: &[f64], points: &Points) -> Option<[DMatrix<f64>; 2]> {
-    let inverse = cloud.axes.clone().try_inverse()?;
-    let (mut places, mut rows) = (Vec::new(), Vec::new());
-    for (point, residuals) in points.places.iter().zip(&points.residuals) {
-        if is_simulated(residuals) {
-            let away = DVector::from_fn(x.len(), |i, _| point[i] - x[i]);
-            places.push((&inverse * away).push(1.0).transpose());
-            rows.push(DVector::from_column_slice(residuals).transpose());
-        }
-    }
-    let is_some = !rows.is_empty();
-    is_some.then(|| [places, rows].map(|rows| DMatrix::from_rows(&rows)))
-}
-
-/// Least squares of each residual over where the points of a cloud lie.
-struct Regression {
-    /// A row for each coordinate, a column for each residual.
-    slopes: DMatrix<f64>,
-    /// The residuals in the middle.
-    middle: RowDVector<f64>,
-    /// What slopes and middle leave, a row for each point.
-    left: DMatrix<f64>,
-    /// Points beyond those that determine them.
-    free: f64,
-    /// The sum of the variances of the residuals that are left.
-    variance: f64,
-    /// What these add to the products of slopes.
-    of_scatter: DMatrix<f64>,
-}
-
-impl Regression {
-    /// `places` has a 1 in its last column. None where the points do not determine a slope.
-    fn fit(places: &DMatrix<f64>, rows: &DMatrix<f64>) -> Option<Self> {
-        let count = places.ncols() - 1;
-        let free = places.nrows().checked_sub(count + 1);
-        let free = free.filter(|free| *free > 0)? as f64;
-        let normal = (places.transpose() * places).try_inverse()?;
-        let model = &normal * places.transpose() * rows;
-        let left = rows - places * &model;
-        let variance = left.norm_squared() / free;
-        Some(Self {
-            slopes: model.rows(0, count).into_owned(),
-            middle: model.row(count).into_owned(),
-            left,
-            free,
-            variance,
-            of_scatter: normal.view((0, 0), (count, count)) * variance,
-        })
-    }
-}
-
-/// By how much the mean over points of half the sum of squares is off by chance, a standard deviation.
-fn chance(rows: &DMatrix<f64>) -> f64 {
-    let points = rows.nrows() as f64;
-    let squares = rows.row_iter().map(|row| 0.5 * row.norm_squared());
-    let squares: Vec<f64> = squares.collect();
-    let mean = squares.iter().sum::<f64>() / points;
-    let variance = squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / points;
-    (variance / points).sqrt()
-}
-
-/// The squares of slopes along these directions, where they are more than what scatter adds.
-fn along(
-    directions: &DMatrix<f64>,
-    squares: &DMatrix<f64>,
-    of_scatter: &DMatrix<f64>,
-) -> DVector<Option<f64>> {
-    let of = |squares: &DMatrix<f64>| (directions.transpose() * squares * directions).diagonal();
-    of(squares).zip_map(&of(of_scatter), |known, by_scatter| {
-        (known > SHOWN * by_scatter).then_some(known)
-    })
-}
-
-impl Linear {
-    /// That of a cloud around `x`. Points that cannot be simulated are left out; none where too few are left.
-    fn fitted(cloud: &Cloud, x: &[f64], points: &Points, bounds: &[[f64; 2]]) -> Option<Self> {
-        let [places, rows] = simulated(cloud, x, points)?;
-        let Regression {
-            slopes,
-            middle,
-            left,
-            free,
-            variance,
-            of_scatter,
-        } = Regression::fit(&places, &rows)?;
-        let squares = &slopes * slopes.transpose() - &of_scatter;
-        let directions = match cloud.along {
-            Along::Coordinates => DMatrix::identity(x.len(), x.len()),
-            Along::PrincipalDirections => squares.clone().symmetric_eigen().eigenvectors,
-        };
-        let along = along(&directions, &squares, &of_scatter);
-        // Scatter alone leads nowhere.
-        let shown = along.map(|along| f64::from(u8::from(along.is_some())));
-        let projector = &directions * DMatrix::from_diagonal(&shown) * directions.transpose();
-        let slopes = &projector * slopes;
-        let pulled = left * slopes.transpose();
-        let ranges = DMatrix::from_diagonal(&range_variances(bounds).map(f64::recip));
-        Some(Self {
-            gradient: &slopes * middle.transpose(),
-            of_gradient: pulled.transpose() * &pulled / free,
-            known: &projector * squares * &projector,
-            along,
-            directions,
-            scatter: of_scatter.trace() / x.len() as f64,
-            before: cloud.axes.transpose() * ranges * &cloud.axes,
-            is_curved: variance > rows.ncols() as f64,
-            cost: 0.5 * (middle.norm_squared() - variance / places.nrows() as f64),
-            chance: chance(&rows),
-        })
-    }
-
-    /// Whether more is left in the middle of this cloud than of another, and not by chance.
-    fn is_worse(&self, than: &Self) -> bool {
-        self.cost - than.cost > CHANCE * self.chance.hypot(than.chance)
-    }
-
-    /// What is known. What is taken off for scatter may be more than there is.
-    fn information(&self) -> DMatrix<f64> {
-        let SymmetricEigen {
-            eigenvectors,
-            eigenvalues,
-        } = self.known.clone().symmetric_eigen();
-        let known = DMatrix::from_diagonal(&eigenvalues.map(|known| known.max(0.0)));
-        &eigenvectors * known * eigenvectors.transpose() + &self.before
-    }
-
-    /// The next step, over the width of the cloud: Levenberg and Marquardt's, no further than the cloud bears it.
-    fn step(&self) -> DVector<f64> {
-        let SymmetricEigen {
-            eigenvectors,
-            eigenvalues,
-        } = self.information().symmetric_eigen();
-        let along = eigenvectors.transpose() * &self.gradient;
-        let step = |damping: f64| {
-            let along = along.zip_map(&eigenvalues, |g, known| -g / (known + damping));
-            &eigenvectors * along
-        };
-        let longest = STEP * (along.len() as f64).sqrt();
-        let dampings = (0..DOUBLINGS).map(|i| DAMPING * 2.0_f64.powi(i) * eigenvalues.max());
-        let mut steps = dampings.map(step);
-        let within = steps.find(|step| step.norm() <= longest);
-        within.unwrap_or_else(|| DVector::zeros(along.len()))
-    }
-
-    /// The covariance of what is found, over the width of the cloud: the recording's noise, and its scatter, which is as great as
-    /// that of a simulation (the sandwich of Huber 1967).
-    fn covariance(&self) -> DMatrix<f64> {
-        let inverse = inverse(self.information().symmetric_eigen());
-        &inverse + &inverse * &self.of_gradient * &inverse
-    }
-}
-
-fn inverse(information: SymmetricEigen<f64, nalgebra::Dyn>) -> DMatrix<f64> {
-    let SymmetricEigen {
-        eigenvectors,
-        eigenvalues,
-    } = information;
-    let inverse = eigenvalues.map(|known| 1.0 / known.max(f64::MIN_POSITIVE));
-    &eigenvectors * DMatrix::from_diagonal(&inverse) * eigenvectors.transpose()
+/// Makes a cloud as wide as a linear model over it says, and returns by what factor it is wider where that is least.
+fn reshape(cloud: &mut Cloud, linear: &Linear, bounds: &[[f64; 2]]) -> f64 {
+    // What curvature leaves becomes less in a narrower cloud, what scatter leaves counts less in a wider one.
+    let (wide, unknown) = match linear.is_curved {
+        true => (OVER_KNOWN, 1.0 / NARROWER),
+        false => (
+            OVER_KNOWN.max((OVER_SCATTER * linear.scatter).sqrt()),
+            WIDER,
+        ),
+    };
+    let factor = |along: Option<f64>| match along {
+        Some(known) => (wide / known.sqrt()).clamp(1.0 / NARROWER, WIDER),
+        None => unknown,
+    };
+    let factors = linear.along.map(factor);
+    cloud.reshape(&linear.directions, &factors, bounds);
+    factors.min()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
+    use scalar::random::{Purpose, stream};
     use std::ops::ControlFlow;
 
     const COUNT: usize = 400;
@@ -651,7 +382,7 @@ mod tests {
             let valley = Valley(seed);
             let bounds = valley.bounds();
             let mut search = Search::new(&valley, &bounds, &[0.06, -0.05], 1e3).unwrap();
-            let best = search.led(Along::PrincipalDirections, go).unwrap();
+            let best = search.led(Axes::PrincipalDirections, go).unwrap();
             assert!(search.at.misfit() < 1.2, "{seed}: {}", search.at.misfit());
             let known = intervals_of(&search.at.x, &bounds, &best.covariance());
             for (x, [low, high]) in search.at.x.iter().zip(&known.intervals) {
@@ -671,7 +402,7 @@ mod tests {
             let (valley, start) = (Valley(seed), [0.2, -0.15]);
             let bounds = valley.bounds();
             let mut first = Search::new(&valley, &bounds, &start, 1e3).unwrap();
-            first.led(Along::Coordinates, go).unwrap();
+            first.led(Axes::Coordinates, go).unwrap();
             let (found, _) = statistical_linearization(&valley, &start, 1e3, go).unwrap();
             let [first, found] = [first.at.misfit(), found.misfit()];
             assert!(

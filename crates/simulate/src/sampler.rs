@@ -71,7 +71,7 @@ struct Series {
     /// Scratch: shares of a step, and values there.
     shares: Vec<f64>,
     values: Vec<f64>,
-    polynomials: Vec<Polynomial>,
+    polynomials: Vec<Polynomial<f64>>,
 }
 
 /// What was seen of a run.
@@ -117,7 +117,8 @@ impl Series {
         self.polynomials.clear();
         for i in 0..sensors.len() {
             let values = std::array::from_fn(|node| seen(i, node));
-            let through = self.nodes.through(&values, self.largest[i], self.tolerance);
+            let largest = std::slice::from_ref(&self.largest[i]);
+            let through = self.nodes.through(&values, largest, self.tolerance);
             let Some(polynomial) = through else {
                 return false;
             };

@@ -11,6 +11,7 @@ pub use crate::recorder::Sensitivities;
 
 use crate::asked::Asked;
 use crate::error::Error;
+use crate::inner_samples::InnerSamples;
 use crate::orbit::Orbit;
 use crate::recorder::{Recorder, apart};
 use crate::run::Run;
@@ -136,11 +137,7 @@ fn recorded<S: Real>(
         instants,
         ..
     } = Span::after(run, transient, sensors, settings)?;
-    let mut inner = vec![Vec::new(); sensors.len()];
-    run.show(instants, |at| {
-        for (sensor, inner) in sensors.iter().zip(&mut inner) {
-            inner.push(sensor.measured.value(at));
-        }
-    })?;
-    Ok((Recorder { sampling, start }, inner))
+    let mut samples = InnerSamples::new(sensors, settings.tolerance);
+    run.sample(instants, &mut samples)?;
+    Ok((Recorder { sampling, start }, samples.end()))
 }

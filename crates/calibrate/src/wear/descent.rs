@@ -7,6 +7,7 @@ use super::discrepancy::{FAR, TIMINGS};
 use super::effort::Effort;
 use super::model::Model;
 use crate::branch::{EVALUATIONS, on_best_branches};
+use crate::cloud_descent::{KEPT, Led};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::fit::{Fit, FitSettings, Optimiser, calibrate, linearized};
@@ -15,7 +16,6 @@ use crate::observation::Observation;
 use crate::optimiser::{LeastSquares, Progress, levenberg_marquardt};
 use crate::prior::{self, Prior, WithPriors};
 use crate::problem::Problem;
-use crate::region::KEPT;
 use crate::search::CHANGE;
 use crate::secant::secants;
 use rayon::prelude::*;
@@ -56,15 +56,6 @@ const BESIDE: [f64; 6] = [-1e-3, -3e-4, -1e-4, 1e-4, 3e-4, 1e-3];
 /// which is not looked at any closer.
 const LAST: u64 = 300;
 const BEGINNING: u64 = 30;
-
-/// Where a descent has led.
-#[derive(Clone, Debug)]
-pub(super) struct Led {
-    /// Coordinates.
-    pub x: Vec<f64>,
-    /// What is left there, in the units of the last stage: with lines, twice the negative logarithm of the likelihood.
-    pub left: f64,
-}
 
 /// The problem with a few of its runs, of speeds as different as there are.
 pub(super) fn few(problem: &Problem) -> Problem {

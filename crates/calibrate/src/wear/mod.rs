@@ -18,7 +18,6 @@
 //! 7. A motion that does not repeat itself has no derivatives, be it recorded or that of the best fit. The last fit and the
 //!    intervals come from a statistical linearisation of lines and energies then (`crate::statistical_linearization`).
 
-mod cloud;
 mod descent;
 mod discrepancy;
 mod draws;

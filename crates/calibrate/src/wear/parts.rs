@@ -3,8 +3,8 @@
 //! Throws of a shaft in an ideal bearing hardly act on each other. Where each has an accelerometer of its own, the clearances of one
 //! throw are searched without those of another.
 
-use super::descent::Led;
 use super::model::Model;
+use crate::cloud_descent::Led;
 use crate::error::Error;
 use crate::prior::Prior;
 use crate::problem::Problem;

@@ -1,11 +1,12 @@
 //! Which joints are clear, and whether the contact parameters are as stated: a selection by evidence.
 
-use super::descent::{Led, finely, fit, roughly};
+use super::descent::{finely, fit, roughly};
 use super::discrepancy::FAR;
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
 use super::sets::{Ends, Sets};
+use crate::cloud_descent::Led;
 use crate::error::Error;
 use crate::fit::Fit;
 use crate::likelihood::Likelihood;

@@ -3,13 +3,13 @@
 //! Joints act on each other, and those that are clear make up for one that is missing. So all clearances of a set are searched
 //! at once: by energies, which have few minima, from many points. The best of these points says already which sets are likely.
 
-use super::cloud::{Width, descended};
-use super::descent::{Led, few};
+use super::descent::few;
 use super::draws::draws;
 use super::effort::Effort;
 use super::joint::Joint;
 use super::model::{Contacts, Model};
 use super::parts::{Part, joined, parts};
+use crate::cloud_descent::{CLOUDS, Descent, Led, Width, descend};
 use crate::energies::Energies;
 use crate::error::Error;
 use crate::optimiser::LeastSquares;
@@ -28,6 +28,9 @@ const MIXED: usize = 16;
 /// Half the width of a cloud to begin with: of the logarithm of a clearance, and of what is known before, in standard deviations.
 const CLEARANCE: f64 = 0.5;
 const SPREADS: f64 = 1.0;
+/// Clouds after which the better half of the descents goes on (successive halving, Jamieson and Talwalkar 2016), and how many at least.
+const HALVED: usize = 4;
+const GO_ON: usize = 2;
 /// Sets of the same size to which one more joint is added, and sets that are searched: the best by the points that are drawn.
 const BEST: usize = 3;
 
@@ -223,6 +226,32 @@ fn ends_of(model: &Model, starts: &[Vec<f64>], effort: &mut Effort) -> Vec<Led> 
     effort.begins(Stage::Clearances);
     let led = descended(&compared, starts, &widths, effort);
     effort.ends();
+    led
+}
+
+/// Where descents from these starts lead, the best one first.
+fn descended(
+    compared: &impl LeastSquares,
+    starts: &[Vec<f64>],
+    widths: &[Width],
+    effort: &mut Effort,
+) -> Vec<Led> {
+    let new = |start: &Vec<f64>| Descent::new(start, widths, compared);
+    let mut going: Vec<Descent> = starts.iter().map(new).collect();
+    let mut ended = Vec::new();
+    for number in 0..CLOUDS {
+        if number > 0 && number % HALVED == 0 {
+            going.sort_by(|a, b| a.best().left.total_cmp(&b.best().left));
+            let half = going.len().div_ceil(2).max(GO_ON).min(going.len());
+            ended.extend(going.drain(half..));
+        }
+        if !descend(compared, &mut going, |count| effort.evaluated(count)) {
+            break;
+        }
+    }
+    let all = going.iter().chain(&ended).map(Descent::best);
+    let mut led: Vec<Led> = all.filter(|led| led.left.is_finite()).collect();
+    led.sort_by(|a, b| a.left.total_cmp(&b.left));
     led
 }
 

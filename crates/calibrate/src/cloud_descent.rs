@@ -5,8 +5,6 @@
 //! cloud becomes narrower from step to step. (Statistical linearisation, Gelb 1974, section 6.2; without derivatives,
 //! Cartis and Roberts 2019.)
 
-use super::descent::Led;
-use super::effort::Effort;
 use crate::likelihood::FAILED;
 use crate::optimiser::LeastSquares;
 use crate::statistical_linearization::DAMPING;
@@ -16,12 +14,10 @@ use scalar::random::{Purpose, stream};
 
 /// Points of a cloud, for each unknown of the linear model.
 const POINTS: usize = 2;
-/// How much narrower each cloud is than the one before, and how many there are: at the end their width is a fourteenth.
+/// How much narrower each cloud is than the one before.
 const NARROWER: f64 = 0.8;
-const CLOUDS: usize = 12;
-/// Clouds after which the better half of the descents goes on (successive halving, Jamieson and Talwalkar 2016), and how many at least.
-const HALVED: usize = 4;
-const GO_ON: usize = 2;
+/// How many there are: at the end their width is a fourteenth.
+pub const CLOUDS: usize = 12;
 /// Points farther from the middle of a cloud than so many of its half widths no longer count.
 const NEAR: f64 = 1.3;
 /// How far a step leads at most, over the half width of the cloud. Half of each step is looked at, too.
@@ -30,35 +26,31 @@ const STEP: f64 = 1.5;
 const MORE: f64 = 3.0;
 const MOST_DAMPINGS: usize = 60;
 
-/// A coordinate that moves, and half the width of the first cloud along it.
-pub(super) type Width = (usize, f64);
+/// Of descents from energies that are held against each other one of so many goes on (successive halving, Jamieson and Talwalkar 2016).
+pub const KEPT: usize = 3;
 
-/// Where descents from these starts lead, the best one first.
-pub(super) fn descended(
+/// A coordinate that moves, and half the width of the first cloud along it.
+pub type Width = (usize, f64);
+
+/// Where a descent has led.
+#[derive(Clone, Debug)]
+pub struct Led {
+    /// Coordinates.
+    pub x: Vec<f64>,
+    /// What is left there, in the units of what was compared last: with lines, twice the negative logarithm of the likelihood.
+    pub left: f64,
+}
+
+/// Leads each of these descents on by a cloud, all points together. `evaluated` is told how many have been, and says whether to go on.
+pub fn descend(
     compared: &impl LeastSquares,
-    starts: &[Vec<f64>],
-    widths: &[Width],
-    effort: &mut Effort,
-) -> Vec<Led> {
-    let bounds = compared.bounds();
-    let new = |start: &Vec<f64>| Descent::new(start, widths, &bounds);
-    let mut going: Vec<Descent> = starts.iter().map(new).collect();
-    evaluate(compared, &mut going, |d| vec![d.start.clone()], effort);
-    let mut ended = Vec::new();
-    for number in 0..CLOUDS {
-        if number > 0 && number % HALVED == 0 {
-            going.sort_by(|a, b| a.best().left.total_cmp(&b.best().left));
-            let half = going.len().div_ceil(2).max(GO_ON).min(going.len());
-            ended.extend(going.drain(half..));
-        }
-        evaluate(compared, &mut going, |d| d.cloud(number), effort);
-        evaluate(compared, &mut going, |d| d.steps(), effort);
-        going.iter_mut().for_each(Descent::narrow);
-    }
-    let all = going.into_iter().chain(ended);
-    let mut led: Vec<Led> = all.filter_map(Descent::led).collect();
-    led.sort_by(|a, b| a.left.total_cmp(&b.left));
-    led
+    all: &mut [Descent],
+    mut evaluated: impl FnMut(u64) -> bool,
+) -> bool {
+    let goes_on = evaluate(compared, all, Descent::cloud, &mut evaluated)
+        && evaluate(compared, all, Descent::steps, &mut evaluated);
+    all.iter_mut().for_each(Descent::narrow);
+    goes_on
 }
 
 /// Evaluates the points that each descent asks for, all together.
@@ -66,11 +58,8 @@ fn evaluate(
     compared: &impl LeastSquares,
     all: &mut [Descent],
     asked: impl Fn(&Descent) -> Vec<Vec<f64>>,
-    effort: &mut Effort,
-) {
-    if effort.stopped {
-        return;
-    }
+    evaluated: &mut impl FnMut(u64) -> bool,
+) -> bool {
     let asked: Vec<Vec<Vec<f64>>> = all.iter().map(asked).collect();
     let points = asked.concat();
     let mut residuals = compared.residuals_of_all(&points).into_iter();
@@ -79,7 +68,7 @@ fn evaluate(
             descent.note(x, residuals);
         }
     }
-    effort.evaluated(points.len() as u64);
+    evaluated(points.len() as u64)
 }
 
 /// A point that was evaluated.
@@ -91,31 +80,40 @@ struct Known {
 }
 
 /// A descent under way.
-struct Descent<'a> {
+pub struct Descent {
     start: Vec<f64>,
-    widths: &'a [Width],
-    bounds: &'a [[f64; 2]],
-    /// How wide the cloud is, over the first one.
+    widths: Vec<Width>,
+    bounds: Vec<[f64; 2]>,
+    /// Clouds so far.
+    clouds: usize,
+    /// How wide the next one is, over the first one.
     width: f64,
     known: Vec<Known>,
     /// The best of them.
     best: usize,
 }
 
-impl<'a> Descent<'a> {
-    fn new(start: &[f64], widths: &'a [Width], bounds: &'a [[f64; 2]]) -> Self {
+impl Descent {
+    /// From `start`, within the bounds of what is compared.
+    pub fn new(start: &[f64], widths: &[Width], compared: &impl LeastSquares) -> Self {
         Self {
             start: start.to_vec(),
-            widths,
-            bounds,
+            widths: widths.to_vec(),
+            bounds: compared.bounds(),
+            clouds: 0,
             width: 1.0,
             known: Vec::new(),
             best: 0,
         }
     }
 
+    /// How many clouds it has had.
+    pub fn clouds(&self) -> usize {
+        self.clouds
+    }
+
     /// Where it stands, and what is left there; nothing where no point could be simulated.
-    fn best(&self) -> Led {
+    pub fn best(&self) -> Led {
         let nowhere = Led {
             x: self.start.clone(),
             left: f64::INFINITY,
@@ -124,10 +122,6 @@ impl<'a> Descent<'a> {
             x: known.x.clone(),
             left: known.left,
         })
-    }
-
-    fn led(self) -> Option<Led> {
-        (!self.known.is_empty()).then(|| self.best())
     }
 
     fn note(&mut self, x: Vec<f64>, residuals: Vec<f64>) {
@@ -148,12 +142,13 @@ impl<'a> Descent<'a> {
         x
     }
 
-    /// The next cloud.
-    fn cloud(&self, number: usize) -> Vec<Vec<f64>> {
-        let mut random = stream(0, number as u64, Purpose::Variation);
+    /// The next cloud; the first one has the start as well.
+    fn cloud(&self) -> Vec<Vec<f64>> {
+        let mut random = stream(0, self.clouds as u64, Purpose::Variation);
         let count = POINTS * (self.widths.len() + 1);
         let by = |_| self.at(self.widths.iter().map(|_| random.random_range(-1.0..1.0)));
-        (0..count).map(by).collect()
+        let start = (self.clouds == 0).then(|| self.start.clone());
+        start.into_iter().chain((0..count).map(by)).collect()
     }
 
     /// Where a linear model over the points that are near leads, and half the way there.
@@ -205,6 +200,7 @@ impl<'a> Descent<'a> {
         let all = self.known.iter().enumerate();
         let best = all.min_by(|a, b| a.1.left.total_cmp(&b.1.left));
         self.best = best.map_or(0, |(i, _)| i);
+        self.clouds += 1;
         self.width *= NARROWER;
     }
 }
@@ -212,19 +208,6 @@ impl<'a> Descent<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optimiser::Progress;
-    use crate::stages::{Stage, Watcher};
-    use std::ops::ControlFlow;
-
-    struct Nobody;
-
-    impl Watcher for Nobody {
-        fn begins(&mut self, _: Stage, _: u64) {}
-        fn progress(&mut self, _: &Progress) -> ControlFlow<()> {
-            ControlFlow::Continue(())
-        }
-        fn ends(&mut self) {}
-    }
 
     /// A valley with its bottom at (0.1, 2, 0.05), and ripples as steep as its sides. Nothing can be simulated beyond 0.9.
     struct Ripples;
@@ -258,16 +241,23 @@ mod tests {
     #[test]
     fn descents_cross_small_valleys_and_what_does_not_move_stays() {
         let starts = [vec![-0.7, 2.5, 0.6], vec![0.95, 2.5, -0.6]];
-        let (mut nobody, widths) = (Nobody, [(0, 0.5), (2, 0.5)]);
-        let mut effort = Effort::new(&mut nobody);
-        let led = descended(&Ripples, &starts, &widths, &mut effort);
-        assert_eq!(led.len(), 2);
-        for led in &led {
+        let widths = [(0, 0.5), (2, 0.5)];
+        let new = |start: &Vec<f64>| Descent::new(start, &widths, &Ripples);
+        let mut all: Vec<Descent> = starts.iter().map(new).collect();
+        let mut spent = 0;
+        for _ in 0..CLOUDS {
+            let evaluated = |count| {
+                spent += count;
+                true
+            };
+            assert!(descend(&Ripples, &mut all, evaluated));
+        }
+        for led in all.iter().map(Descent::best) {
             assert!((led.x[0] - 0.1).abs() < 0.02, "{led:?}");
             assert!((led.x[2] - 0.05).abs() < 0.02, "{led:?}");
             assert_eq!(led.x[1], 2.5);
         }
         // The starts, and six points and at most two steps of each cloud.
-        assert!(effort.spent <= 2 * (1 + 12 * 8), "{}", effort.spent);
+        assert!(spent <= 2 * (1 + 12 * 8), "{spent}");
     }
 }
