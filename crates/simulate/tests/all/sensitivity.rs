@@ -86,7 +86,7 @@ fn derivatives_equal_differences_of_records() {
     )
     .unwrap();
     let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
-    // Evaluated at every instant here, by polynomials within steps there.
+    // Each by polynomials of its own within steps.
     for (found, plain) in found.series.iter().zip(&plain.series) {
         let largest = plain.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
         let off = found.iter().zip(plain).map(|(a, b)| (a - b).abs());
@@ -111,6 +111,31 @@ fn derivatives_equal_differences_of_records() {
             2e-5
         };
         assert!(apart < bound * size, "{path}: {:.1e}", apart / size);
+    }
+}
+
+/// At the tolerance of fits samples come from polynomials within long steps, and few do at a fine one.
+#[test]
+fn derivatives_at_the_tolerance_of_fits_are_near_those_at_a_fine_one() {
+    let (centre, moved) = centre_and_moved();
+    let found = |tolerance| {
+        let settings = Settings {
+            transient: Transient::Revolutions(5),
+            revolutions: 1,
+            tolerance,
+            ..Settings::default()
+        };
+        let asked = Asked::from_rest(&centre.machine, &centre.sensors, &settings);
+        sensitivities(&asked, &moved).unwrap().derivatives
+    };
+    let (coarse, fine) = (found(1e-6), found(1e-11));
+    for ((path, ..), (coarse, fine)) in STEPS.iter().zip(coarse.iter().zip(&fine)) {
+        // The acceleration of the crosshead.
+        let apart = coarse[0].iter().zip(&fine[0]).map(|(a, b)| (a - b).powi(2));
+        let size = fine[0].iter().map(|x| x * x).sum::<f64>();
+        let apart = (apart.sum::<f64>() / size).sqrt();
+        eprintln!("{path} {apart:.1e}");
+        assert!(apart < 1e-3, "{path}: {apart:.1e}");
     }
 }
 
