@@ -15,7 +15,7 @@ use calibrate::prior::{DESIGN, Prior, WithPriors};
 use rayon::prelude::*;
 
 /// How many times a third of the sets goes on; each time they are led on by as many clouds.
-const ROUNDS: usize = 3;
+const STAGES: usize = 3;
 /// Half the width of the first cloud along a coordinate of the machine, in standard deviations of what is known of it.
 const SPREADS: f64 = 2.0;
 
@@ -58,12 +58,12 @@ pub(crate) fn far_starts(
         })
         .collect();
     let all = searches.len();
-    for round in 0..ROUNDS {
+    for round in 0..STAGES {
         if round > 0 && !effort.goes_on() {
             break;
         }
         let on = &mut searches[..all.div_ceil(KEPT.pow(round as u32))];
-        let clouds = (round + 1) * CLOUDS / ROUNDS;
+        let clouds = (round + 1) * CLOUDS / STAGES;
         let searched = on.par_iter_mut().map(|search| {
             let problem = &fitted[search.index];
             let input = ("far start", problem, &starts[search.index].1, own, clouds);

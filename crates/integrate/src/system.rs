@@ -12,10 +12,6 @@ pub trait Real: Scalar<Mask = bool, Plain = f64> {
     const DERIVATIVES: bool;
     /// True where the number carries a derivative other than 0.
     fn varies(self) -> bool;
-    /// How many plain numbers are in one: the value and its derivatives.
-    const PARTS: usize;
-    /// One of them, the value being the first.
-    fn part(&self, index: usize) -> f64;
 }
 
 impl Real for f64 {
@@ -23,23 +19,12 @@ impl Real for f64 {
     fn varies(self) -> bool {
         false
     }
-    const PARTS: usize = 1;
-    fn part(&self, _: usize) -> f64 {
-        *self
-    }
 }
 
 impl<const N: usize> Real for Dual<f64, N> {
     const DERIVATIVES: bool = true;
     fn varies(self) -> bool {
         self.tangent.iter().any(|t| *t != 0.0)
-    }
-    const PARTS: usize = 1 + N;
-    fn part(&self, index: usize) -> f64 {
-        match index.checked_sub(1) {
-            None => self.value,
-            Some(direction) => self.tangent[direction],
-        }
     }
 }
 

@@ -17,7 +17,6 @@ mod ensemble;
 pub mod error;
 pub mod flow;
 pub mod indicator_card;
-mod inner_samples;
 mod instants;
 mod leaving;
 pub mod lookout;

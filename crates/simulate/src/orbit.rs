@@ -9,7 +9,6 @@
 //! tangents at the end are taken at the same angle a whole number of turns later.
 
 use crate::error::Error;
-use crate::inner_samples::InnerSamples;
 use crate::instants::Instants;
 use crate::moved::Moved;
 use crate::periodic_orbit::keeps;
@@ -19,7 +18,7 @@ use crate::sensor::Sensor;
 use crate::settings::Settings;
 use crate::span::Span;
 use integrate::Real;
-use mechanism::{Machine, lift};
+use mechanism::{Evaluation, Machine, lift};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use scalar::{Dual, Scalar};
@@ -213,15 +212,20 @@ impl Orbit<'_> {
         stretch: &Stretch,
         at_end: impl FnOnce(&mut Run<S>) -> E,
     ) -> Result<(Vec<Vec<S>>, E), Error> {
-        let mut samples = InnerSamples::new(self.sensors, self.settings.tolerance);
+        let mut inner = vec![Vec::new(); self.sensors.len()];
+        let mut look = |at: &Evaluation<S>| {
+            for (sensor, inner) in self.sensors.iter().zip(&mut inner) {
+                inner.push(sensor.measured.value(at));
+            }
+        };
         let [within, beyond] = stretch.instants.split_at(stretch.end);
-        run.sample(within, &mut samples)?;
+        run.show(within, &mut look)?;
         run.advance(stretch.end)?;
         let end = at_end(run);
         if beyond.count > 0 {
-            run.sample(beyond, &mut samples)?;
+            run.show(beyond, &mut look)?;
         }
-        Ok((samples.end(), end))
+        Ok((inner, end))
     }
 }
 

@@ -4,7 +4,6 @@
 //! nearest to the best polynomial, and its last coefficients say how near (Trefethen 2013, Approximation Theory and
 //! Approximation Practice, chapters 4 and 8; Clenshaw 1955 for the sum).
 
-use integrate::Real;
 use scalar::Scalar;
 use std::f64::consts::PI;
 
@@ -37,70 +36,39 @@ impl Nodes {
         }
     }
 
-    /// The polynomial that has these values at the nodes; none where some part of it leaves out more than the `tolerance`
-    /// of the integration allows for parts of up to `largest`, or more than these.
-    pub fn through<S: Real>(
+    /// The polynomial that has these values at the nodes; none where it leaves out more than the `tolerance` of the
+    /// integration allows for values of up to `largest`, or more than these.
+    pub fn through(
         &self,
-        values: &[S; NODES],
-        largest: &[f64],
+        values: &[f64; NODES],
+        largest: f64,
         tolerance: f64,
-    ) -> Option<Polynomial<S>> {
-        let mut coefficients = [S::zero(); NODES];
-        S::vectorised(
+    ) -> Option<Polynomial> {
+        let largest = values.iter().fold(largest, |l, x| l.max(x.abs()));
+        let polynomial = Polynomial(f64::vectorised(
             #[inline(always)]
             || {
-                for (sum, weights) in coefficients.iter_mut().zip(&self.weights) {
-                    for (weight, value) in weights.iter().zip(values) {
-                        *sum += *value * *weight;
-                    }
-                }
+                self.weights.map(|weights| {
+                    let terms = weights.iter().zip(values);
+                    terms.map(|(weight, value)| weight * value).sum()
+                })
             },
-        );
-        let polynomial = Polynomial(coefficients);
-        let is_near = |(part, largest): (usize, &f64)| {
-            let each = values.iter().map(|value| value.part(part).abs());
-            // Not a number leaves out too much.
-            polynomial.remainder(part) <= REMAINDER * tolerance * each.fold(*largest, f64::max)
-        };
-        let is_near = largest.iter().enumerate().all(is_near);
-        is_near.then_some(polynomial)
+        ));
+        // Not a number leaves out too much.
+        (polynomial.remainder() <= REMAINDER * tolerance * largest).then_some(polynomial)
     }
 }
 
 /// The coefficients of a polynomial in Chebyshev's, over a step.
 #[derive(Clone, Copy)]
-pub(crate) struct Polynomial<S>([S; NODES]);
+pub(crate) struct Polynomial([f64; NODES]);
 
-impl<S: Real> Polynomial<S> {
-    /// A bound on what higher degrees would add to a part, where coefficients fall as those of a smooth function do.
-    fn remainder(&self, part: usize) -> f64 {
-        self.0[NODES - 1].part(part).abs() + self.0[NODES - 2].part(part).abs()
+impl Polynomial {
+    /// A bound on what higher degrees would add, where coefficients fall as those of a smooth function do.
+    fn remainder(&self) -> f64 {
+        self.0[NODES - 1].abs() + self.0[NODES - 2].abs()
     }
 
-    /// Its value at a share of the step.
-    pub fn at(&self, share: S) -> S {
-        S::vectorised(
-            #[inline(always)]
-            || self.value(share),
-        )
-    }
-
-    /// By Clenshaw's recurrence.
-    #[inline(always)]
-    fn value(&self, share: S) -> S {
-        let x = share * 2.0 - 1.0;
-        let twice = x * 2.0;
-        let (mut last, mut sum) = (S::zero(), S::zero());
-        let mut degree = NODES - 1;
-        while degree > 0 {
-            (last, sum) = (sum, twice * sum + (self.0[degree] - last));
-            degree -= 1;
-        }
-        x * sum + (self.0[0] - last)
-    }
-}
-
-impl Polynomial<f64> {
     /// Its values at `shares` of the step, in the place of what `values` held.
     pub fn evaluate(&self, shares: &[f64], values: &mut Vec<f64>) {
         values.clear();
@@ -113,5 +81,19 @@ impl Polynomial<f64> {
                 }
             },
         );
+    }
+
+    /// By Clenshaw's recurrence.
+    #[inline(always)]
+    fn value(&self, share: f64) -> f64 {
+        let x = share * 2.0 - 1.0;
+        let twice = x * 2.0;
+        let (mut last, mut sum) = (0.0, 0.0);
+        let mut degree = NODES - 1;
+        while degree > 0 {
+            (last, sum) = (sum, twice * sum + (self.0[degree] - last));
+            degree -= 1;
+        }
+        x * sum + (self.0[0] - last)
     }
 }

@@ -71,7 +71,7 @@ struct Series {
     /// Scratch: shares of a step, and values there.
     shares: Vec<f64>,
     values: Vec<f64>,
-    polynomials: Vec<Polynomial<f64>>,
+    polynomials: Vec<Polynomial>,
 }
 
 /// What was seen of a run.
@@ -117,8 +117,7 @@ impl Series {
         self.polynomials.clear();
         for i in 0..sensors.len() {
             let values = std::array::from_fn(|node| seen(i, node));
-            let largest = std::slice::from_ref(&self.largest[i]);
-            let through = self.nodes.through(&values, largest, self.tolerance);
+            let through = self.nodes.through(&values, self.largest[i], self.tolerance);
             let Some(polynomial) = through else {
                 return false;
             };

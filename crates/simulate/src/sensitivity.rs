@@ -11,7 +11,6 @@ pub use crate::recorder::Sensitivities;
 
 use crate::asked::Asked;
 use crate::error::Error;
-use crate::inner_samples::InnerSamples;
 use crate::orbit::Orbit;
 use crate::recorder::{Recorder, apart};
 use crate::run::Run;
@@ -137,7 +136,11 @@ fn recorded<S: Real>(
         instants,
         ..
     } = Span::after(run, transient, sensors, settings)?;
-    let mut samples = InnerSamples::new(sensors, settings.tolerance);
-    run.sample(instants, &mut samples)?;
-    Ok((Recorder { sampling, start }, samples.end()))
+    let mut inner = vec![Vec::new(); sensors.len()];
+    run.show(instants, |at| {
+        for (sensor, inner) in sensors.iter().zip(&mut inner) {
+            inner.push(sensor.measured.value(at));
+        }
+    })?;
+    Ok((Recorder { sampling, start }, inner))
 }

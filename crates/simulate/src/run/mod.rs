@@ -6,7 +6,6 @@ pub(crate) use ledger::Ledger;
 
 use crate::asked::Asked;
 use crate::error::{Error, MOST_SLIP};
-use crate::inner_samples::InnerSamples;
 use crate::instants::Instants;
 use integrate::{Course, Integrator, Real, Step, System, Work};
 use mechanism::mode::Mode;
@@ -276,29 +275,35 @@ impl<S: Real> Run<S> {
         [angle, self.time()]
     }
 
-    /// Goes on to the last of the instants, at which `samples` are taken.
-    pub(crate) fn sample(
+    /// Goes on to the last of the instants and shows each.
+    pub(crate) fn show(
         &mut self,
         instants: Instants,
-        samples: &mut InnerSamples<S>,
+        mut look: impl FnMut(&Evaluation<S>),
     ) -> Result<(), Error> {
+        let Instants { count, .. } = instants;
         let mut seen = 0;
         // Where the machine had not started yet, the first value holds.
         let now = self.integrator.time();
         let first = self
             .dynamics
             .evaluate(S::constant(now), self.integrator.state());
-        while seen < instants.count && instants.at(seen) <= now {
-            samples.push(first);
+        while seen < count && instants.at(seen) <= now {
+            look(first);
             seen += 1;
         }
-        let end = instants.end();
+        let end = instants.at(count.saturating_sub(1));
+        let state = &mut self.state;
         let observe = |dynamics: &mut Dynamics<S>, step: &mut Step<S>| {
-            let within = instants.within(seen, step.start.value() + step.length.value());
-            if within > 0 {
+            let stop = step.start.value() + step.length.value();
+            if seen < count && instants.at(seen) <= stop {
                 step.extend(dynamics);
-                samples.within(dynamics, step, instants, seen..seen + within);
-                seen += within;
+            }
+            while seen < count && instants.at(seen) <= stop {
+                let t = S::constant(instants.at(seen));
+                step.interpolate((t - step.start) / step.length, state);
+                look(dynamics.evaluate(t, state));
+                seen += 1;
             }
         };
         self.integrator.watch(&mut self.dynamics, end, observe)?;
@@ -306,8 +311,8 @@ impl<S: Real> Run<S> {
         let last = self
             .dynamics
             .evaluate(S::constant(end), self.integrator.state());
-        for _ in seen..instants.count {
-            samples.push(last);
+        for _ in seen..count {
+            look(last);
         }
         self.check(end)
     }

@@ -86,7 +86,7 @@ fn derivatives_equal_differences_of_records() {
     )
     .unwrap();
     let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
-    // Each by polynomials of its own within steps.
+    // Evaluated at every instant here, by polynomials within steps there.
     for (found, plain) in found.series.iter().zip(&plain.series) {
         let largest = plain.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
         let off = found.iter().zip(plain).map(|(a, b)| (a - b).abs());
@@ -114,7 +114,7 @@ fn derivatives_equal_differences_of_records() {
     }
 }
 
-/// At the tolerance of fits samples come from polynomials within long steps, and few do at a fine one.
+/// Fits take long steps.
 #[test]
 fn derivatives_at_the_tolerance_of_fits_are_near_those_at_a_fine_one() {
     let (centre, moved) = centre_and_moved();
