@@ -60,6 +60,7 @@ pub mod prior;
 pub mod problem;
 mod promise;
 pub mod recorded_sensor;
+pub mod region;
 pub mod relation;
 pub mod relation_spread;
 pub mod replay;

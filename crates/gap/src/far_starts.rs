@@ -1,23 +1,23 @@
 //! Where descents may start far away from the machine as it was given.
 //!
 //! Descents from where an amendment was screened find no way from one ringing to another. Energies by band and sector have few
-//! minima, and clouds of points as wide as the whole ranges of what is unknown find their way to a low one. So all sets are
-//! searched for a while, the better ones for longer (successive halving, Jamieson and Talwalkar 2016).
+//! minima, and within the whole ranges of what is unknown CMA-ES finds its way to a low one, which takes some hundred evaluations
+//! for each coordinate. So all sets are searched for a while, the better ones for longer (successive halving, Jamieson and
+//! Talwalkar 2016).
 
 use crate::error::Error;
 use crate::fitter::{Fitter, Start};
 use crate::journal::Finished;
 use calibrate::Problem;
-use calibrate::cloud_descent::{CLOUDS, Descent, KEPT, Width, descend};
+use calibrate::cloud_descent::KEPT;
 use calibrate::energies::Energies;
 use calibrate::parameter::Parameter;
 use calibrate::prior::{DESIGN, Prior, WithPriors};
+use calibrate::region::{Region, SPREADS};
 use rayon::prelude::*;
 
-/// How many times a third of the sets goes on; each time they are led on by as many clouds.
-const STAGES: usize = 3;
-/// Half the width of the first cloud along a coordinate of the machine, in standard deviations of what is known of it.
-const SPREADS: f64 = 2.0;
+/// Evaluations for each coordinate.
+const EACH: [u64; 3] = [25, 75, 200];
 
 /// The starts that were searched longest, the most promising first: their indices, and where their searches have ended. The first
 /// `own` coordinates are the machine's.
@@ -51,44 +51,42 @@ pub(crate) fn far_starts(
         .enumerate()
         .map(|(index, (compared, (problem, x)))| Searched {
             index,
-            descent: Descent::new(x, &widths(problem, own), compared),
+            region: Region::new(compared, x, &ranges(problem, own)),
             x: x.clone(),
             left: f64::INFINITY,
             steps: 0,
         })
         .collect();
     let all = searches.len();
-    for round in 0..STAGES {
+    for (round, each) in EACH.into_iter().enumerate() {
         if round > 0 && !effort.goes_on() {
             break;
         }
         let on = &mut searches[..all.div_ceil(KEPT.pow(round as u32))];
-        let clouds = (round + 1) * CLOUDS / STAGES;
         let searched = on.par_iter_mut().map(|search| {
             let problem = &fitted[search.index];
-            let input = ("far start", problem, &starts[search.index].1, own, clouds);
+            let most = each * search.region.dimensions() as u64;
+            let input = ("far start", problem, &starts[search.index].1, own, most);
             let numbers = effort.journal.once(&input, || {
-                // What earlier rounds found in the journal is searched again.
-                while search.descent.clouds() < clouds {
-                    let one = std::slice::from_mut(&mut search.descent);
-                    let goes_on = descend(&compared[search.index], one, |_| {
-                        (fitter.watch)().is_continue()
-                    });
-                    if !goes_on {
-                        return Err(Error::Stopped);
-                    }
+                let found = search.region.searched(most, &mut |_| (fitter.watch)());
+                if (fitter.watch)().is_break() {
+                    return Err(Error::Stopped);
                 }
-                let best = search.descent.best();
                 let steps = problem.meter.steps();
+                // A search that cannot begin leaves everything.
+                let numbers = found.map_or_else(
+                    |_| Vec::new(),
+                    |found| [vec![found.cost, steps as f64], found.x].concat(),
+                );
                 Ok(Finished {
-                    numbers: [vec![best.left, steps as f64], best.x].concat(),
+                    numbers,
                     // The steps of its earlier rounds have been counted, those that were found in the journal as well.
                     cost: steps.saturating_sub(search.steps),
                 })
             })?;
-            if let [left, steps, x @ ..] = &numbers[..] {
+            if let [left, steps, moved @ ..] = &numbers[..] {
                 (search.left, search.steps) = (*left, *steps as u64);
-                search.x = x.to_vec();
+                search.x = search.region.whole(moved);
             }
             Ok(())
         });
@@ -101,29 +99,26 @@ pub(crate) fn far_starts(
 }
 
 /// A set that is searched.
-struct Searched {
+struct Searched<'a, T> {
     /// The index of its start.
     index: usize,
-    descent: Descent,
+    region: Region<'a, T>,
     /// The best point so far.
     x: Vec<f64>,
-    /// The sum of squares there.
+    /// Half the sum of squares there.
     left: f64,
     /// Steps of the integrator so far.
     steps: u64,
 }
 
-/// How wide the first cloud is along each coordinate: the whole range of what was added to the machine. What has none is held.
-fn widths(problem: &Problem, own: usize) -> Vec<Width> {
-    let width = |(place, parameter): (usize, &Parameter)| {
-        let [low, high] = parameter.box_bounds();
-        match place < own {
-            true => (place, SPREADS * DESIGN),
-            false => (place, 0.5 * (high - low)),
-        }
+/// The coordinates of a problem with their ranges: the whole ones of what was added to the machine.
+fn ranges(problem: &Problem, own: usize) -> Vec<(usize, [f64; 2])> {
+    let half = SPREADS * DESIGN;
+    let range = |(place, parameter): (usize, &Parameter)| match place < own {
+        true => (place, [-half, half]),
+        false => (place, parameter.box_bounds()),
     };
-    let all = problem.parameters.iter().enumerate().map(width);
-    all.filter(|(_, width)| *width > 0.0).collect()
+    problem.parameters.iter().enumerate().map(range).collect()
 }
 
 #[cfg(test)]
