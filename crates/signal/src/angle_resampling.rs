@@ -101,12 +101,11 @@ impl AngleGrid {
         let decimator = Decimator::new(factor)?;
         let fine = |i: usize| {
             let offset = (i as f64 - decimator.half_length() as f64) / factor as f64;
-            angle.position((first as f64 + offset) * step)
+            (first as f64 + offset) * step
         };
+        let count_of_fine = decimator.input_length(count as usize);
         Ok(Self {
-            positions: (0..decimator.input_length(count as usize))
-                .map(fine)
-                .collect(),
+            positions: angle.positions((0..count_of_fine).map(fine)),
             decimator,
             factor,
             samples: angle.angles().len(),

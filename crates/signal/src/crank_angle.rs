@@ -99,9 +99,26 @@ impl CrankAngle {
     /// The sample index, with its fraction, at which the crank stands at `angle`. Cubic
     /// interpolation of the inverse map. Beyond the ends the speed is taken as constant.
     pub fn position(&self, angle: f64) -> f64 {
+        let above = self.angle.partition_point(|&x| x <= angle);
+        self.position_before(above, angle)
+    }
+
+    /// The [`position`](Self::position) of each of these angles, none of which is below the one before.
+    pub fn positions(&self, angles: impl Iterator<Item = f64>) -> Vec<f64> {
+        let mut above = 0;
+        let position = |angle| {
+            while self.angle.get(above).is_some_and(|x| *x <= angle) {
+                above += 1;
+            }
+            self.position_before(above, angle)
+        };
+        angles.map(position).collect()
+    }
+
+    /// The position of an angle that is below that of sample `above` and of no sample before it.
+    fn position_before(&self, above: usize, angle: f64) -> f64 {
         let a = &self.angle;
         let last = a.len() - 1;
-        let above = a.partition_point(|&x| x <= angle);
         if above == 0 {
             return (angle - a[0]) / (a[1] - a[0]);
         }
@@ -111,8 +128,9 @@ impl CrankAngle {
         let first = above.saturating_sub(2).min(last - 3);
         let t: [f64; 4] = std::array::from_fn(|m| a[first + m] - angle);
         let weight = |m: usize| -> f64 {
-            let others = (0..4).filter(|&l| l != m);
-            others.map(|l| t[l] / (t[l] - t[m])).product()
+            let product =
+                |of: &dyn Fn(usize) -> f64| -> f64 { (0..4).filter(|&l| l != m).map(of).product() };
+            product(&|l| t[l]) / product(&|l| t[l] - t[m])
         };
         first as f64 + weight(1) + 2.0 * weight(2) + 3.0 * weight(3)
     }
@@ -273,6 +291,9 @@ mod tests {
         for i in [0, 1, 7, 1500, 2998, 2999] {
             assert!((angle.position(angle.angles()[i]) - i as f64).abs() < 1e-8);
         }
+        let between = || (-50..3100).map(|i| 1e-3 + TAU * f64::from(i) / 1200.0);
+        let one_by_one: Vec<f64> = between().map(|a| angle.position(a)).collect();
+        assert_eq!(angle.positions(between()), one_by_one);
         let even = CrankAngle::from_speed(100, 100.0, 60.0).unwrap();
         assert!((even.position(-0.5 * TAU / 100.0) + 0.5).abs() < 1e-12);
         assert!((even.position(TAU) - 100.0).abs() < 1e-9);

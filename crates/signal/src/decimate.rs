@@ -14,9 +14,12 @@ use crate::kaiser::{self, HALF_WIDTH};
 #[derive(Clone, Debug)]
 pub struct Decimator {
     factor: usize,
-    /// The centre tap and those on one side of it.
+    /// From one end to the other, which are alike.
     taps: Vec<f64>,
 }
+
+/// Sums that are added up side by side: one alone would wait for each addition.
+const LANES: usize = 8;
 
 impl Decimator {
     /// A decimator by `factor`; 1 passes its input through.
@@ -32,19 +35,20 @@ impl Decimator {
             });
         }
         let reach = if factor == 1 { 0 } else { HALF_WIDTH * factor };
-        let mut taps: Vec<f64> = (0..=reach)
+        let side: Vec<f64> = (0..=reach)
             .map(|i| kaiser::low_pass(i as f64 / factor as f64))
             .collect();
-        let gain = 2.0 * taps.iter().sum::<f64>() - taps[0];
-        for tap in &mut taps {
-            *tap /= gain;
-        }
-        Ok(Self { factor, taps })
+        let gain = 2.0 * side.iter().sum::<f64>() - side[0];
+        let taps = side[1..].iter().rev().chain(&side);
+        Ok(Self {
+            factor,
+            taps: taps.map(|tap| tap / gain).collect(),
+        })
     }
 
     /// Inputs that are needed on either side of an output's centre.
     pub fn half_length(&self) -> usize {
-        self.taps.len() - 1
+        self.taps.len() / 2
     }
 
     /// Inputs that give this many outputs (at least one).
@@ -56,17 +60,22 @@ impl Decimator {
     /// are as many as the input has the neighbours for, none if it is shorter than
     /// `input_length(1)`.
     pub fn apply(&self, input: &[f64]) -> Vec<f64> {
-        let reach = self.half_length();
-        let end = input.len().saturating_sub(reach);
-        (reach..end)
-            .step_by(self.factor)
-            .map(|centre| {
-                let before = input[centre - reach..centre].iter().rev();
-                let after = &input[centre + 1..=centre + reach];
-                let sides = before.zip(after).zip(&self.taps[1..]);
-                self.taps[0] * input[centre] + sides.map(|((b, a), tap)| tap * (b + a)).sum::<f64>()
-            })
-            .collect()
+        let windows = input.windows(self.taps.len()).step_by(self.factor);
+        windows.map(|window| self.weigh(window)).collect()
+    }
+
+    /// The sum of as many inputs as there are taps, each by its tap.
+    fn weigh(&self, window: &[f64]) -> f64 {
+        let (inputs, last_inputs) = window.as_chunks::<LANES>();
+        let (taps, last_taps) = self.taps.as_chunks::<LANES>();
+        let mut sums = [0.0; LANES];
+        for (inputs, taps) in inputs.iter().zip(taps) {
+            for ((sum, x), tap) in sums.iter_mut().zip(inputs).zip(taps) {
+                *sum += x * tap;
+            }
+        }
+        let last = last_inputs.iter().zip(last_taps).map(|(x, tap)| x * tap);
+        sums.iter().sum::<f64>() + last.sum::<f64>()
     }
 }
 
@@ -78,8 +87,9 @@ mod tests {
     /// Gain at `frequency` of the output's Nyquist frequency, from the taps.
     fn gain(decimator: &Decimator, frequency: f64) -> f64 {
         let step = PI * frequency / decimator.factor as f64;
-        let sides = decimator.taps[1..].iter().zip(1..);
-        decimator.taps[0]
+        let side = &decimator.taps[decimator.half_length()..];
+        let sides = side[1..].iter().zip(1..);
+        side[0]
             + 2.0
                 * sides
                     .map(|(t, i)| t * (step * f64::from(i)).cos())

@@ -49,15 +49,16 @@ pub(crate) fn interpolate(x: &[f64], position: f64) -> f64 {
             &reflected
         }
     };
-    // A few sums side by side: one alone would wait for each addition.
-    let mut sums = [0.0; LANES];
+    // A few sums side by side: one alone would wait for each addition. Those by two rows, and then between them.
+    let mut sums = [[0.0; LANES]; 2];
     for t in (0..TAPS).step_by(LANES) {
-        for (lane, sum) in sums.iter_mut().enumerate() {
-            let (l, h) = (low[t + lane], high[t + lane]);
-            *sum += neighbours[t + lane] * (l + between * (h - l));
+        for lane in 0..LANES {
+            sums[0][lane] += neighbours[t + lane] * low[t + lane];
+            sums[1][lane] += neighbours[t + lane] * high[t + lane];
         }
     }
-    sums.iter().sum()
+    let [low, high] = sums.map(|sums| sums.iter().sum::<f64>());
+    low + between * (high - low)
 }
 
 fn continued(x: &[f64], index: isize) -> f64 {

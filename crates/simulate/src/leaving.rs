@@ -1,26 +1,18 @@
 //! How a run leaves its start behind: revolution after revolution, until it repeats itself.
 
 use crate::error::Error;
+use crate::repetition::Repetition;
 use crate::run::Run;
 use crate::settings::Transient;
 use integrate::Real;
-
-/// Within so many revolutions the distance of a settling motion from itself falls at least by this factor.
-const PATIENCE: usize = 4;
-const NEARER: f64 = 0.5;
-/// Periods, in revolutions, that count as settled.
-const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD];
-/// Longest period of a settled motion, revolutions.
-pub const LONGEST_PERIOD: u32 = 4;
 
 /// A start that is being left.
 pub(crate) struct Leaving {
     change: f64,
     at_most: u32,
     /// The revolution that is under way.
-    revolution: u32,
-    strobes: Vec<Vec<f64>>,
-    distances: Vec<f64>,
+    pub revolution: u32,
+    pub repetition: Repetition,
 }
 
 /// Where the start is left behind.
@@ -43,8 +35,7 @@ impl Leaving {
             change,
             at_most,
             revolution: 1,
-            strobes: vec![run.strobe()],
-            distances: Vec::new(),
+            repetition: Repetition::begin(run),
         }
     }
 
@@ -53,22 +44,23 @@ impl Leaving {
     pub fn next<S: Real>(&self, run: &Run<S>) -> Result<f64, Left> {
         match self.revolution < self.at_most {
             true => Ok(run.end_of(self.revolution)),
-            false => Err(Left {
-                transient: self.at_most,
-                period: None,
-            }),
+            false => Err(self.at_most()),
+        }
+    }
+
+    /// After as many revolutions as it may take.
+    pub fn at_most(&self) -> Left {
+        Left {
+            transient: self.at_most,
+            period: None,
         }
     }
 
     /// At the end of a revolution: whether the start is left behind now.
     pub fn arrive<S: Real>(&mut self, run: &mut Run<S>) -> Option<Left> {
-        let (revolution, change) = (self.revolution, self.change);
+        let revolution = self.revolution;
         self.revolution += 1;
-        let now = run.strobe();
-        let distance = |period: &u32| {
-            let earlier = self.strobes.len().checked_sub(*period as usize);
-            earlier.map_or(f64::INFINITY, |i| run.distance(&now, &self.strobes[i]))
-        };
+        self.repetition.arrive(run);
         let left = |period| {
             Some(Left {
                 transient: revolution + 1,
@@ -77,18 +69,13 @@ impl Leaving {
         };
         // Not before the start has had a revolution to pass.
         if revolution > 1
-            && let Some(period) = PERIODS.into_iter().find(|p| distance(p) < change)
+            && let Some(period) = self.repetition.period(self.change)
         {
             return left(Some(period));
         }
-        let nearest = PERIODS.iter().map(distance).fold(f64::INFINITY, f64::min);
-        self.distances.push(nearest);
-        if run.hurries() && change > 0.0 && is_restless(&self.distances) {
+        if run.hurries() && self.change > 0.0 && self.repetition.is_restless() {
             return left(None);
         }
-        self.strobes.push(now);
-        let keep = self.strobes.len().saturating_sub(LONGEST_PERIOD as usize);
-        self.strobes.drain(..keep);
         None
     }
 }
@@ -115,14 +102,4 @@ impl<S: Real> Run<S> {
             }
         }
     }
-}
-
-/// Whether a motion of these distances from itself comes no nearer.
-fn is_restless(distances: &[f64]) -> bool {
-    let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
-    let Some(first) = distances.len().checked_sub(PATIENCE) else {
-        return false;
-    };
-    let (before, now) = distances.split_at(first);
-    first >= PATIENCE && least(now) > NEARER * least(&before[first - PATIENCE..])
 }

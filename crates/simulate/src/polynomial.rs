@@ -17,7 +17,7 @@ const REMAINDER: f64 = 1.0;
 /// The Chebyshev points of the first kind, and what makes coefficients of the values there.
 pub(crate) struct Nodes {
     /// Where they lie, as shares of a step.
-    pub shares: [f64; NODES],
+    shares: [f64; NODES],
     /// Weight of each value in each coefficient.
     weights: [[f64; NODES]; NODES],
 }
@@ -36,16 +36,19 @@ impl Nodes {
         }
     }
 
-    /// The polynomial that has these values at the nodes; none where it leaves out more than the `tolerance` of the
-    /// integration allows for values of up to `largest`, or more than these.
-    pub fn through(
-        &self,
-        values: &[f64; NODES],
-        largest: f64,
-        tolerance: f64,
-    ) -> Option<Polynomial> {
-        let largest = values.iter().fold(largest, |l, x| l.max(x.abs()));
-        let polynomial = Polynomial(f64::vectorised(
+    /// When one of them is, in what begins at `start` and takes `length`, s.
+    pub fn time(&self, [start, length]: [f64; 2], node: usize) -> f64 {
+        start + length * self.shares[node]
+    }
+
+    /// When they are.
+    pub fn times(&self, span: [f64; 2]) -> [f64; NODES] {
+        std::array::from_fn(|node| self.time(span, node))
+    }
+
+    /// The polynomial that has these values at the nodes.
+    pub fn through(&self, values: &[f64; NODES]) -> Polynomial {
+        Polynomial(f64::vectorised(
             #[inline(always)]
             || {
                 self.weights.map(|weights| {
@@ -53,7 +56,14 @@ impl Nodes {
                     terms.map(|(weight, value)| weight * value).sum()
                 })
             },
-        ));
+        ))
+    }
+
+    /// The same; none where it leaves out more than the `tolerance` of the integration allows for values of up to
+    /// `largest`, or more than these.
+    pub fn near(&self, values: &[f64; NODES], largest: f64, tolerance: f64) -> Option<Polynomial> {
+        let largest = values.iter().fold(largest, |l, x| l.max(x.abs()));
+        let polynomial = self.through(values);
         // Not a number leaves out too much.
         (polynomial.remainder() <= REMAINDER * tolerance * largest).then_some(polynomial)
     }

@@ -2,12 +2,14 @@
 //!
 //! A recorded sample takes four to eight instants. Where many of them lie within a step, the motion is evaluated at a few
 //! others, and a polynomial through these values gives what the sensors see. Those within a step are evaluated side by side;
-//! where several runs are in lanes, those within their steps are.
+//! where several runs are in lanes, those within their steps are. Of a motion that repeats itself one period is kept as such
+//! polynomials, and all that is left of the record is its repetition.
 
 use crate::chain::UnderWay;
 use crate::instants::Instants;
 use crate::lookout::{self, Lookout};
 use crate::penetration::{Penetration, Watch};
+use crate::period::{Part, Period};
 use crate::polynomial::{NODES, Nodes, Polynomial};
 use crate::run::Run;
 use crate::sensor::Sensor;
@@ -24,8 +26,10 @@ pub(crate) struct Sampler<'a> {
     instants: Instants,
     seen: usize,
     series: Series,
-    /// The motion itself, at the instants of which it is asked for.
-    trace: Option<(Trace, Range<usize>)>,
+    /// The period of which the rest of the record is the repetition, while it is looked at.
+    period: Option<Period>,
+    /// The motion itself, where it is asked for.
+    traced: Option<Traced>,
     /// How deep joints are pressed in.
     joints: Watch,
     /// Where it looks at a run that is in no lane, and the mode that its machine is in.
@@ -33,6 +37,23 @@ pub(crate) struct Sampler<'a> {
     /// Instants within a step.
     times: Vec<f64>,
     state: Vec<f64>,
+}
+
+/// The motion itself, at some of the instants.
+struct Traced {
+    trace: Trace,
+    range: Range<usize>,
+    seen: usize,
+}
+
+impl Traced {
+    /// Takes in the motion at the next instant.
+    fn push(&mut self, at: &Evaluation<f64>) {
+        if self.range.contains(&self.seen) {
+            self.trace.push(at);
+        }
+        self.seen += 1;
+    }
 }
 
 /// What is kept of what a sensor sees.
@@ -106,32 +127,36 @@ impl Series {
         }));
     }
 
-    /// Takes in what the sensors see at these shares of a step by polynomials through what `seen` gives for each sensor at
-    /// each node. False, and nothing taken in, where one of them leaves out too much.
-    fn interpolate(
-        &mut self,
-        sensors: &[Sensor],
-        shares: impl Iterator<Item = f64>,
-        seen: impl Fn(usize, usize) -> f64,
-    ) -> bool {
+    /// The polynomials of all sensors through what `seen` gives for each at each node. False where one of them leaves out
+    /// too much, unless it `must` do.
+    fn fit(&mut self, sensors: usize, seen: impl Fn(usize, usize) -> f64, must: bool) -> bool {
         self.polynomials.clear();
-        for i in 0..sensors.len() {
+        for i in 0..sensors {
             let values = std::array::from_fn(|node| seen(i, node));
-            let through = self.nodes.through(&values, self.largest[i], self.tolerance);
-            let Some(polynomial) = through else {
-                return false;
-            };
-            self.polynomials.push(polynomial);
-        }
-        self.shares.clear();
-        self.shares.extend(shares);
-        for (i, sensor) in sensors.iter().enumerate() {
-            let mut values = std::mem::take(&mut self.values);
-            self.polynomials[i].evaluate(&self.shares, &mut values);
-            self.extend(i, sensor, values.iter().copied());
-            self.values = values;
+            let near = (self.nodes).near(&values, self.largest[i], self.tolerance);
+            match near.or_else(|| must.then(|| self.nodes.through(&values))) {
+                Some(polynomial) => self.polynomials.push(polynomial),
+                None => return false,
+            }
         }
         true
+    }
+
+    /// Takes in what the polynomials of the sensors say at these shares of what they were fitted to.
+    fn evaluate(
+        &mut self,
+        sensors: &[Sensor],
+        polynomials: &[Polynomial],
+        shares: impl Iterator<Item = f64>,
+    ) {
+        self.shares.clear();
+        self.shares.extend(shares);
+        let mut values = std::mem::take(&mut self.values);
+        for (i, (sensor, polynomial)) in sensors.iter().zip(polynomials).enumerate() {
+            polynomial.evaluate(&self.shares, &mut values);
+            self.extend(i, sensor, values.iter().copied());
+        }
+        self.values = values;
     }
 }
 
@@ -151,15 +176,22 @@ impl<'a> Sampler<'a> {
             times: Vec::new(),
             state: vec![0.0; dimension],
             series: Series::new(taken, run.tolerance()),
+            period: None,
+            traced: trace.map(|(trace, range)| Traced {
+                trace,
+                range,
+                seen: 0,
+            }),
             sensors,
             instants,
             seen: 0,
-            trace,
         };
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
-            sampler.trace(first, sampler.seen);
+            if let Some(traced) = &mut sampler.traced {
+                traced.push(first);
+            }
             sampler.sample(first);
         }
         sampler
@@ -170,6 +202,11 @@ impl<'a> Sampler<'a> {
         self.instants.end()
     }
 
+    /// Whether all instants lie ahead.
+    pub fn is_ahead(&self) -> bool {
+        self.seen == 0
+    }
+
     fn sample(&mut self, at: &Evaluation<f64>) {
         for (i, sensor) in self.sensors.iter().enumerate() {
             let seen = sensor.measured.unwrapped(at);
@@ -178,53 +215,100 @@ impl<'a> Sampler<'a> {
         self.seen += 1;
     }
 
-    fn trace(&mut self, at: &Evaluation<f64>, instant: usize) {
-        if let Some((trace, range)) = &mut self.trace
-            && range.contains(&instant)
-        {
-            trace.push(at);
+    /// The motion repeats itself from the time `start` on, whenever `length` has passed, both s: looks at one period.
+    pub fn repeat(&mut self, start: f64, length: f64) {
+        self.finish();
+        self.period = Some(Period::new(start, length));
+    }
+
+    /// When the period that is looked at ends, s.
+    pub fn end_of_period(&self) -> Option<f64> {
+        self.period.as_ref().map(Period::end)
+    }
+
+    /// At the end of the period: takes in all that is left of the record, as its repetition. False where the motion itself
+    /// is asked for, which goes on.
+    pub fn end_period(&mut self) -> bool {
+        let Some(period) = self.period.take() else {
+            return false;
+        };
+        let Instants { count, .. } = self.instants;
+        let mut passed = 0.0;
+        while self.seen < count {
+            for ([start, length], polynomials) in period.parts(self.sensors.len()) {
+                let start = start + passed;
+                let within = self.instants.within(self.seen, start + length);
+                self.evaluate([start, length], within, polynomials);
+            }
+            passed += period.length;
         }
+        self.traced.is_none()
+    }
+
+    /// Takes in the next so many instants by polynomials over a time that begins at `start` and takes `length`, s.
+    fn evaluate(&mut self, [start, length]: [f64; 2], within: usize, polynomials: &[Polynomial]) {
+        if within == 0 {
+            return;
+        }
+        let instants = self.instants;
+        let shares = (self.seen..self.seen + within).map(|i| (instants.at(i) - start) / length);
+        (self.series).evaluate(self.sensors, polynomials, shares);
+        self.seen += within;
     }
 
     /// Takes in the instants within a step by what `seen` gives for each sensor at each node. False, and nothing taken in,
     /// where that is not exact enough.
     fn interpolate(
         &mut self,
-        [start, length]: [f64; 2],
+        step: [f64; 2],
         within: usize,
         seen: impl Fn(usize, usize) -> f64,
     ) -> bool {
-        let instants = self.instants;
-        let shares = (self.seen..self.seen + within).map(|i| (instants.at(i) - start) / length);
-        let taken = self.series.interpolate(self.sensors, shares, seen);
-        if taken {
-            self.seen += within;
+        let fitted = self.series.fit(self.sensors.len(), seen, false);
+        if fitted {
+            let polynomials = std::mem::take(&mut self.series.polynomials);
+            self.evaluate(step, within, &polynomials);
+            self.series.polynomials = polynomials;
         }
-        taken
+        fitted
     }
 
-    /// Looks at the instants within a step.
+    /// Takes a part of a step into the period by what `seen` gives for each sensor at each node. Where that is not exact
+    /// enough, nothing is taken in but its halves are waiting.
+    fn keep(
+        &mut self,
+        step: [f64; 2],
+        part: Part,
+        seen: impl Fn(usize, usize) -> f64,
+        waiting: &mut Vec<Part>,
+    ) {
+        let halves = part.halves();
+        if self.series.fit(self.sensors.len(), seen, halves.is_none()) {
+            if let Some(period) = &mut self.period {
+                period.extend(part.of(step), self.series.polynomials.iter().copied());
+            }
+        } else if let Some([first, second]) = halves {
+            waiting.extend([second, first]);
+        }
+    }
+
+    /// Looks at a step.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
         self.joints.update(|i| step.to[i]);
+        self.observe_motion(dynamics, step);
+        if self.period.is_some() {
+            return self.observe_period(dynamics, step);
+        }
         let within = self.instants.within(self.seen, step.start + step.length);
         if within == 0 {
             return;
         }
         step.extend(dynamics);
-        if self.trace.is_some() {
-            let mut state = std::mem::take(&mut self.state);
-            for instant in self.seen..self.seen + within {
-                let t = self.instants.at(instant);
-                step.interpolate((t - step.start) / step.length, &mut state);
-                self.trace(dynamics.evaluate(t, &state), instant);
-            }
-            self.state = state;
-        }
         self.face(dynamics);
         if NODES < within {
-            let (shares, start, length) = (self.series.nodes.shares, step.start, step.length);
-            let seen = self.see(step, &shares.map(|share| start + length * share));
-            if self.interpolate([start, length], within, |i, node| seen[i][node]) {
+            let here = [step.start, step.length];
+            let seen = self.see(step, &self.series.nodes.times(here));
+            if self.interpolate(here, within, |i, node| seen[i][node]) {
                 return;
             }
         }
@@ -238,6 +322,35 @@ impl<'a> Sampler<'a> {
         }
         self.times = times;
         self.seen += within;
+    }
+
+    /// Looks at the motion itself at the instants within a step.
+    fn observe_motion(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
+        let Some(traced) = &mut self.traced else {
+            return;
+        };
+        let within = self.instants.within(traced.seen, step.start + step.length);
+        if within == 0 {
+            return;
+        }
+        step.extend(dynamics);
+        for instant in traced.seen..traced.seen + within {
+            let t = self.instants.at(instant);
+            step.interpolate((t - step.start) / step.length, &mut self.state);
+            traced.push(dynamics.evaluate(t, &self.state));
+        }
+    }
+
+    /// Looks at a step of the period.
+    fn observe_period(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
+        step.extend(dynamics);
+        self.face(dynamics);
+        let here = [step.start, step.length];
+        let mut waiting = vec![Part::WHOLE];
+        while let Some(part) = waiting.pop() {
+            let seen = self.see(step, &self.series.nodes.times(part.of(here)));
+            self.keep(here, part, |i, node| seen[i][node], &mut waiting);
+        }
     }
 
     /// Has a lookout at the machine in the mode that it is in.
@@ -283,13 +396,17 @@ impl<'a> Sampler<'a> {
         self.finish();
         let last = run.evaluate();
         while self.seen < self.instants.count {
-            self.trace(last, self.seen);
             self.sample(last);
+        }
+        if let Some(traced) = &mut self.traced {
+            while traced.seen < self.instants.count {
+                traced.push(last);
+            }
         }
         let taken = self.series.taken.into_iter();
         Seen {
             series: taken.map(|taken| taken.end(start)).collect(),
-            trace: self.trace.map(|(trace, _)| trace),
+            trace: self.traced.map(|traced| traced.trace),
             penetrations: self.joints.end(),
         }
     }
@@ -303,54 +420,84 @@ pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
     stands: [bool; W],
 ) {
     let stop = step.start + step.length;
-    let mut within = [0; W];
+    let (mut within, mut repeats) = ([0; W], [false; W]);
     for (lane, sampler) in samplers.iter_mut().enumerate() {
         if let Some(sampler) = sampler
             && stands[lane]
         {
             sampler.joints.update(|i| step.to[i].get(lane));
-            within[lane] = sampler.instants.within(sampler.seen, stop.get(lane));
+            repeats[lane] = sampler.period.is_some();
+            if !repeats[lane] {
+                within[lane] = sampler.instants.within(sampler.seen, stop.get(lane));
+            }
         }
     }
-    if within == [0; W] {
+    if within == [0; W] && repeats == [false; W] {
         return;
     }
     step.extend(machines);
-    let times = |sampler: &Sampler, lane: usize, i: usize| match NODES < within[lane] {
+    let by_nodes = |lane: usize| repeats[lane] || NODES < within[lane];
+    let counts = std::array::from_fn(|lane| match by_nodes(lane) {
+        true => NODES,
+        false => within[lane],
+    });
+    let times = |sampler: &Sampler, lane: usize, i: usize| match by_nodes(lane) {
         true => {
-            let share = sampler.series.nodes.shares[i];
-            step.start.get(lane) + step.length.get(lane) * share
+            let here = [step.start.get(lane), step.length.get(lane)];
+            sampler.series.nodes.time(here, i)
         }
         false => sampler.instants.at(sampler.seen + i),
     };
-    let seen = see_lanes(
-        samplers,
-        machines,
-        step,
-        within.map(|n| n.min(NODES)),
-        times,
-    );
+    let seen = see_lanes(samplers, machines, step, counts, times);
     let mut left = [0; W];
+    let mut waiting = [const { Vec::new() }; W];
     for (lane, sampler) in samplers.iter_mut().enumerate() {
         let Some(sampler) = sampler else { continue };
-        if within[lane] <= NODES {
+        let here = [step.start.get(lane), step.length.get(lane)];
+        let sensors = sampler.sensors.len();
+        let of_lane = |i: usize, node: usize| seen[node * sensors + i].get(lane);
+        if repeats[lane] {
+            sampler.keep(here, Part::WHOLE, of_lane, &mut waiting[lane]);
+        } else if !by_nodes(lane) {
             sampler.take(lane, within[lane], &seen);
-            continue;
-        }
-        let (count, here) = (sampler.sensors.len(), [step.start, step.length]);
-        let seen = |i: usize, node: usize| seen[node * count + i].get(lane);
-        if !sampler.interpolate(here.map(|x| x.get(lane)), within[lane], seen) {
+        } else if !sampler.interpolate(here, within[lane], of_lane) {
             left[lane] = within[lane];
         }
     }
-    if left == [0; W] {
-        return;
+    if left != [0; W] {
+        let times = |sampler: &Sampler, _: usize, i: usize| sampler.instants.at(sampler.seen + i);
+        let seen = see_lanes(samplers, machines, step, left, times);
+        for (lane, sampler) in samplers.iter_mut().enumerate() {
+            if let Some(sampler) = sampler {
+                sampler.take(lane, left[lane], &seen);
+            }
+        }
     }
-    let times = |sampler: &Sampler, _: usize, i: usize| sampler.instants.at(sampler.seen + i);
-    let seen = see_lanes(samplers, machines, step, left, times);
+    while waiting.iter().any(|parts| !parts.is_empty()) {
+        observe_parts(samplers, machines, step, &mut waiting);
+    }
+}
+
+/// Looks at one of the waiting parts of the step in each lane.
+fn observe_parts<L: Lanes<W>, const W: usize>(
+    samplers: &mut [Option<&mut Sampler>; W],
+    machines: &mut SideBySide<L>,
+    step: &Step<L>,
+    waiting: &mut [Vec<Part>; W],
+) {
+    let parts = waiting.each_mut().map(Vec::pop);
+    let here = |lane: usize| [step.start.get(lane), step.length.get(lane)];
+    let times = |sampler: &Sampler, lane: usize, i: usize| {
+        let part = parts[lane].unwrap_or(Part::WHOLE);
+        sampler.series.nodes.time(part.of(here(lane)), i)
+    };
+    let counts = parts.map(|part| part.map_or(0, |_| NODES));
+    let seen = see_lanes(samplers, machines, step, counts, times);
     for (lane, sampler) in samplers.iter_mut().enumerate() {
-        if let Some(sampler) = sampler {
-            sampler.take(lane, left[lane], &seen);
+        if let (Some(sampler), Some(part)) = (sampler, parts[lane]) {
+            let sensors = sampler.sensors.len();
+            let of_lane = |i: usize, node: usize| seen[node * sensors + i].get(lane);
+            sampler.keep(here(lane), part, of_lane, &mut waiting[lane]);
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::leaving::{Leaving, Left};
 use crate::record::Record;
 use crate::recorder::Recorder;
+use crate::repetition::Repetition;
 use crate::run::{Ledger, Run};
 use crate::sampler::{Sampler, Seen, Taken};
 use crate::settings::{Settings, Transient};
@@ -32,13 +33,19 @@ pub(crate) enum Kept {
 
 /// A record under way.
 pub(crate) struct Task<'a> {
+    order: Order<'a>,
+    pub run: Run<f64>,
+    phase: Phase<'a>,
+    course: Course,
+}
+
+/// What a task is to do.
+#[derive(Clone, Copy)]
+struct Order<'a> {
     asked: Asked<'a>,
     /// s after the transient.
     delay: f64,
     kept: Kept,
-    pub run: Run<f64>,
-    phase: Phase<'a>,
-    course: Course,
 }
 
 enum Phase<'a> {
@@ -48,6 +55,10 @@ enum Phase<'a> {
 
 struct Recording<'a> {
     left: Left,
+    /// How near the motion comes to repeating itself, while that is looked at.
+    repetition: Option<Repetition>,
+    /// The revolution that is under way.
+    revolution: u32,
     /// When it begins, s.
     start: f64,
     sampler: Sampler<'a>,
@@ -69,112 +80,13 @@ impl<'a> Task<'a> {
         }
         check_settling(asked.sensors, run.revolution())?;
         let leaving = Leaving::new(&mut run, transient);
-        let next = leaving.next(&run);
-        let mut task = Self {
-            course: run.course(0.0),
-            phase: Phase::Leaving(leaving),
-            asked,
-            delay,
-            kept,
+        let order = Order { asked, delay, kept };
+        let (phase, end) = order.next_phase(&mut run, leaving, None)?;
+        Ok(Self {
+            course: run.course(end),
+            order,
+            phase,
             run,
-        };
-        task.head_for(next)?;
-        Ok(task)
-    }
-
-    /// Sets out for the end of a revolution, or for the end of the record.
-    fn head_for(&mut self, next: Result<f64, Left>) -> Result<(), Error> {
-        let end = match next {
-            Ok(end) => end,
-            Err(left) => {
-                let recording = self.recording(left)?;
-                let end = recording.sampler.end();
-                self.phase = Phase::Recording(Box::new(recording));
-                end
-            }
-        };
-        self.course = self.run.course(end);
-        Ok(())
-    }
-
-    /// When it will end if the start takes as long as it may, s.
-    fn planned_end(&self) -> f64 {
-        let Settings {
-            transient,
-            revolutions,
-            ..
-        } = *self.asked.settings;
-        let (Transient::Revolutions(before)
-        | Transient::Settled {
-            at_most: before, ..
-        }) = transient;
-        let count = f64::from(before) + f64::from(revolutions);
-        count * self.run.revolution() + self.delay
-    }
-
-    fn recording(&mut self, left: Left) -> Result<Recording<'a>, Error> {
-        let Asked {
-            machine,
-            sensors,
-            settings,
-            ..
-        } = self.asked;
-        if self.kept == Kept::Period {
-            return self.period(left);
-        }
-        let length = f64::from(settings.revolutions) * self.run.revolution();
-        let sampling = Sampling::new(sensors, settings, length)?;
-        let lead = sampling.lead();
-        // Structures swing themselves in for whole revolutions.
-        let more = (sampling.settling() / self.run.revolution()).ceil();
-        let mut left = left;
-        left.transient += more as u32;
-        let planned = f64::from(left.transient) * self.run.revolution() + self.delay;
-        // A free crank that is slow may have taken longer for its transient.
-        let start = match self.run.is_free() {
-            true => planned.max(self.run.time() + lead as f64 / sampling.inner_rate),
-            false => planned,
-        };
-        let within = lead..lead + sampling.samples * sampling.factor;
-        let traced = self.kept == Kept::Trace;
-        let trace = traced.then(|| (Trace::new(machine, sampling.factor), within));
-        let recorded = sensors.iter().map(|sensor| {
-            let under_way = sampling.begin(sensor, machine)?;
-            Ok(Taken::Recorded(Box::new(under_way)))
-        });
-        Ok(Recording {
-            left,
-            start,
-            before: traced.then(|| self.run.ledger()),
-            from: self.run.crank_and_time(),
-            sampler: Sampler::begin(
-                &mut self.run,
-                sensors,
-                recorded.collect::<Result<_, Error>>()?,
-                sampling.instants(start),
-                trace,
-            ),
-            span: None,
-        })
-    }
-
-    /// The recording of a period, or of the revolutions after a transient without one.
-    fn period(&mut self, left: Left) -> Result<Recording<'a>, Error> {
-        let Asked {
-            sensors, settings, ..
-        } = self.asked;
-        let span = match left.period {
-            Some(period) => Span::of_period(&self.run, period, sensors, settings)?,
-            None => Span::after(&self.run, left.transient, sensors, settings)?,
-        };
-        let inner = sensors.iter().map(|_| Taken::Inner(Vec::new())).collect();
-        Ok(Recording {
-            left,
-            start: span.start,
-            before: None,
-            from: self.run.crank_and_time(),
-            sampler: Sampler::begin(&mut self.run, sensors, inner, span.instants, None),
-            span: Some(span),
         })
     }
 
@@ -198,12 +110,17 @@ impl<'a> Task<'a> {
         match self.phase {
             Phase::Leaving(mut leaving) => {
                 let left = leaving.arrive(&mut self.run);
-                let next = left.map_or_else(|| leaving.next(&self.run), Err);
-                self.phase = Phase::Leaving(leaving);
-                self.head_for(next)?;
+                let (phase, end) = self.order.next_phase(&mut self.run, leaving, left)?;
+                self.course = self.run.course(end);
+                self.phase = phase;
                 Ok(Err(self))
             }
-            Phase::Recording(recording) => {
+            Phase::Recording(mut recording) => {
+                if let Some(end) = recording.arrive(&mut self.run) {
+                    self.course = self.run.course(end);
+                    self.phase = Phase::Recording(recording);
+                    return Ok(Err(self));
+                }
                 let Recording {
                     left,
                     start,
@@ -211,17 +128,18 @@ impl<'a> Task<'a> {
                     span,
                     before,
                     from,
+                    ..
                 } = *recording;
                 let run = &mut self.run;
                 // A fit may try a machine whose crank does not keep its speed.
-                let mean_speed = match self.kept {
+                let mean_speed = match self.order.kept {
                     Kept::Period => TAU / run.revolution(),
                     _ => run.mean_speed(from)?,
                 };
                 let residual = match before {
                     Some(before) => Some(run.balance(&before)?),
-                    None if self.kept == Kept::CheckedSeries => {
-                        Some(run.audit(self.asked.settings.tolerance)?)
+                    None if self.order.kept == Kept::CheckedSeries => {
+                        Some(run.audit(self.order.asked.settings.tolerance)?)
                     }
                     None => None,
                 };
@@ -239,12 +157,12 @@ impl<'a> Task<'a> {
                         } = span;
                         let Asked {
                             machine, sensors, ..
-                        } = self.asked;
+                        } = self.order.asked;
                         Recorder { sampling, start }.record(machine, sensors, &whole)?
                     }
                 };
                 Ok(Ok(Record {
-                    sample_rate: self.asked.settings.sample_rate,
+                    sample_rate: self.order.asked.settings.sample_rate,
                     start,
                     trace,
                     series,
@@ -265,7 +183,7 @@ impl<'a> Task<'a> {
         mut self,
         watch: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Record, Error> {
-        let whole = self.planned_end();
+        let whole = self.order.planned_end(self.run.revolution());
         loop {
             let (run, course, mut sampler) = self.parts();
             run.watch(course.end(), |dynamics, step| {
@@ -280,6 +198,179 @@ impl<'a> Task<'a> {
                 Ok(record) => return Ok(record),
                 Err(task) => self = task,
             }
+        }
+    }
+}
+
+impl<'a> Order<'a> {
+    /// Whether it is of use that a motion repeats itself. A fit has a way of its own, and a crank that is free does not come
+    /// round at equal times.
+    fn takes_repetitions(&self, run: &Run<f64>) -> bool {
+        self.kept != Kept::Period && !run.is_free() && !self.asked.sensors.is_empty()
+    }
+
+    /// Whether all that comes repeats itself, before the start has taken the revolutions that are asked for.
+    fn repeats(&self, run: &Run<f64>, repetition: &Repetition) -> bool {
+        let revolution = run.revolution();
+        let left = (self.planned_end(revolution) - run.time()) / revolution;
+        matches!(self.asked.settings.transient, Transient::Revolutions(_))
+            && self.takes_repetitions(run)
+            && repetition.exact_period(run.tolerance(), left).is_some()
+    }
+
+    /// Where the run is to go: to the end of the revolution under way or, the start being left behind, for the record.
+    fn next_phase(
+        &self,
+        run: &mut Run<f64>,
+        leaving: Leaving,
+        left: Option<Left>,
+    ) -> Result<(Phase<'a>, f64), Error> {
+        let (left, instead) = match left.map_or_else(|| leaving.next(run), Err) {
+            Err(left) => (left, None),
+            // What comes between is not waited for where all that comes repeats itself.
+            Ok(end) if self.repeats(run, &leaving.repetition) => (leaving.at_most(), Some(end)),
+            Ok(end) => return Ok((Phase::Leaving(leaving), end)),
+        };
+        let mut recording = self.recording(run, left)?;
+        recording.revolution = leaving.revolution;
+        if let Some(end) = instead
+            && !recording.sampler.is_ahead()
+        {
+            return Ok((Phase::Leaving(leaving), end));
+        }
+        if self.takes_repetitions(run) {
+            recording.repetition = Some(leaving.repetition);
+            recording.look_for_period(run);
+        }
+        let end = recording.end(run);
+        Ok((Phase::Recording(Box::new(recording)), end))
+    }
+
+    fn recording(&self, run: &mut Run<f64>, left: Left) -> Result<Recording<'a>, Error> {
+        let Asked {
+            machine,
+            sensors,
+            settings,
+            ..
+        } = self.asked;
+        if self.kept == Kept::Period {
+            return self.period(run, left);
+        }
+        let length = f64::from(settings.revolutions) * run.revolution();
+        let sampling = Sampling::new(sensors, settings, length)?;
+        let lead = sampling.lead();
+        // Structures swing themselves in for whole revolutions.
+        let more = (sampling.settling() / run.revolution()).ceil();
+        let mut left = left;
+        left.transient += more as u32;
+        let planned = f64::from(left.transient) * run.revolution() + self.delay;
+        // A free crank that is slow may have taken longer for its transient.
+        let start = match run.is_free() {
+            true => planned.max(run.time() + lead as f64 / sampling.inner_rate),
+            false => planned,
+        };
+        let within = lead..lead + sampling.samples * sampling.factor;
+        let traced = self.kept == Kept::Trace;
+        let trace = traced.then(|| (Trace::new(machine, sampling.factor), within));
+        let recorded = sensors.iter().map(|sensor| {
+            let under_way = sampling.begin(sensor, machine)?;
+            Ok(Taken::Recorded(Box::new(under_way)))
+        });
+        Ok(Recording {
+            left,
+            repetition: None,
+            revolution: 0,
+            start,
+            before: traced.then(|| run.ledger()),
+            from: run.crank_and_time(),
+            sampler: Sampler::begin(
+                run,
+                sensors,
+                recorded.collect::<Result<_, Error>>()?,
+                sampling.instants(start),
+                trace,
+            ),
+            span: None,
+        })
+    }
+
+    /// The recording of a period, or of the revolutions after a transient without one.
+    fn period(&self, run: &mut Run<f64>, left: Left) -> Result<Recording<'a>, Error> {
+        let Asked {
+            sensors, settings, ..
+        } = self.asked;
+        let span = match left.period {
+            Some(period) => Span::of_period(run, period, sensors, settings)?,
+            None => Span::after(run, left.transient, sensors, settings)?,
+        };
+        let inner = sensors.iter().map(|_| Taken::Inner(Vec::new())).collect();
+        Ok(Recording {
+            left,
+            repetition: None,
+            revolution: 0,
+            start: span.start,
+            before: None,
+            from: run.crank_and_time(),
+            sampler: Sampler::begin(run, sensors, inner, span.instants, None),
+            span: Some(span),
+        })
+    }
+
+    /// When it will end if the start takes as long as it may, s.
+    fn planned_end(&self, revolution: f64) -> f64 {
+        let Settings {
+            transient,
+            revolutions,
+            ..
+        } = *self.asked.settings;
+        let (Transient::Revolutions(before)
+        | Transient::Settled {
+            at_most: before, ..
+        }) = transient;
+        let count = f64::from(before) + f64::from(revolutions);
+        count * revolution + self.delay
+    }
+}
+
+impl Recording<'_> {
+    /// At the end of a course: where the next one ends, s; none at the end of the record.
+    fn arrive(&mut self, run: &mut Run<f64>) -> Option<f64> {
+        if self.sampler.end_of_period().is_some() {
+            self.repetition = None;
+            return (!self.sampler.end_period()).then(|| self.sampler.end());
+        }
+        if run.time() >= self.sampler.end() {
+            return None;
+        }
+        if let Some(repetition) = &mut self.repetition {
+            repetition.arrive(run);
+            self.revolution += 1;
+            self.look_for_period(run);
+        }
+        Some(self.end(run))
+    }
+
+    /// Where the motion repeats itself, only one period more is looked at. Where it comes no nearer to that, it is not
+    /// asked again.
+    fn look_for_period(&mut self, run: &Run<f64>) {
+        let Some(repetition) = &self.repetition else {
+            return;
+        };
+        let (now, revolution) = (run.time(), run.revolution());
+        match repetition.exact_period(run.tolerance(), (self.sampler.end() - now) / revolution) {
+            Some(period) => self.sampler.repeat(now, f64::from(period) * revolution),
+            None if repetition.is_restless() => self.repetition = None,
+            None => {}
+        }
+    }
+
+    /// Where the course under way ends, s.
+    fn end(&self, run: &Run<f64>) -> f64 {
+        let end = self.sampler.end();
+        match (self.sampler.end_of_period(), &self.repetition) {
+            (Some(end_of_period), _) => end_of_period,
+            (None, Some(_)) => run.end_of(self.revolution).min(end),
+            (None, None) => end,
         }
     }
 }
