@@ -208,8 +208,9 @@ impl<S: Scalar> Step<S> {
         );
     }
 
-    /// Copies a lane of `self` into the step of a plain number; with its stages, if asked for.
-    pub(crate) fn lane<const W: usize>(&self, lane: usize, stages: bool, other: &mut Step<f64>)
+    /// Copies the beginning of a lane of `self` into the step of a plain number of the same dimension; if asked for, with its
+    /// time, its end and its continuous extension.
+    pub fn lane<const W: usize>(&self, lane: usize, whole: bool, other: &mut Step<f64>)
     where
         S: Lanes<W>,
     {
@@ -221,7 +222,8 @@ impl<S: Scalar> Step<S> {
         let n = self.dimension();
         copy(&mut other.from, &self.from);
         copy(&mut other.stages[..n], &self.stages);
-        if stages {
+        if whole {
+            other.start = self.start.get(lane);
             other.length = self.length.get(lane);
             other.extended = self.extended;
             copy(&mut other.to, &self.to);

@@ -5,9 +5,9 @@ use crate::asked::Asked;
 use crate::error::Error;
 use crate::record::Record;
 use crate::recorder::Sensitivities;
-use crate::sampler::observe_lanes;
+use crate::sampler::Sampler;
 use crate::task::{Kept, Task};
-use integrate::{Ensemble, Step, Traveller, Trial};
+use integrate::{Ensemble, Step, System, Traveller, Trial};
 use mechanism::{Dynamics, SideBySide, lift};
 use scalar::{InLanes, Lanes, Scalar, in_lanes};
 use std::ops::ControlFlow;
@@ -129,6 +129,8 @@ struct Coach<'a, L: Scalar, const W: usize> {
     passengers: [Option<Passenger<'a>>; W],
     ensemble: Ensemble<L, W>,
     wide: SideBySide<L>,
+    /// A step of one lane, to be looked at.
+    step: Step<f64>,
 }
 
 fn travel<L: Lanes<W>, const W: usize>(group: Group) {
@@ -216,6 +218,7 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
         Some(Self {
             passengers,
             ensemble,
+            step: Step::new(wide.dimension()),
             wide,
         })
     }
@@ -249,8 +252,9 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
             }
         }
         let records = samplers.iter().any(Option::is_some);
+        let plain = &mut self.step;
         let observe = records.then_some(|wide: &mut _, step: &mut Step<L>, stands| {
-            observe_lanes(&mut samplers, wide, step, stands);
+            observe(&mut samplers, wide, step, stands, plain);
         });
         let results = self.ensemble.advance(&mut self.wide, travellers, observe);
         for (lane, (place, result)) in self.passengers.iter_mut().zip(results).enumerate() {
@@ -259,8 +263,12 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
             };
             let switches = passenger.task.run.work().switches;
             if switches != passenger.switches {
-                let mode = passenger.task.run.dynamics().mode();
+                let (run, _, sampler) = passenger.task.parts();
+                let mode = run.dynamics().mode();
                 self.wide.set_mode(lane, mode);
+                if let Some(sampler) = sampler {
+                    sampler.face(mode);
+                }
                 passenger.switches = switches;
             }
             match result.and_then(|()| passenger.task.propose()) {
@@ -271,6 +279,27 @@ impl<'a, L: Lanes<W>, const W: usize> Coach<'a, L, W> {
                     *place = None;
                 }
             }
+        }
+    }
+}
+
+/// Has the lanes that stand looked at, `plain` in place of the step of each.
+fn observe<L: Lanes<W>, const W: usize>(
+    samplers: &mut [Option<&mut Sampler>; W],
+    machines: &mut SideBySide<L>,
+    step: &mut Step<L>,
+    stands: [bool; W],
+    plain: &mut Step<f64>,
+) {
+    let stop = step.start + step.length;
+    for (lane, sampler) in samplers.iter_mut().enumerate() {
+        if let Some(sampler) = sampler
+            && stands[lane]
+            && sampler.pass(stop.get(lane), |i| step.to[i].get(lane))
+        {
+            step.extend(machines);
+            step.lane(lane, true, plain);
+            sampler.look(plain);
         }
     }
 }

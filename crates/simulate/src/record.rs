@@ -19,8 +19,8 @@ pub struct Record {
     /// True where the transient was found to have settled.
     pub settled: bool,
     /// Energy that the ledger misses, as a share of the energy turned over: the run's own measure of its
-    /// accuracy. Over the recorded revolutions where the motion is traced, over the revolution after them
-    /// where many machines run together.
+    /// accuracy. Over the recorded revolutions and what leads into them where the motion is traced, over the revolution
+    /// after those that were integrated where many machines run together.
     pub energy_residual: Option<f64>,
     /// Mean speed of the crank over the record and what leads into it, rad/s; negative clockwise.
     pub mean_speed: f64,

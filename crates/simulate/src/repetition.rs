@@ -38,10 +38,8 @@ impl Strobe {
 pub(crate) struct Repetition {
     /// As many as the longest period needs, the last one at the end.
     strobes: Vec<Strobe>,
-    /// Of the last strobe from the one a period before, for each of the periods.
-    distances: [f64; PERIODS.len()],
-    /// The least of these after each revolution.
-    nearest: Vec<f64>,
+    /// Of the strobe at the end of each revolution from the one a period before, for each of the periods.
+    distances: Vec<[f64; PERIODS.len()]>,
 }
 
 impl Repetition {
@@ -49,22 +47,20 @@ impl Repetition {
     pub fn begin<S: Real>(run: &mut Run<S>) -> Self {
         Self {
             strobes: vec![Strobe::new(run)],
-            distances: [f64::INFINITY; PERIODS.len()],
-            nearest: Vec::new(),
+            distances: Vec::new(),
         }
     }
 
     /// Takes in the end of a revolution.
     pub fn arrive<S: Real>(&mut self, run: &mut Run<S>) {
         let now = Strobe::new(run);
-        self.distances = PERIODS.map(|period| {
+        let distances = PERIODS.map(|period| {
             let earlier = self.earlier(period, self.strobes.len());
             earlier.map_or(f64::INFINITY, |earlier| {
                 run.distance(&now.state, &earlier.state)
             })
         });
-        let nearest = self.distances.iter().copied().fold(f64::INFINITY, f64::min);
-        self.nearest.push(nearest);
+        self.distances.push(distances);
         self.strobes.push(now);
         let excess = self
             .strobes
@@ -82,36 +78,57 @@ impl Repetition {
     /// After how many revolutions the last state comes back, but for a change of less than this: of an offset over its
     /// clearance, of a rate over its scale.
     pub fn period(&self, change: f64) -> Option<u32> {
-        let mut periods = PERIODS.into_iter().zip(self.distances);
-        let near = periods.find(|(_, distance)| *distance < change);
+        let mut periods = PERIODS.into_iter().zip(self.distances.last()?);
+        let near = periods.find(|(_, distance)| **distance < change);
         near.map(|(period, _)| period)
     }
 
     /// After how many revolutions all that the motion depends on comes back, so nearly that it strays by less than
-    /// `change` in so many `revolutions` more: each period of a settling motion strays by less than the one before. None
-    /// where there are no more than in a period.
+    /// `change` in so many `revolutions` more. None where there are no more than in a period.
     pub fn exact_period(&self, change: f64, revolutions: f64) -> Option<u32> {
         let now = self.strobes.len() - 1;
-        let of_all = |period: u32| change * f64::from(period) / revolutions;
-        let comes_back = |period: &u32| {
-            let earlier = self.earlier(*period, now);
-            earlier.is_some_and(|earlier| self.strobes[now].remembers_as(earlier, of_all(*period)))
+        let distances = self.distances.last()?;
+        let comes_back = |i: &usize| {
+            let periods = revolutions / f64::from(PERIODS[*i]);
+            let of_next = change / self.periods_to_come(*i).min(periods);
+            let earlier = self.earlier(PERIODS[*i], now);
+            periods > 1.0
+                && distances[*i] < of_next
+                && earlier.is_some_and(|earlier| self.strobes[now].remembers_as(earlier, of_next))
         };
-        let near = PERIODS.into_iter().zip(self.distances);
-        near.filter(|(period, distance)| {
-            f64::from(*period) < revolutions && *distance < of_all(*period)
-        })
-        .map(|(period, _)| period)
-        .find(comes_back)
+        (0..PERIODS.len()).find(comes_back).map(|i| PERIODS[i])
+    }
+
+    /// How many times the last distance all those to come add up to, for a period: each is by a factor λ < 1 nearer than
+    /// the one before, λ + λ² + … = λ / (1 - λ). Of the last two factors the greater counts, as distances may swing.
+    fn periods_to_come(&self, period: usize) -> f64 {
+        let at = |before: usize| {
+            let index = self.distances.len().checked_sub(1 + before)?;
+            Some(self.distances[index][period])
+        };
+        let factor = |before: usize| {
+            let earlier = at(before + PERIODS[period] as usize)?;
+            let is_known = earlier.is_finite();
+            is_known.then_some(at(before)? / earlier)
+        };
+        match factor(0).zip(factor(1)) {
+            Some((last, before)) if last.max(before) < 1.0 => {
+                let factor = last.max(before);
+                factor / (1.0 - factor)
+            }
+            _ => f64::INFINITY,
+        }
     }
 
     /// Whether it comes no nearer to itself.
     pub fn is_restless(&self) -> bool {
         let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
-        let Some(first) = self.nearest.len().checked_sub(PATIENCE) else {
+        let Some(first) = self.distances.len().checked_sub(PATIENCE) else {
             return false;
         };
-        let (before, now) = self.nearest.split_at(first);
-        first >= PATIENCE && least(now) > NEARER * least(&before[first - PATIENCE..])
+        let nearest = self.distances.as_flattened();
+        let (before, now) = nearest.split_at(first * PERIODS.len());
+        let before = &before[first.saturating_sub(PATIENCE) * PERIODS.len()..];
+        first >= PATIENCE && least(now) > NEARER * least(before)
     }
 }

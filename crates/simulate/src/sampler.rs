@@ -1,9 +1,9 @@
 //! What sensors see of a run: its motion at equally spaced instants.
 //!
 //! A recorded sample takes four to eight instants. Where many of them lie within a step, the motion is evaluated at a few
-//! others, and a polynomial through these values gives what the sensors see. Those within a step are evaluated side by side;
-//! where several runs are in lanes, those within their steps are. Of a motion that repeats itself one period is kept as such
-//! polynomials, and all that is left of the record is its repetition.
+//! others, and a polynomial through these values gives what the sensors see. Those within a step of one run are evaluated
+//! side by side, also where several runs are in lanes, as some of these record while others do not. Of a motion that repeats
+//! itself one period is kept as such polynomials, and all that is left of the record is its repetition.
 
 use crate::chain::UnderWay;
 use crate::instants::Instants;
@@ -16,8 +16,7 @@ use crate::sensor::Sensor;
 use crate::trace::Trace;
 use integrate::Step;
 use mechanism::mode::Mode;
-use mechanism::{Dynamics, Evaluation, SideBySide};
-use scalar::Lanes;
+use mechanism::{Dynamics, Evaluation};
 use std::ops::Range;
 
 /// Series under way.
@@ -32,8 +31,9 @@ pub(crate) struct Sampler<'a> {
     traced: Option<Traced>,
     /// How deep joints are pressed in.
     joints: Watch,
-    /// Where it looks at a run that is in no lane, and the mode that its machine is in.
-    lookout: Option<(Box<dyn Lookout>, Mode)>,
+    /// From where it looks at the machine, and the mode that this is in.
+    lookout: Box<dyn Lookout>,
+    mode: Mode,
     /// Instants within a step.
     times: Vec<f64>,
     state: Vec<f64>,
@@ -170,9 +170,13 @@ impl<'a> Sampler<'a> {
         trace: Option<(Trace, Range<usize>)>,
     ) -> Self {
         let dimension = run.state().len();
+        let dynamics = run.dynamics();
+        let (machine, mode) = (dynamics.machine(), dynamics.mode());
+        let ledger = dynamics.layout().ledger.is_some();
         let mut sampler = Self {
             joints: Watch::new(run.dynamics()),
-            lookout: None,
+            lookout: lookout::at(machine, ledger),
+            mode: mode.clone(),
             times: Vec::new(),
             state: vec![0.0; dimension],
             series: Series::new(taken, run.tolerance()),
@@ -186,6 +190,7 @@ impl<'a> Sampler<'a> {
             instants,
             seen: 0,
         };
+        sampler.lookout.set_mode(&sampler.mode);
         let now = run.time();
         let first = run.evaluate();
         while sampler.seen < instants.count && instants.at(sampler.seen) <= now {
@@ -292,21 +297,32 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Looks at a step.
+    /// Looks at a step of a run that is in no lane.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
-        self.joints.update(|i| step.to[i]);
         self.observe_motion(dynamics, step);
+        if self.pass(step.start + step.length, |i| step.to[i]) {
+            step.extend(dynamics);
+            self.face(dynamics.mode());
+            self.look(step);
+        }
+    }
+
+    /// Takes in where a step leads: until `stop`, s, to a state of which `y` gives the components. Whether the step has to be
+    /// looked at.
+    pub fn pass(&mut self, stop: f64, y: impl Fn(usize) -> f64) -> bool {
+        self.joints.update(y);
+        let Instants { count, .. } = self.instants;
+        self.period.is_some() || self.seen < count && self.instants.at(self.seen) <= stop
+    }
+
+    /// Looks at a step, whose continuous extension is there, in the mode that is faced.
+    pub fn look(&mut self, step: &Step<f64>) {
+        let here = [step.start, step.length];
         if self.period.is_some() {
-            return self.observe_period(dynamics, step);
+            return self.look_at_parts(step);
         }
         let within = self.instants.within(self.seen, step.start + step.length);
-        if within == 0 {
-            return;
-        }
-        step.extend(dynamics);
-        self.face(dynamics);
         if NODES < within {
-            let here = [step.start, step.length];
             let seen = self.see(step, &self.series.nodes.times(here));
             if self.interpolate(here, within, |i, node| seen[i][node]) {
                 return;
@@ -317,11 +333,19 @@ impl<'a> Sampler<'a> {
         times.extend((self.seen..self.seen + within).map(|i| self.instants.at(i)));
         let (sensors, series) = (self.sensors, &mut self.series);
         let mut show = |i: usize, seen: &[f64]| series.extend(i, &sensors[i], seen.iter().copied());
-        if let Some((lookout, _)) = &mut self.lookout {
-            lookout.observe(step, &times, sensors, &mut show);
-        }
+        self.lookout.observe(step, &times, sensors, &mut show);
         self.times = times;
         self.seen += within;
+    }
+
+    /// Looks at a step of the period, part by part.
+    fn look_at_parts(&mut self, step: &Step<f64>) {
+        let here = [step.start, step.length];
+        let mut waiting = vec![Part::WHOLE];
+        while let Some(part) = waiting.pop() {
+            let seen = self.see(step, &self.series.nodes.times(part.of(here)));
+            self.keep(here, part, |i, node| seen[i][node], &mut waiting);
+        }
     }
 
     /// Looks at the motion itself at the instants within a step.
@@ -341,32 +365,13 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Looks at a step of the period.
-    fn observe_period(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
-        step.extend(dynamics);
-        self.face(dynamics);
-        let here = [step.start, step.length];
-        let mut waiting = vec![Part::WHOLE];
-        while let Some(part) = waiting.pop() {
-            let seen = self.see(step, &self.series.nodes.times(part.of(here)));
-            self.keep(here, part, |i, node| seen[i][node], &mut waiting);
+    /// Looks at the machine in this mode from now on.
+    pub fn face(&mut self, mode: &Mode) {
+        if self.mode != *mode {
+            self.finish();
+            self.mode.clone_from(mode);
+            self.lookout.set_mode(mode);
         }
-    }
-
-    /// Has a lookout at the machine in the mode that it is in.
-    fn face(&mut self, dynamics: &Dynamics<f64>) {
-        if (self.lookout.as_ref()).is_some_and(|(_, mode)| mode == dynamics.mode()) {
-            return;
-        }
-        self.finish();
-        let (mut lookout, mut mode) = self.lookout.take().unwrap_or_else(|| {
-            let ledger = dynamics.layout().ledger.is_some();
-            let lookout = lookout::at(dynamics.machine(), ledger);
-            (lookout, dynamics.mode().clone())
-        });
-        mode.clone_from(dynamics.mode());
-        lookout.set_mode(&mode);
-        self.lookout = Some((lookout, mode));
     }
 
     /// What each sensor sees at these times within a step. No instant waits after it.
@@ -374,10 +379,8 @@ impl<'a> Sampler<'a> {
         self.finish();
         let mut all = vec![Vec::with_capacity(times.len()); self.sensors.len()];
         let mut show = |i: usize, seen: &[f64]| all[i].extend_from_slice(seen);
-        if let Some((lookout, _)) = &mut self.lookout {
-            lookout.observe(step, times, self.sensors, &mut show);
-            lookout.finish(self.sensors, &mut show);
-        }
+        self.lookout.observe(step, times, self.sensors, &mut show);
+        self.lookout.finish(self.sensors, &mut show);
         all
     }
 
@@ -385,9 +388,7 @@ impl<'a> Sampler<'a> {
     fn finish(&mut self) {
         let (sensors, series) = (self.sensors, &mut self.series);
         let mut show = |i: usize, seen: &[f64]| series.extend(i, &sensors[i], seen.iter().copied());
-        if let Some((lookout, _)) = &mut self.lookout {
-            lookout.finish(sensors, &mut show);
-        }
+        self.lookout.finish(sensors, &mut show);
     }
 
     /// What each sensor has recorded since `start`, s. Rounding may leave the very last instant beyond
@@ -409,146 +410,5 @@ impl<'a> Sampler<'a> {
             trace: self.traced.map(|traced| traced.trace),
             penetrations: self.joints.end(),
         }
-    }
-}
-
-/// Looks at the instants within the steps of the lanes that stand, whose samplers see the same quantities.
-pub(crate) fn observe_lanes<L: Lanes<W>, const W: usize>(
-    samplers: &mut [Option<&mut Sampler>; W],
-    machines: &mut SideBySide<L>,
-    step: &mut Step<L>,
-    stands: [bool; W],
-) {
-    let stop = step.start + step.length;
-    let (mut within, mut repeats) = ([0; W], [false; W]);
-    for (lane, sampler) in samplers.iter_mut().enumerate() {
-        if let Some(sampler) = sampler
-            && stands[lane]
-        {
-            sampler.joints.update(|i| step.to[i].get(lane));
-            repeats[lane] = sampler.period.is_some();
-            if !repeats[lane] {
-                within[lane] = sampler.instants.within(sampler.seen, stop.get(lane));
-            }
-        }
-    }
-    if within == [0; W] && repeats == [false; W] {
-        return;
-    }
-    step.extend(machines);
-    let by_nodes = |lane: usize| repeats[lane] || NODES < within[lane];
-    let counts = std::array::from_fn(|lane| match by_nodes(lane) {
-        true => NODES,
-        false => within[lane],
-    });
-    let times = |sampler: &Sampler, lane: usize, i: usize| match by_nodes(lane) {
-        true => {
-            let here = [step.start.get(lane), step.length.get(lane)];
-            sampler.series.nodes.time(here, i)
-        }
-        false => sampler.instants.at(sampler.seen + i),
-    };
-    let seen = see_lanes(samplers, machines, step, counts, times);
-    let mut left = [0; W];
-    let mut waiting = [const { Vec::new() }; W];
-    for (lane, sampler) in samplers.iter_mut().enumerate() {
-        let Some(sampler) = sampler else { continue };
-        let here = [step.start.get(lane), step.length.get(lane)];
-        let sensors = sampler.sensors.len();
-        let of_lane = |i: usize, node: usize| seen[node * sensors + i].get(lane);
-        if repeats[lane] {
-            sampler.keep(here, Part::WHOLE, of_lane, &mut waiting[lane]);
-        } else if !by_nodes(lane) {
-            sampler.take(lane, within[lane], &seen);
-        } else if !sampler.interpolate(here, within[lane], of_lane) {
-            left[lane] = within[lane];
-        }
-    }
-    if left != [0; W] {
-        let times = |sampler: &Sampler, _: usize, i: usize| sampler.instants.at(sampler.seen + i);
-        let seen = see_lanes(samplers, machines, step, left, times);
-        for (lane, sampler) in samplers.iter_mut().enumerate() {
-            if let Some(sampler) = sampler {
-                sampler.take(lane, left[lane], &seen);
-            }
-        }
-    }
-    while waiting.iter().any(|parts| !parts.is_empty()) {
-        observe_parts(samplers, machines, step, &mut waiting);
-    }
-}
-
-/// Looks at one of the waiting parts of the step in each lane.
-fn observe_parts<L: Lanes<W>, const W: usize>(
-    samplers: &mut [Option<&mut Sampler>; W],
-    machines: &mut SideBySide<L>,
-    step: &Step<L>,
-    waiting: &mut [Vec<Part>; W],
-) {
-    let parts = waiting.each_mut().map(Vec::pop);
-    let here = |lane: usize| [step.start.get(lane), step.length.get(lane)];
-    let times = |sampler: &Sampler, lane: usize, i: usize| {
-        let part = parts[lane].unwrap_or(Part::WHOLE);
-        sampler.series.nodes.time(part.of(here(lane)), i)
-    };
-    let counts = parts.map(|part| part.map_or(0, |_| NODES));
-    let seen = see_lanes(samplers, machines, step, counts, times);
-    for (lane, sampler) in samplers.iter_mut().enumerate() {
-        if let (Some(sampler), Some(part)) = (sampler, parts[lane]) {
-            let sensors = sampler.sensors.len();
-            let of_lane = |i: usize, node: usize| seen[node * sensors + i].get(lane);
-            sampler.keep(here(lane), part, of_lane, &mut waiting[lane]);
-        }
-    }
-}
-
-/// What the sensors see at so many instants within the steps of the lanes, sensor after sensor at each. `times` gives
-/// the instants of a lane.
-fn see_lanes<L: Lanes<W>, const W: usize>(
-    samplers: &[Option<&mut Sampler>; W],
-    machines: &mut SideBySide<L>,
-    step: &Step<L>,
-    counts: [usize; W],
-    times: impl Fn(&Sampler, usize, usize) -> f64,
-) -> Vec<L> {
-    let most = counts.into_iter().max().unwrap_or(0);
-    let sensors = samplers.iter().flatten().map(|s| s.sensors).next();
-    let sensors = sensors.unwrap_or_default();
-    let mut state = vec![L::zero(); step.from.len()];
-    let mut seen = Vec::with_capacity(most * sensors.len());
-    for i in 0..most {
-        let mut instants = step.start;
-        for (lane, sampler) in samplers.iter().enumerate() {
-            if let Some(sampler) = sampler
-                && i < counts[lane]
-            {
-                instants.set(lane, times(sampler, lane, i));
-            }
-        }
-        let share = L::vectorised(
-            #[inline(always)]
-            || (instants - step.start) / step.length,
-        );
-        step.interpolate(share, &mut state);
-        let at = machines.evaluate_sensed(instants, &state);
-        for sensor in sensors {
-            seen.push(L::vectorised(
-                #[inline(always)]
-                || sensor.measured.unwrapped(at),
-            ));
-        }
-    }
-    seen
-}
-
-impl Sampler<'_> {
-    /// Takes in what is seen of this lane at the next instants.
-    fn take<L: Lanes<W>, const W: usize>(&mut self, lane: usize, count: usize, seen: &[L]) {
-        for (i, sensor) in self.sensors.iter().enumerate() {
-            let of_sensor = seen.iter().skip(i).step_by(self.sensors.len()).take(count);
-            self.series
-                .extend(i, sensor, of_sensor.map(|x| x.get(lane)));
-        }
-        self.seen += count;
     }
 }

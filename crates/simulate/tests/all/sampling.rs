@@ -1,4 +1,5 @@
-//! What sensors see between the evaluations of a step, against the motion evaluated at every instant.
+//! What sensors see between the evaluations of a step, and of a motion that repeats itself, against the motion evaluated at
+//! every instant.
 
 use input::{MachineFile, Resolved};
 use signal::decimate::Decimator;
@@ -59,6 +60,45 @@ fn polynomials_within_steps_leave_out_less_than_the_tolerance() {
                 );
                 eprintln!("{clearance} {tolerance:e}: {column} {:.1e}", off / largest);
             }
+        }
+    }
+}
+
+/// A motion that repeats itself is integrated over one period, of which the record is the repetition. The trace is of the motion
+/// as it goes on: it differs by no more than the tolerance lets the integration itself err (an RMS of eight times the tolerance,
+/// `tests/peers`).
+#[test]
+fn a_repetition_is_the_motion_as_it_goes_on() {
+    for clearance in ["0.02 mm", "0.1 mm", "0.3 mm"] {
+        let Resolved {
+            machine, sensors, ..
+        } = machine(clearance);
+        let sensor = |column: &str| sensors.iter().find(|s| s.measured.column(&[]) == column);
+        let sensor = sensor("crosshead_acceleration_m_s2").unwrap().clone();
+        for (tolerance, transient) in [(1e-6, 0), (1e-7, 0), (1e-7, 30), (1e-9, 10)] {
+            let settings = Settings {
+                transient: Transient::Revolutions(transient),
+                revolutions: 20,
+                tolerance,
+                ..Settings::default()
+            };
+            let sensors = std::slice::from_ref(&sensor);
+            let traced = simulate(&machine, sensors, &settings, true).unwrap();
+            let record = simulate(&machine, sensors, &settings, false).unwrap();
+            assert_eq!(record.series, traced.series);
+            let [steps, all] = [&record, &traced].map(|r| r.work.accepted);
+            assert!(2 * steps < all, "{clearance} {tolerance}: {steps} of {all}");
+
+            let trace = traced.trace.unwrap();
+            let decimator = Decimator::new(trace.stride).unwrap();
+            let first = decimator.half_length().div_ceil(trace.stride);
+            let recorded = &record.series[0][first..];
+            let filtered = decimator.apply(&trace.throws[0].acceleration);
+            let square = |of: &mut dyn Iterator<Item = f64>| of.map(|x| x * x).sum::<f64>();
+            let off = square(&mut filtered.iter().zip(recorded).map(|(a, b)| a - b));
+            let off = (off / square(&mut filtered.iter().copied())).sqrt();
+            assert!(off < 8.0 * tolerance, "{clearance} {tolerance}: {off:e}");
+            eprintln!("{clearance} {tolerance:e} {transient}: {off:.1e}, {steps} of {all} steps");
         }
     }
 }
