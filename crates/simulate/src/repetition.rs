@@ -8,6 +8,8 @@ const PATIENCE: usize = 4;
 const NEARER: f64 = 0.5;
 /// Periods, in revolutions, that are looked for.
 const PERIODS: [u32; 3] = [1, 2, LONGEST_PERIOD];
+/// What a repetition may stray by, over the tolerance of the integration.
+const STRAY: f64 = 0.1;
 /// Longest period of a settled motion, revolutions.
 pub const LONGEST_PERIOD: u32 = 4;
 
@@ -83,14 +85,14 @@ impl Repetition {
         near.map(|(period, _)| period)
     }
 
-    /// After how many revolutions all that the motion depends on comes back, so nearly that it strays by less than
-    /// `change` in so many `revolutions` more. None where there are no more than in a period.
-    pub fn exact_period(&self, change: f64, revolutions: f64) -> Option<u32> {
+    /// After how many revolutions all that the motion depends on comes back, so nearly that in so many `revolutions` more it
+    /// strays by a small part of the `tolerance` of the integration. None where there are no more than in a period.
+    pub fn exact_period(&self, tolerance: f64, revolutions: f64) -> Option<u32> {
         let now = self.strobes.len() - 1;
         let distances = self.distances.last()?;
         let comes_back = |i: &usize| {
             let periods = revolutions / f64::from(PERIODS[*i]);
-            let of_next = change / self.periods_to_come(*i).min(periods);
+            let of_next = STRAY * tolerance / self.periods_to_come(*i).min(periods);
             let earlier = self.earlier(PERIODS[*i], now);
             periods > 1.0
                 && distances[*i] < of_next
