@@ -26,7 +26,7 @@ impl Part {
     pub const WHOLE: Self = Self([0.0, 1.0]);
 
     /// Where it lies in a step that begins at `start` and takes `length`, s: its own beginning and length.
-    pub fn of(self, [start, length]: [f64; 2]) -> [f64; 2] {
+    pub fn span(self, [start, length]: [f64; 2]) -> [f64; 2] {
         let [from, to] = self.0;
         [start + length * from, length * (to - from)]
     }

@@ -34,7 +34,8 @@ pub(crate) struct Sampler<'a> {
     /// From where it looks at the machine, and the mode that this is in.
     lookout: Box<dyn Lookout>,
     mode: Mode,
-    /// Instants within a step.
+    /// Scratch: what each sensor sees at the nodes, and instants within a step.
+    at_nodes: Vec<Vec<f64>>,
     times: Vec<f64>,
     state: Vec<f64>,
 }
@@ -127,14 +128,16 @@ impl Series {
         }));
     }
 
-    /// The polynomials of all sensors through what `seen` gives for each at each node. False where one of them leaves out
-    /// too much, unless it `must` do.
-    fn fit(&mut self, sensors: usize, seen: impl Fn(usize, usize) -> f64, must: bool) -> bool {
+    /// The polynomials through what each sensor has `seen` at the nodes. False where one of them leaves out too much, unless
+    /// it `must` do.
+    fn fit(&mut self, seen: &[Vec<f64>], must: bool) -> bool {
         self.polynomials.clear();
-        for i in 0..sensors {
-            let values = std::array::from_fn(|node| seen(i, node));
-            let near = (self.nodes).near(&values, self.largest[i], self.tolerance);
-            match near.or_else(|| must.then(|| self.nodes.through(&values))) {
+        for (seen, largest) in seen.iter().zip(&self.largest) {
+            let Some(values) = seen.first_chunk() else {
+                return false;
+            };
+            let near = self.nodes.near(values, *largest, self.tolerance);
+            match near.or_else(|| must.then(|| self.nodes.through(values))) {
                 Some(polynomial) => self.polynomials.push(polynomial),
                 None => return false,
             }
@@ -177,6 +180,7 @@ impl<'a> Sampler<'a> {
             joints: Watch::new(run.dynamics()),
             lookout: lookout::at(machine, ledger),
             mode: mode.clone(),
+            at_nodes: vec![Vec::new(); sensors.len()],
             times: Vec::new(),
             state: vec![0.0; dimension],
             series: Series::new(taken, run.tolerance()),
@@ -261,42 +265,6 @@ impl<'a> Sampler<'a> {
         self.seen += within;
     }
 
-    /// Takes in the instants within a step by what `seen` gives for each sensor at each node. False, and nothing taken in,
-    /// where that is not exact enough.
-    fn interpolate(
-        &mut self,
-        step: [f64; 2],
-        within: usize,
-        seen: impl Fn(usize, usize) -> f64,
-    ) -> bool {
-        let fitted = self.series.fit(self.sensors.len(), seen, false);
-        if fitted {
-            let polynomials = std::mem::take(&mut self.series.polynomials);
-            self.evaluate(step, within, &polynomials);
-            self.series.polynomials = polynomials;
-        }
-        fitted
-    }
-
-    /// Takes a part of a step into the period by what `seen` gives for each sensor at each node. Where that is not exact
-    /// enough, nothing is taken in but its halves are waiting.
-    fn keep(
-        &mut self,
-        step: [f64; 2],
-        part: Part,
-        seen: impl Fn(usize, usize) -> f64,
-        waiting: &mut Vec<Part>,
-    ) {
-        let halves = part.halves();
-        if self.series.fit(self.sensors.len(), seen, halves.is_none()) {
-            if let Some(period) = &mut self.period {
-                period.extend(part.of(step), self.series.polynomials.iter().copied());
-            }
-        } else if let Some([first, second]) = halves {
-            waiting.extend([second, first]);
-        }
-    }
-
     /// Looks at a step of a run that is in no lane.
     pub fn observe(&mut self, dynamics: &mut Dynamics<f64>, step: &mut Step<f64>) {
         self.observe_motion(dynamics, step);
@@ -322,11 +290,11 @@ impl<'a> Sampler<'a> {
             return self.look_at_parts(step);
         }
         let within = self.instants.within(self.seen, step.start + step.length);
-        if NODES < within {
-            let seen = self.see(step, &self.series.nodes.times(here));
-            if self.interpolate(here, within, |i, node| seen[i][node]) {
-                return;
-            }
+        if NODES < within && self.fit(step, here, false) {
+            let polynomials = std::mem::take(&mut self.series.polynomials);
+            self.evaluate(here, within, &polynomials);
+            self.series.polynomials = polynomials;
+            return;
         }
         let mut times = std::mem::take(&mut self.times);
         times.clear();
@@ -338,13 +306,19 @@ impl<'a> Sampler<'a> {
         self.seen += within;
     }
 
-    /// Looks at a step of the period, part by part.
+    /// Looks at a step of the period: where a polynomial leaves out too much, at its halves.
     fn look_at_parts(&mut self, step: &Step<f64>) {
-        let here = [step.start, step.length];
         let mut waiting = vec![Part::WHOLE];
         while let Some(part) = waiting.pop() {
-            let seen = self.see(step, &self.series.nodes.times(part.of(here)));
-            self.keep(here, part, |i, node| seen[i][node], &mut waiting);
+            let span = part.span([step.start, step.length]);
+            let halves = part.halves();
+            if self.fit(step, span, halves.is_none()) {
+                if let Some(period) = &mut self.period {
+                    period.extend(span, self.series.polynomials.iter().copied());
+                }
+            } else if let Some([first, second]) = halves {
+                waiting.extend([second, first]);
+            }
         }
     }
 
@@ -374,14 +348,17 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// What each sensor sees at these times within a step. No instant waits after it.
-    fn see(&mut self, step: &Step<f64>, times: &[f64]) -> Vec<Vec<f64>> {
+    /// The polynomials of all sensors over a span of a step: its beginning and length, s. False where one of them leaves out
+    /// too much, unless it `must` do. No instant waits after it.
+    fn fit(&mut self, step: &Step<f64>, span: [f64; 2], must: bool) -> bool {
         self.finish();
-        let mut all = vec![Vec::with_capacity(times.len()); self.sensors.len()];
-        let mut show = |i: usize, seen: &[f64]| all[i].extend_from_slice(seen);
-        self.lookout.observe(step, times, self.sensors, &mut show);
+        let seen = &mut self.at_nodes;
+        seen.iter_mut().for_each(Vec::clear);
+        let times = self.series.nodes.times(span);
+        let mut show = |i: usize, now: &[f64]| seen[i].extend_from_slice(now);
+        self.lookout.observe(step, &times, self.sensors, &mut show);
         self.lookout.finish(self.sensors, &mut show);
-        all
+        self.series.fit(&self.at_nodes, must)
     }
 
     /// Looks at the instants that wait.

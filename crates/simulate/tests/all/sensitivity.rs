@@ -86,12 +86,15 @@ fn derivatives_equal_differences_of_records() {
     )
     .unwrap();
     let plain = simulate(&centre.machine, &centre.sensors, &settings, false).unwrap();
-    // Evaluated at every instant here, by polynomials within steps there.
+    // The last of all revolutions, evaluated at every instant, and by polynomials one from where the motion repeats itself:
+    // steps are others there, so that they differ by what the integration errs (an RMS of eight times the tolerance,
+    // `tests/peers`).
     for (found, plain) in found.series.iter().zip(&plain.series) {
         let largest = plain.iter().fold(0.0_f64, |l, x| l.max(x.abs()));
         let off = found.iter().zip(plain).map(|(a, b)| (a - b).abs());
         let off = off.fold(0.0, f64::max);
-        assert!(off <= settings.tolerance * largest, "{off:e} of {largest}");
+        let most = 8.0 * settings.tolerance * largest;
+        assert!(off <= most, "{off:e} of {largest}");
     }
     for ((path, below, above), derivative) in STEPS.iter().zip(&found.derivatives) {
         let [below, above] = [below, above].map(|value| {
