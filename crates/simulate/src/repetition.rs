@@ -102,7 +102,8 @@ impl Repetition {
     }
 
     /// How many times the last distance all those to come add up to, for a period: each is by a factor λ < 1 nearer than
-    /// the one before, λ + λ² + … = λ / (1 - λ). Of the last two factors the greater counts, as distances may swing.
+    /// the one before, λ + λ² + … = λ / (1 - λ). Of the last two factors the greater counts, as distances may swing; and at
+    /// least the last distance itself, as behind a fast part of the motion that settles there may be a slow one.
     fn periods_to_come(&self, period: usize) -> f64 {
         let at = |before: usize| {
             let index = self.distances.len().checked_sub(1 + before)?;
@@ -116,7 +117,7 @@ impl Repetition {
         match factor(0).zip(factor(1)) {
             Some((last, before)) if last.max(before) < 1.0 => {
                 let factor = last.max(before);
-                factor / (1.0 - factor)
+                (factor / (1.0 - factor)).max(1.0)
             }
             _ => f64::INFINITY,
         }
