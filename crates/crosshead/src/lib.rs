@@ -75,11 +75,12 @@
 //! ## What a signal says
 //!
 //! [`signal`] holds spectra, envelopes, order tracking and phase portraits; [`chaos`] Lyapunov exponents with
-//! intervals, and the kind of a motion. [`report`] draws pages of all of it.
+//! intervals, and the kind of a motion. [`study`] computes what a dataset shows, [`figure`] plots it, and [`report`] draws pages of all of it.
 
 pub use calibrate;
 pub use chaos;
 pub use features;
+pub use figure;
 pub use gap;
 pub use input;
 pub use integrate;
@@ -89,4 +90,6 @@ pub use report;
 pub use scalar;
 pub use signal;
 pub use simulate;
+pub use study;
 pub use sweep;
+pub use text;

@@ -3,8 +3,9 @@
 #[path = "../tests/report/synthetic/mod.rs"]
 mod synthetic;
 
-use report::figure::{Axis, Colour, Figure, Mark, Panel, Series};
-use std::{fs, io, path::Path};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use std::path::Path;
+use std::{fs, io};
 use synthetic::Recording;
 
 fn main() -> io::Result<()> {

@@ -1,8 +1,7 @@
 //! The picture of one simulated case.
 
-use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series};
 use crate::over_crank_angle::over_crank_angle;
-use crate::text;
+use figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series};
 use simulate::Trace;
 
 /// Everything that the picture shows, at the times of one recording.

@@ -1,19 +1,20 @@
 //! One case of a sweep, simulated again for a page: its figures, its labels, and the command that makes it again.
 
+use crate::Error;
 use crate::case_picture::CasePicture;
-use crate::dataset::recording::Recording;
-use crate::dataset::words;
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
 use crate::plate::Plate;
 use crate::run_figures::{self, RunFigures};
-use crate::{Error, classes, text};
 use askama::Template;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
 use recordings::{FailedCase, Value};
 use signal::channel::Channel;
 use simulate::{Record, Trace, measure};
 use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow;
 use std::path::Path;
+use study::classes;
+use study::recording::Recording;
+use study::words;
 use sweep::reader::SignalRow;
 use sweep::run_analysis::RunAnalysis;
 use sweep::{Case, Plan};

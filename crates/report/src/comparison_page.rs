@@ -1,9 +1,9 @@
 //! The page of a comparison.
 
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use crate::Error;
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
-use crate::{Error, text};
 use askama::Template;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use sweep::comparison::{ComparedChannel, ComparedFeature, Comparison};
 
 #[derive(Template)]

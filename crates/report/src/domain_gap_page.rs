@@ -1,10 +1,10 @@
 //! The page of simulated windows beside measured ones.
 
-use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
-use crate::{Error, histogram, text};
+use crate::{Error, histogram};
 use askama::Template;
 use classify::TellingFeature;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use sweep::domain_gap::Compared;
 
 /// Features whose distributions are drawn.

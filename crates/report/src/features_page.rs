@@ -1,7 +1,7 @@
 //! The HTML page that documents the features of a dataset.
 
 use crate::plate::Rendered;
-use crate::{Column, Error, text};
+use crate::{Column, Error};
 use askama::Template;
 
 /// All columns of the table of features, and what each is.

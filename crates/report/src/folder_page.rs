@@ -1,8 +1,8 @@
 //! The HTML page of a folder: what is in it that has pages.
 
+use crate::Error;
 use crate::folder_kind::FolderKind;
 use crate::refreshed::{self, Row, Shown};
-use crate::{Error, text};
 use askama::Template;
 use serde::Serialize;
 

@@ -1,6 +1,5 @@
-//! Figures and self-contained pages of what the other crates compute.
+//! Self-contained pages of what the other crates compute.
 //!
-//! - [`figure`]: panels with lines, points and areas as SVG;
 //! - [`case_picture`]: the picture of one simulated case;
 //! - [`case_table`]: the cases of a dataset, for the script of its page;
 //! - [`case_view`]: one case simulated again, for a page;
@@ -15,35 +14,29 @@
 //! - [`gap_page`]: the HTML page of an explanation;
 //! - [`wear_page`]: the HTML page of an estimation of wear;
 //! - [`folder_page`], [`progress_page`]: the live pages of a folder and of a sweep under way;
-//! - [`folder_kind`]: what a folder holds, and its pages by name;
-//! - [`text`]: numbers with units, words, escaping.
+//! - [`folder_kind`]: what a folder holds, and its pages by name.
 //!
 //! A page is a plain struct that renders itself. The same struct gives the same bytes, and a page
-//! loads nothing from other places. Pages of a dataset are filled from a [`sweep::reader::Dataset`].
-//!
-//! The figures are drawn by a module of this crate. The plotting crate kuva 0.6 has four defects: its
-//! grids hide tick labels of panels without the common range, equal axes are not equal, angles get
-//! ticks at 100°, and a line of 2 400 points takes 47 kB at any size.
+//! loads nothing from other places. Pages of a dataset are filled from a [`sweep::reader::Dataset`] with
+//! what [`study`] computes of it; [`figure`] draws the figures.
 
 pub mod calibration_page;
 pub mod case_picture;
 pub mod case_table;
 pub mod case_view;
 pub mod chaos_page;
-pub mod classes;
+mod class_colour;
 mod column;
 pub mod comparison_page;
 mod dataset;
 pub mod dataset_page;
 pub mod domain_gap_page;
 pub mod features_page;
-pub mod figure;
 mod files;
 pub mod folder_kind;
 pub mod folder_page;
 pub mod gap_page;
 mod histogram;
-mod level;
 mod over_crank_angle;
 mod plate;
 pub mod progress_page;
@@ -51,14 +44,11 @@ mod refreshed;
 mod revolutions;
 pub mod run_figures;
 pub mod run_folder;
-mod statistics;
 pub mod summary;
-pub mod text;
 pub mod wear_page;
 
 pub use column::Column;
 pub use files::{write_page, write_pages};
-pub use level::Level;
 pub use plate::{FigureFile, Rendered};
 
 use std::path::PathBuf;
@@ -92,17 +82,10 @@ pub enum Error {
         /// Why not.
         error: recordings::Error,
     },
-    /// A recording whose crank angle is not that of a turning crank.
-    #[error("{place}, {case_id}: {error}")]
-    Recording {
-        /// The table and the row.
-        place: String,
-        /// The case.
-        case_id: String,
-        /// What is wrong with it.
-        error: signal::Error,
-    },
-    /// A recording that cannot be analysed.
+    /// What the dataset shows cannot be computed.
+    #[error(transparent)]
+    Study(#[from] study::Error),
+    /// A run that cannot be analysed.
     #[error(transparent)]
     Analysis(#[from] signal::Error),
     /// A case that cannot be simulated again.
@@ -133,7 +116,8 @@ impl Error {
             Self::Dataset(error) => error.is_input(),
             Self::Progress(error) => error.is_input(),
             Self::Calibration(_) | Self::Explanation(_) | Self::Machine(_) => true,
-            Self::Curves { .. } | Self::Recording { .. } => true,
+            Self::Study(error) => error.is_input(),
+            Self::Curves { .. } => true,
             _ => false,
         }
     }

@@ -1,7 +1,7 @@
 //! A signal over the crank angle, revolution by revolution.
 
-use crate::figure::{Colour, Mark, Series};
 use crate::revolutions::Revolutions;
+use figure::{Colour, Mark, Series};
 
 /// At most this many revolutions are drawn behind their mean: the last ones.
 const REVOLUTIONS: usize = 20;

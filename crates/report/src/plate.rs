@@ -1,7 +1,6 @@
 //! Figures on their way into a page, and as files beside it.
 
-use crate::figure::Figure;
-use crate::text;
+use figure::Figure;
 use std::cell::OnceCell;
 
 /// A figure with its heading and caption.

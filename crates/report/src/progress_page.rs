@@ -1,7 +1,7 @@
 //! The HTML page of a sweep under way: how far it is, and the cases that failed.
 
+use crate::Error;
 use crate::refreshed::{self, Row, Shown};
-use crate::{Error, text};
 use askama::Template;
 use recordings::shell;
 use serde::Serialize;

@@ -1,9 +1,8 @@
 //! The figures of one run that its user looks at first.
 
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share, in_rows};
 use crate::over_crank_angle::over_crank_angle;
 use crate::plate::FigureFile;
-use crate::text;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, Share, in_rows};
 use signal::channel::Channel;
 use simulate::rod_load::SHORTEST_REVERSAL;
 use simulate::{IndicatorCard, RodLoad};

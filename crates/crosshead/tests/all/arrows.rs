@@ -5,10 +5,12 @@ use std::collections::BTreeSet;
 use std::process::Command;
 
 /// What each crate may import, the lowest first. A crate that is added gets its line here.
-const MAY_IMPORT: [(&str, &str); 21] = [
+const MAY_IMPORT: [(&str, &str); 24] = [
     ("scalar", ""),
     ("files", ""),
     ("fourier", ""),
+    ("text", ""),
+    ("figure", "text"),
     ("signal", "fourier"),
     ("classify", ""),
     ("integrate", "scalar"),
@@ -26,6 +28,7 @@ const MAY_IMPORT: [(&str, &str); 21] = [
         "sweep",
         "calibrate classify features files input mechanism recordings scalar signal simulate",
     ),
+    ("study", "classify recordings signal simulate sweep text"),
     (
         "gap",
         "calibrate files input mechanism recordings scalar signal simulate",
@@ -36,7 +39,7 @@ const MAY_IMPORT: [(&str, &str); 21] = [
     ),
     (
         "report",
-        "calibrate chaos classify features gap input recordings signal simulate sweep",
+        "calibrate classify features figure gap input recordings signal simulate study sweep text",
     ),
     ("serve", "recordings report sweep"),
     (
@@ -50,8 +53,8 @@ const MAY_IMPORT: [(&str, &str); 21] = [
     ),
     (
         "crosshead",
-        "calibrate chaos features gap input integrate mechanism recordings report scalar signal \
-         simulate sweep",
+        "calibrate chaos features figure gap input integrate mechanism recordings report scalar signal \
+         simulate study sweep text",
     ),
 ];
 

@@ -2,7 +2,6 @@
 
 use super::verdict::{quantity, size};
 use super::words;
-use crate::text;
 use calibrate::results::Correction;
 
 /// The corrections in sentences.

@@ -2,10 +2,9 @@
 
 use super::misfits::{AFTER, BEFORE};
 use super::{CalibrationPage, words};
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::text;
 use calibrate::results::{Alternative, ByName, Gas};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 
 /// At most so many chambers have a picture, the first.
 const MOST_CHAMBERS: usize = 16;

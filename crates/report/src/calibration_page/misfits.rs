@@ -1,8 +1,8 @@
 //! How far each run is from its simulation, before and after.
 
 use super::{CalibrationPage, Misfit, Run};
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use crate::plate::Plate;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 
 /// The simulation with nominal parameters, in every figure.
 pub(crate) const BEFORE: Colour = Colour::Class(1);

@@ -4,8 +4,8 @@ use super::{
     CalibrationPage, Parameter, corrections, gas, misfits, parameters, sensors, transfers, verdict,
     waveforms, words,
 };
+use crate::Error;
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
-use crate::{Error, text};
 use askama::Template;
 use calibrate::Relation;
 use calibrate::recorded_sensor::RecordedSensor;

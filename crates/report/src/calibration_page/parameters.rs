@@ -2,10 +2,9 @@
 
 use super::misfits::{AFTER, ROW};
 use super::{CalibrationPage, Parameter, words};
-use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::text;
 use calibrate::results::Known;
+use figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 
 /// At most so many parameters are drawn, the first.
 const MOST: usize = 60;

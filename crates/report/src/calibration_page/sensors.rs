@@ -2,7 +2,6 @@
 
 use super::verdict::quantity;
 use super::words;
-use crate::text;
 use calibrate::converter::Converter;
 use calibrate::recorded_sensor::RecordedSensor;
 

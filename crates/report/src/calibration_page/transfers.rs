@@ -2,14 +2,13 @@
 
 use super::CalibrationPage;
 use super::misfits::ROW;
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
 use crate::plate::Plate;
-use crate::text;
 use calibrate::Bounded;
 use calibrate::Relation;
 use calibrate::forecast::Forecast;
 use calibrate::results::Relations;
 use calibrate::transfer::{Basis, Hypothesis};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, in_rows};
 use simulate::sensor::Quantity;
 use std::collections::BTreeMap;
 

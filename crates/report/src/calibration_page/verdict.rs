@@ -1,7 +1,6 @@
 //! The outcome of a calibration, in sentences.
 
 use super::{CalibrationPage, Misfit, Parameter, words};
-use crate::text;
 use calibrate::likelihood::NOISE;
 use calibrate::results::Known;
 use calibrate::shut_valve::sentences;

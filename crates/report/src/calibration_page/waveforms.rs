@@ -3,10 +3,9 @@
 use super::misfits::{AFTER, BEFORE};
 use super::verdict::size;
 use super::{Channel, OrderResidual, Point, Run, words};
-use crate::figure::{Axis, Colour, Figure, Layer, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::statistics::HALF;
-use crate::text;
+use figure::{Axis, Colour, Figure, Layer, Mark, Panel, Series};
+use study::statistics::HALF;
 
 /// At most so many runs have a picture, the first.
 const MOST_RUNS: usize = 40;

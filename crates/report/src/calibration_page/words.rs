@@ -1,7 +1,5 @@
 //! Paths and columns as people say them.
 
-use crate::text;
-
 /// A path of the machine file in words: `joints.big_end.contact.stiffness` is «big end contact
 /// stiffness».
 pub(super) fn path(path: &str) -> String {

@@ -1,10 +1,11 @@
 //! Bifurcation diagrams, both ways.
 
-use super::{Bifurcation, ChaosPage, Recorded, Section};
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
+use super::ChaosPage;
+use crate::case_table::rounded;
 use crate::plate::Plate;
-use crate::text;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use std::collections::BTreeMap;
+use study::chaos::bifurcations::{Bifurcation, Recorded, Section};
 
 /// Ranges that are further apart than this share of the whole are of two motions.
 const APART: f64 = 0.01;
@@ -56,11 +57,13 @@ fn plate(diagram: &Bifurcation) -> Plate {
     }
 }
 
-/// The sections with their values in the unit of the axis.
+/// The sections with their values in the unit of the axis, short as text.
 fn scaled(sections: &[Section], factor: f64) -> Vec<Section> {
+    let motion = |branch: &[[f64; 2]]| branch.iter().map(|point| point.map(rounded)).collect();
     let scaled = |section: &Section| Section {
         value: section.value * factor,
-        ..section.clone()
+        up: motion(&section.up),
+        down: motion(&section.down),
     };
     sections.iter().map(scaled).collect()
 }

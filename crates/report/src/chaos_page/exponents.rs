@@ -1,12 +1,13 @@
 //! Exponents against clearance, and from the signal against from the equations.
 
-use super::agreement::{self, Agreement};
+use super::ChaosPage;
 use super::levels::Levels;
-use super::{CaseChaos, ChaosPage};
-use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::Plate;
-use crate::statistics::HALF;
-use crate::{classes, text};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
+use study::chaos::agreement::{self, Agreement};
+use study::chaos::cases::CaseChaos;
+use study::classes;
+use study::statistics::HALF;
 
 /// With more speeds than this, all share a panel.
 pub(super) const MOST_SPEEDS: usize = 3;

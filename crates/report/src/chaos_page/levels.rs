@@ -1,7 +1,5 @@
 //! The values of an axis as a few names.
 
-use crate::text;
-
 /// Values that an axis of names can hold; with more it has bins.
 const MOST_LEVELS: usize = 12;
 const BINS: usize = 8;

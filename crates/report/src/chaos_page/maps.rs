@@ -1,12 +1,13 @@
 //! Maps of the regimes.
 
-use super::agreement::most_frequent;
+use super::ChaosPage;
 use super::exponents::MOST_SPEEDS;
 use super::levels::Levels;
-use super::{CaseChaos, ChaosPage, Regime};
-use crate::figure::{Axis, Colour, Field, Figure, Layer, Panel};
 use crate::plate::Plate;
-use crate::text;
+use figure::{Axis, Colour, Field, Figure, Layer, Panel};
+use study::chaos::agreement::most_frequent;
+use study::chaos::cases::CaseChaos;
+use study::chaos::regime::Regime;
 
 /// At most this many sets of joints have a map over speed.
 const MOST_SETS: usize = 4;
@@ -177,7 +178,7 @@ fn figure(sources: &[(&str, Source)], rows: Vec<Vec<Panel>>, row_height: f64) ->
         rows,
         row_headings: sources.iter().enumerate().map(heading).collect(),
         row_height,
-        share_y: crate::figure::Share::All,
+        share_y: figure::Share::All,
         ..Figure::default()
     }
 }

@@ -1,12 +1,13 @@
 //! Portraits, Poincaré sections and orbits of the cases that are shown: the same rows and columns
 //! in every figure.
 
-use super::{ChaosPage, Motion};
-use crate::classes;
-use crate::figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series, Share};
+use super::ChaosPage;
+use crate::class_colour::class_colour;
 use crate::plate::Plate;
 use crate::revolutions::last_turns;
-use crate::text;
+use figure::{Axis, Circle, Colour, Figure, Mark, Panel, Series, Share};
+use study::chaos::motions::{Motion, Orbit};
+use study::classes;
 
 /// Revolutions that a portrait shows at most: more only blacken it.
 const REVOLUTIONS: usize = 10;
@@ -186,10 +187,10 @@ fn per_joint(
     page: &ChaosPage,
     motion: &Motion,
     mark: Mark,
-    points: impl Fn(&super::Orbit) -> Vec<[f64; 2]>,
+    points: impl Fn(&Orbit) -> Vec<[f64; 2]>,
 ) -> Vec<Series> {
     let series = motion.joints.iter().map(|orbit| {
-        let colour = classes::colour(&orbit.name, &page.joints, std::iter::empty());
+        let colour = class_colour(&orbit.name, &page.joints, std::iter::empty());
         Series::new(classes::name(&orbit.name), colour, mark, points(orbit))
     });
     series.collect()

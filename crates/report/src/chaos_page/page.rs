@@ -1,13 +1,13 @@
 //! The page itself: sections in the order of reading.
 
 use super::table::Table;
-use super::{
-    CaseChaos, ChaosPage, agreement, bifurcations, claims, exponents, maps, motions, spectra,
-};
-use crate::chaos_page::Regime;
+use super::{ChaosPage, bifurcations, exponents, maps, motions, spectra};
+use crate::Error;
 use crate::plate::{FigureFile, Plate, Rendered, file_name};
-use crate::{Error, text};
 use askama::Template;
+use study::chaos::cases::CaseChaos;
+use study::chaos::regime::Regime;
+use study::chaos::{agreement, claims};
 
 /// Longest table of cases, in rows.
 const MOST_CASES: usize = 200;

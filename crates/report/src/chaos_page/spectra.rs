@@ -1,13 +1,10 @@
 //! Spectra of each class.
 
-use super::{ChaosPage, ClassSpectra, Quartiles};
-use crate::classes;
-use crate::figure::{self, Axis, Figure, Mark, Panel, Series, Share};
+use super::ChaosPage;
 use crate::plate::Plate;
-use crate::text;
-
-/// At most this many classes.
-pub(crate) const MOST_CLASSES: usize = 12;
+use figure::{Axis, Figure, Mark, Panel, Series, Share};
+use study::chaos::spectra::{ClassSpectra, MOST_CLASSES, Quartiles};
+use study::classes;
 
 /// Spectra, and spectra of the envelope.
 pub(super) fn plates(page: &ChaosPage) -> Vec<Plate> {

@@ -1,7 +1,8 @@
 //! The table of all cases.
 
-use super::{CaseChaos, Regime, WindowChaos};
-use crate::{classes, text};
+use study::chaos::cases::{CaseChaos, WindowChaos};
+use study::chaos::regime::Regime;
+use study::classes;
 
 /// Standard errors below this share of the exponent are rounding as far as a reader is concerned.
 const TINY: f64 = 1e-3;

@@ -1,6 +1,5 @@
 //! What a dataset is, in words.
 
-use crate::text;
 use sweep::reader::{Dataset, Sensors};
 
 /// What the dataset is, in a sentence or two.

@@ -1,17 +1,19 @@
 //! The table of a dataset's cases, and what the page shows of each.
 
-use super::recording::Recording;
-use super::words;
+use crate::Error;
 use crate::case_table::{
     CaseChannel, CaseClass, CaseNumbers, CaseTable, CaseTexts, Curves, rounded,
 };
-use crate::dataset_page::FaultCount;
-use crate::{Error, classes, text};
+use crate::class_colour::class_colour;
 use recordings::{CaseWarning, FailedCase};
 use simulate::Chamber;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::Path;
+use study::classes;
+use study::counts::FaultCount;
+use study::recording::Recording;
+use study::{scatter, words};
 use sweep::reader::{Dataset, Label, LabelledSample, SignalRow};
 
 /// Cases of a table: a page with more takes long to open.
@@ -41,7 +43,7 @@ pub(super) fn cases(
     let class = |count: &FaultCount| CaseClass {
         label: count.fault.clone(),
         name: classes::name(&count.fault),
-        colour: classes::colour(&count.fault, &joints, labels()).hex(),
+        colour: class_colour(&count.fault, &joints, labels()).hex(),
     };
     let every = dataset.cases.len().div_ceil(MOST_CASES).max(1);
     let windows: Vec<usize> = dataset
@@ -121,7 +123,7 @@ fn numbers(dataset: &Dataset, windows: &[usize]) -> Vec<CaseNumbers> {
         .iter()
         .enumerate()
         .flat_map(|(i, measured)| {
-            let name = |feature: &str| super::scatter::feature(dataset, i, feature);
+            let name = |feature: &str| scatter::feature(dataset, i, feature);
             [
                 column(name("rms"), "m/s²", &measured.rms),
                 column(name("peak"), "m/s²", &measured.peak),
@@ -224,17 +226,7 @@ fn channels(
     let mut curves = vec![vec![Drawn::default(); drawn.len()]; shown.len()];
     dataset.each_signal(&drawn, &columns, |at, row| {
         for (i, channel) in shown.iter().enumerate() {
-            curves[i][at] = draw(row.with_channel(i), parts, channel.kind).map_err(|error| {
-                let (place, case_id) = (row.place.clone(), row.case_id.clone());
-                match error {
-                    Error::Analysis(error) => Error::Recording {
-                        place,
-                        case_id,
-                        error,
-                    },
-                    error => error,
-                }
-            })?;
+            curves[i][at] = draw(row.with_channel(i), parts, channel.kind)?;
         }
         Ok::<(), Error>(())
     })?;
@@ -265,7 +257,7 @@ fn channels(
 }
 
 /// The curves of the one channel of a row.
-fn draw(row: SignalRow, parts: usize, kind: Kind) -> Result<Drawn, Error> {
+fn draw(row: SignalRow, parts: usize, kind: Kind) -> Result<Drawn, study::Error> {
     let recording = Recording::analyse(row)?;
     let velocity = match kind {
         Kind::Judge => recording.response()?.velocity_m_s,

@@ -1,6 +1,6 @@
 //! The columns of the tables, features named once for all channels and orders.
 
-use crate::{Column, Error, text};
+use crate::{Column, Error};
 use sweep::reader::{Dataset, Subset};
 
 /// The columns of a file of either table. Of features there are hundreds: those of the first

@@ -1,10 +1,9 @@
 //! The page of a dataset, from its tables.
 
-use super::{
-    about, baseline, cases, columns, counts, examples, features, grid, operation, random, ranking,
-};
+use super::{about, cases, columns};
 use crate::Error;
 use crate::dataset_page::{DatasetPage, Design};
+use study::{baseline, counts, examples, features, grid, operation, random, ranking};
 use sweep::reader::Dataset;
 
 impl DatasetPage {

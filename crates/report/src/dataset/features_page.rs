@@ -2,7 +2,7 @@
 
 use super::columns::of_table;
 use crate::features_page::{FeatureEntry, FeatureGroup, FeaturesPage};
-use crate::{Column, Error, text};
+use crate::{Column, Error};
 use features::{Definition, Group};
 use sweep::reader::{Dataset, Subset};
 

@@ -1,10 +1,9 @@
 //! What the figures show, said from the numbers.
 
-use super::Response;
-use crate::Level;
 use crate::revolutions::Revolutions;
-use crate::text;
 use std::cmp::Ordering;
+use study::Level;
+use study::recording::Response;
 
 /// Parts of a recording over which the spread of its levels is taken: enough for a spread that is
 /// known to a quarter, and each long enough for a motion that repeats itself after a few revolutions.

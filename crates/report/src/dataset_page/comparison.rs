@@ -2,14 +2,16 @@
 //! study that the shipped sweep repeats (dynamic analysis of the moving mechanism of the
 //! reciprocating compressor with clearance joints, section 3 and 4).
 
+use super::DatasetPage;
 use super::captions;
 use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
-use super::{ClearanceGrid, DatasetPage, JointSet, Response};
-use crate::classes::{self, HEALTHY};
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
 use crate::plate::{About, Plate};
 use crate::revolutions::Revolutions;
-use crate::{Level, text};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series, Share};
+use study::Level;
+use study::classes::{self, HEALTHY};
+use study::grid::{ClearanceGrid, JointSet};
+use study::recording::Response;
 
 /// At most this many sets of joints are shown, and clearances of each.
 const MOST_COMPARED: usize = 8;
@@ -264,7 +266,7 @@ fn portraits_across_sets(grid: &ClearanceGrid, drawn: &[Drawn<'_>], clearance: f
             grid.title(),
             captions::places(drawn.iter().map(|d| d.response)),
         ),
-        figure: portraits(crate::figure::in_rows(panels, 4)),
+        figure: portraits(figure::in_rows(panels, 4)),
         ..Plate::default()
     }
 }

@@ -1,10 +1,13 @@
 //! How well the classes can be told apart: the features that say most, and what a baseline confuses.
 
-use super::{DatasetPage, FaultCount, FeatureByClass};
-use crate::figure::{self, Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
+use super::DatasetPage;
+use crate::histogram;
 use crate::plate::Plate;
-use crate::{classes, histogram, text};
 use classify::{Baseline, ClassScore};
+use figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
+use study::classes;
+use study::counts::FaultCount;
+use study::ranking::FeatureByClass;
 
 /// Classes of a map of confusions.
 const MOST_CLASSES: usize = 24;

@@ -1,12 +1,15 @@
 //! How the cases of a random sweep lie, and how features go with parameters.
 
-use super::{DatasetPage, Histogram, RandomSweep, Scatter};
-use crate::classes;
-use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
+use super::DatasetPage;
+use crate::histogram;
 use crate::plate::{About, Plate};
-use crate::statistics::quantile;
-use crate::{Level, histogram, text};
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use std::f64::consts::FRAC_PI_2;
+use study::Level;
+use study::classes;
+use study::random::{Histogram, RandomSweep};
+use study::scatter::Scatter;
+use study::statistics::quantile;
 
 /// At most this many of each kind of figure.
 const MOST_HISTOGRAMS: usize = 24;

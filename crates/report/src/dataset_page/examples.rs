@@ -1,15 +1,14 @@
 //! One example of each class.
 
 use super::portrait::{PORTRAIT_REVOLUTIONS, portrait};
-use super::{ClassExample, DatasetPage, Spectrum, captions};
-use crate::classes;
-use crate::figure::{self, Axis, Colour, Figure, Mark, Panel, Series};
+use super::{DatasetPage, captions};
 use crate::plate::{About, Plate};
 use crate::revolutions::Revolutions;
-use crate::text;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use study::classes;
+use study::examples::{ClassExample, MOST_EXAMPLES};
+use study::recording::Spectrum;
 
-/// At most this many classes have an example on the page.
-pub(crate) const MOST_EXAMPLES: usize = 16;
 /// The figures of the first classes, all with the same axes.
 pub(super) fn plates(page: &DatasetPage) -> Vec<Plate> {
     let shown = || page.examples.iter().take(MOST_EXAMPLES);

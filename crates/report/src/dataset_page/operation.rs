@@ -1,11 +1,11 @@
 //! How levels and spectra go with speed and load.
 
-use super::{DatasetPage, Operation, Waterfall, distributions};
-use crate::classes;
-use crate::figure::{Axis, Colour, Figure, Mark, Panel, Series};
+use super::{DatasetPage, distributions};
 use crate::plate::{About, Plate};
-use crate::text;
+use figure::{Axis, Colour, Figure, Mark, Panel, Series};
 use std::f64::consts::TAU;
+use study::classes;
+use study::operation::{Operation, Waterfall};
 
 /// At most this many trends and waterfalls.
 const MOST_TRENDS: usize = 8;

@@ -1,17 +1,19 @@
 //! The page itself: figures and tables in the order of reading.
 
-use super::claims::{self, Claim};
-use super::examples::{self, MOST_EXAMPLES};
-use super::levels;
-use super::{
-    CaseLevel, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount, FeatureRow,
-    ParameterRange, comparison, diagnosis, distributions, operation,
-};
+use super::examples;
+use super::{DatasetPage, Design, comparison, diagnosis, distributions, operation};
 use crate::plate::{FigureFile, Plate, Rendered, file_name, in_script};
-use crate::{Column, Error, classes, text};
+use crate::{Column, Error};
 use askama::Template;
 use classify::{Baseline, ClassScore, RankedFeature};
 use recordings::{CaseWarning, FailedCase};
+use study::claims::{self, Claim};
+use study::classes;
+use study::counts::{FaultCount, ParameterRange};
+use study::examples::MOST_EXAMPLES;
+use study::features::FeatureRow;
+use study::grid::{CaseLevel, ClearanceGrid, ClearanceGrids};
+use study::levels;
 
 /// Longest tables on the page, in rows.
 const MOST_FAULTS: usize = 200;

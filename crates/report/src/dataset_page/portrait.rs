@@ -1,8 +1,8 @@
 //! Velocity-acceleration portraits.
 
-use super::Response;
-use crate::figure::{Axis, Colour, Mark, Panel, Series};
 use crate::revolutions::last_turns;
+use figure::{Axis, Colour, Mark, Panel, Series};
+use study::recording::Response;
 
 /// Most revolutions of a portrait: with more, the lines of a motion that does not repeat overlap.
 pub(super) const PORTRAIT_REVOLUTIONS: usize = 10;

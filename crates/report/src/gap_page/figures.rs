@@ -2,9 +2,8 @@
 
 use super::GapPage;
 use crate::calibration_page::{misfits, words};
-use crate::figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use crate::plate::Plate;
-use crate::text;
+use figure::{Axis, Colour, Field, Figure, Layer, Mark, Panel, Series};
 use gap::results::Maps;
 use gap::{MissingForce, ResidualMap, Step};
 

@@ -2,9 +2,10 @@
 
 use super::units::usual;
 use super::{GapPage, figures, parts};
-use crate::calibration_page::{verdict::size, waveforms, words};
+use crate::Error;
+use crate::calibration_page::verdict::size;
+use crate::calibration_page::{waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
-use crate::{Error, text};
 use askama::Template;
 use gap::parts::{Agreement, Part, Values};
 use gap::results::{Bounded, Effect};

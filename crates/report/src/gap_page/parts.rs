@@ -2,7 +2,6 @@
 
 use super::units::usual;
 use crate::calibration_page::words;
-use crate::text;
 use gap::ByPart;
 use gap::parts::{Agreement, Own, Part, Values};
 use input::effects::at_path;

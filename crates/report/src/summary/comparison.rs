@@ -1,7 +1,6 @@
 //! Two recordings or datasets side by side.
 
 use super::{NAMED, number};
-use crate::text;
 use features::recorded::counted;
 use sweep::comparison::{ComparedFeature, Comparison};
 

@@ -9,8 +9,6 @@ pub use domain_gap::domain_gap;
 pub use run::{analysis, motion, run};
 pub(crate) use run::{rpm, too_deep};
 
-use crate::text;
-
 /// Features that are named.
 const NAMED: usize = 10;
 

@@ -1,6 +1,5 @@
 //! One run of a machine.
 
-use crate::text;
 use features::OVERALL_HZ;
 use signal::channel::Channel;
 use simulate::{Motion, Penetration, Record, Regime};

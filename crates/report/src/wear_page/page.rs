@@ -1,9 +1,10 @@
 //! The page itself.
 
 use super::WearPage;
-use crate::calibration_page::{verdict::size, waveforms, words};
+use crate::Error;
+use crate::calibration_page::verdict::size;
+use crate::calibration_page::{waveforms, words};
 use crate::plate::{Numbers, Plate, Rendered, numbered_files};
-use crate::{Error, text};
 use askama::Template;
 use calibrate::wear::{Contact, Interval, JointWear, Results, Together, Verdict};
 

@@ -2,7 +2,9 @@
 
 use crate::markup::markup;
 use crate::synthetic::chaos;
-use report::chaos_page::{CaseChaos, ChaosPage, Regime, WindowChaos};
+use report::chaos_page::ChaosPage;
+use study::chaos::cases::{CaseChaos, WindowChaos};
+use study::chaos::regime::Regime;
 
 /// The figures of an HTML page, as they stand in it.
 fn embedded(html: &str) -> Vec<String> {

@@ -3,7 +3,9 @@
 use crate::markup::markup;
 use crate::synthetic::{self, datasets};
 use recordings::FailedCase;
-use report::dataset_page::{DatasetPage, Design, JointSet, Response, Spectrum};
+use report::dataset_page::{DatasetPage, Design};
+use study::grid::JointSet;
+use study::recording::{Response, Spectrum};
 
 /// The largest page there may be.
 const LARGEST: usize = 5_000_000;

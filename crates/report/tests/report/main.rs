@@ -2,9 +2,9 @@
 
 mod browser;
 mod calibration_page;
+mod case_picture;
 mod chaos_page;
 mod dataset_page;
 mod features_page;
-mod figures;
 mod markup;
 mod synthetic;

@@ -1,11 +1,13 @@
 //! A made-up page about chaos: the logistic map in place of the machine.
 
 use super::{Uniform, recording, spectrum};
-use report::chaos_page::{
-    Bifurcation, CaseChaos, ChaosPage, ClassSpectra, Motion, MotionRow, Orbit, Quartiles, Recorded,
-    Regime, Section, WindowChaos,
-};
+use report::chaos_page::ChaosPage;
 use std::f64::consts::TAU;
+use study::chaos::bifurcations::{Bifurcation, Recorded, Section};
+use study::chaos::cases::{CaseChaos, WindowChaos};
+use study::chaos::motions::{Motion, MotionRow, Orbit};
+use study::chaos::regime::Regime;
+use study::chaos::spectra::{ClassSpectra, Quartiles};
 
 const SETS: [(&str, &[&str]); 3] = [
     ("big_end", &["big_end"]),

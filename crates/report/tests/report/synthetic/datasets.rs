@@ -3,13 +3,18 @@
 use super::{Recording, SAMPLE_RATE_HZ, SPEED_RPM, Uniform, recording, spectrum};
 use classify::{Baseline, ClassScore, RankedFeature};
 use recordings::FailedCase;
-use report::dataset_page::{
-    CaseLevel, ClassExample, ClearanceGrid, ClearanceGrids, DatasetPage, Design, FaultCount,
-    Feature, FeatureRow, Histogram, JointSet, Operation, ParameterRange, RandomSweep, Response,
-    Scatter, Spectrum, Waterfall,
-};
-use report::{Column, Level};
+use report::Column;
+use report::dataset_page::{DatasetPage, Design};
 use std::f64::consts::TAU;
+use study::Level;
+use study::counts::{FaultCount, ParameterRange};
+use study::examples::ClassExample;
+use study::features::{Feature, FeatureRow};
+use study::grid::{CaseLevel, ClearanceGrid, ClearanceGrids, JointSet};
+use study::operation::{Operation, Waterfall};
+use study::random::{Histogram, RandomSweep};
+use study::recording::{Response, Spectrum};
+use study::scatter::Scatter;
 
 const FAULTS: [(&str, &[&str]); 4] = [
     ("none", &[]),
