@@ -2,20 +2,41 @@
 //! every instant.
 
 use input::{MachineFile, Resolved};
+use serde_json::{Value, json};
 use signal::decimate::Decimator;
 use simulate::{Settings, Transient, simulate};
 use std::path::Path;
 
-/// The shipped machine with both joints this clear.
-fn machine(clearance: &str) -> Resolved {
+/// The shipped machine with these values.
+fn changed(values: &[(&str, Value)]) -> Resolved {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/machines");
     let file = input::machine_file::read(&folder.join("single-stage.yaml")).unwrap();
     let mut tree = file.to_tree().clone();
-    for joint in ["big_end", "small_end"] {
-        let path = format!("joints.{joint}.clearance");
-        input::paths::set(&mut tree, &path, clearance.into()).unwrap();
+    for (path, value) in values {
+        input::paths::set(&mut tree, path, value.clone()).unwrap();
     }
     MachineFile::from_tree(&tree).unwrap().resolve().unwrap()
+}
+
+/// The shipped machine with both joints this clear.
+fn machine(clearance: &str) -> Resolved {
+    let path = |joint: &str| format!("joints.{joint}.clearance");
+    changed(&[
+        (&path("big_end"), clearance.into()),
+        (&path("small_end"), clearance.into()),
+    ])
+}
+
+/// A machine whose motion repeats itself after two revolutions, and whose contact remembers at which speed it was met.
+fn of_two_revolutions() -> Resolved {
+    let contact =
+        json!({"law": "lankarani_nikravesh", "stiffness": "24 GN/m^1.5", "restitution": 0.5});
+    changed(&[
+        ("speed", "700 rpm".into()),
+        ("joints.small_end.clearance", "0.4 mm".into()),
+        ("joints.small_end.contact", contact),
+        ("joints.small_end.friction.coefficient", 0.01.into()),
+    ])
 }
 
 /// What the polynomials within steps leave out is less than the tolerance allows the steps themselves, over the largest value. The
@@ -69,35 +90,46 @@ fn polynomials_within_steps_leave_out_less_than_the_tolerance() {
 #[test]
 fn a_repetition_is_the_motion_as_it_goes_on() {
     for clearance in ["0.02 mm", "0.1 mm", "0.3 mm"] {
-        let Resolved {
-            machine, sensors, ..
-        } = machine(clearance);
-        let sensor = |column: &str| sensors.iter().find(|s| s.measured.column(&[]) == column);
-        let sensor = sensor("crosshead_acceleration_m_s2").unwrap().clone();
         for (tolerance, transient) in [(1e-6, 0), (1e-7, 0), (1e-7, 30), (1e-9, 10)] {
-            let settings = Settings {
-                transient: Transient::Revolutions(transient),
-                revolutions: 20,
-                tolerance,
-                ..Settings::default()
-            };
-            let sensors = std::slice::from_ref(&sensor);
-            let traced = simulate(&machine, sensors, &settings, true).unwrap();
-            let record = simulate(&machine, sensors, &settings, false).unwrap();
-            assert_eq!(record.series, traced.series);
-            let [steps, all] = [&record, &traced].map(|r| r.work.accepted);
-            assert!(steps < all, "{clearance} {tolerance}: {steps} of {all}");
-
-            let trace = traced.trace.unwrap();
-            let decimator = Decimator::new(trace.stride).unwrap();
-            let first = decimator.half_length().div_ceil(trace.stride);
-            let recorded = &record.series[0][first..];
-            let filtered = decimator.apply(&trace.throws[0].acceleration);
-            let square = |of: &mut dyn Iterator<Item = f64>| of.map(|x| x * x).sum::<f64>();
-            let off = square(&mut filtered.iter().zip(recorded).map(|(a, b)| a - b));
-            let off = (off / square(&mut filtered.iter().copied())).sqrt();
-            assert!(off < tolerance, "{clearance} {tolerance}: {off:e}");
-            eprintln!("{clearance} {tolerance:e} {transient}: {off:.1e}, {steps} of {all} steps");
+            goes_on(clearance, &machine(clearance), tolerance, transient);
         }
     }
+}
+
+#[test]
+fn a_repetition_of_two_revolutions_is_the_motion_as_it_goes_on() {
+    let machine = of_two_revolutions();
+    for (tolerance, transient) in [(1e-7, 40), (1e-9, 80)] {
+        goes_on("two revolutions", &machine, tolerance, transient);
+    }
+}
+
+/// That a record of this machine takes fewer steps than its motion, and is the same but for the tolerance.
+fn goes_on(name: &str, machine: &Resolved, tolerance: f64, transient: u32) {
+    let column = "crosshead_acceleration_m_s2";
+    let mut sensors = machine.sensors.iter();
+    let sensor = sensors.find(|s| s.measured.column(&[]) == column).unwrap();
+    let sensors = std::slice::from_ref(sensor);
+    let settings = Settings {
+        transient: Transient::Revolutions(transient),
+        revolutions: 20,
+        tolerance,
+        ..Settings::default()
+    };
+    let traced = simulate(&machine.machine, sensors, &settings, true).unwrap();
+    let record = simulate(&machine.machine, sensors, &settings, false).unwrap();
+    assert_eq!(record.series, traced.series);
+    let [steps, all] = [&record, &traced].map(|r| r.work.accepted);
+    assert!(steps < all, "{name} {tolerance}: {steps} of {all}");
+
+    let trace = traced.trace.unwrap();
+    let decimator = Decimator::new(trace.stride).unwrap();
+    let first = decimator.half_length().div_ceil(trace.stride);
+    let recorded = &record.series[0][first..];
+    let filtered = decimator.apply(&trace.throws[0].acceleration);
+    let square = |of: &mut dyn Iterator<Item = f64>| of.map(|x| x * x).sum::<f64>();
+    let off = square(&mut filtered.iter().zip(recorded).map(|(a, b)| a - b));
+    let off = (off / square(&mut filtered.iter().copied())).sqrt();
+    assert!(off < tolerance, "{name} {tolerance}: {off:e}");
+    eprintln!("{name} {tolerance:e} {transient}: {off:.1e}, {steps} of {all} steps");
 }
