@@ -49,7 +49,7 @@ impl CaseView {
     /// is done, and a break ends the run.
     ///
     /// # Errors
-    /// [`Error::Motion`] for a case that is too long for a page, or whose simulation fails or is ended;
+    /// [`study::Error::Motion`] for a case that is too long for a page, or whose simulation fails or is ended;
     /// [`Error::Machine`] for one that is no machine.
     pub fn simulate(
         plan: &Plan,
@@ -59,9 +59,9 @@ impl CaseView {
     ) -> Result<Self, Error> {
         let case = plan.case(index)?;
         let again = FailedCase::command_of(sweep, &case.id);
-        let failed = |reason: String| Error::Motion {
-            case_id: case.id.clone(),
-            reason,
+        let failed = |reason: String| {
+            let case_id = case.id.clone();
+            Error::Study(study::Error::Motion { case_id, reason })
         };
         let (machine, sensors) = (&case.resolved.machine, &case.resolved.sensors);
         let recorded = case.settings.check(case.resolved.speed);

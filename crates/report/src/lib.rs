@@ -82,20 +82,12 @@ pub enum Error {
         /// Why not.
         error: recordings::Error,
     },
-    /// What the dataset shows cannot be computed.
+    /// What a dataset shows cannot be computed, or a case not be simulated again.
     #[error(transparent)]
     Study(#[from] study::Error),
     /// A run that cannot be analysed.
     #[error(transparent)]
     Analysis(#[from] signal::Error),
-    /// A case that cannot be simulated again.
-    #[error("{case_id}: {reason}")]
-    Motion {
-        /// The case.
-        case_id: String,
-        /// Why not.
-        reason: String,
-    },
     /// A folder or a figure that cannot be changed.
     #[error("{}: {error}", path.display())]
     Unwritten {
