@@ -4,7 +4,8 @@
 //! M ẍ + C ẋ + K x (1 + q (x/10⁻⁴ m)²) = F(t)         along each direction
 //! ```
 //!
-//! Mounts and bolts that come to bear harden, by q.//!
+//! Mounts and bolts that come to bear harden, by q.
+//!
 //! F is all that the running gear puts on the frame: the main bearing's force, the guide's, and
 //! the gas pressure on the cylinder's covers (which cancels the gas part of the bearing force).
 //! The coupling is one-way: the frame's motion is taken as too small to act back.
@@ -12,6 +13,9 @@
 use crate::lift::parameters;
 use crate::plane::Vec2;
 use scalar::{Scalar, inlined};
+
+/// What a time makes of a place, m, and a rate, m/s, along an axis: their factors in the place then, and in the rate then.
+pub type Swing = [[f64; 2]; 2];
 
 /// Displacement at which the hardening of the springs is stated, m.
 const STATED_AT: f64 = 1e-4;
@@ -54,5 +58,79 @@ impl<S: Scalar> Frame<S> {
             force.y - hardened(self.stiffness_y, place.y) * place.y - self.damping_y * rate.y,
         );
         net / self.mass
+    }
+}
+
+impl Frame<f64> {
+    /// What `time` (s) makes of place and rate along x and along y where nothing shakes the frame; none where its springs harden, as
+    /// motions then do not add up.
+    pub fn swing(&self, time: f64) -> Option<[Swing; 2]> {
+        let along = |stiffness, damping| swing(stiffness / self.mass, damping / self.mass, time);
+        (self.hardening == 0.0).then(|| {
+            [
+                along(self.stiffness_x, self.damping_x),
+                along(self.stiffness_y, self.damping_y),
+            ]
+        })
+    }
+}
+
+/// The free vibration ẍ + `damping` ẋ + `stiffness` x = 0 (Den Hartog 1985, Mechanical Vibrations, sections 2.3 and 2.4).
+fn swing(stiffness: f64, damping: f64, time: f64) -> Swing {
+    let decay = 0.5 * damping;
+    let square = stiffness - decay * decay;
+    let root = square.abs().sqrt();
+    let (cosine, sine) = if square > 0.0 {
+        let (sine, cosine) = Scalar::sin_cos(root * time);
+        let left = Scalar::exp(-decay * time);
+        (left * cosine, left * sine / root)
+    } else {
+        let slow = Scalar::exp((root - decay) * time);
+        let fast: f64 = Scalar::exp(-2.0 * root * time);
+        let sine = if root > 0.0 {
+            0.5 * (1.0 - fast) / root
+        } else {
+            time
+        };
+        (slow * 0.5 * (1.0 + fast), slow * sine)
+    };
+    [
+        [cosine + decay * sine, sine],
+        [-stiffness * sine, cosine - decay * sine],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn product(a: Swing, b: Swing) -> Swing {
+        let entry = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j];
+        [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
+    }
+
+    /// In a short time place and rate change by the equation itself, and two times make of them what their sum makes: below, at and
+    /// beyond critical damping.
+    #[test]
+    fn a_free_vibration_obeys_its_equation() {
+        let stiffness = 280.0_f64.powi(2);
+        for ratio in [0.0, 0.05, 1.0, 3.0] {
+            let damping = 2.0 * ratio * 280.0;
+            let at = |time| swing(stiffness, damping, time);
+            let short = 1e-7;
+            let [[a, b], [c, d]] = at(short);
+            let rates = [(a - 1.0) / short, b / short, c / short, (d - 1.0) / short];
+            for (rate, expected) in rates.iter().zip([0.0, 1.0, -stiffness, -damping]) {
+                let off = (rate - expected).abs();
+                assert!(
+                    off < 1e-2 + 1e-3 * expected.abs(),
+                    "{ratio}: {rate}, {expected}"
+                );
+            }
+            let [twice, whole] = [product(at(0.013), at(0.029)), at(0.042)];
+            for (a, b) in twice.as_flattened().iter().zip(whole.as_flattened()) {
+                assert!((a - b).abs() < 1e-10 * (1.0 + b.abs()), "{ratio} {a} {b}");
+            }
+        }
     }
 }

@@ -16,6 +16,7 @@ pub mod chamber;
 mod ensemble;
 pub mod error;
 pub mod flow;
+mod free_vibration;
 pub mod indicator_card;
 mod instants;
 mod leaving;

@@ -1,5 +1,6 @@
 //! One period of a motion that repeats itself, as sensors see it.
 
+use crate::free_vibration::FramePeriod;
 use crate::polynomial::Polynomial;
 
 /// Smallest part of a step that is looked at by itself: whatever a polynomial leaves out of that is small.
@@ -11,6 +12,8 @@ pub(crate) struct Period {
     pub start: f64,
     /// How long it takes, s.
     pub length: f64,
+    /// The frame's motion, where that is seen and need not repeat itself.
+    pub frame: Option<FramePeriod>,
     /// When each part begins, s, and how long it is, s.
     parts: Vec<[f64; 2]>,
     /// Of each part what each sensor sees.
@@ -41,10 +44,11 @@ impl Part {
 
 impl Period {
     /// Before its beginning at the time `start`; it takes `length`, both s.
-    pub fn new(start: f64, length: f64) -> Self {
+    pub fn new(start: f64, length: f64, frame: Option<FramePeriod>) -> Self {
         Self {
             start,
             length,
+            frame,
             parts: Vec::new(),
             polynomials: Vec::new(),
         }

@@ -42,6 +42,8 @@ pub(crate) struct Repetition {
     strobes: Vec<Strobe>,
     /// Of the strobe at the end of each revolution from the one a period before, for each of the periods.
     distances: Vec<[f64; PERIODS.len()]>,
+    /// The same without a frame on linear springs: it follows the machine, and its free vibration is known.
+    of_machine: Vec<[f64; PERIODS.len()]>,
 }
 
 impl Repetition {
@@ -50,6 +52,7 @@ impl Repetition {
         Self {
             strobes: vec![Strobe::new(run)],
             distances: Vec::new(),
+            of_machine: Vec::new(),
         }
     }
 
@@ -58,11 +61,12 @@ impl Repetition {
         let now = Strobe::new(run);
         let distances = PERIODS.map(|period| {
             let earlier = self.earlier(period, self.strobes.len());
-            earlier.map_or(f64::INFINITY, |earlier| {
-                run.distance(&now.state, &earlier.state)
+            earlier.map_or([f64::INFINITY; 2], |earlier| {
+                run.distances(&now.state, &earlier.state)
             })
         });
-        self.distances.push(distances);
+        self.distances.push(distances.map(|[of_all, _]| of_all));
+        self.of_machine.push(distances.map(|[_, machine]| machine));
         self.strobes.push(now);
         let excess = self
             .strobes
@@ -85,11 +89,11 @@ impl Repetition {
         near.map(|(period, _)| period)
     }
 
-    /// After how many revolutions all that the motion depends on comes back, so nearly that in so many `revolutions` more it
+    /// After how many revolutions all that the machine's motion depends on comes back, so nearly that in so many `revolutions` more it
     /// strays by a small part of the `tolerance` of the integration. None where there are no more than in a period.
     pub fn exact_period(&self, tolerance: f64, revolutions: f64) -> Option<u32> {
         let now = self.strobes.len() - 1;
-        let distances = self.distances.last()?;
+        let distances = self.of_machine.last()?;
         let comes_back = |i: &usize| {
             let periods = revolutions / f64::from(PERIODS[*i]);
             let of_next = STRAY * tolerance / self.periods_to_come(*i).min(periods);
@@ -106,8 +110,8 @@ impl Repetition {
     /// least the last distance itself, as behind a fast part of the motion that settles there may be a slow one.
     fn periods_to_come(&self, period: usize) -> f64 {
         let at = |before: usize| {
-            let index = self.distances.len().checked_sub(1 + before)?;
-            Some(self.distances[index][period])
+            let index = self.of_machine.len().checked_sub(1 + before)?;
+            Some(self.of_machine[index][period])
         };
         let factor = |before: usize| {
             let earlier = at(before + PERIODS[period] as usize)?;
@@ -125,13 +129,22 @@ impl Repetition {
 
     /// Whether it comes no nearer to itself.
     pub fn is_restless(&self) -> bool {
-        let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
-        let Some(first) = self.distances.len().checked_sub(PATIENCE) else {
-            return false;
-        };
-        let nearest = self.distances.as_flattened();
-        let (before, now) = nearest.split_at(first * PERIODS.len());
-        let before = &before[first.saturating_sub(PATIENCE) * PERIODS.len()..];
-        first >= PATIENCE && least(now) > NEARER * least(before)
+        comes_no_nearer(&self.distances)
     }
+
+    /// Whether the machine's motion does, whatever the frame does that follows it.
+    pub fn machine_is_restless(&self) -> bool {
+        comes_no_nearer(&self.of_machine)
+    }
+}
+
+fn comes_no_nearer(distances: &[[f64; PERIODS.len()]]) -> bool {
+    let least = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
+    let Some(first) = distances.len().checked_sub(PATIENCE) else {
+        return false;
+    };
+    let nearest = distances.as_flattened();
+    let (before, now) = nearest.split_at(first * PERIODS.len());
+    let before = &before[first.saturating_sub(PATIENCE) * PERIODS.len()..];
+    first >= PATIENCE && least(now) > NEARER * least(before)
 }

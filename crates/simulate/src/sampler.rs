@@ -3,9 +3,11 @@
 //! A recorded sample takes four to eight instants. Where many of them lie within a step, the motion is evaluated at a few
 //! others, and a polynomial through these values gives what the sensors see. Those within a step of one run are evaluated
 //! side by side, also where several runs are in lanes, as some of these record while others do not. Of a motion that repeats
-//! itself one period is kept as such polynomials, and all that is left of the record is its repetition.
+//! itself one period is kept as such polynomials, and all that is left of the record is its repetition, with what is left of
+//! the frame's free vibration.
 
 use crate::chain::UnderWay;
+use crate::free_vibration::{FrameMotion, FramePeriod, Instantly};
 use crate::instants::Instants;
 use crate::lookout::{self, Lookout};
 use crate::penetration::{Penetration, Watch};
@@ -90,9 +92,10 @@ struct Series {
     /// Of the integration.
     tolerance: f64,
     nodes: Nodes,
-    /// Scratch: shares of a step, and values there.
+    /// Scratch: shares of a step, values there, and what the frame's free vibration is there.
     shares: Vec<f64>,
     values: Vec<f64>,
+    frame: Vec<FrameMotion>,
     polynomials: Vec<Polynomial>,
 }
 
@@ -115,6 +118,7 @@ impl Series {
             nodes: Nodes::new(),
             shares: Vec::new(),
             values: Vec::new(),
+            frame: Vec::new(),
             taken,
         }
     }
@@ -145,18 +149,31 @@ impl Series {
         true
     }
 
-    /// Takes in what the polynomials of the sensors say at these shares of what they were fitted to.
+    /// Takes in what the polynomials of the sensors say at these shares of what they were fitted to, and what the frame's free
+    /// vibration adds.
     fn evaluate(
         &mut self,
         sensors: &[Sensor],
         polynomials: &[Polynomial],
         shares: impl Iterator<Item = f64>,
+        frame: Option<&mut Instantly>,
     ) {
         self.shares.clear();
         self.shares.extend(shares);
+        self.frame.clear();
+        let mut seen: &[FrameMotion] = &[];
+        if let Some(frame) = frame {
+            self.frame.extend(self.shares.iter().map(|_| frame.next()));
+            seen = frame.seen();
+        }
         let mut values = std::mem::take(&mut self.values);
         for (i, (sensor, polynomial)) in sensors.iter().zip(polynomials).enumerate() {
             polynomial.evaluate(&self.shares, &mut values);
+            if let Some([a, b, c, d]) = seen.get(i) {
+                for (value, [x, y, u, v]) in values.iter_mut().zip(&self.frame) {
+                    *value += (a * x + b * y) + (c * u + d * v);
+                }
+            }
             self.extend(i, sensor, values.iter().copied());
         }
         self.values = values;
@@ -224,10 +241,11 @@ impl<'a> Sampler<'a> {
         self.seen += 1;
     }
 
-    /// The motion repeats itself from the time `start` on, whenever `length` has passed, both s: looks at one period.
-    pub fn repeat(&mut self, start: f64, length: f64) {
+    /// The motion repeats itself from where the run stands, whenever `length` (s) has passed: looks at one period.
+    pub fn repeat(&mut self, run: &mut Run<f64>, length: f64) {
         self.finish();
-        self.period = Some(Period::new(start, length));
+        let frame = FramePeriod::begin(run, self.sensors);
+        self.period = Some(Period::new(run.time(), length, frame));
     }
 
     /// When the period that is looked at ends, s.
@@ -237,31 +255,45 @@ impl<'a> Sampler<'a> {
 
     /// At the end of the period: takes in all that is left of the record, as its repetition. False where the motion itself
     /// is asked for, which goes on.
-    pub fn end_period(&mut self) -> bool {
-        let Some(period) = self.period.take() else {
+    pub fn end_period(&mut self, run: &Run<f64>) -> bool {
+        let Some(mut period) = self.period.take() else {
             return false;
         };
-        let Instants { count, .. } = self.instants;
+        let Instants { rate, count, .. } = self.instants;
+        let frame = period.frame.take();
+        let mut frame = frame.and_then(|frame| frame.end(run, period.length));
         let mut passed = 0.0;
         while self.seen < count {
+            let since = self.instants.at(self.seen) - (period.start + passed);
+            let departure = frame.as_ref();
+            let mut departure = departure.and_then(|frame| frame.instantly(since, 1.0 / rate));
             for ([start, length], polynomials) in period.parts(self.sensors.len()) {
                 let start = start + passed;
                 let within = self.instants.within(self.seen, start + length);
-                self.evaluate([start, length], within, polynomials);
+                self.evaluate([start, length], within, polynomials, departure.as_mut());
             }
             passed += period.length;
+            if let Some(frame) = &mut frame {
+                frame.pass();
+            }
         }
         self.traced.is_none()
     }
 
     /// Takes in the next so many instants by polynomials over a time that begins at `start` and takes `length`, s.
-    fn evaluate(&mut self, [start, length]: [f64; 2], within: usize, polynomials: &[Polynomial]) {
+    fn evaluate(
+        &mut self,
+        [start, length]: [f64; 2],
+        within: usize,
+        polynomials: &[Polynomial],
+        frame: Option<&mut Instantly>,
+    ) {
         if within == 0 {
             return;
         }
         let instants = self.instants;
         let shares = (self.seen..self.seen + within).map(|i| (instants.at(i) - start) / length);
-        (self.series).evaluate(self.sensors, polynomials, shares);
+        (self.series).evaluate(self.sensors, polynomials, shares, frame);
         self.seen += within;
     }
 
@@ -292,7 +324,7 @@ impl<'a> Sampler<'a> {
         let within = self.instants.within(self.seen, step.start + step.length);
         if NODES < within && self.fit(step, here, false) {
             let polynomials = std::mem::take(&mut self.series.polynomials);
-            self.evaluate(here, within, &polynomials);
+            self.evaluate(here, within, &polynomials, None);
             self.series.polynomials = polynomials;
             return;
         }

@@ -337,7 +337,7 @@ impl Recording<'_> {
     fn arrive(&mut self, run: &mut Run<f64>) -> Option<f64> {
         if self.sampler.end_of_period().is_some() {
             self.repetition = None;
-            return (!self.sampler.end_period()).then(|| self.sampler.end());
+            return (!self.sampler.end_period(run)).then(|| self.sampler.end());
         }
         if run.time() >= self.sampler.end() {
             return None;
@@ -352,14 +352,14 @@ impl Recording<'_> {
 
     /// Where the motion repeats itself, only one period more is looked at. Where it comes no nearer to that, it is not
     /// asked again.
-    fn look_for_period(&mut self, run: &Run<f64>) {
+    fn look_for_period(&mut self, run: &mut Run<f64>) {
         let Some(repetition) = &self.repetition else {
             return;
         };
         let (now, revolution) = (run.time(), run.revolution());
         match repetition.exact_period(run.tolerance(), (self.sampler.end() - now) / revolution) {
-            Some(period) => self.sampler.repeat(now, f64::from(period) * revolution),
-            None if repetition.is_restless() => self.repetition = None,
+            Some(period) => self.sampler.repeat(run, f64::from(period) * revolution),
+            None if repetition.machine_is_restless() => self.repetition = None,
             None => {}
         }
     }

@@ -6,8 +6,11 @@ pub(crate) use ledger::Ledger;
 
 use crate::asked::Asked;
 use crate::error::{Error, MOST_SLIP};
+use crate::free_vibration::FrameMotion;
 use crate::instants::Instants;
+use crate::sensor::Sensor;
 use integrate::{Course, Integrator, Real, Step, System, Work};
+use mechanism::frame::Frame;
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
 use scalar::Scalar;
@@ -211,13 +214,22 @@ impl<S: Real> Run<S> {
         self.dynamics.layout().crank
     }
 
-    /// Largest difference of two states, each component over its scale.
-    pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
-        let scales = self.dynamics.scales();
-        let parts = a.iter().zip(b).zip(scales);
-        parts
-            .map(|((a, b), scale)| ((a - b) / scale.value()).abs())
-            .fold(0.0, f64::max)
+    /// Largest difference of two states, each component over its scale: of all, and without a frame on linear springs, whose free
+    /// vibration is known.
+    pub(crate) fn distances(&self, a: &[f64], b: &[f64]) -> [f64; 2] {
+        let frame = self.dynamics.machine().frame.as_ref();
+        let is_known = frame.is_some_and(|frame| frame.hardening.value() == 0.0);
+        let known = self.dynamics.layout().frame.filter(|_| is_known);
+        let known = known.map_or(0..0, |at| at..at + 4);
+        let (mut of_all, mut of_others) = (0.0_f64, 0.0_f64);
+        for (i, scale) in self.dynamics.scales().iter().enumerate() {
+            let part = ((a[i] - b[i]) / scale.value()).abs();
+            of_all = of_all.max(part);
+            if !known.contains(&i) {
+                of_others = of_others.max(part);
+            }
+        }
+        [of_all, of_others]
     }
 
     /// Goes on to the end of a time, s.
@@ -342,6 +354,30 @@ impl Run<f64> {
     /// What is carried.
     pub(crate) fn dynamics(&self) -> &Dynamics<f64> {
         &self.dynamics
+    }
+
+    /// A frame on linear springs, and how it stands.
+    pub(crate) fn linear_frame(&self) -> Option<(&Frame<f64>, FrameMotion)> {
+        let frame = self.dynamics.machine().frame.as_ref();
+        let at = self.dynamics.layout().frame?;
+        let motion = self.state().get(at..)?.first_chunk()?;
+        let frame = frame.filter(|frame| frame.hardening == 0.0)?;
+        Some((frame, *motion))
+    }
+
+    /// What sensors see where it stands, but for this motion of the frame.
+    pub(crate) fn seen_with_frame(
+        &mut self,
+        motion: FrameMotion,
+        sensors: &[Sensor],
+    ) -> Option<Vec<f64>> {
+        let at = self.dynamics.layout().frame?;
+        let mut state = self.state().to_vec();
+        state[at..at + 4].copy_from_slice(&motion);
+        let now = self.integrator.time();
+        let evaluation = self.dynamics.evaluate(now, &state);
+        let seen = sensors.iter().map(|s| s.measured.unwrapped(evaluation));
+        Some(seen.collect())
     }
 
     /// The motion where it stands.

@@ -116,6 +116,38 @@ fn a_repetition_of_two_revolutions_errs_as_the_integration_does() {
     eprintln!("two revolutions: {repeated:.1e} for {gone_on:.1e}");
 }
 
+/// The frame follows the machine and settles later: what is left of its free vibration is added to the repetition. A frame whose
+/// springs harden the least bit has no such free vibration and is integrated throughout.
+#[test]
+fn a_frame_swings_on_where_the_machine_repeats_itself() {
+    let Resolved {
+        mut machine,
+        sensors,
+        ..
+    } = machine("0.2 mm");
+    for carries in [false, true] {
+        for transient in [0, 8] {
+            machine.frame.as_mut().unwrap().carries = carries;
+            let mut hardening = machine.clone();
+            hardening.frame.as_mut().unwrap().hardening = 1e-200;
+            let settings = Settings {
+                revolutions: 5,
+                ..settings(transient, 1e-9)
+            };
+            let [swung, integrated] = [&machine, &hardening]
+                .map(|machine| simulate(machine, &sensors, &settings, false).unwrap());
+            let [fewer, all] = [&swung, &integrated].map(|record| record.work.accepted);
+            assert!(2 * fewer < all + all / 2, "{fewer} of {all}");
+            for (i, sensor) in sensors.iter().enumerate() {
+                let off = difference(&swung.series[i], &integrated.series[i]);
+                let name = sensor.measured.column(&[]);
+                assert!(off < settings.tolerance, "{name}: {off:e}");
+                eprintln!("{name} {carries} {transient}: {off:.1e}, {fewer} of {all} steps");
+            }
+        }
+    }
+}
+
 /// Twenty recorded revolutions.
 fn settings(transient: u32, tolerance: f64) -> Settings {
     Settings {
