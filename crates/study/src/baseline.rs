@@ -9,6 +9,9 @@ const MOST: usize = 2000;
 
 /// Gradient boosting on the features, trained on the split `train` and tested on `test`, or on `validation` where there is no
 /// test; none where either is missing or there is one class alone.
+///
+/// # Errors
+/// A table that cannot be read.
 pub fn baseline(dataset: &Dataset) -> Result<Option<Baseline>, Error> {
     let splits = dataset.splits();
     let split = |name: &str| splits.iter().find(|split| *split == name);
