@@ -61,17 +61,29 @@ impl<S: Scalar> Frame<S> {
     }
 }
 
+impl<S: Scalar> Frame<S> {
+    /// Whether its motions add up and free ones decay: where its springs do not harden and nothing is without damping.
+    pub fn is_linear(&self) -> bool {
+        let Self {
+            stiffness_x,
+            stiffness_y,
+            damping_x,
+            damping_y,
+            ..
+        } = self;
+        let parts = [stiffness_x, stiffness_y, damping_x, damping_y];
+        self.hardening.value() == 0.0 && parts.iter().all(|part| part.value() > 0.0)
+    }
+}
+
 impl Frame<f64> {
-    /// What `time` (s) makes of place and rate along x and along y where nothing shakes the frame; none where its springs harden, as
-    /// motions then do not add up.
-    pub fn swing(&self, time: f64) -> Option<[Swing; 2]> {
+    /// What `time` (s) makes of place and rate along x and along y where nothing shakes a frame that is linear.
+    pub fn swing(&self, time: f64) -> [Swing; 2] {
         let along = |stiffness, damping| swing(stiffness / self.mass, damping / self.mass, time);
-        (self.hardening == 0.0).then(|| {
-            [
-                along(self.stiffness_x, self.damping_x),
-                along(self.stiffness_y, self.damping_y),
-            ]
-        })
+        [
+            along(self.stiffness_x, self.damping_x),
+            along(self.stiffness_y, self.damping_y),
+        ]
     }
 }
 

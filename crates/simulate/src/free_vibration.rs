@@ -42,7 +42,7 @@ pub(crate) struct Instantly<'a> {
 }
 
 impl FramePeriod {
-    /// From where a run stands; none where no sensor sees a frame on linear springs.
+    /// From where a run stands; none where no sensor sees a linear frame.
     pub fn begin(run: &mut Run<f64>, sensors: &[Sensor]) -> Option<Self> {
         let (frame, at_start) = run.linear_frame()?;
         let frame = frame.clone();
@@ -64,10 +64,10 @@ impl FramePeriod {
         })
     }
 
-    /// At its end, `length` (s) later. None where that is no period of the frame alone, as it then swings on for ever.
+    /// At its end, `length` (s) later.
     pub fn end(self, run: &Run<f64>, length: f64) -> Option<Departure> {
         let (_, at_end) = run.linear_frame()?;
-        let period = self.frame.swing(length)?;
+        let period = self.frame.swing(length);
         let mut first = [0.0; 4];
         for (axis, [[a, b], [c, d]]) in period.into_iter().enumerate() {
             let [place, rate] = [axis, axis + 2].map(|i| self.at_start[i] - at_end[i]);
@@ -75,16 +75,13 @@ impl FramePeriod {
             first[axis] = ((1.0 - d) * place + b * rate) / determinant;
             first[axis + 2] = (c * place + (1.0 - a) * rate) / determinant;
         }
-        first
-            .iter()
-            .all(|part| part.is_finite())
-            .then_some(Departure {
-                frame: self.frame,
-                seen: self.seen,
-                period,
-                first,
-                now: first,
-            })
+        Some(Departure {
+            frame: self.frame,
+            seen: self.seen,
+            period,
+            first,
+            now: first,
+        })
     }
 }
 
@@ -95,13 +92,13 @@ impl Departure {
     }
 
     /// From an instant so long after the beginning of the period under way, at instants so far apart, both s.
-    pub fn instantly(&self, since: f64, apart: f64) -> Option<Instantly<'_>> {
+    pub fn instantly(&self, since: f64, apart: f64) -> Instantly<'_> {
         let departed = std::array::from_fn(|i| self.now[i] - self.first[i]);
-        Some(Instantly {
+        Instantly {
             seen: &self.seen,
-            step: self.frame.swing(apart)?,
-            now: after(&self.frame.swing(since)?, departed),
-        })
+            step: self.frame.swing(apart),
+            now: after(&self.frame.swing(since), departed),
+        }
     }
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct Repetition {
     strobes: Vec<Strobe>,
     /// Of the strobe at the end of each revolution from the one a period before, for each of the periods.
     distances: Vec<[f64; PERIODS.len()]>,
-    /// The same without a frame on linear springs: it follows the machine, and its free vibration is known.
+    /// The same without a linear frame: it follows the machine, and its free vibration is known.
     of_machine: Vec<[f64; PERIODS.len()]>,
 }
 

@@ -266,7 +266,7 @@ impl<'a> Sampler<'a> {
         while self.seen < count {
             let since = self.instants.at(self.seen) - (period.start + passed);
             let departure = frame.as_ref();
-            let mut departure = departure.and_then(|frame| frame.instantly(since, 1.0 / rate));
+            let mut departure = departure.map(|frame| frame.instantly(since, 1.0 / rate));
             for ([start, length], polynomials) in period.parts(self.sensors.len()) {
                 let start = start + passed;
                 let within = self.instants.within(self.seen, start + length);

@@ -214,12 +214,12 @@ impl<S: Real> Run<S> {
         self.dynamics.layout().crank
     }
 
-    /// Largest difference of two states, each component over its scale: of all, and without a frame on linear springs, whose free
-    /// vibration is known.
+    /// Largest difference of two states, each component over its scale: of all, and without a linear frame, whose free vibration
+    /// is known.
     pub(crate) fn distances(&self, a: &[f64], b: &[f64]) -> [f64; 2] {
         let frame = self.dynamics.machine().frame.as_ref();
-        let is_known = frame.is_some_and(|frame| frame.hardening.value() == 0.0);
-        let known = self.dynamics.layout().frame.filter(|_| is_known);
+        let is_linear = frame.is_some_and(|frame| frame.is_linear());
+        let known = self.dynamics.layout().frame.filter(|_| is_linear);
         let known = known.map_or(0..0, |at| at..at + 4);
         let (mut of_all, mut of_others) = (0.0_f64, 0.0_f64);
         for (i, scale) in self.dynamics.scales().iter().enumerate() {
@@ -356,12 +356,12 @@ impl Run<f64> {
         &self.dynamics
     }
 
-    /// A frame on linear springs, and how it stands.
+    /// A linear frame, and how it stands.
     pub(crate) fn linear_frame(&self) -> Option<(&Frame<f64>, FrameMotion)> {
         let frame = self.dynamics.machine().frame.as_ref();
         let at = self.dynamics.layout().frame?;
         let motion = self.state().get(at..)?.first_chunk()?;
-        let frame = frame.filter(|frame| frame.hardening == 0.0)?;
+        let frame = frame.filter(|frame| frame.is_linear())?;
         Some((frame, *motion))
     }
 
