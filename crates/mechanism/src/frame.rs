@@ -12,6 +12,7 @@
 
 use crate::lift::parameters;
 use crate::plane::Vec2;
+use integrate::Real;
 use scalar::{Scalar, inlined};
 
 /// What a time makes of a place, m, and a rate, m/s, along an axis: their factors in the place then, and in the rate then.
@@ -61,7 +62,7 @@ impl<S: Scalar> Frame<S> {
     }
 }
 
-impl<S: Scalar> Frame<S> {
+impl<S: Real> Frame<S> {
     /// Whether its motions add up and free ones decay: where its springs do not harden and nothing is without damping.
     pub fn is_linear(&self) -> bool {
         let Self {

@@ -2,7 +2,6 @@
 
 use crate::dynamics::Dynamics;
 use crate::effects::{Acting, Acts, End};
-use crate::energy;
 use crate::gas::GasState;
 use crate::joints::contact_guards::switch_contact;
 use crate::joints::guide::Guide;
@@ -56,19 +55,16 @@ impl<S: Scalar> Dynamics<S> {
         let Some(i) = self.layout().ledger else {
             return;
         };
-        let powers = S::vectorised(
-            #[inline(always)]
-            || energy::powers(self.machine(), self.evaluation()),
-        );
+        let powers = self.powers();
         dy[i] = powers.gas;
         dy[i + 1] = powers.drive;
         dy[i + 2] = powers.friction;
         dy[i + 3] = powers.damping;
     }
 
-    /// True where a joint's guard needs the forces of rigid joints.
+    /// True where a joint's guard needs the forces of rigid joints; an impact there takes energy at once.
     #[inline(always)]
-    fn has_two_mode_joint(&self) -> bool {
+    pub fn has_two_mode_joint(&self) -> bool {
         let two_mode = |joint: &Revolute<S>| {
             joint
                 .clear()

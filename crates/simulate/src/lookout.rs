@@ -22,6 +22,10 @@ pub trait Lookout: Send {
         show: &mut dyn FnMut(usize, &[f64]),
     );
 
+    /// Shows `show` the four powers of the energy's ledger (gas, drive, friction, damping), W, at the instants `times`, s, all of
+    /// them within the step. No instant may be waiting.
+    fn powers(&mut self, step: &Step<f64>, times: &[f64], show: &mut dyn FnMut(usize, &[f64]));
+
     /// Shows `show` what each sensor sees at the instants that wait; of an angle, since the start.
     fn finish(&mut self, sensors: &[Sensor], show: &mut dyn FnMut(usize, &[f64]));
 }
@@ -105,6 +109,19 @@ impl<L: Lanes<W>, const W: usize> Lookout for Wide<L, W> {
                 self.finish(sensors, show);
             }
             times = later;
+        }
+    }
+
+    fn powers(&mut self, step: &Step<f64>, times: &[f64], show: &mut dyn FnMut(usize, &[f64])) {
+        for times in times.chunks(W) {
+            self.wait(step, times);
+            self.waiting = 0;
+            self.dynamics.evaluate(self.instants, &self.states);
+            let powers = self.dynamics.powers();
+            let powers = [powers.gas, powers.drive, powers.friction, powers.damping];
+            for (i, power) in powers.iter().enumerate() {
+                show(i, &power.to_array()[..times.len()]);
+            }
         }
     }
 

@@ -59,7 +59,15 @@ impl Nodes {
         ))
     }
 
-    /// The same; none where it leaves out more than the `tolerance` of the integration allows for values of up to
+    /// The integral of that polynomial over what takes `length`, s (Fejér 1933, his first rule).
+    pub fn integral(&self, values: &[f64; NODES], length: f64) -> f64 {
+        let Polynomial(coefficients) = self.through(values);
+        let even = coefficients.iter().enumerate().step_by(2);
+        let terms = even.map(|(degree, c)| c / (1.0 - (degree * degree) as f64));
+        length * terms.sum::<f64>()
+    }
+
+    /// The polynomial through these values; none where it leaves out more than the `tolerance` of the integration allows for values of up to
     /// `largest`, or more than these.
     pub fn near(&self, values: &[f64; NODES], largest: f64, tolerance: f64) -> Option<Polynomial> {
         let largest = values.iter().fold(largest, |l, x| l.max(x.abs()));

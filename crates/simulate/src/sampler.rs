@@ -29,6 +29,8 @@ pub(crate) struct Sampler<'a> {
     series: Series,
     /// The period of which the rest of the record is the repetition, while it is looked at.
     period: Option<Period>,
+    /// The works over it, J, where these are integrals of powers.
+    works: Option<[f64; 4]>,
     /// The motion itself, where it is asked for.
     traced: Option<Traced>,
     /// How deep joints are pressed in.
@@ -202,6 +204,7 @@ impl<'a> Sampler<'a> {
             state: vec![0.0; dimension],
             series: Series::new(taken, run.tolerance()),
             period: None,
+            works: None,
             traced: trace.map(|(trace, range)| Traced {
                 trace,
                 range,
@@ -246,6 +249,12 @@ impl<'a> Sampler<'a> {
         self.finish();
         let frame = FramePeriod::begin(run, self.sensors);
         self.period = Some(Period::new(run.time(), length, frame));
+        self.works = (!run.dynamics().has_two_mode_joint()).then_some([0.0; 4]);
+    }
+
+    /// The works over the period that was looked at, J, as the ledger of the energy has them.
+    pub fn works(&self) -> Option<[f64; 4]> {
+        self.works
     }
 
     /// When the period that is looked at ends, s.
@@ -345,11 +354,28 @@ impl<'a> Sampler<'a> {
             let span = part.span([step.start, step.length]);
             let halves = part.halves();
             if self.fit(step, span, halves.is_none()) {
+                self.add_works(step, span);
                 if let Some(period) = &mut self.period {
                     period.extend(span, self.series.polynomials.iter().copied());
                 }
             } else if let Some([first, second]) = halves {
                 waiting.extend([second, first]);
+            }
+        }
+    }
+
+    /// Adds the works over a span of a step: its beginning and length, s.
+    fn add_works(&mut self, step: &Step<f64>, span: [f64; 2]) {
+        let Some(works) = &mut self.works else {
+            return;
+        };
+        let nodes = &self.series.nodes;
+        let mut powers = [const { Vec::new() }; 4];
+        let mut show = |i: usize, now: &[f64]| powers[i].extend_from_slice(now);
+        self.lookout.powers(step, &nodes.times(span), &mut show);
+        for (work, powers) in works.iter_mut().zip(&powers) {
+            if let Some(powers) = powers.first_chunk() {
+                *work += nodes.integral(powers, span[1]);
             }
         }
     }

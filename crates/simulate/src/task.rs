@@ -21,8 +21,8 @@ use std::ops::ControlFlow;
 pub(crate) enum Kept {
     /// The series alone, unchecked: for a fit, which runs many machines and keeps none.
     Series,
-    /// The series alone. The energy is checked over one revolution after the record, so that the record
-    /// itself need not carry the works along.
+    /// The series alone. The energy is checked over the period that is repeated, or over one revolution after the record, so that
+    /// the record itself need not carry the works along.
     CheckedSeries,
     /// The motion as well. The energy is checked over the record.
     Trace,
@@ -65,6 +65,8 @@ struct Recording<'a> {
     /// Where the sampler keeps inner samples: what they are of the record.
     span: Option<Span>,
     before: Option<Ledger>,
+    /// Where the energy stood when the period began that is repeated.
+    at_period: Option<Ledger>,
     /// Angle of the crank, rad, and time, s, where it set out.
     from: [f64; 2],
 }
@@ -127,6 +129,7 @@ impl<'a> Task<'a> {
                     sampler,
                     span,
                     before,
+                    at_period,
                     from,
                     ..
                 } = *recording;
@@ -139,7 +142,13 @@ impl<'a> Task<'a> {
                 let residual = match before {
                     Some(before) => Some(run.balance(&before)?),
                     None if self.order.kept == Kept::CheckedSeries => {
-                        Some(run.audit(self.order.asked.settings.tolerance)?)
+                        let period = at_period.as_ref().zip(sampler.works());
+                        let of_period = period.map(|(before, works)| run.balance_of(works, before));
+                        // What does not balance by these integrals is integrated along.
+                        match of_period.and_then(Result::ok) {
+                            Some(residual) => Some(residual),
+                            None => Some(run.audit(self.order.asked.settings.tolerance)?),
+                        }
                     }
                     None => None,
                 };
@@ -282,6 +291,7 @@ impl<'a> Order<'a> {
             revolution: 0,
             start,
             before: traced.then(|| run.ledger()),
+            at_period: None,
             from: run.crank_and_time(),
             sampler: Sampler::begin(
                 run,
@@ -310,6 +320,7 @@ impl<'a> Order<'a> {
             revolution: 0,
             start: span.start,
             before: None,
+            at_period: None,
             from: run.crank_and_time(),
             sampler: Sampler::begin(run, sensors, inner, span.instants, None),
             span: Some(span),
@@ -358,7 +369,10 @@ impl Recording<'_> {
         };
         let (now, revolution) = (run.time(), run.revolution());
         match repetition.exact_period(run.tolerance(), (self.sampler.end() - now) / revolution) {
-            Some(period) => self.sampler.repeat(run, f64::from(period) * revolution),
+            Some(period) => {
+                self.at_period = Some(run.ledger());
+                self.sampler.repeat(run, f64::from(period) * revolution);
+            }
             None if repetition.machine_is_restless() => self.repetition = None,
             None => {}
         }

@@ -3,7 +3,7 @@
 mod equations;
 mod start;
 
-use crate::energy::{self, Energy};
+use crate::energy::{self, Energy, Powers};
 use crate::evaluation::Evaluation;
 use crate::joints::revolute::{JointState, Revolute};
 use crate::machine::Machine;
@@ -92,6 +92,14 @@ impl<S: Scalar> Dynamics<S> {
         S::vectorised(
             #[inline(always)]
             || energy::energy(&self.machine, &self.evaluation),
+        )
+    }
+
+    /// The powers of the ledger at the last evaluation.
+    pub fn powers(&self) -> Powers<S> {
+        S::vectorised(
+            #[inline(always)]
+            || energy::powers(&self.machine, &self.evaluation),
         )
     }
 }

@@ -48,6 +48,21 @@ impl Run<f64> {
     /// # Errors
     /// Where that is too much, or the gas did more work than it held.
     pub(crate) fn balance(&mut self, before: &Ledger) -> Result<f64, Error> {
+        self.ledger().balance(before)
+    }
+
+    /// The same, with the works (J) since then, which have not been integrated along.
+    ///
+    /// # Errors
+    /// As [`balance`](Self::balance).
+    pub(crate) fn balance_of(&mut self, works: [f64; 4], before: &Ledger) -> Result<f64, Error> {
+        let now = self.ledger();
+        Ledger { works, ..now }.balance(before)
+    }
+}
+
+impl Ledger {
+    fn balance(&self, before: &Self) -> Result<f64, Error> {
         self.check_gas(before)?;
         self.residual(before)
     }
@@ -56,11 +71,10 @@ impl Run<f64> {
     ///
     /// # Errors
     /// Where that is too much.
-    fn residual(&mut self, before: &Ledger) -> Result<f64, Error> {
-        let now = self.ledger();
-        let [gas, drive, friction, damping] = now.works_since(before);
-        let missing = now.energy - before.energy - (gas + drive - friction - damping);
-        let missing = over(missing, now.turned_since(before));
+    fn residual(&self, before: &Self) -> Result<f64, Error> {
+        let [gas, drive, friction, damping] = self.works_since(before);
+        let missing = self.energy - before.energy - (gas + drive - friction - damping);
+        let missing = over(missing, self.turned_since(before));
         match missing.abs() <= MOST_MISSING {
             true => Ok(missing),
             false => Err(Error::EnergyMissing {
@@ -76,21 +90,18 @@ impl Run<f64> {
     ///
     /// # Errors
     /// Where it has.
-    fn check_gas(&mut self, before: &Ledger) -> Result<(), Error> {
-        let now = self.ledger();
-        let Some(held) = before.gas.zip(now.gas).map(|(before, now)| before - now) else {
+    fn check_gas(&self, before: &Self) -> Result<(), Error> {
+        let Some(held) = before.gas.zip(self.gas).map(|(before, now)| before - now) else {
             return Ok(());
         };
-        let [work, ..] = now.works_since(before);
-        let gained = over(work - held, now.turned_since(before));
+        let [work, ..] = self.works_since(before);
+        let gained = over(work - held, self.turned_since(before));
         match gained <= MOST_MISSING {
             true => Ok(()),
             false => Err(Error::EnergyFromGas { gained }),
         }
     }
-}
 
-impl Ledger {
     fn works_since(&self, before: &Self) -> [f64; 4] {
         std::array::from_fn(|i| self.works[i] - before.works[i])
     }
