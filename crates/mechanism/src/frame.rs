@@ -112,38 +112,3 @@ fn swing(stiffness: f64, damping: f64, time: f64) -> Swing {
         [-stiffness * sine, cosine - decay * sine],
     ]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn product(a: Swing, b: Swing) -> Swing {
-        let entry = |i: usize, j: usize| a[i][0] * b[0][j] + a[i][1] * b[1][j];
-        [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
-    }
-
-    /// In a short time place and rate change by the equation itself, and two times make of them what their sum makes: below, at and
-    /// beyond critical damping.
-    #[test]
-    fn a_free_vibration_obeys_its_equation() {
-        let stiffness = 280.0_f64.powi(2);
-        for ratio in [0.0, 0.05, 1.0, 3.0] {
-            let damping = 2.0 * ratio * 280.0;
-            let at = |time| swing(stiffness, damping, time);
-            let short = 1e-7;
-            let [[a, b], [c, d]] = at(short);
-            let rates = [(a - 1.0) / short, b / short, c / short, (d - 1.0) / short];
-            for (rate, expected) in rates.iter().zip([0.0, 1.0, -stiffness, -damping]) {
-                let off = (rate - expected).abs();
-                assert!(
-                    off < 1e-2 + 1e-3 * expected.abs(),
-                    "{ratio}: {rate}, {expected}"
-                );
-            }
-            let [twice, whole] = [product(at(0.013), at(0.029)), at(0.042)];
-            for (a, b) in twice.as_flattened().iter().zip(whole.as_flattened()) {
-                assert!((a - b).abs() < 1e-10 * (1.0 + b.abs()), "{ratio} {a} {b}");
-            }
-        }
-    }
-}

@@ -115,23 +115,3 @@ impl Polynomial {
         x * sum + (self.0[0] - last)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// ∫ eˣ from 0 to 1 is e - 1; what eight nodes leave out is of the size of 1/(2¹⁵ 8!).
-    #[test]
-    fn the_integral_is_that_of_the_function() {
-        let nodes = Nodes::new();
-        let values = nodes.times([0.0, 1.0]).map(f64::exp);
-        let twice_as_long = nodes.integral(&values, 2.0);
-        assert!((twice_as_long - 2.0 * (1.0_f64.exp() - 1.0)).abs() < 1e-9);
-        let polynomial = nodes.through(&values);
-        let mut found = Vec::new();
-        polynomial.evaluate(&[0.0, 0.3, 1.0], &mut found);
-        for (found, share) in found.iter().zip([0.0_f64, 0.3, 1.0]) {
-            assert!((found - share.exp()).abs() < 1e-8);
-        }
-    }
-}

@@ -8,6 +8,7 @@ mod derivative;
 mod drop;
 mod effects;
 mod energy;
+mod frame;
 mod guide;
 mod ideal;
 mod joint_models;

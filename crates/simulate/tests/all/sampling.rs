@@ -4,7 +4,7 @@
 use input::{MachineFile, Resolved};
 use serde_json::{Value, json};
 use signal::decimate::Decimator;
-use simulate::{Settings, Transient, simulate};
+use simulate::{Asked, Settings, Transient, simulate, simulate_together};
 use std::path::Path;
 
 /// The shipped machine with these values.
@@ -147,6 +147,26 @@ fn a_frame_swings_on_where_the_machine_repeats_itself() {
                 let off = difference(&swung.series[i], &integrated.series[i]);
                 assert!(off < settings.tolerance, "{name}: {off:e}");
                 eprintln!("{name} {carries} {transient}: {off:.1e}, {fewer} of {all} steps");
+            }
+        }
+    }
+}
+
+/// Over the period that is repeated the works are integrals of powers, and balance the energy as works that are integrated along do.
+#[test]
+fn the_energy_of_a_repeated_period_balances() {
+    for clearance in ["0.02 mm", "0.1 mm", "0.3 mm"] {
+        let machine = machine(clearance);
+        for tolerance in [1e-6, 1e-7, 1e-9] {
+            let settings = settings(10, tolerance);
+            let asked = Asked::from_rest(&machine.machine, &machine.sensors, &settings);
+            for record in simulate_together(&[asked, asked], |_, record| record) {
+                let missing = record.unwrap().energy_residual.unwrap();
+                assert!(
+                    missing.abs() < tolerance,
+                    "{clearance} {tolerance}: {missing:e}"
+                );
+                eprintln!("{clearance} {tolerance:e}: {missing:.1e}");
             }
         }
     }
