@@ -15,6 +15,9 @@ use crate::plane::Vec2;
 use integrate::Real;
 use scalar::{Scalar, inlined};
 
+/// Places, m, along x and y, and rates, m/s: as a state has them.
+pub type FrameMotion = [f64; 4];
+
 /// What a time makes of a place, m, and a rate, m/s, along an axis: their factors in the place then, and in the rate then.
 pub type Swing = [[f64; 2]; 2];
 

@@ -11,10 +11,7 @@
 
 use crate::run::Run;
 use crate::sensor::Sensor;
-use mechanism::frame::{Frame, Swing};
-
-/// Places, m, along x and y, and rates, m/s: as a state has them.
-pub(crate) type FrameMotion = [f64; 4];
+use mechanism::frame::{Frame, FrameMotion, Swing};
 
 /// A period of a frame's motion under way.
 pub(crate) struct FramePeriod {

@@ -7,7 +7,7 @@
 //! the frame's free vibration.
 
 use crate::chain::UnderWay;
-use crate::free_vibration::{FrameMotion, FramePeriod, Instantly};
+use crate::free_vibration::{FramePeriod, Instantly};
 use crate::instants::Instants;
 use crate::lookout::{self, Lookout};
 use crate::penetration::{Penetration, Watch};
@@ -17,6 +17,7 @@ use crate::run::Run;
 use crate::sensor::Sensor;
 use crate::trace::Trace;
 use integrate::Step;
+use mechanism::frame::FrameMotion;
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation};
 use std::ops::Range;

@@ -6,11 +6,10 @@ pub(crate) use ledger::Ledger;
 
 use crate::asked::Asked;
 use crate::error::{Error, MOST_SLIP};
-use crate::free_vibration::FrameMotion;
 use crate::instants::Instants;
 use crate::sensor::Sensor;
 use integrate::{Course, Integrator, Real, Step, System, Work};
-use mechanism::frame::Frame;
+use mechanism::frame::{Frame, FrameMotion};
 use mechanism::mode::Mode;
 use mechanism::{Dynamics, Evaluation, Machine, lift};
 use scalar::Scalar;
