@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the recordings of the corpus, a few samples each: make.py [FOLDER]. Needs numpy, pyarrow, scipy, mcap."""
+"""Makes the recordings of the corpus, a few samples each: make.py [FOLDER]. Needs numpy, pyarrow, scipy, mcap, h5py."""
 
 import io
 import json
@@ -7,6 +7,7 @@ import pathlib
 import struct
 import sys
 
+import h5py
 import numpy
 import pyarrow
 import pyarrow.parquet as parquet
@@ -76,6 +77,22 @@ def mat():
         keep("mat", name, b"MATLAB 5.0 MAT-file".ljust(116) + out.getvalue()[116:])
 
 
+def hdf5():
+    for name, version in [("earliest.h5", "earliest"), ("latest.h5", "latest")]:
+        out = io.BytesIO()
+        with h5py.File(out, "w", libver=version) as file:
+            file.attrs["fs"] = 1000
+            file["run/acc"] = WAVE.astype(">f4")
+            file["run/acc"].attrs["units"] = "m/s^2"
+            file["run/rpm"] = 500.0
+            both = numpy.stack([WAVE, -WAVE], 1)
+            packed = {"compression": "gzip", "shuffle": True, "fletcher32": True, "chunks": (5, 1)}
+            file.create_dataset("run/both", data=both, maxshape=(None, 2), **packed)
+            file["run/again"] = h5py.SoftLink("/run/acc")
+            file["note"] = "text"
+        keep("hdf5", name, out.getvalue())
+
+
 def mcap():
     definition = b"std_msgs/Header header\nint16 count\nfloat64 acc # m/s^2\nfloat32 p\n"
     head = bytes([0, 1, 0, 0]) + struct.pack("<iII", 1, 2, 2) + b"a\0"
@@ -139,5 +156,5 @@ def tables():
             keep("parquet", f"{kind}-{name}.parquet", out.getvalue())
 
 
-for make in [csv, wav, mat, mcap, tables]:
+for make in [csv, wav, mat, hdf5, mcap, tables]:
     make()

@@ -69,7 +69,7 @@
 //!
 //! ## Recordings of a machine calibrate its model
 //!
-//! [`recordings`] reads CSV, WAV, MAT, MCAP and Parquet. [`calibrate`] fits the parameters of a bundle of them and says
+//! [`recordings`] reads CSV, WAV, MAT, HDF5, MCAP and Parquet. [`calibrate`] fits the parameters of a bundle of them and says
 //! which are identifiable, and [`gap`] names the effect that the calibrated model lacks.
 //!
 //! ## What a signal says

@@ -8,7 +8,7 @@ use std::path::Path;
 
 const HEAD: &str = "\
 The recordings of a machine: fill in one entry of `runs` for each run, and save this as recordings.yaml beside the files.
-Files are CSV, WAV, MAT, Parquet or MCAP. A run recorded in several has `files: [acceleration.csv, pressure.csv]` in the \
+Files are CSV, WAV, MAT, HDF5, Parquet or MCAP. A run recorded in several has `files: [acceleration.csv, pressure.csv]` in the \
 place of `file`, and each channel its `file`.
 `crosshead check FOLDER` finds all mistakes at once.
 The machine's values stand in a file of their own (--machine), or here in a section `machine` with the keys of one.";

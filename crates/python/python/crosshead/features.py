@@ -34,7 +34,7 @@ def features(
 ) -> Features:
     """Computes the features of recordings, a row for each window.
 
-    recordings: one path or several: CSV, WAV, MAT, Parquet or MCAP files, bundles, datasets.
+    recordings: one path or several: CSV, WAV, MAT, HDF5, Parquet or MCAP files, bundles, datasets.
     like: a `Dataset` or its folder. The features are then those of the dataset, from windows of its length. Recordings of
         another rate, length or of other channels raise `InputError`.
     columns: columns to take. By default every column of numbers.

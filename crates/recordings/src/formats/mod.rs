@@ -24,6 +24,7 @@ formats! {
     pub csv,
     pub(crate) wav,
     pub(crate) mat,
+    pub(crate) hdf5,
     pub parquet,
     pub mcap,
 }

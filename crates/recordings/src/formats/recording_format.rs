@@ -12,18 +12,10 @@ pub(crate) struct RecordingFormat {
     pub endings: &'static [&'static str],
     /// Where in a file its signature begins, bytes; none for text, which has no signature.
     pub signature_at: Option<usize>,
-    /// What the first bytes of a file are, where they are of this format.
-    pub recognise: fn(&[u8]) -> Option<Seen>,
+    /// What the first bytes of a file are in words, where they are of this format.
+    pub recognise: fn(&[u8]) -> Option<&'static str>,
     /// Opens a file and reads its heading.
     pub open: fn(&Path, &Options) -> Result<MeasuredFile, Error>,
-}
-
-/// What the first bytes of a file are, in words.
-pub(crate) enum Seen {
-    /// A file that can be read.
-    Readable(&'static str),
-    /// A file that cannot be read.
-    Unreadable(&'static str),
 }
 
 /// Whether `signature` stands at byte `at` of the first bytes of a file.

@@ -4,7 +4,7 @@
 //! Whole numbers are scaled so that full scale is 1, as players do; channels are called
 //! `channel_1`, `channel_2`, ... and have no unit.
 
-use super::recording_format::{RecordingFormat, Seen, has};
+use super::recording_format::{RecordingFormat, has};
 use crate::Error;
 use crate::measured::{
     MeasuredChannel, MeasuredFile, Options, Recording, Samples, one_rate, selected,
@@ -55,7 +55,7 @@ pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     recognise: |head| {
         let mut containers = [b"RIFF", b"RF64", b"BW64"].into_iter();
         let is_wav = containers.any(|name| has(head, 0, name)) && has(head, 8, b"WAVE");
-        is_wav.then_some(Seen::Readable("a WAV file"))
+        is_wav.then_some("a WAV file")
     },
     open,
 };

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::formats::FORMATS;
-use crate::formats::recording_format::{RecordingFormat, Seen, has};
+use crate::formats::recording_format::{RecordingFormat, has};
 use std::io::Read;
 use std::path::Path;
 
@@ -10,8 +10,7 @@ use std::path::Path;
 const HEAD: u64 = 1024;
 
 /// Signatures of formats that are not read, at the beginning of a file.
-const UNREADABLE: [(&[u8], &str); 7] = [
-    (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
+const UNREADABLE: [(&[u8], &str); 6] = [
     (b"TDSm", "a TDMS file"),
     (b"PK\x03\x04", "a ZIP archive or a spreadsheet"),
     (b"\x1f\x8b", "a gzip archive"),
@@ -33,7 +32,7 @@ pub(super) fn format_of_file(path: &Path) -> Result<&'static RecordingFormat, Er
     let ending = ending.to_ascii_lowercase();
     let named = FORMATS.iter().find(|f| f.endings.contains(&&*ending));
     match (named, shown(&head)) {
-        (Some(named), Shown::Format(shown, _)) if named.name == shown.name => Ok(named),
+        (Some(_), Shown::Format(shown, _)) if shown.endings.contains(&&*ending) => Ok(shown),
         (_, Shown::Other(what)) => {
             let reason = format!("it looks like {what}: save it as {}", names("or"));
             Err(Error::damaged(name_of(named), path, reason))
@@ -83,9 +82,9 @@ fn shown(head: &[u8]) -> Shown {
         formats
     });
     let recognised = |formats: Vec<&'static RecordingFormat>| {
-        let seen = |format: &'static RecordingFormat| match (format.recognise)(head)? {
-            Seen::Readable(what) => Some(Shown::Format(format, what)),
-            Seen::Unreadable(what) => Some(Shown::Other(what)),
+        let seen = |format: &'static RecordingFormat| {
+            let what = (format.recognise)(head)?;
+            Some(Shown::Format(format, what))
         };
         formats.into_iter().find_map(seen)
     };

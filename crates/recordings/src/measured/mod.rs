@@ -1,4 +1,4 @@
-//! Recordings of any origin, read a stretch at a time: CSV, WAV, MAT (version 5 to 7), Parquet, MCAP.
+//! Recordings of any origin, read a stretch at a time: CSV, WAV, MAT, HDF5, Parquet, MCAP.
 //!
 //! [`MeasuredFile::open`] reads the heading of a file: its channels with their units, and the
 //! columns of its labels. The recordings follow one after the other. Most files have one; a table with lists of
@@ -15,6 +15,7 @@ pub(crate) mod expansion;
 mod format;
 mod names;
 mod open;
+mod stated;
 mod windows;
 
 pub use blanks::{Bridge, LONGEST_BRIDGED};
@@ -23,6 +24,7 @@ pub use windows::{Length, Window, Windows};
 
 pub(crate) use clock::{TimeColumn, agree};
 pub(crate) use names::{is_unit, name_and_unit, seconds_of_unit, seconds_per_unit};
+pub(crate) use stated::{is_sample_rate, is_speed, speed_label};
 
 use crate::{Column, Error, Value};
 use clock::Clock;
@@ -347,4 +349,27 @@ pub(crate) fn one_rate(
         }),
         (file, stated) => Ok(stated.or(file)),
     }
+}
+
+/// The length that all channels have.
+pub(crate) fn one_length(
+    format: &'static str,
+    path: &Path,
+    channels: &[MeasuredChannel],
+    lengths: impl Iterator<Item = u64> + Clone,
+) -> Result<u64, Error> {
+    let first = lengths.clone().next().unwrap_or(0);
+    if lengths.clone().all(|length| length == first) {
+        return Ok(first);
+    }
+    let shown: Vec<String> = channels
+        .iter()
+        .zip(lengths)
+        .take(20)
+        .map(|(channel, length)| format!("{} ({length})", channel.column))
+        .collect();
+    let shown = shown.join(", ");
+    let reason =
+        format!("its channels differ in length, so that they cannot be read together: {shown}");
+    Err(Error::damaged(format, path, reason))
 }

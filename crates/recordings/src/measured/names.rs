@@ -84,9 +84,9 @@ pub(crate) fn seconds_per_unit(name: &str, unit: Option<&str>) -> Option<f64> {
 /// Seconds in a unit of time; none for other units.
 pub(crate) fn seconds_of_unit(unit: &str) -> Option<f64> {
     match unit {
-        "s" | "sec" => Some(1.0),
-        "ms" => Some(1e-3),
-        "us" | "µs" => Some(1e-6),
+        "s" | "sec" | "seconds" => Some(1.0),
+        "ms" | "milliseconds" => Some(1e-3),
+        "us" | "µs" | "microseconds" => Some(1e-6),
         "ns" => Some(1e-9),
         "min" => Some(60.0),
         _ => None,

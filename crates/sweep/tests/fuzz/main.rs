@@ -124,6 +124,11 @@ fn mat() {
 }
 
 #[test]
+fn hdf5() {
+    recordings::recordings("hdf5", parts::hdf5);
+}
+
+#[test]
 fn mcap() {
     recordings::recordings("mcap", parts::mcap);
 }

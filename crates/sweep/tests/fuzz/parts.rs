@@ -228,6 +228,27 @@ pub fn mat(file: &[u8]) -> Vec<Part> {
     parts
 }
 
+/// The blocks of HDF5: each begins with its signature and ends at the next one.
+pub fn hdf5(file: &[u8]) -> Vec<Part> {
+    const SIGNATURES: [&[u8]; 14] = [
+        b"OHDR", b"OCHK", b"TREE", b"SNOD", b"HEAP", b"GCOL", b"FRHP", b"FHDB", b"FHIB", b"BTHD",
+        b"BTLF", b"FAHD", b"EAHD", b"EAIB",
+    ];
+    let begins = |at: &usize| {
+        SIGNATURES
+            .iter()
+            .any(|signature| file[*at..].starts_with(signature))
+    };
+    let starts: Vec<usize> = (0..file.len()).filter(begins).collect();
+    let ends = starts.iter().skip(1).copied().chain([file.len()]);
+    let part = |(start, end): (&usize, usize)| Part {
+        whole: *start..end,
+        body: *start + 4..end,
+        length: None,
+    };
+    starts.iter().zip(ends).map(part).collect()
+}
+
 /// The records of MCAP, and those within chunks that are not compressed.
 pub fn mcap(file: &[u8]) -> Vec<Part> {
     let mut parts = tagged(file, 8..file.len(), 1, (8, false), 1);

@@ -10,14 +10,14 @@ mod write;
 
 pub use write::write_table;
 
-use super::recording_format::{RecordingFormat, Seen};
+use super::recording_format::{RecordingFormat};
 
 /// CSV as a format of recordings.
 pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     name: "CSV",
     endings: &["csv", "tsv", "txt"],
     signature_at: None,
-    recognise: |head| is_text(head).then_some(Seen::Readable("text")),
+    recognise: |head| is_text(head).then_some("text"),
     open: read::open,
 };
 

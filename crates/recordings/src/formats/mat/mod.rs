@@ -3,19 +3,19 @@
 //!
 //! - Every vector is a channel called as its variable. A matrix has one channel per column (or row,
 //!   where those are the longer ones) called `name_1`, `name_2`, ...
-//! - A variable that is one number is the sample rate when it is called `fs`, `Fs` or `sample_rate_hz`, and the speed
-//!   when its name ends in `rpm`.
+//! - A variable that is one number is the sample rate, Hz, when it is called `fs`, `sample_rate`, `sampling_rate` or
+//!   `sampling_frequency` (with or without `_hz`), and the speed when its name ends in `rpm`.
 //! - Text, cells, structures, and complex and sparse arrays are left out.
 
 mod elements;
 mod samples;
 
-use super::recording_format::{RecordingFormat, Seen, has};
+use super::recording_format::{RecordingFormat, has};
 use crate::measured::{
-    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, name_and_unit, one_rate,
-    seconds_per_unit, selected,
+    MeasuredChannel, MeasuredFile, Options, Recording, TimeColumn, is_sample_rate, is_speed,
+    name_and_unit, one_length, one_rate, seconds_per_unit, selected, speed_label,
 };
-use crate::{Column, Error, Kind, Value};
+use crate::Error;
 use elements::{Number, damaged, scalar, scan};
 use samples::{MatSamples, Place, Reader};
 use std::path::Path;
@@ -26,12 +26,8 @@ pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     endings: &["mat"],
     signature_at: Some(126),
     recognise: |head| {
-        if has(head, 0, b"MATLAB 7.3") || has(head, 512, b"\x89HDF\r\n\x1a\n") {
-            let words = "a MAT file of version 7.3, which is HDF5 (that of `save -v7` is read)";
-            return Some(Seen::Unreadable(words));
-        }
         let is_mat = has(head, 126, b"IM") || has(head, 126, b"MI");
-        is_mat.then_some(Seen::Readable("a MAT file"))
+        is_mat.then_some("a MAT file")
     },
     open,
 };
@@ -60,7 +56,7 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
     let wanted = selected(&candidates, options)?;
     let channels: Vec<_> = wanted.iter().map(|&i| candidates[i].clone()).collect();
     let wanted: Vec<usize> = wanted.iter().map(|&i| rest[i]).collect();
-    let length = one_length(path, &channels, wanted.iter().map(|&i| places[i].1.samples))?;
+    let length = one_length(FORMAT.name, path, &channels, wanted.iter().map(|&i| places[i].1.samples))?;
     let time = times
         .iter()
         .copied()
@@ -80,43 +76,15 @@ fn open(path: &Path, options: &Options) -> Result<MeasuredFile, Error> {
         seconds_per_unit: seconds_per_unit(&all[i].name, all[i].unit.as_deref()).unwrap_or(1.0),
         single_precision: places[i].0.number == Number::F32,
     });
-    let scalar = |is: &dyn Fn(&str) -> bool| {
-        let found = scalars.iter().find(|v| is(&v.name.to_ascii_lowercase()));
-        found
-            .map(|variable| scalar(path, big_endian, variable))
-            .transpose()
+    let scalar = |is: fn(&str) -> bool| {
+        let found = scalars.iter().find(|variable| is(&variable.name));
+        let value = found.map(|variable| scalar(path, big_endian, variable));
+        value.transpose()
     };
-    let stated = scalar(&|name| ["fs", "sample_rate_hz"].contains(&name))?;
-    let rate = one_rate(path, stated, options)?;
-    let speed = scalar(&|name| name.ends_with("rpm"))?.filter(|s| s.is_finite() && *s > 0.0);
-    let speed = speed.map(|speed| {
-        let column = Column::new("speed_rpm", Kind::Real, "speed of the crank").unit("rpm");
-        (column.optional(), Value::from(speed))
-    });
+    let rate = one_rate(path, scalar(is_sample_rate)?, options)?;
+    let labels = scalar(is_speed)?.and_then(speed_label);
     let count = channels.len();
-    MeasuredFile::of_one(channels, speed.into_iter().collect(), |labels| {
+    MeasuredFile::of_one(channels, labels.into_iter().collect(), |labels| {
         Recording::new(path, labels, count, rate, time, samples)
     })
-}
-
-fn one_length(
-    path: &Path,
-    channels: &[MeasuredChannel],
-    lengths: impl Iterator<Item = u64> + Clone,
-) -> Result<u64, Error> {
-    let first = lengths.clone().next().unwrap_or(0);
-    if lengths.clone().all(|length| length == first) {
-        return Ok(first);
-    }
-    let shown: Vec<String> = channels
-        .iter()
-        .zip(lengths)
-        .take(20)
-        .map(|(channel, length)| format!("{} ({length})", channel.name))
-        .collect();
-    let shown = shown.join(", ");
-    Err(damaged(
-        path,
-        format!("its variables differ in length, so that they cannot be read together: {shown}"),
-    ))
 }

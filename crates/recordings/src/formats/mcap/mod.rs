@@ -14,14 +14,14 @@ mod write;
 
 pub use write::{Channel, Recording, write};
 
-use super::recording_format::{RecordingFormat, Seen, has};
+use super::recording_format::{RecordingFormat, has};
 
 /// MCAP as a format of recordings.
 pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     name: "MCAP",
     endings: &["mcap"],
     signature_at: Some(0),
-    recognise: |head| has(head, 0, b"\x89MCAP").then_some(Seen::Readable("an MCAP file")),
+    recognise: |head| has(head, 0, b"\x89MCAP").then_some("an MCAP file"),
     open: read::open,
 };
 

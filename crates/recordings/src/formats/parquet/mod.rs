@@ -17,14 +17,14 @@ pub use batches::Batches;
 pub use read::{ParquetFile, read_table, rows_of_footer};
 pub use write::{PENDING_ROWS, TableWriter, write_table};
 
-use super::recording_format::{RecordingFormat, Seen, has};
+use super::recording_format::{RecordingFormat, has};
 
 /// Parquet as a format of recordings.
 pub(crate) const FORMAT: RecordingFormat = RecordingFormat {
     name: "Parquet",
     endings: &["parquet"],
     signature_at: Some(0),
-    recognise: |head| has(head, 0, b"PAR1").then_some(Seen::Readable("a Parquet file")),
+    recognise: |head| has(head, 0, b"PAR1").then_some("a Parquet file"),
     open: recordings::open,
 };
 

@@ -19,6 +19,7 @@ fn one_clear_message_for_each_mistake() {
     };
     let parquet = parquet::write_table(Vec::new(), &dataset_rows(), 1).unwrap();
     let whole = wav_i16(&[1; 100], 1);
+    let netcdf = fs::read("../../data/recordings/netcdf-4.nc").unwrap();
     let mut no_rate = whole.clone();
     let at = whole.windows(4).position(|w| w == b"fmt ").unwrap() + 12;
     no_rate[at..at + 4].fill(0);
@@ -28,9 +29,12 @@ fn one_clear_message_for_each_mistake() {
         ("a.csv", &whole, "as CSV: it looks like a WAV file"),
         ("b.parquet", &whole[..20], "as Parquet: it looks like a WAV file"),
         ("a.dat", b"PK\x03\x04\0\0", "it looks like a ZIP archive"),
-        ("a.tdms", b"TDSm\x0e\0\0\0", "a TDMS file: save it as CSV, WAV, MAT, Parquet or MCAP"),
-        ("b.dat", b"\0\x01\x02", "it is none of CSV, WAV, MAT, Parquet and MCAP"),
-        ("v73.mat", b"MATLAB 7.3 MAT-file\0", "version 7.3"),
+        ("a.tdms", b"TDSm\x0e\0\0\0", "a TDMS file: save it as CSV, WAV, MAT, HDF5, Parquet or MCAP"),
+        ("b.dat", b"\0\x01\x02", "it is none of CSV, WAV, MAT, HDF5, Parquet and MCAP"),
+        ("v73.mat", b"MATLAB 7.3 MAT-file\0", "as HDF5: invalid HDF5 magic bytes"),
+        ("cut.h5", &netcdf[..netcdf.len() - 200], "cannot read"),
+        ("a.wav.nc", &whole, "as HDF5: it looks like a WAV file"),
+        ("nc.csv", &netcdf, "as CSV: it looks like an HDF5 file"),
         ("cut.wav", &whole[..whole.len() - 50], "announces 200 bytes of samples and has 150"),
         ("head.wav", &whole[..30], "ends before its samples begin"),
         ("rate.wav", &no_rate, "its sample rate is 0 Hz"),
@@ -67,7 +71,7 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
         ("t_s", Some("s"), times(60)),
         ("x", None, vec![0.5; 60]),
     ]);
-    let mat = |name: &str| fs::read(Path::new("../../data/recordings").join(name)).unwrap();
+    let shipped = |name: &str| fs::read(Path::new("../../data/recordings").join(name)).unwrap();
     vec![
         ("wav", wav_i16(&[5; 60], 2)),
         ("csv", csv::write_table(Vec::new(), &text).unwrap()),
@@ -79,8 +83,10 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
             "parquet",
             parquet::write_table(Vec::new(), &dataset_rows(), 1).unwrap(),
         ),
-        ("mat", mat("matlab-v6.mat")),
-        ("mat", mat("matlab-v7.mat")),
+        ("mat", shipped("matlab-v6.mat")),
+        ("mat", shipped("matlab-v7.mat")),
+        ("mat", shipped("matlab-v7.3.mat")),
+        ("nc", shipped("netcdf-4.nc")),
         ("mat", big_endian_mat(2, 10, &[1.0; 20])),
         ("mcap", mcap_bytes(60)),
         ("mcap", json_mcap(20)),

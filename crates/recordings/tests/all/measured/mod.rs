@@ -1,6 +1,7 @@
 //! Recordings of all formats, read back sample by sample.
 
 mod damaged;
+mod hdf5;
 
 use recordings::formats::{csv, mcap, parquet};
 use recordings::measured::{Length, MeasuredFile, Options, Recording, Windows};
@@ -279,7 +280,7 @@ fn csv_as_loggers_write_it() {
 
 #[test]
 fn mat_files_of_another_writer() {
-    for name in ["matlab-v6.mat", "matlab-v7.mat"] {
+    for name in ["matlab-v6.mat", "matlab-v7.mat", "matlab-v7.3.mat"] {
         let path = Path::new("../../data/recordings").join(name);
         let file = MeasuredFile::open(&path, &Options::default()).unwrap();
         assert_eq!(file.labels()[0].name, "speed_rpm");
