@@ -210,8 +210,7 @@ pub fn calibrate(
         evaluations += found.evaluations;
         let mut information = information(&likelihood, &found.x);
         evaluations += 1 + optimiser::derivatives(free.len()) + 2 * free.len() as u64;
-        let simple = free.len() == nominal.len() && found.misfit() < NOISE;
-        if information.unidentifiable.is_none() && !simple {
+        if information.unidentifiable.is_none() {
             let whole = Likelihood::new(&fitted);
             let mut x = nominal.clone();
             for (i, value) in free.iter().zip(&found.x) {
