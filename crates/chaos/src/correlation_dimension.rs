@@ -18,6 +18,8 @@ const REFERENCES: usize = 500;
 const LOW: f64 = 5e-4;
 const HIGH: f64 = 2e-2;
 const POINTS: usize = 9;
+/// Distances that are computed at a time.
+const AT_A_TIME: usize = 512;
 
 /// The correlation dimension of the delay vectors, from pairs more than `theiler` samples apart.
 ///
@@ -43,9 +45,15 @@ pub fn correlation_dimension(
         .sum();
     let rank = |sum: f64| (sum * pairs as f64) as usize;
     let mut nearest = Nearest::new(rank(HIGH) + 1);
+    let mut block = [0.0; AT_A_TIME];
     for a in references() {
-        for b in (0..count).filter(|b| a.abs_diff(*b) > theiler) {
-            nearest.push(delays.squared_distance(a, b));
+        let others = [0..a.saturating_sub(theiler), a + theiler + 1..count];
+        for (first, end) in others.map(|range| (range.start, range.end)) {
+            for start in (first..end).step_by(AT_A_TIME) {
+                let block = &mut block[..AT_A_TIME.min(end - start)];
+                delays.squared_distances(a, start, block);
+                nearest.extend(block);
+            }
         }
     }
     let squares = nearest.sorted();
@@ -77,18 +85,33 @@ pub fn correlation_dimension(
 struct Nearest {
     most: usize,
     kept: Vec<f64>,
+    /// As many as are wanted are no greater.
+    limit: f64,
 }
 
 impl Nearest {
     fn new(most: usize) -> Self {
-        let kept = Vec::with_capacity(2 * most);
-        Self { most, kept }
+        Self {
+            most,
+            kept: Vec::with_capacity(2 * most),
+            limit: f64::INFINITY,
+        }
+    }
+
+    fn extend(&mut self, numbers: &[f64]) {
+        for number in numbers {
+            if *number < self.limit {
+                self.push(*number);
+            }
+        }
     }
 
     fn push(&mut self, number: f64) {
         if self.kept.len() == 2 * self.most {
-            self.kept
+            let least = self
+                .kept
                 .select_nth_unstable_by(self.most - 1, f64::total_cmp);
+            self.limit = *least.1;
             self.kept.truncate(self.most);
         }
         self.kept.push(number);
@@ -135,10 +158,10 @@ mod tests {
     #[test]
     fn the_nearest_are_kept() {
         let mut nearest = Nearest::new(5);
-        (0..1000).for_each(|i| nearest.push(f64::from(i * 617 % 1000)));
+        (0..1000).for_each(|i| nearest.extend(&[f64::from(i * 617 % 1000)]));
         assert_eq!(nearest.sorted(), [0.0, 1.0, 2.0, 3.0, 4.0]);
         let mut few = Nearest::new(5);
-        [2.0, 1.0].into_iter().for_each(|number| few.push(number));
+        few.extend(&[2.0, 1.0]);
         assert_eq!(few.sorted(), [1.0, 2.0]);
     }
 

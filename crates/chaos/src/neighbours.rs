@@ -42,6 +42,18 @@ impl Delays<'_> {
             .map(|axis| (self.at(a, axis) - self.at(b, axis)).powi(2))
             .sum()
     }
+
+    /// The same of vector `a` and each vector from `first` on, one per element of `into`.
+    pub(crate) fn squared_distances(&self, a: usize, first: usize, into: &mut [f64]) {
+        into.fill(0.0);
+        for axis in 0..self.dimension {
+            let here = self.at(a, axis);
+            let there = &self.signal[first + axis * self.delay..];
+            for (sum, there) in into.iter_mut().zip(there) {
+                *sum += (here - there) * (here - there);
+            }
+        }
+    }
 }
 
 /// A neighbour of a vector.

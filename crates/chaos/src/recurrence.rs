@@ -47,34 +47,18 @@ pub fn recurrence(delays: &Delays, theiler: usize, radius: f64) -> Result<Recurr
     // the row of the same plot mirrored). The band about the diagonal ends a line.
     let mut diagonals = Lines::new(count);
     let mut verticals = Lines::new(count);
-    let (mut above, mut below) = (vec![0; count], vec![0; count]);
-    let mut squares = vec![0.0; count + delays.span()];
-    let mut sums = vec![0.0; count];
+    let (mut above, mut below) = (Columns::new(count), Columns::new(count));
+    let mut plot = Plot::new(delays, radius, count);
     for lag in theiler + 1..count {
-        let ends = delays.signal.iter().zip(&delays.signal[lag..]);
-        for (square, (a, b)) in squares.iter_mut().zip(ends) {
-            *square = (a - b) * (a - b);
-        }
-        let sums = &mut sums[..count - lag];
-        sums.fill(0.0);
-        for axis in 0..delays.dimension {
-            for (sum, square) in sums.iter_mut().zip(&squares[axis * delays.delay..]) {
-                *sum += square;
-            }
-        }
-        let mut along = 0;
-        let columns = above[lag..].iter_mut().zip(&mut below);
-        for (sum, (above, below)) in sums.iter().zip(columns) {
-            let close = *sum < radius * radius;
-            diagonals.extend(&mut along, close);
-            verticals.extend(above, close);
-            verticals.extend(below, close);
-        }
-        diagonals.extend(&mut along, false);
+        let close = plot.along(lag);
+        diagonals.add_runs(close);
+        // The earlier vector of pair `i` is `i`, the later one `i + lag`.
+        below.extend(close, 0, lag, &mut verticals);
+        above.shift(lag, &mut verticals);
+        above.extend(close, lag, lag, &mut verticals);
     }
-    for length in above.iter_mut().chain(&mut below) {
-        verticals.extend(length, false);
-    }
+    below.end(0, |vector| count - vector, &mut verticals);
+    above.end(count - 1, |_| count, &mut verticals);
     let pairs = (theiler + 1..count).map(|lag| count - lag).sum::<usize>();
     Ok(Recurrence {
         rate: diagonals.points(1) as f64 / pairs as f64,
@@ -87,6 +71,123 @@ pub fn recurrence(delays: &Delays, theiler: usize, radius: f64) -> Result<Recurr
     })
 }
 
+/// The plot, one lag after the other.
+struct Plot<'a> {
+    delays: &'a Delays<'a>,
+    count: usize,
+    /// Squared distance from which a pair is not close.
+    limit: f64,
+    squares: Vec<f64>,
+    sums: Vec<f64>,
+    close: Vec<u64>,
+}
+
+impl<'a> Plot<'a> {
+    fn new(delays: &'a Delays, radius: f64, count: usize) -> Self {
+        Self {
+            delays,
+            count,
+            limit: radius * radius,
+            squares: vec![0.0; count + delays.span()],
+            sums: vec![0.0; count],
+            close: Vec::with_capacity(count.div_ceil(WORD)),
+        }
+    }
+
+    /// Which pairs of this lag are close, a bit each.
+    fn along(&mut self, lag: usize) -> &[u64] {
+        let signal = self.delays.signal;
+        for (square, (a, b)) in self
+            .squares
+            .iter_mut()
+            .zip(signal.iter().zip(&signal[lag..]))
+        {
+            *square = (a - b) * (a - b);
+        }
+        let sums = &mut self.sums[..self.count - lag];
+        sums.fill(0.0);
+        for axis in 0..self.delays.dimension {
+            let squares = &self.squares[axis * self.delays.delay..];
+            for (sum, square) in sums.iter_mut().zip(squares) {
+                *sum += square;
+            }
+        }
+        let limit = self.limit;
+        let bit = |word: u64, (place, sum): (usize, &f64)| word | u64::from(*sum < limit) << place;
+        let words = sums
+            .chunks(WORD)
+            .map(|sums| sums.iter().enumerate().fold(0, bit));
+        self.close.clear();
+        self.close.extend(words);
+        &self.close
+    }
+}
+
+/// Bits in a word.
+const WORD: usize = u64::BITS as usize;
+
+/// The lines along columns of the plot that have not ended: a bit for each pair of a lag, and since which lag each
+/// vector's is close.
+struct Columns {
+    open: Vec<u64>,
+    since: Vec<usize>,
+}
+
+impl Columns {
+    fn new(count: usize) -> Self {
+        Self {
+            open: vec![0; count.div_ceil(WORD)],
+            since: vec![0; count],
+        }
+    }
+
+    /// Goes on to the pairs of this lag; the first of them belongs to the column of vector `first`.
+    fn extend(&mut self, close: &[u64], first: usize, lag: usize, lines: &mut Lines) {
+        let pairs = self.since.len() - lag;
+        for (i, (open, close)) in self.open.iter_mut().zip(close).enumerate() {
+            let pairs = pairs - i * WORD;
+            let within = if pairs < WORD {
+                (1 << pairs) - 1
+            } else {
+                u64::MAX
+            };
+            let mut changed = (*open ^ close) & within;
+            *open ^= changed;
+            while changed != 0 {
+                let place = changed.trailing_zeros();
+                let since = &mut self.since[first + i * WORD + place as usize];
+                match close >> place & 1 {
+                    1 => *since = lag,
+                    _ => lines.add(lag - *since),
+                }
+                changed &= changed - 1;
+            }
+        }
+    }
+
+    /// Moves each column to the pair before, where the later vectors of this lag have theirs. The first one ends.
+    fn shift(&mut self, lag: usize, lines: &mut Lines) {
+        if self.open[0] & 1 == 1 {
+            lines.add(lag - self.since[lag - 1]);
+        }
+        for i in 0..self.open.len() {
+            let next = self.open.get(i + 1).map_or(0, |next| next << (WORD - 1));
+            self.open[i] = self.open[i] >> 1 | next;
+        }
+    }
+
+    /// Ends the lines that are open, each at the lag after the last of its vector; the first pair is that of vector `first`.
+    fn end(&self, first: usize, after: impl Fn(usize) -> usize, lines: &mut Lines) {
+        let is_open = |place: &usize| self.open[place / WORD] >> (place % WORD) & 1 == 1;
+        for vector in (0..self.since.len())
+            .filter(is_open)
+            .map(|place| first + place)
+        {
+            lines.add(after(vector) - self.since[vector]);
+        }
+    }
+}
+
 /// How many lines there are of each length.
 struct Lines(Vec<usize>);
 
@@ -95,13 +196,33 @@ impl Lines {
         Self(vec![0; longest + 1])
     }
 
-    /// Makes a line that has `length` points longer, or ends it.
-    fn extend(&mut self, length: &mut usize, close: bool) {
-        if close {
-            *length += 1;
-        } else if *length > 0 {
-            self.0[*length] += 1;
-            *length = 0;
+    fn add(&mut self, length: usize) {
+        self.0[length] += 1;
+    }
+
+    /// The runs of ones in these words.
+    fn add_runs(&mut self, words: &[u64]) {
+        let mut run = 0;
+        for word in words {
+            let (mut rest, mut left) = (*word, u64::BITS);
+            while left > 0 {
+                let ones = rest.trailing_ones();
+                run += ones as usize;
+                rest = rest.checked_shr(ones).unwrap_or(0);
+                left -= ones;
+                if left > 0 {
+                    if run > 0 {
+                        self.add(run);
+                        run = 0;
+                    }
+                    let zeros = rest.trailing_zeros().min(left);
+                    rest = rest.checked_shr(zeros).unwrap_or(0);
+                    left -= zeros;
+                }
+            }
+        }
+        if run > 0 {
+            self.add(run);
         }
     }
 
@@ -163,6 +284,47 @@ mod tests {
             "{found:?}"
         );
         assert_eq!((found.laminarity, found.trapping_time), (0.0, 0.0));
+    }
+
+    #[test]
+    fn lines_are_those_of_the_whole_plot() {
+        let signal = Noise::White.samples(300, 3);
+        let delays = Delays {
+            signal: &signal,
+            dimension: 2,
+            delay: 3,
+        };
+        let (theiler, radius) = (4, 1.4);
+        let count = delays.count();
+        let close = |a: usize, b: usize| {
+            a.abs_diff(b) > theiler && delays.squared_distance(a, b) < radius * radius
+        };
+        // Point by point: the lines of a column, and those along a diagonal above the main one.
+        let (mut verticals, mut diagonals) = (Lines::new(count), Lines::new(count));
+        let runs = |points: &mut dyn Iterator<Item = bool>, lines: &mut Lines| {
+            let mut run = 0;
+            for close in points.chain([false]) {
+                match close {
+                    true => run += 1,
+                    false if run > 0 => {
+                        lines.add(run);
+                        run = 0;
+                    }
+                    false => {}
+                }
+            }
+        };
+        for b in 0..count {
+            runs(&mut (0..count).map(|a| close(a, b)), &mut verticals);
+            runs(&mut (b..count).map(|a| close(a - b, a)), &mut diagonals);
+        }
+        let found = recurrence(&delays, theiler, radius).unwrap();
+        assert_eq!(found.trapping_time, verticals.mean());
+        assert_eq!(found.laminarity, verticals.share());
+        assert_eq!(found.determinism, diagonals.share());
+        assert_eq!(found.longest_diagonal, diagonals.longest());
+        assert_eq!(found.diagonal_entropy, diagonals.entropy());
+        assert!(found.laminarity > 0.2 && found.rate > 0.2, "{found:?}");
     }
 
     #[test]
